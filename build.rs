@@ -1,0 +1,54 @@
+//! Compiles every shader with both compilers and embeds the binaries.
+
+// The build script needs only a part of the module that the library uses whole, and `embedded_shaders`, which
+// this script sets for the library, is unknown to the script itself.
+#[allow(dead_code, unused_imports, unexpected_cfgs)]
+#[path = "src/shader_build/mod.rs"]
+mod shader_build;
+
+use std::env;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+
+use shader_build::{CompiledShader, NAGA_EXCEPTIONS, check_exceptions, compile_dir};
+
+fn main() -> ExitCode {
+    println!("cargo::rerun-if-changed=shaders");
+    println!("cargo::rustc-check-cfg=cfg(embedded_shaders)");
+    println!("cargo::rustc-cfg=embedded_shaders");
+    match embed_shaders() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            println!("cargo::error={message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn embed_shaders() -> Result<(), String> {
+    let shaders = compile_dir(Path::new("shaders")).map_err(|error| error.to_string())?;
+    check_exceptions(&shaders, NAGA_EXCEPTIONS).map_err(|error| error.to_string())?;
+    let folder = env::var_os("OUT_DIR").ok_or("cargo sets no OUT_DIR; build with cargo")?;
+    let path = Path::new(&folder).join("shaders.rs");
+    fs::write(&path, write_table(&shaders))
+        .map_err(|error| format!("writing {}: {error}; free space or clean", path.display()))
+}
+
+/// The Rust source of the table of embedded shaders.
+fn write_table(shaders: &[CompiledShader]) -> String {
+    let mut table = "/// Every shader, sorted by name.\npub static EMBEDDED: &[EmbeddedShader] = &[\n".to_owned();
+    for CompiledShader { name, stage, glslang, naga } in shaders {
+        let naga = match naga {
+            Ok(words) => format!("Ok(&{words:?})"),
+            Err(reason) => format!("Err({reason:?})"),
+        };
+        let _infallible = writeln!(
+            table,
+            "EmbeddedShader {{ name: {name:?}, stage: Stage::{stage:?}, glslang: &{glslang:?}, naga: {naga} }},"
+        );
+    }
+    table.push_str("];\n");
+    table
+}

@@ -1,0 +1,276 @@
+//! Whether B is faster or slower than A, decided from several records a side.
+//!
+//! Runs are matched by what was measured (see [`matching`]); each record, and each process inside one, is one process
+//! of its side. The frame decides: the ratio of its medians B / A has an interval of 95 % (see [`bootstrap`]), and
+//!
+//! - `SAME`: the whole interval lies within [`SAME_MARGIN`] of 1, or both sides hold the very same samples;
+//! - `SLOWER`, `FASTER`: the interval lies above or below 1;
+//! - `UNCLEAR`: anything else, and always when a side has one process only: how much processes differ is then unknown.
+//!
+//! The margin is 2 %: what moving code or memory about changes by itself (Mytkowicz et al., 2009, "Producing wrong data
+//! without doing anything obviously wrong"), and no more than five quiet processes a side resolve. A difference that is
+//! certain but smaller is called the same. A threshold below the margin replaces it. Passes are reported with their
+//! intervals and get no verdict: among many passes some interval always misses 1 by chance.
+
+mod bootstrap;
+mod console;
+mod matching;
+#[cfg(test)]
+mod synthetic;
+#[cfg(test)]
+mod tests;
+
+pub use bootstrap::{CONFIDENCE, RESAMPLES};
+pub use console::render;
+pub use matching::CompareError;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::report::record::{Record, Run};
+use matching::Configuration;
+
+/// How far from 1 the whole interval of a ratio may reach and still be called the same.
+pub const SAME_MARGIN: f64 = 0.02;
+
+/// The value of [`Comparison::schema`].
+pub const SCHEMA: &str = "fumarole.compare/1";
+
+/// A record and the file it came from, which messages name.
+#[derive(Clone, Debug)]
+pub struct Input {
+    pub name: String,
+    pub record: Record,
+}
+
+/// The outcome, as written by `--json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    pub schema: String,
+    /// Files of each side.
+    pub a: Vec<String>,
+    pub b: Vec<String>,
+    pub confidence: f64,
+    pub resamples: usize,
+    /// The margin in use, as a part of 1.
+    pub same_margin: f64,
+    /// Part of 1 that B may be slower than A; absent without `--fail-above`.
+    pub fail_above: Option<f64>,
+    pub runs: Vec<RunComparison>,
+    /// Runs that the other side does not have.
+    pub only_in_a: Vec<String>,
+    pub only_in_b: Vec<String>,
+    pub warnings: Vec<String>,
+}
+
+impl Comparison {
+    /// Whether any run's interval lies beyond `fail_above`.
+    pub fn has_regression(&self) -> bool {
+        self.runs.iter().any(|run| run.regression)
+    }
+}
+
+/// One configuration, measured on both sides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunComparison {
+    pub paper: String,
+    pub variant: String,
+    pub preset: Option<String>,
+    pub config: Map<String, Value>,
+    pub width: u32,
+    pub height: u32,
+    /// Distinct processes on each side that timed the frame.
+    pub a_processes: usize,
+    pub b_processes: usize,
+    pub verdict: Verdict,
+    /// Why the verdict is not clear; absent when it is.
+    pub reason: Option<String>,
+    /// The interval lies beyond `fail_above`.
+    pub regression: bool,
+    /// Absent when a side did not time the frame.
+    pub frame: Option<Ratio>,
+    /// In the order of A, then what only B has.
+    pub passes: Vec<PassComparison>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum Verdict {
+    Same,
+    Faster,
+    Slower,
+    Unclear,
+}
+
+/// Two medians and B / A with its interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ratio {
+    /// Geometric mean of the processes' medians.
+    pub a_median_ms: f64,
+    pub b_median_ms: f64,
+    pub ratio: f64,
+    /// Lower and upper end.
+    pub interval: [f64; 2],
+    /// Frames in a resampled block.
+    pub block_length: usize,
+}
+
+/// One time of one pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PassComparison {
+    pub name: String,
+    pub clock: Clock,
+    /// Absent when a side lacks the pass or this time of it.
+    pub ratio: Option<Ratio>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Clock {
+    Gpu,
+    Host,
+}
+
+/// Compares side B with side A. `fail_above` is the part of 1 (0.05 is 5 %) by which B may be slower.
+///
+/// # Errors
+/// A side has no record or no run, or the sides were not measured alike; the message names the field that differs.
+pub fn compare(
+    a: &[Input],
+    b: &[Input],
+    fail_above: Option<f64>,
+) -> Result<Comparison, CompareError> {
+    let matched = matching::match_runs(a, b)?;
+    let same_margin = fail_above.map_or(SAME_MARGIN, |limit| limit.clamp(0.0, SAME_MARGIN));
+    let names = |side: &[Input]| side.iter().map(|input| input.name.clone()).collect();
+    let runs = matched.pairs.iter().map(|(a, b)| {
+        let mut run = compare_run(a, b, same_margin);
+        // One process a side is no ground to fail on.
+        run.regression = fail_above.is_some_and(|limit| {
+            let beyond = run
+                .frame
+                .is_some_and(|frame| frame.interval[0] > 1.0 + limit);
+            beyond && run.verdict == Verdict::Slower
+        });
+        run
+    });
+    Ok(Comparison {
+        schema: SCHEMA.to_owned(),
+        a: names(a),
+        b: names(b),
+        confidence: CONFIDENCE,
+        resamples: RESAMPLES,
+        same_margin,
+        fail_above,
+        runs: runs.collect(),
+        only_in_a: matched.only_in_a,
+        only_in_b: matched.only_in_b,
+        warnings: matched.warnings,
+    })
+}
+
+fn compare_run(a: &Configuration, b: &Configuration, same_margin: f64) -> RunComparison {
+    let frame_times = |run: &Run| run.frame_ms.as_ref().map(|time| time.samples.clone());
+    let (a_times, b_times) = (a.samples(frame_times), b.samples(frame_times));
+    let identical = !a_times.is_empty() && same_samples(&a_times, &b_times);
+    let frame = ratio(&a_times, &b_times, identical);
+    let (verdict, reason) = if identical {
+        (Verdict::Same, None)
+    } else {
+        decide(frame, a_times.len().min(b_times.len()), same_margin)
+    };
+    let run = a.first();
+    RunComparison {
+        paper: run.paper.clone(),
+        variant: run.variant.clone(),
+        preset: run.preset.clone(),
+        config: run.config.clone(),
+        width: run.width,
+        height: run.height,
+        a_processes: a_times.len(),
+        b_processes: b_times.len(),
+        verdict,
+        reason,
+        regression: false,
+        frame,
+        passes: compare_passes(a, b),
+    }
+}
+
+fn decide(frame: Option<Ratio>, processes: usize, same_margin: f64) -> (Verdict, Option<String>) {
+    let unclear = |reason: &str| (Verdict::Unclear, Some(reason.to_owned()));
+    let Some(Ratio {
+        interval: [low, high],
+        ..
+    }) = frame
+    else {
+        return unclear("a side did not time the frame");
+    };
+    if processes < 2 {
+        return unclear(
+            "one process on a side: how much processes differ is unknown; measure with --processes 5",
+        );
+    }
+    let margin = 1.0 + same_margin;
+    if low >= 1.0 / margin && high <= margin {
+        (Verdict::Same, None)
+    } else if low > 1.0 {
+        (Verdict::Slower, None)
+    } else if high < 1.0 {
+        (Verdict::Faster, None)
+    } else {
+        unclear(
+            "the interval holds 1 and is wider than the margin; measure more processes or frames",
+        )
+    }
+}
+
+fn compare_passes(a: &Configuration, b: &Configuration) -> Vec<PassComparison> {
+    let mut names: Vec<&str> = vec![];
+    for run in a.runs().chain(b.runs()) {
+        for pass in &run.passes {
+            if !names.contains(&pass.name.as_str()) {
+                names.push(&pass.name);
+            }
+        }
+    }
+    let mut compared = vec![];
+    for name in names {
+        for clock in [Clock::Gpu, Clock::Host] {
+            let times = |run: &Run| {
+                let pass = run.passes.iter().find(|pass| pass.name == name)?;
+                let time = match clock {
+                    Clock::Gpu => &pass.gpu_ms,
+                    Clock::Host => &pass.host_ms,
+                };
+                time.as_ref().map(|time| time.samples.clone())
+            };
+            let (a_times, b_times) = (a.samples(times), b.samples(times));
+            if a_times.is_empty() && b_times.is_empty() {
+                continue;
+            }
+            let identical = same_samples(&a_times, &b_times);
+            compared.push(PassComparison {
+                name: name.to_owned(),
+                clock,
+                ratio: ratio(&a_times, &b_times, identical),
+            });
+        }
+    }
+    compared
+}
+
+fn ratio(a: &[Vec<f64>], b: &[Vec<f64>], identical: bool) -> Option<Ratio> {
+    let mut ratio = bootstrap::estimate(a, b)?;
+    if identical {
+        // Nothing is estimated: the two are one measurement.
+        ratio.ratio = 1.0;
+        ratio.interval = [1.0, 1.0];
+    }
+    Some(ratio)
+}
+
+/// Whether both sides hold the same processes' samples, in any order of the processes.
+fn same_samples(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
+    a.len() == b.len() && a.iter().all(|samples| b.contains(samples))
+}

@@ -1,0 +1,203 @@
+//! What a pass reads and writes through descriptors: resources by the names the shaders give them, written into one
+//! set, once, when the pass is built.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Access;
+use super::buffer::BufferView;
+use super::device::Device;
+use super::error::{Context, Error};
+use super::image::{ImageView, Sampler};
+use super::live::Kind;
+use super::program::{Program, Slot};
+use crate::shader_build::BindingKind;
+
+/// A view of something that a pass touches.
+#[derive(Clone)]
+pub enum Resource {
+    Buffer(BufferView),
+    Image(Arc<ImageView>),
+    Sampler(Arc<Sampler>),
+}
+
+impl Resource {
+    pub fn name(&self) -> &str {
+        match self {
+            Resource::Buffer(view) => view.buffer.name(),
+            Resource::Image(view) => view.image.name(),
+            Resource::Sampler(_) => "sampler",
+        }
+    }
+}
+
+impl From<&BufferView> for Resource {
+    fn from(view: &BufferView) -> Self {
+        Resource::Buffer(view.clone())
+    }
+}
+
+impl From<&Arc<super::buffer::Buffer>> for Resource {
+    fn from(buffer: &Arc<super::buffer::Buffer>) -> Self {
+        Resource::Buffer(buffer.view())
+    }
+}
+
+impl From<&Arc<ImageView>> for Resource {
+    fn from(view: &Arc<ImageView>) -> Self {
+        Resource::Image(view.clone())
+    }
+}
+
+impl From<&Arc<Sampler>> for Resource {
+    fn from(sampler: &Arc<Sampler>) -> Self {
+        Resource::Sampler(sampler.clone())
+    }
+}
+
+/// One thing that a pass does with one resource.
+#[derive(Clone)]
+pub struct Use {
+    pub resource: Resource,
+    pub access: Access,
+    /// The old contents are not needed.
+    pub discard: bool,
+}
+
+/// A descriptor set with a pool of its own, sized exactly, and what it refers to.
+pub struct Bindings {
+    device: Arc<Device>,
+    pool: vk::DescriptorPool,
+    pub(crate) set: vk::DescriptorSet,
+    pub(crate) uses: Vec<Use>,
+    _program: Arc<Program>,
+}
+
+impl Bindings {
+    /// Writes every descriptor of `program` from `resources`, by name.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] for a binding left out, named twice, unknown, or of the wrong kind. An unwritten descriptor is
+    /// an error even where no shader reads it: drivers follow it all the same.
+    pub fn new(
+        device: &Arc<Device>,
+        pass: &str,
+        program: &Arc<Program>,
+        resources: &[(&str, Resource)],
+    ) -> Result<Option<Arc<Self>>, Error> {
+        let problem = |problem: String| Error::Pass { pass: pass.to_owned(), problem };
+        for (name, _) in resources {
+            if !program.slots.iter().any(|s| s.name == *name) {
+                let known: Vec<&str> = program.slots.iter().map(|s| s.name.as_str()).collect();
+                return Err(problem(format!("its shaders read no {name}; they read {}", known.join(", "))));
+            }
+        }
+        if program.slots.is_empty() {
+            return Ok(None);
+        }
+        let mut uses = Vec::new();
+        let mut chosen = Vec::new();
+        for slot in &program.slots {
+            let mut found = resources.iter().filter(|(name, _)| *name == slot.name);
+            let (Some((_, resource)), None) = (found.next(), found.next()) else {
+                return Err(problem(format!("{} must be given once", slot.name)));
+            };
+            if let Some(access) = access_of(slot, resource).map_err(problem)? {
+                uses.push(Use { resource: resource.clone(), access, discard: false });
+            }
+            chosen.push(resource);
+        }
+
+        let sizes: Vec<_> = program
+            .slots
+            .iter()
+            .map(|s| vk::DescriptorPoolSize { ty: s.descriptor_type(), descriptor_count: 1 })
+            .collect();
+        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+        // SAFETY: the device is alive and `sizes` outlives the call.
+        let pool = unsafe { device.raw.create_descriptor_pool(&info, None) }
+            .context("creating the descriptor pool of pass", pass)?;
+        device.live().add(Kind::DescriptorPool);
+        let mut bindings =
+            Bindings { device: device.clone(), pool, set: vk::DescriptorSet::null(), uses, _program: program.clone() };
+        let layouts = [program.set_layout];
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+        // SAFETY: the pool was sized for exactly this layout.
+        let sets = unsafe { device.raw.allocate_descriptor_sets(&info) }
+            .context("allocating the descriptor set of pass", pass)?;
+        bindings.set = sets[0];
+        device.name(bindings.set, pass);
+        for (slot, resource) in program.slots.iter().zip(chosen) {
+            bindings.write(slot, resource);
+        }
+        Ok(Some(Arc::new(bindings)))
+    }
+
+    fn write(&self, slot: &Slot, resource: &Resource) {
+        let mut buffers = [vk::DescriptorBufferInfo::default()];
+        let mut images = [vk::DescriptorImageInfo::default()];
+        let write = vk::WriteDescriptorSet::default()
+            .dst_set(self.set)
+            .dst_binding(slot.binding)
+            .descriptor_type(slot.descriptor_type());
+        let write = match resource {
+            Resource::Buffer(view) => {
+                buffers[0] = vk::DescriptorBufferInfo {
+                    buffer: view.buffer.raw,
+                    offset: view.range.start,
+                    range: view.range.end - view.range.start,
+                };
+                write.buffer_info(&buffers)
+            }
+            Resource::Image(view) => {
+                let layout = match slot.kind {
+                    BindingKind::StorageImage { .. } => vk::ImageLayout::GENERAL,
+                    _ => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+                };
+                images[0] = vk::DescriptorImageInfo::default().image_view(view.raw).image_layout(layout);
+                write.image_info(&images)
+            }
+            Resource::Sampler(sampler) => {
+                images[0] = vk::DescriptorImageInfo::default().sampler(sampler.raw);
+                write.image_info(&images)
+            }
+        };
+        // SAFETY: the set is not in use yet, the resource's kind was checked against the slot, and the views are kept
+        // alive by the pass that owns these bindings.
+        unsafe { self.device.raw.update_descriptor_sets(&[write], &[]) };
+    }
+}
+
+impl Drop for Bindings {
+    fn drop(&mut self) {
+        // SAFETY: a frame keeps the pass, and with it these bindings, until its fence.
+        unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
+        self.device.live().remove(Kind::DescriptorPool);
+    }
+}
+
+/// The access word that a descriptor of this kind means; `None` for a sampler, which has no memory.
+fn access_of(slot: &Slot, resource: &Resource) -> Result<Option<Access>, String> {
+    let stages = slot.stages;
+    match (slot.kind, resource) {
+        (BindingKind::UniformBuffer, Resource::Buffer(view)) => {
+            let bytes = view.range.end - view.range.start;
+            match slot.block_bytes {
+                Some(block) if u64::from(block) > bytes => {
+                    Err(format!("{} has {block} bytes and {} only {bytes}", slot.name, resource.name()))
+                }
+                _ => Ok(Some(Access::UniformRead(stages))),
+            }
+        }
+        (BindingKind::StorageBuffer { readonly: true }, Resource::Buffer(_)) => Ok(Some(Access::StorageRead(stages))),
+        (BindingKind::StorageBuffer { readonly: false }, Resource::Buffer(_)) => Ok(Some(Access::StorageWrite(stages))),
+        (BindingKind::SampledImage, Resource::Image(_)) => Ok(Some(Access::SampledRead(stages))),
+        (BindingKind::StorageImage { .. }, Resource::Image(_)) => Ok(Some(Access::StorageWrite(stages))),
+        (BindingKind::Sampler, Resource::Sampler(_)) => Ok(None),
+        (BindingKind::CombinedImageSampler, _) => {
+            Err(format!("{} is a combined image and sampler; declare a texture and a sampler", slot.name))
+        }
+        (kind, resource) => Err(format!("{} is a {kind:?}, and {} is not", slot.name, resource.name())),
+    }
+}

@@ -1,0 +1,252 @@
+//! Buffers, their memory, and views of byte ranges of them.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+
+use super::access::State;
+use super::device::Device;
+use super::error::{Context, Error};
+use super::live::Kind;
+
+/// Where a buffer's memory lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    /// The device's own memory.
+    Device,
+    /// Mapped, for the host to write.
+    Upload,
+    /// Mapped, for the host to read.
+    Readback,
+}
+
+/// What a buffer is to be; [`Buffer::new`] makes it.
+#[derive(Debug, Clone)]
+pub struct BufferDesc {
+    pub name: String,
+    pub size_bytes: u64,
+    pub usage: vk::BufferUsageFlags,
+    pub location: Location,
+}
+
+impl BufferDesc {
+    /// A buffer in device memory that copies may fill and read.
+    pub fn new(name: impl Into<String>, size_bytes: u64) -> Self {
+        BufferDesc {
+            name: name.into(),
+            size_bytes,
+            usage: vk::BufferUsageFlags::TRANSFER_SRC | vk::BufferUsageFlags::TRANSFER_DST,
+            location: Location::Device,
+        }
+    }
+
+    pub fn usage(mut self, usage: vk::BufferUsageFlags) -> Self {
+        self.usage |= usage;
+        self
+    }
+
+    pub fn location(mut self, location: Location) -> Self {
+        self.location = location;
+        self
+    }
+}
+
+/// A buffer with its memory; it remembers what was last done to each of its byte ranges.
+pub struct Buffer {
+    pub(crate) raw: vk::Buffer,
+    device: Arc<Device>,
+    allocation: Mutex<Option<Allocation>>,
+    allocated_bytes: u64,
+    desc: BufferDesc,
+    states: Mutex<Vec<(Range<u64>, State)>>,
+}
+
+impl Buffer {
+    /// Makes a buffer; its size is at least four bytes.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when a storage buffer is larger than the device binds, [`Error::OutOfMemory`].
+    pub fn new(device: &Arc<Device>, desc: BufferDesc) -> Result<Arc<Self>, Error> {
+        let size_bytes = desc.size_bytes.max(4);
+        let limit = device.physical().limits.max_storage_buffer_range as u64;
+        if desc.usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && size_bytes > limit {
+            return Err(Error::Limit {
+                object: desc.name,
+                what: "size in bytes of a storage buffer",
+                wanted: size_bytes,
+                limit,
+            });
+        }
+        let info =
+            vk::BufferCreateInfo::default().size(size_bytes).usage(desc.usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
+        // SAFETY: the device is alive and the description is complete.
+        let raw = unsafe { device.raw.create_buffer(&info, None) }.context("creating buffer", &desc.name)?;
+        device.live().add(Kind::Buffer);
+        let whole = 0..size_bytes;
+        let mut buffer = Buffer {
+            raw,
+            device: device.clone(),
+            allocation: Mutex::new(None),
+            allocated_bytes: 0,
+            desc: BufferDesc { size_bytes, ..desc },
+            states: Mutex::new(vec![(whole, State::NEW)]),
+        };
+        device.name(raw, &buffer.desc.name);
+        // SAFETY: `raw` is a live buffer of this device.
+        let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
+        let allocation = allocate(device, &buffer.desc.name, requirements, buffer.desc.location, true)?;
+        // SAFETY: the memory fits the requirements, is bound once, and is freed after the buffer is destroyed.
+        unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
+            .context("binding memory of buffer", &buffer.desc.name)?;
+        buffer.allocated_bytes = allocation.size();
+        device.live().add_memory(&buffer.desc.name, allocation.size(), buffer.is_mapped());
+        buffer.allocation = Mutex::new(Some(allocation));
+        Ok(Arc::new(buffer))
+    }
+
+    pub fn name(&self) -> &str {
+        &self.desc.name
+    }
+
+    pub fn size_bytes(&self) -> u64 {
+        self.desc.size_bytes
+    }
+
+    /// The whole buffer as a view.
+    pub fn view(self: &Arc<Self>) -> BufferView {
+        BufferView { buffer: self.clone(), range: 0..self.desc.size_bytes }
+    }
+
+    /// A range of bytes as a view.
+    pub fn range(self: &Arc<Self>, range: Range<u64>) -> BufferView {
+        BufferView { buffer: self.clone(), range: range.start..range.end.min(self.desc.size_bytes) }
+    }
+
+    pub(crate) fn is_readback(&self) -> bool {
+        self.desc.location == Location::Readback
+    }
+
+    fn is_mapped(&self) -> bool {
+        self.desc.location != Location::Device
+    }
+
+    fn allocation(&self) -> MutexGuard<'_, Option<Allocation>> {
+        self.allocation.lock().unwrap_or_else(|p| p.into_inner())
+    }
+
+    /// Writes `bytes` at `offset_bytes` into a mapped buffer and marks it as written by the host.
+    ///
+    /// # Errors
+    /// [`Error::Allocation`] when the buffer is not mapped or too small.
+    pub fn write(&self, offset_bytes: u64, bytes: &[u8]) -> Result<(), Error> {
+        let end = offset_bytes + bytes.len() as u64;
+        let mut guard = self.allocation();
+        let target = guard
+            .as_mut()
+            .and_then(|a| a.mapped_slice_mut())
+            .and_then(|s| s.get_mut(offset_bytes as usize..end as usize))
+            .ok_or_else(|| self.not_mapped("writing"))?;
+        target.copy_from_slice(bytes);
+        drop(guard);
+        self.with_states(offset_bytes..end, |state| *state = State::HOST_WRITTEN);
+        Ok(())
+    }
+
+    /// Hands the first `len_bytes` mapped bytes to `read`; the caller has waited for the fence of what wrote them.
+    ///
+    /// # Errors
+    /// [`Error::Allocation`] when the buffer is not mapped or too small.
+    pub fn read<T>(&self, len_bytes: u64, read: impl FnOnce(&[u8]) -> T) -> Result<T, Error> {
+        let guard = self.allocation();
+        let bytes = guard
+            .as_ref()
+            .and_then(|a| a.mapped_slice())
+            .and_then(|s| s.get(..len_bytes as usize))
+            .ok_or_else(|| self.not_mapped("reading"))?;
+        Ok(read(bytes))
+    }
+
+    fn not_mapped(&self, what: &str) -> Error {
+        Error::Allocation {
+            object: self.desc.name.clone(),
+            reason: format!("{what} it from the host: it is not mapped that far"),
+        }
+    }
+
+    /// Visits the states of `range`, split so that every visited piece lies inside it.
+    pub(crate) fn with_states(&self, range: Range<u64>, mut visit: impl FnMut(&mut State)) {
+        let mut states = self.states.lock().unwrap_or_else(|p| p.into_inner());
+        for cut in [range.start, range.end] {
+            if let Some(at) = states.iter().position(|(r, _)| r.start < cut && cut < r.end) {
+                let (piece, state) = states[at].clone();
+                states[at].0.end = cut;
+                states.insert(at + 1, (cut..piece.end, state));
+            }
+        }
+        for (piece, state) in states.iter_mut() {
+            if piece.start >= range.start && piece.end <= range.end {
+                visit(state);
+            }
+        }
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: a frame keeps an `Arc` of what it uses until its fence, so the device no longer reads this buffer.
+        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
+        self.device.live().remove(Kind::Buffer);
+        if let Some(allocation) = self.allocation().take() {
+            self.device.live().remove_memory(&self.desc.name, self.allocated_bytes, self.is_mapped());
+            // Freeing fails only for memory of another allocator.
+            let _ = self.device.allocator().free(allocation);
+        }
+    }
+}
+
+/// A byte range of a buffer.
+#[derive(Clone)]
+pub struct BufferView {
+    pub(crate) buffer: Arc<Buffer>,
+    pub(crate) range: Range<u64>,
+}
+
+/// Allocates memory for a buffer (`linear`) or an image.
+pub(crate) fn allocate(
+    device: &Arc<Device>,
+    name: &str,
+    requirements: vk::MemoryRequirements,
+    location: Location,
+    linear: bool,
+) -> Result<Allocation, Error> {
+    let heap_bytes = largest_heap_bytes(device);
+    let out_of_memory = || Error::OutOfMemory { object: name.to_owned(), bytes: requirements.size };
+    if requirements.size > heap_bytes {
+        return Err(out_of_memory());
+    }
+    device
+        .allocator()
+        .allocate(&AllocationCreateDesc {
+            name,
+            requirements,
+            location: match location {
+                Location::Device => MemoryLocation::GpuOnly,
+                Location::Upload => MemoryLocation::CpuToGpu,
+                Location::Readback => MemoryLocation::GpuToCpu,
+            },
+            linear,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        })
+        .map_err(|error| match error {
+            gpu_allocator::AllocationError::OutOfMemory => out_of_memory(),
+            other => Error::Allocation { object: name.to_owned(), reason: other.to_string() },
+        })
+}
+
+fn largest_heap_bytes(device: &Device) -> u64 {
+    let memory = &device.physical().memory;
+    memory.memory_heaps[..memory.memory_heap_count as usize].iter().map(|h| h.size).max().unwrap_or(0)
+}

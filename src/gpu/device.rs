@@ -1,0 +1,138 @@
+//! The logical device: one queue, the allocator, the names of its objects.
+
+use std::ffi::CString;
+use std::mem::ManuallyDrop;
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use ash::{ext, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+
+use super::error::{Context, Error};
+use super::instance::Instance;
+use super::live::{Kind, LiveObjects};
+use super::physical::{Feature, PhysicalDevice};
+
+/// An open device with its one graphics, compute and transfer queue.
+pub struct Device {
+    // The allocator frees its blocks through the raw device, so `drop` below takes it first.
+    allocator: ManuallyDrop<Mutex<Allocator>>,
+    pub(crate) raw: ash::Device,
+    pub(crate) queue: vk::Queue,
+    pub(crate) queue_family: u32,
+    pub(crate) debug: Option<ext::debug_utils::Device>,
+    physical: PhysicalDevice,
+    instance: Arc<Instance>,
+}
+
+impl Device {
+    /// Opens `physical` with every feature of [`Feature`] that it has.
+    ///
+    /// # Errors
+    /// [`Error::MissingFeature`] when the baseline is not there, or what Vulkan answers.
+    pub fn open(instance: &Arc<Instance>, physical: PhysicalDevice) -> Result<Arc<Self>, Error> {
+        let missing = physical.lacks(&[]);
+        let (Some((queue_family, _)), true) = (physical.queue, missing.is_empty()) else {
+            return Err(Error::MissingFeature { device: physical.name, missing: missing.join(", ") });
+        };
+        let on = |feature: Feature| physical.has(feature);
+        let core = vk::PhysicalDeviceFeatures::default()
+            .independent_blend(on(Feature::IndependentBlend))
+            .geometry_shader(on(Feature::GeometryShader))
+            .fragment_stores_and_atomics(on(Feature::FragmentStores))
+            .pipeline_statistics_query(on(Feature::PipelineStatistics))
+            .occlusion_query_precise(on(Feature::PreciseOcclusion));
+        let mut v12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
+        let mut v13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+        let priorities = [1.0];
+        let queues =
+            [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_features(&core)
+            .push_next(&mut v12)
+            .push_next(&mut v13);
+        // SAFETY: `physical` belongs to `instance`; the structures outlive the call; the features were asked for.
+        let raw = unsafe { instance.raw.create_device(physical.raw, &info, None) }
+            .context("opening device", &physical.name)?;
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.raw.clone(),
+            device: raw.clone(),
+            physical_device: physical.raw,
+            debug_settings: Default::default(),
+            buffer_device_address: false,
+            allocation_sizes: Default::default(),
+        });
+        let allocator = match allocator {
+            Ok(allocator) => allocator,
+            Err(error) => {
+                // SAFETY: the device was just created and has no children.
+                unsafe { raw.destroy_device(None) };
+                return Err(Error::Allocation { object: physical.name, reason: error.to_string() });
+            }
+        };
+        // SAFETY: one queue of this family was asked for above.
+        let queue = unsafe { raw.get_device_queue(queue_family, 0) };
+        let debug = instance.has_debug_utils().then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
+        instance.live().add(Kind::Device);
+        Ok(Arc::new(Device {
+            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            raw,
+            queue,
+            queue_family,
+            debug,
+            physical,
+            instance: instance.clone(),
+        }))
+    }
+
+    /// What the device is and can do.
+    pub fn physical(&self) -> &PhysicalDevice {
+        &self.physical
+    }
+
+    pub fn instance(&self) -> &Arc<Instance> {
+        &self.instance
+    }
+
+    /// The ledger of live objects and memory.
+    pub fn live(&self) -> &Arc<LiveObjects> {
+        self.instance.live()
+    }
+
+    /// Waits until the device has nothing to do.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] when the device is lost.
+    pub fn wait_idle(&self) -> Result<(), Error> {
+        // SAFETY: the queue is used from one thread at a time: every submission goes through `&mut` of a recorder.
+        unsafe { self.raw.device_wait_idle() }.context("waiting for device", &self.physical.name)
+    }
+
+    pub(crate) fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        self.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Gives a handle the name that validation messages and profilers show.
+    pub(crate) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
+        if let Some(debug) = &self.debug
+            && let Ok(name) = CString::new(name)
+        {
+            let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
+            // SAFETY: the handle is a live child of this device. A failure to name costs a name, nothing else.
+            let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+        }
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        // SAFETY: every child holds an `Arc` of this device, so none is left; the allocator goes before the device it
+        // frees through, and is not touched again.
+        unsafe {
+            let _ = self.raw.device_wait_idle();
+            ManuallyDrop::drop(&mut self.allocator);
+            self.raw.destroy_device(None);
+        }
+        self.instance.live().remove(Kind::Device);
+    }
+}

@@ -1,0 +1,68 @@
+//! What can fail in the Vulkan layer. Every message names the operation, the object and the way out.
+
+use ash::vk;
+
+/// An error of the Vulkan layer.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error(
+        "loading the Vulkan loader: {reason}; install it (Debian, Ubuntu: apt-get install libvulkan1) or the GPU vendor's driver"
+    )]
+    NoLoader { reason: String },
+    #[error(
+        "creating a Vulkan instance: {reason}; check that a driver is installed (Debian, Ubuntu: apt-get install mesa-vulkan-drivers)"
+    )]
+    NoInstance { reason: String },
+    #[error("looking for a Vulkan device: {reason}; `fumarole devices` lists what is there")]
+    NoDevice { reason: String },
+    #[error(
+        "enabling validation: the layer VK_LAYER_KHRONOS_validation is not installed; install it (Debian, Ubuntu: apt-get install vulkan-validationlayers) or leave --validate out"
+    )]
+    NoValidationLayer,
+    #[error("choosing a device: {wanted:?} names none of: {present}; give an index, a part of a name or a UUID")]
+    UnknownDevice { wanted: String, present: String },
+    #[error("choosing a device: {wanted:?} names several: {matching}; give the index or the UUID")]
+    AmbiguousDevice { wanted: String, matching: String },
+    #[error("using device {device}: it lacks {missing}; choose another with --device")]
+    MissingFeature { device: String, missing: String },
+    #[error("{object}: {what} {wanted} is beyond this device's limit of {limit}; lower it")]
+    Limit { object: String, what: &'static str, wanted: u64, limit: u64 },
+    #[error("allocating {bytes} bytes for {object}: out of memory; lower the sizes or choose a device with more")]
+    OutOfMemory { object: String, bytes: u64 },
+    #[error("{operation} {object}: {result}")]
+    Vulkan { operation: &'static str, object: String, result: vk::Result },
+    #[error("allocating memory for {object}: {reason}")]
+    Allocation { object: String, reason: String },
+    #[error("pass {pass}: reads {resource}, which no pass has written")]
+    ReadBeforeWrite { pass: String, resource: String },
+    #[error("pass {pass}: {problem}")]
+    Pass { pass: String, problem: String },
+    #[error("shader {name}: {problem}")]
+    Shader { name: String, problem: String },
+    #[error("validation: {} message(s), the first: {first}", count)]
+    Validation { count: usize, first: String },
+}
+
+impl Error {
+    /// Wraps a result code that the caller has no better word for.
+    pub(crate) fn vulkan(operation: &'static str, object: impl Into<String>, result: vk::Result) -> Self {
+        let object = object.into();
+        match result {
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
+                Error::OutOfMemory { object: format!("{object} ({operation})"), bytes: 0 }
+            }
+            _ => Error::Vulkan { operation, object, result },
+        }
+    }
+}
+
+/// Names operation and object on a raw Vulkan result.
+pub(crate) trait Context<T> {
+    fn context(self, operation: &'static str, object: impl Into<String>) -> Result<T, Error>;
+}
+
+impl<T> Context<T> for Result<T, vk::Result> {
+    fn context(self, operation: &'static str, object: impl Into<String>) -> Result<T, Error> {
+        self.map_err(|result| Error::vulkan(operation, object, result))
+    }
+}

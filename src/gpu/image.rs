@@ -1,0 +1,277 @@
+//! Images, their views, and samplers.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+
+use ash::vk;
+use gpu_allocator::vulkan::Allocation;
+
+use super::access::State;
+use super::buffer::{Location, allocate};
+use super::device::Device;
+use super::error::{Context, Error};
+use super::live::Kind;
+
+/// What an image is to be; [`Image::new`] makes it.
+#[derive(Debug, Clone)]
+pub struct ImageDesc {
+    pub name: String,
+    pub format: vk::Format,
+    pub width: u32,
+    pub height: u32,
+    pub layers: u32,
+    pub usage: vk::ImageUsageFlags,
+    array: bool,
+}
+
+impl ImageDesc {
+    /// A two-dimensional image of one mip level, which copies may fill and read.
+    pub fn new_2d(name: impl Into<String>, format: vk::Format, width: u32, height: u32) -> Self {
+        ImageDesc {
+            name: name.into(),
+            format,
+            width,
+            height,
+            layers: 1,
+            usage: vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
+            array: false,
+        }
+    }
+
+    /// Makes it an array; its whole view is an array view even for one layer.
+    pub fn layers(mut self, layers: u32) -> Self {
+        self.layers = layers;
+        self.array = true;
+        self
+    }
+
+    pub fn usage(mut self, usage: vk::ImageUsageFlags) -> Self {
+        self.usage |= usage;
+        self
+    }
+
+    fn check_limits(&self, device: &Device) -> Result<(), Error> {
+        let limits = &device.physical().limits;
+        let checks = [
+            ("width in texels", self.width, limits.max_image_dimension2_d),
+            ("height in texels", self.height, limits.max_image_dimension2_d),
+            ("layer count", self.layers, limits.max_image_array_layers),
+        ];
+        for (what, wanted, limit) in checks {
+            if wanted == 0 || wanted > limit {
+                return Err(Error::Limit {
+                    object: self.name.clone(),
+                    what,
+                    wanted: wanted.into(),
+                    limit: limit.into(),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An image with its memory; it remembers what was last done to each of its layers.
+pub struct Image {
+    pub(crate) raw: vk::Image,
+    device: Arc<Device>,
+    allocation: Mutex<Option<Allocation>>,
+    allocated_bytes: u64,
+    desc: ImageDesc,
+    states: Mutex<Vec<State>>,
+}
+
+impl Image {
+    /// Makes an image with undefined contents.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] when an extent is zero or larger than the device allows, [`Error::OutOfMemory`].
+    pub fn new(device: &Arc<Device>, desc: ImageDesc) -> Result<Arc<Self>, Error> {
+        desc.check_limits(device)?;
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(desc.format)
+            .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: 1 })
+            .mip_levels(1)
+            .array_layers(desc.layers)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(desc.usage)
+            .sharing_mode(vk::SharingMode::EXCLUSIVE)
+            .initial_layout(vk::ImageLayout::UNDEFINED);
+        // SAFETY: the extents were checked against the device's limits and the description is complete.
+        let raw = unsafe { device.raw.create_image(&info, None) }.context("creating image", &desc.name)?;
+        device.live().add(Kind::Image);
+        let layers = desc.layers as usize;
+        let mut image = Image {
+            raw,
+            device: device.clone(),
+            allocation: Mutex::new(None),
+            allocated_bytes: 0,
+            desc,
+            states: Mutex::new(vec![State::NEW; layers]),
+        };
+        device.name(raw, &image.desc.name);
+        // SAFETY: `raw` is a live image of this device.
+        let requirements = unsafe { device.raw.get_image_memory_requirements(raw) };
+        let allocation = allocate(device, &image.desc.name, requirements, Location::Device, false)?;
+        // SAFETY: the memory fits the requirements, is bound once, and is freed after the image is destroyed.
+        unsafe { device.raw.bind_image_memory(raw, allocation.memory(), allocation.offset()) }
+            .context("binding memory of image", &image.desc.name)?;
+        image.allocated_bytes = allocation.size();
+        device.live().add_memory(&image.desc.name, allocation.size(), false);
+        image.allocation = Mutex::new(Some(allocation));
+        Ok(Arc::new(image))
+    }
+
+    pub fn desc(&self) -> &ImageDesc {
+        &self.desc
+    }
+
+    pub fn name(&self) -> &str {
+        &self.desc.name
+    }
+
+    /// The aspect that the format has: depth or colour.
+    pub fn aspect(&self) -> vk::ImageAspectFlags {
+        aspect_of(self.desc.format)
+    }
+
+    /// A view of all layers.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] when the device refuses.
+    pub fn view(self: &Arc<Self>) -> Result<Arc<ImageView>, Error> {
+        let kind = if self.desc.array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
+        ImageView::new(self, kind, 0..self.desc.layers)
+    }
+
+    /// A two-dimensional view of one layer.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a layer that is not there.
+    pub fn layer(self: &Arc<Self>, layer: u32) -> Result<Arc<ImageView>, Error> {
+        if layer >= self.desc.layers {
+            return Err(Error::Limit {
+                object: self.desc.name.clone(),
+                what: "layer",
+                wanted: layer.into(),
+                limit: u64::from(self.desc.layers) - 1,
+            });
+        }
+        ImageView::new(self, vk::ImageViewType::TYPE_2D, layer..layer + 1)
+    }
+
+    pub(crate) fn with_states<T>(&self, layers: Range<u32>, visit: impl FnOnce(&mut [State]) -> T) -> T {
+        let mut states = self.states.lock().unwrap_or_else(|p| p.into_inner());
+        visit(&mut states[layers.start as usize..layers.end as usize])
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: views and frames hold an `Arc` of this image, so nothing refers to it any more.
+        unsafe { self.device.raw.destroy_image(self.raw, None) };
+        self.device.live().remove(Kind::Image);
+        let allocation = self.allocation.lock().unwrap_or_else(|p| p.into_inner()).take();
+        if let Some(allocation) = allocation {
+            self.device.live().remove_memory(&self.desc.name, self.allocated_bytes, false);
+            // Freeing fails only for memory of another allocator.
+            let _ = self.device.allocator().free(allocation);
+        }
+    }
+}
+
+pub(crate) fn aspect_of(format: vk::Format) -> vk::ImageAspectFlags {
+    match format {
+        vk::Format::D16_UNORM | vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
+        vk::Format::D32_SFLOAT_S8_UINT | vk::Format::D24_UNORM_S8_UINT => {
+            vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
+        }
+        _ => vk::ImageAspectFlags::COLOR,
+    }
+}
+
+/// A view of some layers of an image.
+pub struct ImageView {
+    pub(crate) raw: vk::ImageView,
+    pub(crate) image: Arc<Image>,
+    pub(crate) layers: Range<u32>,
+}
+
+impl ImageView {
+    fn new(image: &Arc<Image>, kind: vk::ImageViewType, layers: Range<u32>) -> Result<Arc<Self>, Error> {
+        let info = vk::ImageViewCreateInfo::default()
+            .image(image.raw)
+            .view_type(kind)
+            .format(image.desc.format)
+            .subresource_range(subresource_range(image.aspect(), &layers));
+        let device = &image.device;
+        // SAFETY: the image is alive, the layers exist, and its usage allows views.
+        let raw =
+            unsafe { device.raw.create_image_view(&info, None) }.context("creating a view of image", image.name())?;
+        device.live().add(Kind::ImageView);
+        device.name(raw, image.name());
+        Ok(Arc::new(ImageView { raw, image: image.clone(), layers }))
+    }
+
+    pub fn image(&self) -> &Arc<Image> {
+        &self.image
+    }
+
+    pub fn width(&self) -> u32 {
+        self.image.desc.width
+    }
+
+    pub fn height(&self) -> u32 {
+        self.image.desc.height
+    }
+}
+
+impl Drop for ImageView {
+    fn drop(&mut self) {
+        // SAFETY: framebuffers, descriptor sets and frames hold an `Arc` of this view.
+        unsafe { self.image.device.raw.destroy_image_view(self.raw, None) };
+        self.image.device.live().remove(Kind::ImageView);
+    }
+}
+
+pub(crate) fn subresource_range(aspect: vk::ImageAspectFlags, layers: &Range<u32>) -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange::default()
+        .aspect_mask(aspect)
+        .level_count(1)
+        .base_array_layer(layers.start)
+        .layer_count(layers.end - layers.start)
+}
+
+/// A sampler; edges are clamped.
+pub struct Sampler {
+    pub(crate) raw: vk::Sampler,
+    device: Arc<Device>,
+}
+
+impl Sampler {
+    /// # Errors
+    /// [`Error::Vulkan`] when the device refuses.
+    pub fn new(device: &Arc<Device>, name: &str, filter: vk::Filter) -> Result<Arc<Self>, Error> {
+        let info = vk::SamplerCreateInfo::default()
+            .mag_filter(filter)
+            .min_filter(filter)
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        // SAFETY: the device is alive and the description is complete.
+        let raw = unsafe { device.raw.create_sampler(&info, None) }.context("creating sampler", name)?;
+        device.live().add(Kind::Sampler);
+        device.name(raw, name);
+        Ok(Arc::new(Sampler { raw, device: device.clone() }))
+    }
+}
+
+impl Drop for Sampler {
+    fn drop(&mut self) {
+        // SAFETY: descriptor sets hold an `Arc` of this sampler.
+        unsafe { self.device.raw.destroy_sampler(self.raw, None) };
+        self.device.live().remove(Kind::Sampler);
+    }
+}

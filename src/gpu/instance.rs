@@ -1,0 +1,182 @@
+//! The Vulkan instance: loader, validation layer, debug messenger. No surface extension is touched here.
+
+use std::ffi::{CStr, c_void};
+use std::sync::Arc;
+
+use ash::{ext, vk};
+
+use super::error::{Context, Error};
+use super::live::{Kind, LiveObjects};
+use super::messages::{Message, Messages, collect};
+
+const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// A Vulkan instance and what belongs to it alone.
+pub struct Instance {
+    pub(crate) raw: ash::Instance,
+    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    messages: Arc<Messages>,
+    live: Arc<LiveObjects>,
+    layers: Vec<String>,
+    loader_version: u32,
+    has_debug_utils: bool,
+    // Last: the loader's library must outlive every function pointer above.
+    _entry: ash::Entry,
+}
+
+impl Instance {
+    /// Loads the loader and creates an instance of Vulkan 1.3; with `validate`, under the Khronos layer with
+    /// synchronization validation.
+    ///
+    /// # Errors
+    /// [`Error::NoLoader`], [`Error::NoValidationLayer`], or [`Error::NoInstance`] when no driver answers.
+    pub fn new(validate: bool) -> Result<Arc<Self>, Error> {
+        // SAFETY: loading the system's Vulkan loader runs its initialisers, which is what the caller asks for.
+        let entry = unsafe { ash::Entry::load() }.map_err(|error| Error::NoLoader { reason: error.to_string() })?;
+        // SAFETY: the entry's function pointers are valid while `entry` lives; no other precondition.
+        let (loader_version, layers, extensions) = unsafe {
+            (
+                entry
+                    .try_enumerate_instance_version()
+                    .context("asking for", "the loader's version")?
+                    .unwrap_or(vk::API_VERSION_1_0),
+                entry.enumerate_instance_layer_properties().context("listing", "the instance layers")?,
+                entry.enumerate_instance_extension_properties(None).context("listing", "the instance extensions")?,
+            )
+        };
+        if loader_version < vk::API_VERSION_1_3 {
+            return Err(Error::NoInstance {
+                reason: format!("the loader offers Vulkan {}, 1.3 is needed", version_text(loader_version)),
+            });
+        }
+        let has_layer = layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER));
+        if validate && !has_layer {
+            return Err(Error::NoValidationLayer);
+        }
+        let offers = |name: &CStr| extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name));
+        let has_debug_utils = validate || offers(ext::debug_utils::NAME);
+
+        let mut enabled_extensions = Vec::new();
+        let mut flags = vk::InstanceCreateFlags::empty();
+        if has_debug_utils {
+            enabled_extensions.push(ext::debug_utils::NAME.as_ptr());
+        }
+        if offers(ash::khr::portability_enumeration::NAME) {
+            enabled_extensions.push(ash::khr::portability_enumeration::NAME.as_ptr());
+            flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
+        }
+        let mut enabled_layers = Vec::new();
+        if validate {
+            enabled_layers.push(VALIDATION_LAYER.as_ptr());
+            enabled_extensions.push(ext::validation_features::NAME.as_ptr());
+        }
+
+        let messages = Arc::new(Messages::default());
+        let application = vk::ApplicationInfo::default()
+            .application_name(c"fumarole")
+            .engine_name(c"fumarole")
+            .api_version(vk::API_VERSION_1_3);
+        let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+        let mut validation = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
+        let mut messenger_info = messenger_info(&messages);
+        let mut info = vk::InstanceCreateInfo::default()
+            .flags(flags)
+            .application_info(&application)
+            .enabled_layer_names(&enabled_layers)
+            .enabled_extension_names(&enabled_extensions);
+        if validate {
+            info = info.push_next(&mut validation).push_next(&mut messenger_info);
+        }
+        // SAFETY: every pointer in `info` refers to locals that outlive the call.
+        let raw = unsafe { entry.create_instance(&info, None) }
+            .map_err(|result| Error::NoInstance { reason: result.to_string() })?;
+        let live = Arc::new(LiveObjects::default());
+        live.add(Kind::Instance);
+        let mut instance = Instance {
+            raw,
+            messenger: None,
+            messages,
+            live,
+            layers: if validate { vec![VALIDATION_LAYER.to_string_lossy().into_owned()] } else { Vec::new() },
+            loader_version,
+            has_debug_utils,
+            _entry: entry,
+        };
+        if validate {
+            let utils = ext::debug_utils::Instance::new(&instance._entry, &instance.raw);
+            let info = self::messenger_info(&instance.messages);
+            // SAFETY: the user data is owned by `instance`, which destroys the messenger before dropping it.
+            let messenger = unsafe { utils.create_debug_utils_messenger(&info, None) }
+                .context("creating", "the debug messenger")?;
+            instance.messenger = Some((utils, messenger));
+        }
+        Ok(Arc::new(instance))
+    }
+
+    /// Whether the validation layer is on.
+    pub fn validates(&self) -> bool {
+        self.messenger.is_some()
+    }
+
+    /// Removes and returns what the validation layer said since the last call.
+    pub fn take_messages(&self) -> Vec<Message> {
+        self.messages.take()
+    }
+
+    /// Fails with the first message if the validation layer said anything.
+    ///
+    /// # Errors
+    /// [`Error::Validation`].
+    pub fn check_messages(&self) -> Result<(), Error> {
+        let messages = self.take_messages();
+        match messages.first() {
+            None => Ok(()),
+            Some(first) => Err(Error::Validation { count: messages.len(), first: first.to_string() }),
+        }
+    }
+
+    /// The ledger of live objects and memory.
+    pub fn live(&self) -> &Arc<LiveObjects> {
+        &self.live
+    }
+
+    /// The layers that this program switched on.
+    pub fn layers(&self) -> &[String] {
+        &self.layers
+    }
+
+    /// The loader's version, as `major.minor.patch`.
+    pub fn loader_version(&self) -> String {
+        version_text(self.loader_version)
+    }
+
+    pub(crate) fn has_debug_utils(&self) -> bool {
+        self.has_debug_utils
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        // SAFETY: devices hold an `Arc` of this instance, so none is left; the messenger goes first.
+        unsafe {
+            if let Some((utils, messenger)) = self.messenger.take() {
+                utils.destroy_debug_utils_messenger(messenger, None);
+            }
+            self.raw.destroy_instance(None);
+        }
+        self.live.remove(Kind::Instance);
+    }
+}
+
+fn messenger_info(messages: &Arc<Messages>) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR | vk::DebugUtilsMessageSeverityFlagsEXT::WARNING)
+        .message_type(vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE)
+        .pfn_user_callback(Some(collect))
+        .user_data(Arc::as_ptr(messages).cast_mut().cast::<c_void>())
+}
+
+/// `major.minor.patch` of a packed version.
+pub(crate) fn version_text(version: u32) -> String {
+    format!("{}.{}.{}", vk::api_version_major(version), vk::api_version_minor(version), vk::api_version_patch(version))
+}

@@ -1,0 +1,401 @@
+//! A pass is a sentence: name, section of the paper, shaders, reads, writes, blend and depth state, constants,
+//! extent. It is built once; a frame records it through one envelope.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Access;
+use super::bindings::{Bindings, Resource, Use};
+use super::buffer::{Buffer, BufferView};
+use super::device::Device;
+use super::error::Error;
+use super::image::ImageView;
+use super::pipeline::{Pipeline, Topology, VertexLayout, check_constants};
+use super::program::Program;
+use super::render_pass::{Blend, DepthTest, Framebuffer, Load, RenderPass, Target, Targets};
+use super::shader::{Compiler, ShaderLibrary};
+use crate::shader_build::HostBlock;
+
+/// What a pass keeps busy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PassKind {
+    Graphics,
+    Compute,
+    Transfer,
+    Host,
+}
+
+impl PassKind {
+    pub fn word(self) -> &'static str {
+        match self {
+            PassKind::Graphics => "graphics",
+            PassKind::Compute => "compute",
+            PassKind::Transfer => "transfer",
+            PassKind::Host => "host",
+        }
+    }
+}
+
+/// What the pass table says of a pass.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PassInfo {
+    /// The paper's name for it, in kebab case; also the debug label, the timing tag and the report's column.
+    pub name: &'static str,
+    /// Section of the paper.
+    pub section: &'static str,
+    pub kind: PassKind,
+    pub shaders: Vec<String>,
+    pub reads: Vec<String>,
+    pub writes: Vec<String>,
+    /// Blend state of each colour target.
+    pub blend: Vec<&'static str>,
+    pub depth: Option<&'static str>,
+    /// `None` where no shader runs.
+    pub compiler: Option<Compiler>,
+}
+
+impl PassInfo {
+    /// A pass of host work.
+    pub fn host(name: &'static str, section: &'static str, reads: &[&str], writes: &[&str]) -> Arc<Self> {
+        let owned = |words: &[&str]| words.iter().map(|&w| w.to_owned()).collect();
+        Arc::new(PassInfo {
+            name,
+            section,
+            kind: PassKind::Host,
+            shaders: Vec::new(),
+            reads: owned(reads),
+            writes: owned(writes),
+            blend: Vec::new(),
+            depth: None,
+            compiler: None,
+        })
+    }
+}
+
+/// A built pass of the device. Cloning shares it.
+#[derive(Clone)]
+pub struct Pass {
+    pub(crate) inner: Arc<Inner>,
+}
+
+pub(crate) struct Inner {
+    pub info: Arc<PassInfo>,
+    pub pipeline: Arc<Pipeline>,
+    pub bindings: Option<Arc<Bindings>>,
+    pub uses: Vec<Use>,
+    pub body: Body,
+    sentence: Sentence,
+}
+
+pub(crate) enum Body {
+    Graphics {
+        render_pass: Arc<RenderPass>,
+        framebuffer: Framebuffer,
+        extent: vk::Extent2D,
+        clears: Vec<vk::ClearValue>,
+        vertices: Option<BufferView>,
+        indices: Option<BufferView>,
+    },
+    Compute,
+}
+
+/// Everything that the builder was told; kept so that a pass can be said again about other resources.
+#[derive(Clone)]
+struct Sentence {
+    name: &'static str,
+    section: &'static str,
+    shaders: Vec<String>,
+    resources: Vec<(&'static str, Resource)>,
+    targets: Targets,
+    vertices: Option<BufferView>,
+    indices: Option<BufferView>,
+    topology: Topology,
+}
+
+type LayoutOf = fn(&str, &Program) -> Result<VertexLayout, Error>;
+type CheckConstants = fn(&str, &Program) -> Result<(), Error>;
+
+/// Says what a pass is; [`PassBuilder::build`] makes it.
+#[derive(Clone)]
+pub struct PassBuilder {
+    sentence: Sentence,
+    vertex_layout: Option<LayoutOf>,
+    check_constants: Option<CheckConstants>,
+}
+
+impl Pass {
+    /// Begins the sentence of a pass that draws with a vertex and a fragment shader.
+    pub fn graphics(name: &'static str, section: &'static str, vertex: &str, fragment: &str) -> PassBuilder {
+        Self::builder(name, section, vec![vertex.to_owned(), fragment.to_owned()])
+    }
+
+    /// Begins the sentence of a pass that dispatches a compute shader.
+    pub fn compute(name: &'static str, section: &'static str, shader: &str) -> PassBuilder {
+        Self::builder(name, section, vec![shader.to_owned()])
+    }
+
+    fn builder(name: &'static str, section: &'static str, shaders: Vec<String>) -> PassBuilder {
+        PassBuilder {
+            sentence: Sentence {
+                name,
+                section,
+                shaders,
+                resources: Vec::new(),
+                targets: Targets::default(),
+                vertices: None,
+                indices: None,
+                topology: Topology::default(),
+            },
+            vertex_layout: None,
+            check_constants: None,
+        }
+    }
+
+    pub fn info(&self) -> &Arc<PassInfo> {
+        &self.inner.info
+    }
+
+    /// Threads of a workgroup, for a compute pass.
+    pub(crate) fn local_size(&self) -> [u32; 3] {
+        let module = self.inner.pipeline.program.modules.first();
+        module.and_then(|m| m.interface.local_size).unwrap_or([1, 1, 1])
+    }
+
+    /// The same pass, with the same pipeline, about other resources.
+    pub fn again(&self) -> Again {
+        Again { pass: self.clone(), sentence: self.inner.sentence.clone() }
+    }
+}
+
+impl PassBuilder {
+    /// A resource that the shaders read or write, by the name they give it. Their binaries say how it is accessed.
+    pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
+        self.sentence.resources.push((name, resource.into()));
+        self
+    }
+
+    /// The host struct of the push constants; the build of the pass checks it against the shaders.
+    pub fn constants<T: HostBlock>(mut self) -> Self {
+        self.check_constants = Some(check_constants::<T>);
+        self
+    }
+
+    /// The vertex buffer, of `T`s; its fields feed the vertex stage's inputs of the same names.
+    pub fn vertices<T: HostBlock>(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.sentence.vertices = Some(buffer.view());
+        self.vertex_layout = Some(VertexLayout::of::<T>);
+        self
+    }
+
+    /// The index buffer, of 32-bit indices.
+    pub fn indices(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.sentence.indices = Some(buffer.view());
+        self
+    }
+
+    pub fn topology(mut self, topology: Topology) -> Self {
+        self.sentence.topology = topology;
+        self
+    }
+
+    /// The next colour attachment.
+    pub fn color(mut self, view: &Arc<ImageView>, load: Load, blend: Blend) -> Self {
+        self.sentence.targets.colors.push((Target { view: view.clone(), load }, blend));
+        self
+    }
+
+    pub fn depth(mut self, view: &Arc<ImageView>, load: Load, test: DepthTest) -> Self {
+        self.sentence.targets.depth = Some((Target { view: view.clone(), load }, test));
+        self
+    }
+
+    /// The extent of a pass that has no attachments.
+    pub fn extent(mut self, width: u32, height: u32) -> Self {
+        self.sentence.targets.extent = Some((width, height));
+        self
+    }
+
+    /// Makes modules, layouts, pipeline, descriptor set and framebuffer, checking every declared name against the
+    /// shaders.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] or [`Error::Shader`] for a sentence that does not fit its shaders; what Vulkan answers.
+    pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
+        let device = shaders.device();
+        let PassBuilder { sentence, vertex_layout, check_constants } = self;
+        let name = sentence.name;
+        let modules = sentence.shaders.iter().map(|s| shaders.module(s)).collect::<Result<Vec<_>, _>>()?;
+        let program = Program::new(device, name, modules)?;
+        match check_constants {
+            Some(check) => check(name, &program)?,
+            None if program.push_bytes > 0 => {
+                return Err(Error::Pass {
+                    pass: name.into(),
+                    problem: "its shaders take push constants and none are declared".into(),
+                });
+            }
+            None => {}
+        }
+        let is_compute = sentence.shaders.iter().any(|s| s.ends_with(".comp"));
+        if is_compute {
+            let pipeline = Pipeline::compute(device, name, &program)?;
+            return finish(device, sentence, pipeline, None);
+        }
+        let layout = vertex_layout.map_or(Ok(VertexLayout::default()), |of| of(name, &program))?;
+        let render_pass = RenderPass::new(device, name, &sentence.targets)?;
+        let targets = &sentence.targets;
+        let pipeline = Pipeline::graphics(device, name, &program, &render_pass, targets, &layout, sentence.topology)?;
+        finish(device, sentence, pipeline, Some(render_pass))
+    }
+}
+
+/// A pass said again: same shaders, state and formats, other resources.
+pub struct Again {
+    pass: Pass,
+    sentence: Sentence,
+}
+
+impl Again {
+    /// Replaces the resource of that name.
+    pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
+        let resource = resource.into();
+        match self.sentence.resources.iter_mut().find(|(n, _)| *n == name) {
+            Some(slot) => slot.1 = resource,
+            None => self.sentence.resources.push((name, resource)),
+        }
+        self
+    }
+
+    /// Replaces the colour attachment at `index`; its format is the old one's.
+    pub fn color(mut self, index: usize, view: &Arc<ImageView>, load: Load) -> Self {
+        if let Some((target, _)) = self.sentence.targets.colors.get_mut(index) {
+            *target = Target { view: view.clone(), load };
+        }
+        self
+    }
+
+    /// Replaces the depth attachment; its format is the old one's.
+    pub fn depth(mut self, view: &Arc<ImageView>, load: Load) -> Self {
+        if let Some((target, _)) = &mut self.sentence.targets.depth {
+            *target = Target { view: view.clone(), load };
+        }
+        self
+    }
+
+    pub fn vertices(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.sentence.vertices = Some(buffer.view());
+        self
+    }
+
+    pub fn indices(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.sentence.indices = Some(buffer.view());
+        self
+    }
+
+    /// Makes the pass, sharing the pipeline of the first.
+    ///
+    /// # Errors
+    /// As [`PassBuilder::build`].
+    pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
+        let render_pass = match &self.pass.inner.body {
+            Body::Compute => None,
+            // Load operations alone may differ, which keeps the new render pass compatible with the pipeline.
+            Body::Graphics { .. } => {
+                Some(RenderPass::new(shaders.device(), self.sentence.name, &self.sentence.targets)?)
+            }
+        };
+        finish(shaders.device(), self.sentence, self.pass.inner.pipeline.clone(), render_pass)
+    }
+}
+
+fn finish(
+    device: &Arc<Device>,
+    sentence: Sentence,
+    pipeline: Arc<Pipeline>,
+    render_pass: Option<Arc<RenderPass>>,
+) -> Result<Pass, Error> {
+    let bindings = Bindings::new(device, sentence.name, &pipeline.program, &sentence.resources)?;
+    let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
+    let body = match render_pass {
+        None => Body::Compute,
+        Some(render_pass) => {
+            add_fixed_function_uses(&sentence, &mut uses);
+            let extent = sentence.targets.extent().ok_or_else(|| Error::Pass {
+                pass: sentence.name.into(),
+                problem: "it has neither attachments nor an extent".into(),
+            })?;
+            Body::Graphics {
+                framebuffer: Framebuffer::new(device, sentence.name, &render_pass, &sentence.targets, extent)?,
+                render_pass,
+                extent,
+                clears: sentence.targets.clear_values(),
+                vertices: sentence.vertices.clone(),
+                indices: sentence.indices.clone(),
+            }
+        }
+    };
+    check_conflicts(sentence.name, &uses)?;
+    let info = Arc::new(describe(&sentence, &pipeline.program, &uses));
+    Ok(Pass { inner: Arc::new(Inner { info, pipeline, bindings, uses, body, sentence }) })
+}
+
+fn add_fixed_function_uses(sentence: &Sentence, uses: &mut Vec<Use>) {
+    let mut add = |resource: Resource, access, discard| uses.push(Use { resource, access, discard });
+    if let Some(vertices) = &sentence.vertices {
+        add(vertices.into(), Access::VertexRead, false);
+    }
+    if let Some(indices) = &sentence.indices {
+        add(indices.into(), Access::IndexRead, false);
+    }
+    for (target, _) in &sentence.targets.colors {
+        add((&target.view).into(), Access::ColorTarget, target.load != Load::Keep);
+    }
+    if let Some((target, test)) = &sentence.targets.depth {
+        add((&target.view).into(), test.access(), target.load != Load::Keep);
+    }
+}
+
+/// One pass cannot have one image in two layouts.
+fn check_conflicts(pass: &str, uses: &[Use]) -> Result<(), Error> {
+    for (i, a) in uses.iter().enumerate() {
+        for b in &uses[..i] {
+            if let (Resource::Image(x), Resource::Image(y)) = (&a.resource, &b.resource)
+                && Arc::ptr_eq(&x.image, &y.image)
+                && x.layers.start < y.layers.end
+                && y.layers.start < x.layers.end
+                && a.access.words().layout != b.access.words().layout
+            {
+                return Err(Error::Pass {
+                    pass: pass.to_owned(),
+                    problem: format!("uses image {} in two ways at once", x.image.name()),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn describe(sentence: &Sentence, program: &Program, uses: &[Use]) -> PassInfo {
+    let names = |writes: bool| {
+        let mut names: Vec<String> =
+            uses.iter().filter(|u| u.access.words().writes == writes).map(|u| u.resource.name().to_owned()).collect();
+        names.dedup();
+        names
+    };
+    PassInfo {
+        name: sentence.name,
+        section: sentence.section,
+        kind: if sentence.shaders.iter().any(|s| s.ends_with(".comp")) {
+            PassKind::Compute
+        } else {
+            PassKind::Graphics
+        },
+        shaders: sentence.shaders.clone(),
+        reads: names(false),
+        writes: names(true),
+        blend: sentence.targets.colors.iter().map(|(_, blend)| blend.word()).collect(),
+        depth: sentence.targets.depth.as_ref().map(|(_, test)| test.word()),
+        compiler: Some(program.compiler()),
+    }
+}

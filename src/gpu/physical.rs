@@ -1,0 +1,295 @@
+//! The devices that are there, what they can do, and which one to take.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::error::{Context, Error};
+use super::instance::{Instance, version_text};
+
+/// What kind of device it is, in the order of preference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DeviceType {
+    Discrete,
+    Integrated,
+    Virtual,
+    Cpu,
+    Other,
+}
+
+impl DeviceType {
+    pub fn word(self) -> &'static str {
+        match self {
+            DeviceType::Discrete => "discrete",
+            DeviceType::Integrated => "integrated",
+            DeviceType::Virtual => "virtual",
+            DeviceType::Cpu => "cpu",
+            DeviceType::Other => "other",
+        }
+    }
+}
+
+/// A capability that a paper may need and a device may lack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Feature {
+    /// `synchronization2` of Vulkan 1.3: every barrier is written with it.
+    Synchronization2,
+    /// `hostQueryReset` of Vulkan 1.2: the time stamps are reset on the host.
+    HostQueryReset,
+    /// Different blend states for the attachments of one pass.
+    IndependentBlend,
+    /// Additive blending into one 32-bit float channel (caustics map).
+    BlendR32Float,
+    /// Blending into four 16-bit float channels (illumination map).
+    BlendRgba16Float,
+    /// Blending into four 32-bit float channels.
+    BlendRgba32Float,
+    /// Geometry stages.
+    GeometryShader,
+    /// Storage writes in fragment stages.
+    FragmentStores,
+    /// Counting vertices, primitives and invocations.
+    PipelineStatistics,
+    /// Exact counts of samples passed.
+    PreciseOcclusion,
+    /// Time stamps on the graphics and compute queue.
+    Timestamps,
+}
+
+impl Feature {
+    pub const ALL: [Feature; 11] = [
+        Feature::Synchronization2,
+        Feature::HostQueryReset,
+        Feature::IndependentBlend,
+        Feature::BlendR32Float,
+        Feature::BlendRgba16Float,
+        Feature::BlendRgba32Float,
+        Feature::GeometryShader,
+        Feature::FragmentStores,
+        Feature::PipelineStatistics,
+        Feature::PreciseOcclusion,
+        Feature::Timestamps,
+    ];
+
+    /// The name that the capability report and the error messages use.
+    pub fn word(self) -> &'static str {
+        match self {
+            Feature::Synchronization2 => "synchronization2",
+            Feature::HostQueryReset => "host-query-reset",
+            Feature::IndependentBlend => "independent-blend",
+            Feature::BlendR32Float => "blend-r32f",
+            Feature::BlendRgba16Float => "blend-rgba16f",
+            Feature::BlendRgba32Float => "blend-rgba32f",
+            Feature::GeometryShader => "geometry-shader",
+            Feature::FragmentStores => "fragment-stores",
+            Feature::PipelineStatistics => "pipeline-statistics",
+            Feature::PreciseOcclusion => "precise-occlusion",
+            Feature::Timestamps => "timestamps",
+        }
+    }
+}
+
+/// The features that every paper needs: the layer itself is built on them.
+pub const BASELINE: [Feature; 3] = [Feature::Synchronization2, Feature::HostQueryReset, Feature::IndependentBlend];
+
+/// A Vulkan device as it is found, before it is opened.
+pub struct PhysicalDevice {
+    pub(crate) raw: vk::PhysicalDevice,
+    pub index: usize,
+    pub name: String,
+    pub device_type: DeviceType,
+    pub uuid: [u8; 16],
+    pub driver_name: String,
+    pub driver_info: String,
+    pub api_version: u32,
+    pub limits: vk::PhysicalDeviceLimits,
+    pub memory: vk::PhysicalDeviceMemoryProperties,
+    /// The family with graphics, compute and transfer, and its valid time-stamp bits.
+    pub queue: Option<(u32, u32)>,
+    features: Vec<Feature>,
+}
+
+impl PhysicalDevice {
+    /// Every device of the instance, in the loader's order.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] when the loader cannot list them.
+    pub fn enumerate(instance: &Arc<Instance>) -> Result<Vec<PhysicalDevice>, Error> {
+        // SAFETY: the instance is alive; no other precondition.
+        let handles = match unsafe { instance.raw.enumerate_physical_devices() } {
+            // The loader's answer when no driver could be opened.
+            Err(vk::Result::ERROR_INITIALIZATION_FAILED) => Vec::new(),
+            other => other.context("listing", "the Vulkan devices")?,
+        };
+        Ok(handles.into_iter().enumerate().map(|(i, raw)| Self::describe(instance, i, raw)).collect())
+    }
+
+    fn describe(instance: &Instance, index: usize, raw: vk::PhysicalDevice) -> Self {
+        let mut id = vk::PhysicalDeviceIDProperties::default();
+        let mut driver = vk::PhysicalDeviceDriverProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut id).push_next(&mut driver);
+        // SAFETY: `raw` comes from this instance, and the chained structures outlive the calls.
+        let (memory, queues) = unsafe {
+            instance.raw.get_physical_device_properties2(raw, &mut properties);
+            (
+                instance.raw.get_physical_device_memory_properties(raw),
+                instance.raw.get_physical_device_queue_family_properties(raw),
+            )
+        };
+        let properties = properties.properties;
+        let needed = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+        let queue = queues
+            .iter()
+            .position(|q| q.queue_flags.contains(needed))
+            .map(|family| (family as u32, queues[family].timestamp_valid_bits));
+        let text = |bytes: &[std::ffi::c_char]| {
+            let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
+            String::from_utf8_lossy(&bytes).into_owned()
+        };
+        PhysicalDevice {
+            raw,
+            index,
+            name: text(&properties.device_name),
+            device_type: match properties.device_type {
+                vk::PhysicalDeviceType::DISCRETE_GPU => DeviceType::Discrete,
+                vk::PhysicalDeviceType::INTEGRATED_GPU => DeviceType::Integrated,
+                vk::PhysicalDeviceType::VIRTUAL_GPU => DeviceType::Virtual,
+                vk::PhysicalDeviceType::CPU => DeviceType::Cpu,
+                _ => DeviceType::Other,
+            },
+            uuid: id.device_uuid,
+            driver_name: text(&driver.driver_name),
+            driver_info: text(&driver.driver_info),
+            api_version: properties.api_version,
+            limits: properties.limits,
+            memory,
+            queue,
+            features: supported_features(instance, raw, properties.api_version, queue),
+        }
+    }
+
+    /// Whether the device has `feature`.
+    pub fn has(&self, feature: Feature) -> bool {
+        self.features.contains(&feature)
+    }
+
+    /// What of `needed`, and of the layer's own baseline, the device lacks; empty when it is capable.
+    pub fn lacks(&self, needed: &[Feature]) -> Vec<&'static str> {
+        let mut missing = Vec::new();
+        if self.api_version < vk::API_VERSION_1_3 {
+            missing.push("Vulkan 1.3");
+        }
+        if self.queue.is_none() {
+            missing.push("a queue with graphics and compute");
+        }
+        missing.extend(BASELINE.iter().chain(needed).filter(|&&f| !self.has(f)).map(|f| f.word()));
+        missing.dedup();
+        missing
+    }
+
+    /// The device's UUID in the usual grouping.
+    pub fn uuid_text(&self) -> String {
+        let hex: Vec<String> = self.uuid.iter().map(|b| format!("{b:02x}")).collect();
+        [&hex[0..4], &hex[4..6], &hex[6..8], &hex[8..10], &hex[10..16]].map(|g| g.concat()).join("-")
+    }
+
+    /// `major.minor.patch` of the Vulkan version it offers.
+    pub fn api_version_text(&self) -> String {
+        version_text(self.api_version)
+    }
+}
+
+fn supported_features(
+    instance: &Instance,
+    raw: vk::PhysicalDevice,
+    api_version: u32,
+    queue: Option<(u32, u32)>,
+) -> Vec<Feature> {
+    if api_version < vk::API_VERSION_1_3 {
+        return Vec::new();
+    }
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut v12).push_next(&mut v13);
+    // SAFETY: `raw` comes from this instance, and the chained structures outlive the call.
+    unsafe { instance.raw.get_physical_device_features2(raw, &mut features) };
+    let core = features.features;
+    let blends = |format| {
+        // SAFETY: `raw` comes from this instance.
+        let properties = unsafe { instance.raw.get_physical_device_format_properties(raw, format) };
+        properties.optimal_tiling_features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
+    };
+    let has = |feature: &Feature| match feature {
+        Feature::Synchronization2 => v13.synchronization2 == vk::TRUE,
+        Feature::HostQueryReset => v12.host_query_reset == vk::TRUE,
+        Feature::IndependentBlend => core.independent_blend == vk::TRUE,
+        Feature::BlendR32Float => blends(vk::Format::R32_SFLOAT),
+        Feature::BlendRgba16Float => blends(vk::Format::R16G16B16A16_SFLOAT),
+        Feature::BlendRgba32Float => blends(vk::Format::R32G32B32A32_SFLOAT),
+        Feature::GeometryShader => core.geometry_shader == vk::TRUE,
+        Feature::FragmentStores => core.fragment_stores_and_atomics == vk::TRUE,
+        Feature::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
+        Feature::PreciseOcclusion => core.occlusion_query_precise == vk::TRUE,
+        Feature::Timestamps => queue.is_some_and(|(_, bits)| bits > 0),
+    };
+    Feature::ALL.into_iter().filter(|f| has(f)).collect()
+}
+
+/// Chooses a device: by index, UUID or part of the name when `wanted` is given, else the best of those that have all
+/// of `needed`: discrete, then integrated, virtual, CPU.
+///
+/// # Errors
+/// [`Error::NoDevice`], [`Error::UnknownDevice`], [`Error::AmbiguousDevice`] or [`Error::MissingFeature`].
+pub fn choose(devices: Vec<PhysicalDevice>, wanted: Option<&str>, needed: &[Feature]) -> Result<PhysicalDevice, Error> {
+    if devices.is_empty() {
+        return Err(Error::NoDevice { reason: "no driver offers one".into() });
+    }
+    let Some(wanted) = wanted else {
+        let lacking: Vec<String> =
+            devices.iter().map(|d| format!("{} lacks {}", d.name, d.lacks(needed).join(", "))).collect();
+        return devices
+            .into_iter()
+            .filter(|d| d.lacks(needed).is_empty())
+            .min_by_key(|d| (d.device_type, d.index))
+            .ok_or_else(|| Error::NoDevice { reason: lacking.join("; ") });
+    };
+    let present = listing(devices.iter());
+    let matches = matching(&devices, wanted);
+    match matches[..] {
+        [] => Err(Error::UnknownDevice { wanted: wanted.into(), present }),
+        [one] => {
+            let missing = devices[one].lacks(needed);
+            if missing.is_empty() {
+                devices.into_iter().nth(one).ok_or(Error::UnknownDevice { wanted: wanted.into(), present })
+            } else {
+                Err(Error::MissingFeature { device: devices[one].name.clone(), missing: missing.join(", ") })
+            }
+        }
+        _ => Err(Error::AmbiguousDevice {
+            wanted: wanted.into(),
+            matching: listing(matches.iter().map(|&i| &devices[i])),
+        }),
+    }
+}
+
+fn listing<'a>(devices: impl Iterator<Item = &'a PhysicalDevice>) -> String {
+    devices.map(|d| format!("{}: {} ({})", d.index, d.name, d.uuid_text())).collect::<Vec<_>>().join("; ")
+}
+
+fn matching(devices: &[PhysicalDevice], wanted: &str) -> Vec<usize> {
+    let plain = |text: &str| text.to_lowercase().replace('-', "");
+    let positions = |test: &dyn Fn(&PhysicalDevice) -> bool| -> Vec<usize> {
+        (0..devices.len()).filter(|&i| test(&devices[i])).collect()
+    };
+    if let Ok(index) = wanted.trim().parse::<usize>() {
+        return positions(&|d| d.index == index);
+    }
+    if wanted.trim().is_empty() {
+        return Vec::new();
+    }
+    let by_uuid = positions(&|d| plain(&d.uuid_text()) == plain(wanted));
+    if !by_uuid.is_empty() {
+        return by_uuid;
+    }
+    positions(&|d| d.name.to_lowercase().contains(&wanted.to_lowercase()))
+}

@@ -1,0 +1,200 @@
+//! Pipelines: a program with its fixed-function state.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Stages;
+use super::device::Device;
+use super::error::{Context, Error};
+use super::live::Kind;
+use super::program::Program;
+use super::render_pass::{DepthTest, RenderPass, Targets};
+use crate::shader_build::HostBlock;
+use crate::shader_build::{Format, Scalar};
+
+/// One attribute of a vertex: location, format, byte offset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Attribute {
+    pub location: u32,
+    pub format: vk::Format,
+    pub offset_bytes: u32,
+}
+
+/// How the vertices of a pass lie in their buffer.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct VertexLayout {
+    pub stride_bytes: u32,
+    pub attributes: Vec<Attribute>,
+}
+
+impl VertexLayout {
+    /// The layout of host struct `T`, its fields matched to the vertex stage's inputs by name.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] for an input that `T` has no field of the same name and size for.
+    pub(crate) fn of<T: HostBlock>(pass: &str, program: &Program) -> Result<Self, Error> {
+        let mut attributes = Vec::new();
+        let inputs = program.modules.iter().filter(|m| m.stage() == Stages::VERTEX).flat_map(|m| &m.interface.inputs);
+        for input in inputs {
+            let format = vertex_format(input.format);
+            let bytes = (4 * input.format.components) as usize;
+            let field = T::fields().iter().find(|(name, _, size)| *name == input.name && *size == bytes);
+            let Some(&(_, offset, _)) = field else {
+                return Err(Error::Pass {
+                    pass: pass.to_owned(),
+                    problem: format!("{} has no field {} of {bytes} bytes for its vertex stage", T::NAME, input.name),
+                });
+            };
+            attributes.push(Attribute { location: input.location, format, offset_bytes: offset as u32 });
+        }
+        Ok(VertexLayout { stride_bytes: std::mem::size_of::<T>() as u32, attributes })
+    }
+}
+
+fn vertex_format(format: Format) -> vk::Format {
+    use vk::Format as F;
+    let table = match format.scalar {
+        Scalar::Float => [F::R32_SFLOAT, F::R32G32_SFLOAT, F::R32G32B32_SFLOAT, F::R32G32B32A32_SFLOAT],
+        Scalar::Int => [F::R32_SINT, F::R32G32_SINT, F::R32G32B32_SINT, F::R32G32B32A32_SINT],
+        Scalar::Uint => [F::R32_UINT, F::R32G32_UINT, F::R32G32B32_UINT, F::R32G32B32A32_UINT],
+    };
+    table[(format.components.clamp(1, 4) - 1) as usize]
+}
+
+/// The kind of primitive that a pass draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Topology {
+    #[default]
+    Triangles,
+    Points,
+}
+
+/// A pipeline with its program.
+pub struct Pipeline {
+    pub(crate) raw: vk::Pipeline,
+    device: Arc<Device>,
+    pub program: Arc<Program>,
+}
+
+impl Pipeline {
+    pub(crate) fn graphics(
+        device: &Arc<Device>,
+        pass: &str,
+        program: &Arc<Program>,
+        render_pass: &Arc<RenderPass>,
+        targets: &Targets,
+        vertices: &VertexLayout,
+        topology: Topology,
+    ) -> Result<Arc<Self>, Error> {
+        let stages = program.stage_infos();
+        let bindings = [vk::VertexInputBindingDescription {
+            binding: 0,
+            stride: vertices.stride_bytes,
+            input_rate: vk::VertexInputRate::VERTEX,
+        }];
+        let attributes: Vec<_> = vertices
+            .attributes
+            .iter()
+            .map(|a| vk::VertexInputAttributeDescription {
+                location: a.location,
+                binding: 0,
+                format: a.format,
+                offset: a.offset_bytes,
+            })
+            .collect();
+        let mut vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
+        if !attributes.is_empty() {
+            vertex_input =
+                vertex_input.vertex_binding_descriptions(&bindings).vertex_attribute_descriptions(&attributes);
+        }
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(match topology {
+            Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
+            Topology::Points => vk::PrimitiveTopology::POINT_LIST,
+        });
+        let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(vk::CullModeFlags::NONE)
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .line_width(1.0);
+        let multisample =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let depth = match targets.depth.as_ref().map(|d| d.1) {
+            None => vk::PipelineDepthStencilStateCreateInfo::default(),
+            Some(test) => vk::PipelineDepthStencilStateCreateInfo::default()
+                .depth_test_enable(true)
+                .depth_write_enable(test == DepthTest::LessWrite)
+                .depth_compare_op(vk::CompareOp::LESS),
+        };
+        let blends: Vec<_> = targets.colors.iter().map(|(_, blend)| blend.state()).collect();
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertex_input)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(program.layout)
+            .render_pass(render_pass.raw);
+        // SAFETY: every state lives until the call returns; modules, layout and render pass are alive.
+        let made = unsafe { device.raw.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
+        Self::guard(device, pass, program, made)
+    }
+
+    pub(crate) fn compute(device: &Arc<Device>, pass: &str, program: &Arc<Program>) -> Result<Arc<Self>, Error> {
+        let stages = program.stage_infos();
+        let [stage] = stages[..] else {
+            return Err(Error::Pass { pass: pass.to_owned(), problem: "a compute pass has one shader".into() });
+        };
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(program.layout);
+        // SAFETY: the module and the layout are alive.
+        let made = unsafe { device.raw.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
+        Self::guard(device, pass, program, made)
+    }
+
+    fn guard(
+        device: &Arc<Device>,
+        pass: &str,
+        program: &Arc<Program>,
+        made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
+    ) -> Result<Arc<Self>, Error> {
+        // A failed creation of one pipeline leaves a null handle, which needs no freeing.
+        let raw = made.map_err(|(_, result)| result).context("creating the pipeline of pass", pass)?[0];
+        device.live().add(Kind::Pipeline);
+        device.name(raw, pass);
+        Ok(Arc::new(Pipeline { raw, device: device.clone(), program: program.clone() }))
+    }
+}
+
+impl Drop for Pipeline {
+    fn drop(&mut self) {
+        // SAFETY: a frame keeps the pass that owns this pipeline until its fence.
+        unsafe { self.device.raw.destroy_pipeline(self.raw, None) };
+        self.device.live().remove(Kind::Pipeline);
+    }
+}
+
+/// Checks that a host struct is what a program's push constants are.
+///
+/// # Errors
+/// [`Error::Pass`] naming the first field that differs.
+pub(crate) fn check_constants<T: HostBlock>(pass: &str, program: &Program) -> Result<(), Error> {
+    let problem = |problem: String| Error::Pass { pass: pass.to_owned(), problem };
+    let mut found = false;
+    for module in &program.modules {
+        if let Some(block) = &module.interface.push_constants {
+            found = true;
+            block
+                .check_layout(T::NAME, std::mem::size_of::<T>(), T::fields())
+                .map_err(|e| problem(format!("push constants of shader {}: {e}", module.name)))?;
+        }
+    }
+    if found { Ok(()) } else { Err(problem(format!("its shaders take no push constants, {} is given", T::NAME))) }
+}

@@ -1,0 +1,243 @@
+//! Classic render passes and framebuffers. Initial, subpass and final layout are one, so no implicit dependency
+//! exists: every transition is a barrier of the envelope.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Access;
+use super::device::Device;
+use super::error::{Context, Error};
+use super::image::{ImageView, aspect_of};
+use super::live::Kind;
+
+/// What an attachment holds when a pass begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Load {
+    /// A clear value: four colour components, or depth in the first.
+    Clear([f32; 4]),
+    /// What the passes before left.
+    Keep,
+    /// Anything: every texel is overwritten.
+    Discard,
+}
+
+/// How a colour attachment takes the fragment's colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Blend {
+    Replace,
+    /// destination + source
+    Add,
+    /// destination x source; alpha stays.
+    Multiply,
+    /// source alpha over the destination.
+    Over,
+}
+
+impl Blend {
+    pub fn word(self) -> &'static str {
+        match self {
+            Blend::Replace => "replace",
+            Blend::Add => "add",
+            Blend::Multiply => "multiply",
+            Blend::Over => "over",
+        }
+    }
+
+    pub(crate) fn state(self) -> vk::PipelineColorBlendAttachmentState {
+        use vk::BlendFactor as F;
+        let blended = |src, dst, src_alpha, dst_alpha| {
+            vk::PipelineColorBlendAttachmentState::default()
+                .blend_enable(true)
+                .src_color_blend_factor(src)
+                .dst_color_blend_factor(dst)
+                .color_blend_op(vk::BlendOp::ADD)
+                .src_alpha_blend_factor(src_alpha)
+                .dst_alpha_blend_factor(dst_alpha)
+                .alpha_blend_op(vk::BlendOp::ADD)
+                .color_write_mask(vk::ColorComponentFlags::RGBA)
+        };
+        match self {
+            Blend::Replace => {
+                vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA)
+            }
+            Blend::Add => blended(F::ONE, F::ONE, F::ONE, F::ONE),
+            Blend::Multiply => blended(F::DST_COLOR, F::ZERO, F::ZERO, F::ONE),
+            Blend::Over => blended(F::SRC_ALPHA, F::ONE_MINUS_SRC_ALPHA, F::ONE, F::ONE_MINUS_SRC_ALPHA),
+        }
+    }
+}
+
+/// What a pass does with its depth attachment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DepthTest {
+    /// Nearer fragments pass and are written.
+    LessWrite,
+    /// Nearer fragments pass; nothing is written.
+    LessReadOnly,
+}
+
+impl DepthTest {
+    pub fn word(self) -> &'static str {
+        match self {
+            DepthTest::LessWrite => "less, write",
+            DepthTest::LessReadOnly => "less, read only",
+        }
+    }
+
+    pub(crate) fn access(self) -> Access {
+        match self {
+            DepthTest::LessWrite => Access::DepthTarget,
+            DepthTest::LessReadOnly => Access::DepthReadOnly,
+        }
+    }
+}
+
+/// One attachment of a pass.
+#[derive(Clone)]
+pub struct Target {
+    pub view: Arc<ImageView>,
+    pub load: Load,
+}
+
+/// The attachments of a pass: colours with their blend state, and depth.
+#[derive(Clone, Default)]
+pub struct Targets {
+    pub colors: Vec<(Target, Blend)>,
+    pub depth: Option<(Target, DepthTest)>,
+    /// The extent of a pass without attachments.
+    pub extent: Option<(u32, u32)>,
+}
+
+impl Targets {
+    pub(crate) fn extent(&self) -> Option<vk::Extent2D> {
+        let view = self.colors.first().map(|c| &c.0.view).or(self.depth.as_ref().map(|d| &d.0.view));
+        let (width, height) = view.map(|v| (v.width(), v.height())).or(self.extent)?;
+        Some(vk::Extent2D { width, height })
+    }
+
+    fn views(&self) -> impl Iterator<Item = &Target> {
+        self.colors.iter().map(|c| &c.0).chain(self.depth.iter().map(|d| &d.0))
+    }
+
+    pub(crate) fn clear_values(&self) -> Vec<vk::ClearValue> {
+        self.views()
+            .map(|target| {
+                let value = match target.load {
+                    Load::Clear(value) => value,
+                    Load::Keep | Load::Discard => [0.0; 4],
+                };
+                if target.view.image().aspect().contains(vk::ImageAspectFlags::DEPTH) {
+                    vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: value[0], stencil: 0 } }
+                } else {
+                    vk::ClearValue { color: vk::ClearColorValue { float32: value } }
+                }
+            })
+            .collect()
+    }
+}
+
+/// A render pass of one subpass.
+pub struct RenderPass {
+    pub(crate) raw: vk::RenderPass,
+    device: Arc<Device>,
+}
+
+impl RenderPass {
+    pub(crate) fn new(device: &Arc<Device>, pass: &str, targets: &Targets) -> Result<Arc<Self>, Error> {
+        let attachment = |target: &Target, access: Access| {
+            let layout = access.words().layout;
+            let load = match target.load {
+                Load::Clear(_) => vk::AttachmentLoadOp::CLEAR,
+                Load::Keep => vk::AttachmentLoadOp::LOAD,
+                Load::Discard => vk::AttachmentLoadOp::DONT_CARE,
+            };
+            let has_stencil = aspect_of(target.view.image().desc().format).contains(vk::ImageAspectFlags::STENCIL);
+            vk::AttachmentDescription::default()
+                .format(target.view.image().desc().format)
+                .samples(vk::SampleCountFlags::TYPE_1)
+                .load_op(load)
+                .store_op(vk::AttachmentStoreOp::STORE)
+                .stencil_load_op(if has_stencil { load } else { vk::AttachmentLoadOp::DONT_CARE })
+                .stencil_store_op(if has_stencil {
+                    vk::AttachmentStoreOp::STORE
+                } else {
+                    vk::AttachmentStoreOp::DONT_CARE
+                })
+                .initial_layout(layout)
+                .final_layout(layout)
+        };
+        let mut attachments: Vec<_> = targets.colors.iter().map(|(t, _)| attachment(t, Access::ColorTarget)).collect();
+        let colors: Vec<_> = (0..attachments.len() as u32)
+            .map(|i| vk::AttachmentReference { attachment: i, layout: Access::ColorTarget.words().layout })
+            .collect();
+        let mut depth = vk::AttachmentReference::default();
+        if let Some((target, test)) = &targets.depth {
+            depth =
+                vk::AttachmentReference { attachment: attachments.len() as u32, layout: test.access().words().layout };
+            attachments.push(attachment(target, test.access()));
+        }
+        let mut subpass = vk::SubpassDescription::default()
+            .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+            .color_attachments(&colors);
+        if targets.depth.is_some() {
+            subpass = subpass.depth_stencil_attachment(&depth);
+        }
+        let subpasses = [subpass];
+        let info = vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses);
+        // SAFETY: the arrays outlive the call; references point into `attachments`.
+        let raw =
+            unsafe { device.raw.create_render_pass(&info, None) }.context("creating the render pass of pass", pass)?;
+        device.live().add(Kind::RenderPass);
+        device.name(raw, pass);
+        Ok(Arc::new(RenderPass { raw, device: device.clone() }))
+    }
+}
+
+impl Drop for RenderPass {
+    fn drop(&mut self) {
+        // SAFETY: pipelines, framebuffers and passes hold an `Arc` of this render pass.
+        unsafe { self.device.raw.destroy_render_pass(self.raw, None) };
+        self.device.live().remove(Kind::RenderPass);
+    }
+}
+
+/// A framebuffer: the views that a render pass draws into.
+pub struct Framebuffer {
+    pub(crate) raw: vk::Framebuffer,
+    device: Arc<Device>,
+    _targets: Targets,
+    _render_pass: Arc<RenderPass>,
+}
+
+impl Framebuffer {
+    pub(crate) fn new(
+        device: &Arc<Device>,
+        pass: &str,
+        render_pass: &Arc<RenderPass>,
+        targets: &Targets,
+        extent: vk::Extent2D,
+    ) -> Result<Self, Error> {
+        let views: Vec<_> = targets.views().map(|t| t.view.raw).collect();
+        let info = vk::FramebufferCreateInfo::default()
+            .render_pass(render_pass.raw)
+            .attachments(&views)
+            .width(extent.width)
+            .height(extent.height)
+            .layers(1);
+        // SAFETY: views and render pass are alive and kept so by the framebuffer.
+        let raw =
+            unsafe { device.raw.create_framebuffer(&info, None) }.context("creating the framebuffer of pass", pass)?;
+        device.live().add(Kind::Framebuffer);
+        device.name(raw, pass);
+        Ok(Framebuffer { raw, device: device.clone(), _targets: targets.clone(), _render_pass: render_pass.clone() })
+    }
+}
+
+impl Drop for Framebuffer {
+    fn drop(&mut self) {
+        // SAFETY: a frame keeps the pass that owns this framebuffer until its fence.
+        unsafe { self.device.raw.destroy_framebuffer(self.raw, None) };
+        self.device.live().remove(Kind::Framebuffer);
+    }
+}

@@ -1,0 +1,98 @@
+//! Shader modules: which compiler's binary a pass runs, and the interface that its descriptor layouts come from.
+
+use std::borrow::Cow;
+use std::path::Path;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Stages;
+use super::device::Device;
+use super::error::{Context, Error};
+use super::live::Kind;
+use crate::shader_build::{self, EMBEDDED, Interface, Stage};
+
+pub use crate::shader_build::Compiler;
+
+/// Where the shaders come from: the program itself, or a directory compiled at start.
+pub struct ShaderLibrary {
+    device: Arc<Device>,
+    compiler: Compiler,
+    replaced: Vec<shader_build::CompiledShader>,
+}
+
+impl ShaderLibrary {
+    /// The embedded shaders; those under `replacements` (laid out as `shaders/`) are compiled now and used instead.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] with the original file and line when a replacement does not compile.
+    pub fn new(device: &Arc<Device>, compiler: Compiler, replacements: Option<&Path>) -> Result<Self, Error> {
+        let replaced = match replacements {
+            None => Vec::new(),
+            Some(dir) => shader_build::compile_dir(dir)
+                .map_err(|e| Error::Shader { name: dir.display().to_string(), problem: e.to_string() })?,
+        };
+        Ok(ShaderLibrary { device: device.clone(), compiler, replaced })
+    }
+
+    pub fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
+    /// Loads one shader by its path under `shaders/`.
+    ///
+    /// # Errors
+    /// [`Error::Shader`] for a name that is not there.
+    pub fn module(&self, name: &str) -> Result<Arc<ShaderModule>, Error> {
+        let problem = |problem: String| Error::Shader { name: name.to_owned(), problem };
+        let (glslang, naga): (Cow<'_, [u32]>, Option<Cow<'_, [u32]>>) =
+            if let Some(shader) = self.replaced.iter().find(|s| s.name == name) {
+                (Cow::Borrowed(&shader.glslang[..]), shader.naga.as_deref().ok().map(Cow::Borrowed))
+            } else if let Some(shader) = EMBEDDED.iter().find(|s| s.name == name) {
+                (Cow::Borrowed(shader.glslang), shader.naga.ok().map(Cow::Borrowed))
+            } else {
+                return Err(problem("no such shader is built in".into()));
+            };
+        // The interface is glslang's for both: naga's names are gone, and the build has checked the two alike.
+        let interface = Interface::reflect(&glslang).map_err(|e| problem(e.to_string()))?;
+        let (words, compiler) = match (self.compiler, naga) {
+            (Compiler::Naga, Some(words)) => (words, Compiler::Naga),
+            _ => (glslang, Compiler::Glslang),
+        };
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the words are a SPIR-V module that one of the two compilers wrote; they outlive the call.
+        let raw =
+            unsafe { self.device.raw.create_shader_module(&info, None) }.context("creating shader module", name)?;
+        self.device.live().add(Kind::ShaderModule);
+        self.device.name(raw, name);
+        Ok(Arc::new(ShaderModule { raw, device: self.device.clone(), name: name.to_owned(), interface, compiler }))
+    }
+}
+
+/// One stage's module with its interface.
+pub struct ShaderModule {
+    pub(crate) raw: vk::ShaderModule,
+    device: Arc<Device>,
+    pub name: String,
+    pub interface: Interface,
+    pub compiler: Compiler,
+}
+
+impl ShaderModule {
+    pub(crate) fn stage(&self) -> Stages {
+        match self.interface.stage {
+            Stage::Vertex => Stages::VERTEX,
+            Stage::Geometry => Stages::GEOMETRY,
+            Stage::Fragment => Stages::FRAGMENT,
+            Stage::Compute => Stages::COMPUTE,
+        }
+    }
+}
+
+impl Drop for ShaderModule {
+    fn drop(&mut self) {
+        // SAFETY: pipelines do not need their modules once created.
+        unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
+        self.device.live().remove(Kind::ShaderModule);
+    }
+}

@@ -1,0 +1,135 @@
+//! Moving data between host and device outside frames: uploads at start, readbacks at the end.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Access;
+use super::barrier::Barriers;
+use super::bindings::{Resource, Use};
+use super::buffer::{Buffer, BufferDesc, Location};
+use super::commands::Commands;
+use super::device::Device;
+use super::error::Error;
+use super::image::{Image, ImageView};
+
+/// Makes a device buffer that holds `bytes`.
+///
+/// # Errors
+/// As [`Buffer::new`]; what Vulkan answers.
+pub fn upload(
+    device: &Arc<Device>,
+    name: &str,
+    usage: vk::BufferUsageFlags,
+    bytes: &[u8],
+) -> Result<Arc<Buffer>, Error> {
+    let size_bytes = bytes.len() as u64;
+    let buffer = Buffer::new(device, BufferDesc::new(name, size_bytes).usage(usage))?;
+    let staging =
+        Buffer::new(device, BufferDesc::new(format!("{name} staging"), size_bytes).location(Location::Upload))?;
+    staging.write(0, bytes)?;
+    let uses = [
+        Use { resource: (&staging).into(), access: Access::CopySource, discard: false },
+        Use { resource: (&buffer).into(), access: Access::CopyDestination, discard: true },
+    ];
+    once(device, "upload", &uses, |raw, commands| {
+        let region = vk::BufferCopy::default().size(size_bytes);
+        // SAFETY: recording; both buffers are at least `size_bytes` long and outlive the submission.
+        unsafe { raw.cmd_copy_buffer(commands, staging.raw, buffer.raw, &[region]) };
+    })?;
+    Ok(buffer)
+}
+
+/// Reads a buffer back.
+///
+/// # Errors
+/// [`Error::ReadBeforeWrite`] when no pass has written it; what Vulkan answers.
+pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>, Error> {
+    let size_bytes = buffer.size_bytes();
+    let target = readback(device, buffer.name(), size_bytes)?;
+    let uses = [
+        Use { resource: buffer.into(), access: Access::CopySource, discard: false },
+        Use { resource: (&target).into(), access: Access::CopyDestination, discard: true },
+    ];
+    once(device, "readback", &uses, |raw, commands| {
+        let region = vk::BufferCopy::default().size(size_bytes);
+        // SAFETY: recording; both buffers have `size_bytes` and outlive the submission.
+        unsafe { raw.cmd_copy_buffer(commands, buffer.raw, target.raw, &[region]) };
+    })?;
+    target.read(size_bytes, <[u8]>::to_vec)
+}
+
+/// Reads the texels of a view back: layers, then rows, then columns, tightly packed.
+///
+/// # Errors
+/// [`Error::ReadBeforeWrite`] when no pass has written it; what Vulkan answers.
+pub fn read_image(device: &Arc<Device>, view: &Arc<ImageView>) -> Result<Vec<u8>, Error> {
+    let image: &Arc<Image> = view.image();
+    let layer_count = view.layers.end - view.layers.start;
+    let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(layer_count);
+    let size_bytes = texels * texel_bytes(image)?;
+    let target = readback(device, image.name(), size_bytes)?;
+    let uses = [
+        Use { resource: view.into(), access: Access::CopySource, discard: false },
+        Use { resource: (&target).into(), access: Access::CopyDestination, discard: true },
+    ];
+    once(device, "readback", &uses, |raw, commands| {
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(
+                vk::ImageSubresourceLayers::default()
+                    .aspect_mask(image.aspect())
+                    .base_array_layer(view.layers.start)
+                    .layer_count(layer_count),
+            )
+            .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
+        let layout = Access::CopySource.words().layout;
+        // SAFETY: recording; the image is in that layout by the barrier, the buffer holds every texel.
+        unsafe { raw.cmd_copy_image_to_buffer(commands, image.raw, layout, target.raw, &[region]) };
+    })?;
+    target.read(size_bytes, <[u8]>::to_vec)
+}
+
+fn readback(device: &Arc<Device>, name: &str, size_bytes: u64) -> Result<Arc<Buffer>, Error> {
+    Buffer::new(device, BufferDesc::new(format!("{name} readback"), size_bytes).location(Location::Readback))
+}
+
+/// Records one piece of work between its barriers, submits it and waits. What a copy writes for the host is made
+/// visible to it.
+fn once(
+    device: &Arc<Device>,
+    what: &str,
+    uses: &[Use],
+    body: impl FnOnce(&ash::Device, vk::CommandBuffer),
+) -> Result<(), Error> {
+    let mut commands = Commands::new(device, what)?;
+    let mut barriers = Barriers::default();
+    commands.begin()?;
+    barriers.collect(what, uses)?;
+    barriers.record(device, commands.buffer);
+    body(&device.raw, commands.buffer);
+    let to_host: Vec<Use> = uses
+        .iter()
+        .filter(|u| matches!(&u.resource, Resource::Buffer(view) if view.buffer.is_readback()))
+        .map(|u| Use { access: Access::HostRead, ..u.clone() })
+        .collect();
+    barriers.collect(what, &to_host)?;
+    barriers.record(device, commands.buffer);
+    commands.submit_and_wait()
+}
+
+/// Bytes of one texel of the formats that targets use.
+fn texel_bytes(image: &Image) -> Result<u64, Error> {
+    match image.desc().format {
+        vk::Format::R8G8B8A8_UNORM
+        | vk::Format::R8G8B8A8_SRGB
+        | vk::Format::R32_SFLOAT
+        | vk::Format::R32_UINT
+        | vk::Format::D32_SFLOAT => Ok(4),
+        vk::Format::R16G16B16A16_SFLOAT => Ok(8),
+        vk::Format::R32G32B32A32_SFLOAT => Ok(16),
+        other => Err(Error::Allocation {
+            object: image.name().to_owned(),
+            reason: format!("reading it back: the size of a texel of {other:?} is not known"),
+        }),
+    }
+}

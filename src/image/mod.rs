@@ -1,0 +1,115 @@
+//! Pictures in and out, and how far apart two of them are. CPU only.
+//!
+//! ```text
+//! Raster (any target or buffer, full precision) --write--> .exr | .npy | .png
+//! Rgba8  (a finished picture)  <--read_png / write_png-->  .png
+//! Rgba8 x Rgba8 --compare--> Difference (CIE L*u*v*)  <-- golden::check
+//! ```
+
+pub mod compare;
+mod error;
+mod exr;
+pub mod golden;
+mod npy;
+mod picture;
+mod png;
+mod raster;
+mod replace;
+pub mod srgb;
+mod view;
+
+pub use self::compare::{Difference, compare};
+pub use self::error::Error;
+pub use self::picture::Rgba8;
+pub use self::png::{read_png, write_png};
+pub use self::raster::{Raster, Samples, Shape};
+
+use std::io;
+use std::path::Path;
+
+/// A file format for a [`Raster`], chosen by the ending of the file's name (in any case).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// OpenEXR, every value unchanged: 32-bit float channels for `f32`, 32-bit unsigned ones for the integers.
+    /// Channels are named Y, RG, RGB or RGBA; an array target becomes the EXR layers `layer0`, `layer1`, ...;
+    /// a table becomes one channel, a row a line.
+    Exr,
+    /// NumPy: the element type and the shape kept exactly, `(layers, height, width, channels)` for an image and
+    /// `(rows, columns)` for a table, in C order.
+    Npy,
+    /// PNG. `u8` and `u16` data are stored unchanged (8 and 16 bits; two channels as red and green). Other data
+    /// becomes an 8-bit view: `f32` of two to four channels is taken as linear light, clamped to 0..=1 and
+    /// sRGB-encoded, without the fourth channel; one channel of `f32`, and all `u32`, is drawn as a linear ramp
+    /// from the smallest finite value (0) to the largest (255), common to all channels and layers. A pixel with a
+    /// value that is not finite is magenta. The layers of an array target stand below one another.
+    Png,
+}
+
+impl Format {
+    /// The format that the ending of `path` asks for.
+    ///
+    /// # Errors
+    /// [`Error::UnknownEnding`] for any other ending, or none.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        match ending.as_ref().and_then(|ending| ending.to_str()) {
+            Some("exr") => Ok(Self::Exr),
+            Some("npy") => Ok(Self::Npy),
+            Some("png") => Ok(Self::Png),
+            _ => Err(Error::UnknownEnding { path: path.into() }),
+        }
+    }
+}
+
+/// Writes `raster` to `path` in the [`Format`] of its ending. The file appears whole or not at all: an older file
+/// stays as it was when writing fails.
+///
+/// # Errors
+/// [`Error::UnknownEnding`]; [`Error::Empty`] for a raster without values in a picture format; [`Error::Write`] when
+/// the folder cannot be written to or the format cannot hold so large a raster.
+pub fn write(path: &Path, raster: &Raster) -> Result<(), Error> {
+    let format = Format::of(path)?;
+    if raster.samples().is_empty() && format != Format::Npy {
+        return Err(Error::Empty { path: path.into() });
+    }
+    replace::replace(path, |file| match format {
+        Format::Exr => exr::encode(file, raster),
+        Format::Npy => npy::encode(file, raster),
+        Format::Png => png::encode(file, raster),
+    })
+    .map_err(|reason| Error::write(path, &reason))
+}
+
+/// A failure inside a format's own encoder, as the failure of the write that it is.
+fn encoder_error(error: impl std::error::Error) -> io::Error {
+    io::Error::other(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ending_chooses_the_format_in_any_case() {
+        assert_eq!(Format::of(Path::new("a.b/x.EXR")).unwrap(), Format::Exr);
+        assert_eq!(Format::of(Path::new("x.npy")).unwrap(), Format::Npy);
+        assert_eq!(Format::of(Path::new("x.exr.Png")).unwrap(), Format::Png);
+        for path in ["x", "x.jpg", ".png", "png", ""] {
+            assert!(Format::of(Path::new(path)).is_err(), "{path}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_ending_or_an_empty_picture_writes_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let empty = Raster::table(0, 3, Vec::<f32>::new()).unwrap();
+        let some = Raster::table(1, 1, vec![1.0f32]).unwrap();
+        let error = write(&folder.path().join("x.tga"), &some).unwrap_err();
+        assert!(error.to_string().contains(".exr, .npy or .png"), "{error}");
+        for name in ["x.exr", "x.png"] {
+            let error = write(&folder.path().join(name), &empty).unwrap_err();
+            assert!(matches!(error, Error::Empty { .. }), "{error}");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,3 @@
+//! placeholder
+pub mod gpu;
+pub mod shader_build;

@@ -1,0 +1,210 @@
+//! A run as a table for people.
+
+use std::fmt::Write;
+
+use super::record::{Pass, Record, Run, Summary};
+use super::table::{Align, Style, Table};
+
+/// The device, then every run: see [`run`].
+pub fn record(record: &Record, style: Style) -> String {
+    let device = &record.environment.device;
+    let mut text = format!("device: {} ({})\n", device.name, device.kind.name());
+    for item in &record.runs {
+        text.push('\n');
+        text.push_str(&run(item, style));
+    }
+    text
+}
+
+/// One run: its name, the table of passes in the paper's order, the frame, what the passes leave unaccounted, and the
+/// warnings. Times are `median ± MAD` in milliseconds; `share` is the pass's GPU and host time as a part of the median
+/// frame. Columns that no pass has are left out; a time that was not measured is a dash.
+pub fn run(run: &Run, style: Style) -> String {
+    let mut text = title(run, style);
+    if !run.passes.is_empty() {
+        text.push_str(&passes(run).render(style));
+    }
+    text.push_str(&frame(run, style));
+    for warning in &run.warnings {
+        // Writing into a String cannot fail.
+        let _ = writeln!(text, "{} {warning}", style.yellow("warning:"));
+    }
+    text
+}
+
+fn title(run: &Run, style: Style) -> String {
+    let preset = run
+        .preset
+        .as_ref()
+        .map_or_else(String::new, |preset| format!(", {preset}"));
+    let repeat = if run.repeat > 1 {
+        format!(" × {} repetitions", run.repeat)
+    } else {
+        String::new()
+    };
+    let process = if run.process > 0 {
+        format!(", process {}", run.process)
+    } else {
+        String::new()
+    };
+    format!(
+        "{}\n",
+        style.bold(&format!(
+            "{} {}{preset}: {} × {}, {} frames{repeat}, seed {}{process}",
+            run.paper, run.variant, run.width, run.height, run.frames, run.seed
+        ))
+    )
+}
+
+fn passes(run: &Run) -> Table {
+    let mut table = Table::new(&[
+        ("pass", Align::Left),
+        ("section", Align::Left),
+        ("kind", Align::Left),
+        ("calls", Align::Right),
+        ("submission", Align::Right),
+        ("gpu ms", Align::Right),
+        ("share", Align::Right),
+        ("host ms", Align::Right),
+        ("wait ms", Align::Right),
+    ]);
+    // Which submission a pass belongs to only says something when there are several.
+    let submissions = run.passes.iter().filter_map(|pass| pass.submission).max() > Some(0);
+    let measured = |time: fn(&Pass) -> &Option<Summary>| {
+        let any = run.passes.iter().any(|pass| time(pass).is_some());
+        move |pass: &Pass| match time(pass) {
+            Some(summary) => median_and_mad(summary),
+            None if any => "-".to_owned(),
+            None => String::new(),
+        }
+    };
+    let gpu = measured(|pass| &pass.gpu_ms);
+    let host = measured(|pass| &pass.host_ms);
+    let wait = measured(|pass| &pass.wait_ms);
+    for pass in &run.passes {
+        table.push(vec![
+            pass.name.clone(),
+            pass.section.clone().unwrap_or_default(),
+            pass.kind.name().to_owned(),
+            pass.calls.to_string(),
+            pass.submission
+                .filter(|_| submissions)
+                .map_or_else(String::new, |index| index.to_string()),
+            gpu(pass),
+            share(pass, run).map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
+            host(pass),
+            wait(pass),
+        ]);
+    }
+    table
+}
+
+fn share(pass: &Pass, run: &Run) -> Option<f64> {
+    let times = [&pass.gpu_ms, &pass.host_ms];
+    let known: Vec<f64> = times
+        .into_iter()
+        .flatten()
+        .map(|time| time.median)
+        .collect();
+    let frame_ms = run.frame_ms.as_ref()?.median;
+    (!known.is_empty() && frame_ms > 0.0).then(|| known.iter().sum::<f64>() / frame_ms)
+}
+
+fn frame(run: &Run, style: Style) -> String {
+    let Some(frame) = &run.frame_ms else {
+        return format!("{}\n", style.dim("frame: not measured"));
+    };
+    let mut text = format!(
+        "frame {} ms (min {}",
+        median_and_mad(frame),
+        milliseconds(frame.min)
+    );
+    let percentiles = [("p95", frame.p95), ("p99", frame.p99)];
+    for (name, value) in percentiles {
+        if let Some(value) = value {
+            let _ = write!(text, ", {name} {}", milliseconds(value));
+        }
+    }
+    let _ = write!(text, ", max {})", milliseconds(frame.max));
+    if frame.median > 0.0 {
+        let _ = write!(text, ", {:.1} frames/s", 1000.0 / frame.median);
+    }
+    let rest = [
+        ("unaccounted", run.unaccounted_ms),
+        ("overlap", run.overlap_ms),
+        ("stamp floor", run.stamp_floor_ms),
+    ];
+    for (name, value) in rest {
+        if let Some(value) = value {
+            let _ = write!(text, "; {name} {} ms", milliseconds(value));
+        }
+    }
+    text.push('\n');
+    text
+}
+
+fn median_and_mad(summary: &Summary) -> String {
+    let median = milliseconds(summary.median);
+    match summary.mad {
+        Some(mad) => format!("{median} ± {}", milliseconds(mad)),
+        None => median,
+    }
+}
+
+/// Milliseconds to a microsecond, or to four digits where there are more before the point.
+fn milliseconds(value: f64) -> String {
+    let digits = match value.abs() {
+        large if large >= 1000.0 => 0,
+        large if large >= 100.0 => 1,
+        large if large >= 10.0 => 2,
+        _ => 3,
+    };
+    format!("{value:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::example;
+
+    #[test]
+    fn the_table_shows_every_pass_with_its_times() {
+        let text = record(&example::full(), Style::default());
+        let line = |name: &str| {
+            text.lines()
+                .find(|line| line.starts_with(name))
+                .unwrap_or_else(|| panic!("no line {name} in\n{text}"))
+        };
+        assert_eq!(
+            line("gas slices"),
+            "gas slices, figure-7: 800 × 600, 3 frames, seed 1"
+        );
+        for part in ["2.000 ± 0.500", "40.0 %", "graphics", "30"] {
+            assert!(line("splat").contains(part), "{part} in\n{text}");
+        }
+        for part in ["host", "-", "10.0 %", "0.500 ± 0.000", "0.250 ± 0.000"] {
+            assert!(line("cluster").contains(part), "{part} in\n{text}");
+        }
+        assert_eq!(
+            line("frame"),
+            "frame 5.000 ± 1.000 ms (min 4.000, max 6.000), 200.0 frames/s; unaccounted 2.500 ms; overlap 0.100 ms; \
+             stamp floor 0.010 ms"
+        );
+        assert_eq!(line("warning"), "warning: LP_NUM_THREADS is not set");
+        assert!(!text.contains("submission"), "one submission only\n{text}");
+    }
+
+    #[test]
+    fn what_was_not_measured_is_not_shown_as_zero() {
+        let text = record(&example::minimal(), Style::default());
+        assert!(text.contains("frame: not measured"), "{text}");
+        assert!(!text.contains("0.0"), "{text}");
+    }
+
+    #[test]
+    fn submissions_are_shown_when_there_are_several() {
+        let mut run = example::full().runs.remove(0);
+        run.passes[1].submission = Some(1);
+        assert!(super::run(&run, Style::default()).contains("submission"));
+    }
+}

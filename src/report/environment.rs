@@ -1,0 +1,95 @@
+//! The host's part of a record's environment; the device's part is filled by whoever owns the device.
+
+use super::record::{Build, Host};
+
+/// The current time in UTC, RFC 3339 to the second: `2026-01-31T12:00:00Z`.
+pub fn date() -> String {
+    let now = jiff::Timestamp::now();
+    jiff::fmt::temporal::DateTimePrinter::new()
+        .precision(Some(0))
+        .timestamp_to_string(&now)
+}
+
+/// The machine this process runs on, as far as the system tells.
+pub fn host() -> Host {
+    Host {
+        os: read("/etc/os-release")
+            .and_then(|text| os_name(&text))
+            .unwrap_or_else(|| std::env::consts::OS.to_owned()),
+        kernel: read("/proc/sys/kernel/osrelease").map(|text| text.trim().to_owned()),
+        cpu: read("/proc/cpuinfo").and_then(|text| cpu_name(&text)),
+        logical_cores: std::thread::available_parallelism()
+            .ok()
+            .and_then(|count| u32::try_from(count.get()).ok()),
+        lp_num_threads: std::env::var("LP_NUM_THREADS")
+            .ok()
+            .and_then(|value| value.trim().parse().ok()),
+    }
+}
+
+/// How this program was built, as told by the build script; what it could not find out is absent.
+pub fn build() -> Build {
+    let known = |value: Option<&str>| value.filter(|v| !v.is_empty()).map(str::to_owned);
+    Build {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        git_commit: known(option_env!("FUMAROLE_GIT_COMMIT")),
+        dirty: option_env!("FUMAROLE_GIT_DIRTY").and_then(|value| value.parse().ok()),
+        rustc: known(option_env!("FUMAROLE_RUSTC")),
+        profile: known(option_env!("FUMAROLE_PROFILE")),
+    }
+}
+
+fn read(path: &str) -> Option<String> {
+    std::fs::read_to_string(path).ok()
+}
+
+fn os_name(os_release: &str) -> Option<String> {
+    let value = os_release
+        .lines()
+        .find_map(|line| line.strip_prefix("PRETTY_NAME="))?;
+    let name = value.trim().trim_matches(['"', '\'']);
+    (!name.is_empty()).then(|| name.to_owned())
+}
+
+/// x86 says `model name`; ARM boards say `Model` or `Hardware`, if anything.
+fn cpu_name(cpuinfo: &str) -> Option<String> {
+    ["model name", "Model", "Hardware"].iter().find_map(|key| {
+        cpuinfo.lines().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            let value = value.trim();
+            (name.trim() == *key && !value.is_empty()).then(|| value.to_owned())
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn date_is_rfc_3339_utc_to_the_second() {
+        let date = date();
+        assert_eq!(date.len(), "2026-01-31T12:00:00Z".len(), "{date}");
+        assert!(date.ends_with('Z'));
+        assert!(date.parse::<jiff::Timestamp>().is_ok());
+    }
+
+    #[test]
+    fn names_are_read_from_the_system_files() {
+        let release = "NAME=\"Debian\"\nPRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\n";
+        assert_eq!(
+            os_name(release).as_deref(),
+            Some("Debian GNU/Linux 12 (bookworm)")
+        );
+        assert_eq!(os_name("NAME=x\n"), None);
+        let cpuinfo = "processor\t: 0\nmodel\t\t: 85\nmodel name\t: Some CPU @ 2.60GHz\n";
+        assert_eq!(cpu_name(cpuinfo).as_deref(), Some("Some CPU @ 2.60GHz"));
+        assert_eq!(cpu_name("processor : 0\n"), None);
+    }
+
+    #[test]
+    fn this_machine_has_cores_and_this_build_a_version() {
+        assert!(host().logical_cores.is_some_and(|count| count >= 1));
+        assert_eq!(build().version, env!("CARGO_PKG_VERSION"));
+    }
+}

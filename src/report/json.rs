@@ -1,0 +1,236 @@
+//! The record as JSON, and back.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::record::{Record, SCHEMA};
+
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    #[error("cannot read the record {}: {source}; name a file written by --json", .path.display())]
+    Unreadable { path: PathBuf, source: io::Error },
+    #[error(
+        "cannot read the record {}: it ends too early, at line {line}; the file is truncated, write it again with --json",
+        .path.display()
+    )]
+    Truncated { path: PathBuf, line: usize },
+    #[error("cannot read the record {}: no JSON: {source}; name a file written by --json", .path.display())]
+    NotJson {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error(
+        "cannot read the record {}: its schema is {found}, not \"{SCHEMA}\"; name a file written by --json of this version",
+        .path.display()
+    )]
+    WrongSchema { path: PathBuf, found: String },
+    #[error("cannot read the record {}: field {field}: {source}; write it again with --json", .path.display())]
+    WrongField {
+        path: PathBuf,
+        /// Path inside the document, e.g. `runs[0].passes[2].gpu_ms`.
+        field: String,
+        source: serde_json::Error,
+    },
+}
+
+/// Any document of this crate as JSON: objects on indented lines, lists of plain values on one line, a final newline.
+/// A number that is not finite becomes `null`.
+///
+/// # Errors
+/// `value` cannot be represented in JSON, such as a map whose keys are no strings.
+pub fn to_string(value: &impl Serialize) -> Result<String, serde_json::Error> {
+    let mut text = String::new();
+    push_value(&mut text, &serde_json::to_value(value)?, 0);
+    text.push('\n');
+    Ok(text)
+}
+
+/// Reads a record that [`to_string`] wrote; unknown fields are ignored.
+///
+/// # Errors
+/// See [`ReadError`]: every message names the file, and the line or the field.
+pub fn read(path: &Path) -> Result<Record, ReadError> {
+    let text = fs::read_to_string(path).map_err(|source| ReadError::Unreadable {
+        path: path.to_owned(),
+        source,
+    })?;
+    parse(&text, path)
+}
+
+/// Parses the text of a record; `path` is what errors call it.
+///
+/// # Errors
+/// As [`read`], but for reading the file.
+pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
+    #[derive(Deserialize)]
+    struct Header {
+        schema: Option<Value>,
+    }
+    let owned = || path.to_owned();
+    let header: Header = serde_json::from_str(text).map_err(|source| {
+        if source.is_eof() {
+            ReadError::Truncated {
+                path: owned(),
+                line: source.line(),
+            }
+        } else if source.is_data() {
+            ReadError::WrongSchema {
+                path: owned(),
+                found: "absent".to_owned(),
+            }
+        } else {
+            ReadError::NotJson {
+                path: owned(),
+                source,
+            }
+        }
+    })?;
+    if header.schema.as_ref().and_then(Value::as_str) != Some(SCHEMA) {
+        let found = header
+            .schema
+            .map_or_else(|| "absent".to_owned(), |found| found.to_string());
+        return Err(ReadError::WrongSchema {
+            path: owned(),
+            found,
+        });
+    }
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    serde_path_to_error::deserialize(&mut deserializer).map_err(|error| ReadError::WrongField {
+        path: owned(),
+        field: error.path().to_string(),
+        source: error.into_inner(),
+    })
+}
+
+const INDENT: &str = "  ";
+
+fn push_value(text: &mut String, value: &Value, depth: usize) {
+    match value {
+        Value::Object(map) if !map.is_empty() => {
+            let items = map.iter().map(|(key, value)| (Some(key.as_str()), value));
+            push_lines(text, ['{', '}'], items, depth);
+        }
+        Value::Array(items) if items.iter().any(|item| item.is_object() || item.is_array()) => {
+            push_lines(
+                text,
+                ['[', ']'],
+                items.iter().map(|item| (None, item)),
+                depth,
+            );
+        }
+        plain => text.push_str(&plain.to_string()),
+    }
+}
+
+fn push_lines<'a>(
+    text: &mut String,
+    [open, close]: [char; 2],
+    items: impl Iterator<Item = (Option<&'a str>, &'a Value)>,
+    depth: usize,
+) {
+    text.push(open);
+    for (index, (key, value)) in items.enumerate() {
+        text.push_str(if index == 0 { "\n" } else { ",\n" });
+        text.push_str(&INDENT.repeat(depth + 1));
+        if let Some(key) = key {
+            text.push_str(&Value::from(key).to_string());
+            text.push_str(": ");
+        }
+        push_value(text, value, depth + 1);
+    }
+    text.push('\n');
+    text.push_str(&INDENT.repeat(depth));
+    text.push(close);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::example;
+
+    fn error_of(text: &str) -> ReadError {
+        parse(text, Path::new("some.json")).unwrap_err()
+    }
+
+    #[test]
+    fn a_record_survives_the_round_trip() {
+        for record in [example::full(), example::minimal()] {
+            let text = to_string(&record).unwrap();
+            assert_eq!(parse(&text, Path::new("some.json")).unwrap(), record);
+            // Our layout is only a layout: serde's own reads as the same document.
+            let compact: Value = serde_json::to_value(&record).unwrap();
+            assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), compact);
+        }
+    }
+
+    #[test]
+    fn fields_stand_in_the_order_of_the_contract_and_absent_is_null() {
+        let text = to_string(&example::minimal()).unwrap();
+        let order = [
+            "\"schema\": \"fumarole.bench/1\"",
+            "\"environment\"",
+            "\"timestamp_bits\": null",
+            "\"command\"",
+            "\"runs\"",
+            "\"paper\"",
+            "\"frame_ms\": null",
+            "\"passes\"",
+            "\"image\": null",
+        ];
+        let places: Vec<_> = order.iter().map(|name| text.find(name).unwrap()).collect();
+        assert!(places.is_sorted(), "{places:?}");
+    }
+
+    #[test]
+    fn samples_stay_on_one_line() {
+        let text = to_string(&example::full()).unwrap();
+        assert!(text.lines().any(|line| line.contains("\"samples\": [1.5,")));
+    }
+
+    #[test]
+    fn unknown_fields_are_tolerated_and_missing_ones_absent() {
+        let mut value = serde_json::to_value(example::minimal()).unwrap();
+        value["runs"][0]["novelty"] = Value::from(1);
+        value["runs"][0].as_object_mut().unwrap().remove("image");
+        let record = parse(&value.to_string(), Path::new("some.json")).unwrap();
+        assert_eq!(record, example::minimal());
+    }
+
+    #[test]
+    fn errors_name_the_file_and_the_place() {
+        let text = to_string(&example::full()).unwrap();
+        let half = &text[..text.len() / 2];
+        let error = error_of(half);
+        assert!(matches!(error, ReadError::Truncated { line, .. } if line > 10));
+        assert!(error.to_string().contains("some.json"), "{error}");
+
+        assert!(matches!(error_of(""), ReadError::Truncated { .. }));
+        let error = error_of("{\n\"a\": oops}");
+        assert!(matches!(error, ReadError::NotJson { .. }));
+        assert!(error.to_string().contains("line 2"), "{error}");
+        for foreign in ["[1]", "{}", "{\"schema\": 3}", "{\"schema\": \"other/1\"}"] {
+            let error = error_of(foreign);
+            assert!(matches!(error, ReadError::WrongSchema { .. }), "{error}");
+        }
+        assert!(matches!(
+            error_of(&format!("{text}{text}")),
+            ReadError::NotJson { .. }
+        ));
+
+        let mut value = serde_json::to_value(example::full()).unwrap();
+        value["runs"][0]["passes"][1]["gpu_ms"]["median"] = Value::from("fast");
+        let error = error_of(&value.to_string());
+        let expected = "runs[0].passes[1].gpu_ms.median";
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = read(Path::new("/nowhere/some.json")).unwrap_err();
+        assert!(error.to_string().contains("/nowhere/some.json"), "{error}");
+    }
+}

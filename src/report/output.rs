@@ -1,0 +1,246 @@
+//! Atomic output: a file is written under a temporary name beside its destination and renamed when it is whole.
+//!
+//! A failed run leaves no half file and never destroys an older one. Missing parent directories are created. A
+//! symbolic link is followed. What is no regular file (`/dev/null`, a pipe) cannot be replaced by renaming and is
+//! written to directly.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    #[error("cannot create the directory {}: {source}; name a place where directories can be made", .path.display())]
+    CreateDirectory { path: PathBuf, source: io::Error },
+    #[error("cannot write {}: it is a directory; name a file in it", .path.display())]
+    IsDirectory { path: PathBuf },
+    #[error("cannot write {}: the file is read-only; make it writable or name another", .path.display())]
+    ReadOnly { path: PathBuf },
+    #[error(
+        "cannot write {}: {source}; name a file in a writable directory with free space", .path.display()
+    )]
+    Write { path: PathBuf, source: io::Error },
+}
+
+/// Writes `bytes` to `path`, whole or not at all.
+///
+/// # Errors
+/// The directory cannot be made, the destination is a directory or read-only, or writing failed; an older file at
+/// `path` is then untouched.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// Writes `path` through `fill`, whole or not at all: for encoders that want a writer. Buffer small writes.
+///
+/// # Errors
+/// As [`write()`]; an error of `fill` counts as a failure to write.
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let failed = |source| OutputError::Write {
+        path: path.to_owned(),
+        source,
+    };
+    match Destination::find(path)? {
+        Destination::Stream => {
+            let mut stream = File::options().write(true).open(path).map_err(failed)?;
+            fill(&mut stream).map_err(failed)
+        }
+        Destination::File(target) => {
+            let mut temporary = create_beside(&target).map_err(failed)?;
+            fill(temporary.as_file_mut()).map_err(failed)?;
+            temporary.as_file().sync_all().map_err(failed)?;
+            temporary
+                .persist(&target)
+                .map_err(|error| failed(error.error))?;
+            Ok(())
+        }
+    }
+}
+
+/// Finds out, before a long run, whether [`write()`] to `path` can succeed: makes the directory, and a temporary file
+/// in it that is removed again. An older file at `path` is not touched.
+///
+/// # Errors
+/// As [`write()`].
+pub fn check_writable(path: &Path) -> Result<(), OutputError> {
+    let opened = match Destination::find(path)? {
+        Destination::Stream => File::options().write(true).open(path).map(drop),
+        Destination::File(target) => create_beside(&target).and_then(NamedTempFile::close),
+    };
+    opened.map_err(|source| OutputError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+enum Destination {
+    /// A regular file or a name not yet taken, symbolic links resolved, in a directory that exists.
+    File(PathBuf),
+    /// A device or a pipe.
+    Stream,
+}
+
+impl Destination {
+    fn find(path: &Path) -> Result<Self, OutputError> {
+        let Ok(metadata) = fs::metadata(path) else {
+            // `Path` forgets a trailing separator, which asks for a directory.
+            if path.as_os_str().as_encoded_bytes().ends_with(b"/") || path.file_name().is_none() {
+                return Err(OutputError::IsDirectory {
+                    path: path.to_owned(),
+                });
+            }
+            create_directory(&parent(path))?;
+            return Ok(Self::File(path.to_owned()));
+        };
+        if metadata.is_dir() {
+            return Err(OutputError::IsDirectory {
+                path: path.to_owned(),
+            });
+        }
+        if !metadata.is_file() {
+            return Ok(Self::Stream);
+        }
+        if metadata.permissions().readonly() {
+            return Err(OutputError::ReadOnly {
+                path: path.to_owned(),
+            });
+        }
+        let target = fs::canonicalize(path).map_err(|source| OutputError::Write {
+            path: path.to_owned(),
+            source,
+        })?;
+        Ok(Self::File(target))
+    }
+}
+
+fn parent(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+fn create_directory(path: &Path) -> Result<(), OutputError> {
+    fs::create_dir_all(path).map_err(|source| OutputError::CreateDirectory {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".fumarole-").suffix(".tmp");
+    // Temporary files are private by default; a result is an ordinary file, as the umask says.
+    #[cfg(unix)]
+    let everyone = <fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666);
+    #[cfg(unix)]
+    builder.permissions(everyone);
+    builder.tempfile_in(parent(target))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(directory: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(directory)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn writes_and_replaces_in_new_directories() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a/b/result.json");
+        write(&path, b"one").unwrap();
+        write(&path, b"two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"two");
+        assert_eq!(entries(path.parent().unwrap()), ["result.json"]);
+    }
+
+    #[test]
+    fn a_failure_keeps_the_older_file_and_leaves_nothing() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("result.json");
+        write(&path, b"older").unwrap();
+        let error = write_with(&path, |file| {
+            file.write_all(b"half")?;
+            Err(io::Error::other("disk full"))
+        })
+        .unwrap_err();
+        assert!(error.to_string().contains("result.json"), "{error}");
+        assert!(error.to_string().contains("disk full"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"older");
+        assert_eq!(entries(root.path()), ["result.json"]);
+    }
+
+    #[test]
+    fn checking_makes_the_directory_and_no_file() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("out/result.json");
+        check_writable(&path).unwrap();
+        assert_eq!(entries(root.path()), ["out"]);
+        assert!(entries(&root.path().join("out")).is_empty());
+    }
+
+    #[test]
+    fn impossible_destinations_are_named() {
+        let root = tempfile::tempdir().unwrap();
+        let file = root.path().join("file");
+        write(&file, b"x").unwrap();
+        for check in [check_writable, |path: &Path| write(path, b"y")] {
+            let error = check(&file.join("under.json")).unwrap_err();
+            assert!(
+                matches!(error, OutputError::CreateDirectory { .. }),
+                "{error}"
+            );
+            let error = check(root.path()).unwrap_err();
+            assert!(matches!(error, OutputError::IsDirectory { .. }), "{error}");
+            let error = check(&root.path().join("new/")).unwrap_err();
+            assert!(matches!(error, OutputError::IsDirectory { .. }), "{error}");
+        }
+        let mut permissions = fs::metadata(&file).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&file, permissions).unwrap();
+        let error = check_writable(&file).unwrap_err();
+        assert!(matches!(error, OutputError::ReadOnly { .. }), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn files_are_ordinary_and_links_are_followed() {
+        use std::os::unix::fs::PermissionsExt;
+        let root = tempfile::tempdir().unwrap();
+        let (plain, path) = (root.path().join("plain"), root.path().join("result"));
+        File::create(&plain).unwrap();
+        write(&path, b"x").unwrap();
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&path), mode(&plain));
+
+        let link = root.path().join("link");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        write(&link, b"through").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&path).unwrap(), b"through");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_regular_file_is_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("socket");
+        let _listener = std::os::unix::net::UnixListener::bind(&path).unwrap();
+        let error = write(&path, b"x").unwrap_err();
+        assert!(matches!(error, OutputError::Write { .. }), "{error}");
+        assert!(fs::metadata(&path).unwrap().file_type().is_socket());
+    }
+}

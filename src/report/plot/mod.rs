@@ -1,0 +1,145 @@
+//! Plots as SVG text: line charts, bar charts and histograms.
+//!
+//! Text is laid out from estimated widths and drawn by whoever shows the file, so no font is looked up and none needs
+//! to be installed.
+
+mod bars;
+mod line;
+
+pub use bars::{BarChart, BarSeries, Histogram};
+pub use line::{LineChart, Scale, Series};
+
+use std::error::Error;
+use std::ops::Range;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+/// Width and height of every plot in pixels.
+pub const SIZE: (u32, u32) = (960, 540);
+
+#[derive(Debug, thiserror::Error)]
+pub enum PlotError {
+    #[error(
+        "cannot draw the plot \"{title}\": it has no point that can be drawn; measure at least one"
+    )]
+    NoData { title: String },
+    #[error("cannot draw the plot \"{title}\": {message}; write the numbers with --csv instead")]
+    Drawing { title: String, message: String },
+}
+
+type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+fn render(
+    title: &str,
+    draw: impl FnOnce(&Canvas) -> Result<(), Box<dyn Error>>,
+) -> Result<String, PlotError> {
+    let mut svg = String::new();
+    let drawn = {
+        let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        canvas
+            .fill(&WHITE)
+            .map_err(Into::into)
+            .and_then(|()| draw(&canvas))
+            .and_then(|()| canvas.present().map_err(Into::into))
+    };
+    drawn.map_err(|error| PlotError::Drawing {
+        title: title.to_owned(),
+        message: error.to_string(),
+    })?;
+    Ok(svg)
+}
+
+fn chart<'a, 'b>(canvas: &'b Canvas<'a>, title: &str) -> ChartBuilder<'b, 'b, SVGBackend<'a>> {
+    let mut builder = ChartBuilder::on(canvas);
+    builder
+        .margin(16)
+        .caption(title, ("sans-serif", 22))
+        .x_label_area_size(48)
+        .y_label_area_size(72);
+    builder
+}
+
+/// Okabe and Ito's palette, which people with any colour vision can tell apart; it repeats after seven.
+fn color(index: usize) -> RGBColor {
+    const PALETTE: [(u8, u8, u8); 7] = [
+        (0, 114, 178),
+        (213, 94, 0),
+        (0, 158, 115),
+        (204, 121, 167),
+        (230, 159, 0),
+        (86, 180, 233),
+        (0, 0, 0),
+    ];
+    let (red, green, blue) = PALETTE[index % PALETTE.len()];
+    RGBColor(red, green, blue)
+}
+
+/// Smallest and largest of finite values; absent when there are none.
+fn extent(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
+    values.fold(None, |range: Option<Range<f64>>, value| {
+        let range = range.unwrap_or(value..value);
+        Some(range.start.min(value)..range.end.max(value))
+    })
+}
+
+/// A little wider on both sides, and never empty.
+fn padded(range: Range<f64>) -> Range<f64> {
+    let pad = match range.end - range.start {
+        width if width > 0.0 => 0.03 * width,
+        _ => (0.5 * range.end.abs()).max(0.5),
+    };
+    range.start - pad..range.end + pad
+}
+
+/// From zero or below to a little above, so that lengths compare as the values do.
+fn from_zero(range: Range<f64>) -> Range<f64> {
+    let (low, high) = (range.start.min(0.0), range.end.max(0.0));
+    let width = if high > low { high - low } else { 1.0 };
+    let below = if low < 0.0 { 0.05 * width } else { 0.0 };
+    low - below..high + 0.05 * width
+}
+
+/// An axis number, in as few digits as tell it from its neighbours.
+fn tick(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude) {
+        return format!("{value:e}");
+    }
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// What a viewer checks first: the document parses, and its text is found.
+#[cfg(test)]
+fn texts(svg: &str) -> Vec<String> {
+    let document = roxmltree::Document::parse(svg).expect("well-formed XML");
+    let elements = document.descendants();
+    elements
+        .filter(|node| node.has_tag_name("text"))
+        .filter_map(|node| node.text())
+        .map(|text| text.trim().to_owned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_short() {
+        let texts = [0.0, 1.0, 0.25, -3.0, 1500.0, 1e-5, 2e7].map(tick);
+        assert_eq!(texts, ["0", "1", "0.25", "-3", "1500", "1e-5", "2e7"]);
+    }
+
+    #[test]
+    fn ranges_are_never_empty() {
+        for value in [0.0, 5.0, -5.0, 1e12] {
+            assert!(padded(value..value).start < padded(value..value).end);
+            assert!(from_zero(value..value).start < from_zero(value..value).end);
+            assert!(from_zero(value..value).contains(&0.0));
+        }
+        assert_eq!(extent([3.0, 1.0, 2.0].into_iter()), Some(1.0..3.0));
+        assert_eq!(extent(std::iter::empty()), None);
+    }
+}

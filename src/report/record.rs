@@ -1,0 +1,354 @@
+//! The result record, schema [`SCHEMA`]: plain data, in the order in which it is written.
+//!
+//! Absent is `None` and is written as `null`, never as 0. Times are milliseconds, sizes bytes. Unknown fields are
+//! tolerated when a record is read, so that a newer program's additions do not break an older reader. The JSON Schema
+//! is `schema/fumarole.bench-1.json`.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+/// The value of [`Record::schema`] that this program writes and reads.
+pub const SCHEMA: &str = "fumarole.bench/1";
+
+/// One document: where it was measured, by which command, and every run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    pub schema: String,
+    pub environment: Environment,
+    pub command: Vec<String>,
+    pub runs: Vec<Run>,
+}
+
+impl Record {
+    /// A record of the current [`SCHEMA`].
+    pub fn new(environment: Environment, command: Vec<String>, runs: Vec<Run>) -> Self {
+        Self {
+            schema: SCHEMA.to_owned(),
+            environment,
+            command,
+            runs,
+        }
+    }
+}
+
+/// What a measurement depends on besides the program's input.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Environment {
+    /// Start of the measurement, RFC 3339 in UTC.
+    pub date: String,
+    pub device: Device,
+    pub host: Host,
+    /// Version of the Vulkan loader.
+    pub loader: Option<String>,
+    /// Every active layer, those from outside the program included.
+    pub layers: Vec<String>,
+    pub build: Build,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Device {
+    pub name: String,
+    #[serde(rename = "type")]
+    pub kind: DeviceKind,
+    pub uuid: Option<String>,
+    pub driver: Option<String>,
+    pub driver_version: Option<String>,
+    pub api_version: String,
+    /// Nanoseconds per time stamp tick; absent where the queue has no time stamps.
+    pub timestamp_period: Option<f64>,
+    /// Valid bits of a time stamp; absent where the queue has no time stamps.
+    pub timestamp_bits: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceKind {
+    Discrete,
+    Integrated,
+    Virtual,
+    Cpu,
+    Other,
+}
+
+impl DeviceKind {
+    /// The word written in the record.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Discrete => "discrete",
+            Self::Integrated => "integrated",
+            Self::Virtual => "virtual",
+            Self::Cpu => "cpu",
+            Self::Other => "other",
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Host {
+    pub os: String,
+    pub kernel: Option<String>,
+    pub cpu: Option<String>,
+    /// Cores this process may run on, at least 1; absent where the system does not tell.
+    pub logical_cores: Option<u32>,
+    /// The thread count that `LP_NUM_THREADS` pins; absent when it is unset or no number.
+    pub lp_num_threads: Option<u32>,
+}
+
+/// How this program was built.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Build {
+    pub version: String,
+    pub git_commit: Option<String>,
+    /// Whether the working tree differed from `git_commit`.
+    pub dirty: Option<bool>,
+    pub rustc: Option<String>,
+    pub profile: Option<String>,
+}
+
+/// One configuration of one variant, measured in one process.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    pub paper: String,
+    pub variant: String,
+    pub preset: Option<String>,
+    /// Every parameter under its option's name, defaults included.
+    pub config: Map<String, Value>,
+    pub width: u32,
+    pub height: u32,
+    pub seed: u64,
+    pub warmup: u32,
+    /// Frames in one repetition.
+    pub frames: u32,
+    /// Repetitions of those frames from a restored state, at least 1.
+    pub repeat: u32,
+    /// Which of the fresh processes of `--processes` this is, from 0.
+    pub process: u32,
+    /// Host clock from the start of recording to the last fence, without stamps or queries: one sample per frame,
+    /// repetition after repetition.
+    pub frame_ms: Option<Summary>,
+    /// The passes in the paper's order.
+    pub passes: Vec<Pass>,
+    /// Median of the stamped frame minus that of the unstamped one: what the exclusive timing forbids to overlap.
+    pub overlap_ms: Option<f64>,
+    /// Median of the frame that no pass accounts for.
+    pub unaccounted_ms: Option<f64>,
+    /// GPU time of an empty pass.
+    pub stamp_floor_ms: Option<f64>,
+    pub load_ms: Option<f64>,
+    pub pipeline_ms: Option<f64>,
+    pub memory: Memory,
+    pub limits: Option<Limits>,
+    /// The paper's own figures.
+    pub results: Map<String, Value>,
+    pub experiment: Option<ExperimentRow>,
+    pub validation: Validation,
+    pub warnings: Vec<String>,
+    pub image: Option<ImageFile>,
+}
+
+/// One pass of the paper; a loop of draws is one pass with its number of calls.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pass {
+    pub name: String,
+    /// Section of the paper, e.g. `"3.2"`.
+    pub section: Option<String>,
+    pub kind: PassKind,
+    /// Calls in one frame.
+    pub calls: u32,
+    /// Index of the queue submission within the frame, from 0; absent for host work.
+    pub submission: Option<u32>,
+    /// Whose SPIR-V ran; absent where no shader ran.
+    pub shader_compiler: Option<String>,
+    /// Sum of the pass's calls in a stamped frame.
+    pub gpu_ms: Option<Summary>,
+    /// Host work that the paper's method needs, without waiting.
+    pub host_ms: Option<Summary>,
+    /// Waiting of the host for the GPU.
+    pub wait_ms: Option<Summary>,
+    pub statistics: Option<Statistics>,
+    pub bytes: Option<Bytes>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PassKind {
+    Graphics,
+    Compute,
+    Transfer,
+    Host,
+}
+
+impl PassKind {
+    /// The word written in the record.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Graphics => "graphics",
+            Self::Compute => "compute",
+            Self::Transfer => "transfer",
+            Self::Host => "host",
+        }
+    }
+}
+
+/// Raw samples and what they come to. A summary has at least one sample; no samples are an absent summary.
+///
+/// Made by `experiment::statistics::summarize`, which defines the percentiles and the MAD.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// In the order of measurement.
+    pub samples: Vec<f64>,
+    pub min: f64,
+    pub median: f64,
+    pub mean: f64,
+    /// Absent for fewer than 20 samples.
+    pub p95: Option<f64>,
+    /// Absent for fewer than 100 samples.
+    pub p99: Option<f64>,
+    pub max: f64,
+    /// Median absolute deviation from the median, unscaled; absent for fewer than 2 samples.
+    pub mad: Option<f64>,
+}
+
+/// Pipeline statistics of one frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    pub vertices: Option<u64>,
+    pub primitives: Option<u64>,
+    pub fragments: Option<u64>,
+    pub compute_invocations: Option<u64>,
+    pub samples_passed: Option<u64>,
+}
+
+/// Bytes that a pass must move in one frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Bytes {
+    pub read: u64,
+    pub written: u64,
+}
+
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    pub device_bytes: Option<u64>,
+    pub host_bytes: Option<u64>,
+    pub peak_bytes: Option<u64>,
+    pub by_resource: Vec<ResourceMemory>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResourceMemory {
+    pub name: String,
+    pub bytes: u64,
+}
+
+/// What the device can do at most, measured in the same process.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    pub copy_gb_s: Option<f64>,
+    pub fma_gflops: Option<f64>,
+    pub fill_gpix_s: Option<f64>,
+    pub blend_gpix_s: Option<f64>,
+}
+
+/// The row of a paper's table or figure that a run reproduces.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExperimentRow {
+    pub row: String,
+    /// The paper's number; absent where the paper prints none.
+    pub paper: Option<f64>,
+    pub ours: Option<f64>,
+    /// `ours / paper`.
+    pub ratio: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Validation {
+    /// The validation layer ran and had nothing to say.
+    Clean,
+    Off,
+}
+
+impl Validation {
+    /// The word written in the record.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Clean => "clean",
+            Self::Off => "off",
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ImageFile {
+    pub path: String,
+    /// Lower-case hexadecimal SHA-256 of the file.
+    pub sha256: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use crate::report::example;
+    use crate::report::record::Record;
+
+    fn validator() -> jsonschema::Validator {
+        let schema = include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/schema/fumarole.bench-1.json"
+        ));
+        let schema: Value = serde_json::from_str(schema).unwrap();
+        jsonschema::meta::validate(&schema).unwrap();
+        jsonschema::validator_for(&schema).unwrap()
+    }
+
+    fn document(record: &Record) -> Value {
+        serde_json::to_value(record).unwrap()
+    }
+
+    #[test]
+    fn full_and_minimal_records_meet_the_schema() {
+        let validator = validator();
+        for record in [example::full(), example::minimal()] {
+            let errors: Vec<String> = validator
+                .iter_errors(&document(&record))
+                .map(|error| format!("{}: {error}", error.instance_path()))
+                .collect();
+            assert!(errors.is_empty(), "{errors:#?}");
+        }
+    }
+
+    #[test]
+    fn wrong_types_and_missing_fields_do_not() {
+        let validator = validator();
+        let wrong = [
+            ("/schema", json!("fumarole.bench/2")),
+            ("/environment/device/type", json!("gpu")),
+            ("/runs/0/frame_ms/samples", json!([])),
+            ("/runs/0/frame_ms/median", Value::Null),
+            ("/runs/0/width", json!("800")),
+            ("/runs/0/passes/1/gpu_ms", json!(0)),
+            ("/runs/0/passes/0/kind", json!("cpu")),
+            ("/runs/0/image/sha256", json!("none")),
+        ];
+        for (pointer, value) in wrong {
+            let mut document = document(&example::full());
+            *document.pointer_mut(pointer).unwrap() = value;
+            assert!(!validator.is_valid(&document), "{pointer}");
+        }
+        let full = document(&example::full());
+        for (pointer, fields) in [
+            ("", &full),
+            ("/environment", &full["environment"]),
+            ("/runs/0", &full["runs"][0]),
+            ("/runs/0/passes/1", &full["runs"][0]["passes"][1]),
+        ] {
+            for field in fields.as_object().unwrap().keys() {
+                let mut document = full.clone();
+                let object = document.pointer_mut(pointer).unwrap();
+                object.as_object_mut().unwrap().remove(field);
+                assert!(!validator.is_valid(&document), "{pointer}/{field}");
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+/// Why a mesh or a camera cannot be used. Every message is one line.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error("cannot read {}: {source}; check the path and its permissions", path.display())]
+    Read { path: PathBuf, source: io::Error },
+    #[error("cannot read {}: it is not a regular file; name a mesh file", path.display())]
+    NotAFile { path: PathBuf },
+    #[error("cannot load mesh {}: unknown file ending {ending:?}; known endings are {known}", path.display())]
+    UnknownEnding {
+        path: PathBuf,
+        ending: String,
+        known: String,
+    },
+    #[error(
+        "cannot read {}: its {size_bytes} bytes exceed the limit of {limit_bytes}; split or simplify the mesh",
+        path.display()
+    )]
+    TooLarge {
+        path: PathBuf,
+        size_bytes: u64,
+        limit_bytes: u64,
+    },
+    #[error("cannot load mesh {}: {fault}", path.display())]
+    Malformed { path: PathBuf, fault: Fault },
+    #[error("cannot use the camera: {reason}")]
+    Camera { reason: String },
+}
+
+/// What is wrong with the contents of a mesh, and where.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{place}{reason}")]
+pub struct Fault {
+    pub place: Place,
+    pub reason: String,
+}
+
+/// A place in a mesh file or a mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    Whole,
+    /// Line of a text file, from 1.
+    Line(usize),
+    /// Offset in a binary file, from 0.
+    Byte(usize),
+    /// Vertex number, from 0.
+    Vertex(usize),
+    /// Face number, from 0.
+    Face(usize),
+    /// A named part, such as a buffer of a glTF file.
+    Part(String),
+}
+
+impl Fault {
+    pub(super) fn new(place: Place, reason: impl Into<String>) -> Self {
+        Self {
+            place,
+            reason: reason.into(),
+        }
+    }
+
+    /// A fault reported by a format library, whose messages may span lines and quote whole files.
+    pub(super) fn foreign(place: Place, error: &impl fmt::Display) -> Self {
+        const LONGEST: usize = 200;
+        let text = error.to_string();
+        let mut reason = text
+            .lines()
+            .map(str::trim)
+            .filter(|line| !line.is_empty() && !line.starts_with("String:"))
+            .collect::<Vec<_>>()
+            .join("; ");
+        reason.retain(|character| !character.is_control());
+        if let Some((end, _)) = reason.char_indices().nth(LONGEST) {
+            reason.truncate(end);
+            reason.push_str("...");
+        }
+        Self { place, reason }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::Line(line) => write!(formatter, "line {line}: "),
+            Self::Byte(offset) => write!(formatter, "byte {offset}: "),
+            Self::Vertex(index) => write!(formatter, "vertex {index}: "),
+            Self::Face(index) => write!(formatter, "face {index}: "),
+            Self::Part(name) => write!(formatter, "{name}: "),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn foreign_messages_become_one_short_line() {
+        let message = format!("bad\n\tString: 'x'\n\tError: {}\u{7}", "y".repeat(500));
+        let fault = Fault::foreign(Place::Line(3), &message);
+        let shown = fault.to_string();
+        assert!(shown.starts_with("line 3: bad; Error: yyy"), "{shown}");
+        assert!(shown.chars().count() < 220 && !shown.contains(char::is_control));
+    }
+}

@@ -1,0 +1,273 @@
+use crate::scene::error::{Fault, Place};
+use crate::scene::{Bounds, normals};
+use glam::{Mat4, Vec2, Vec3};
+
+/// An indexed triangle mesh, counter-clockwise triangles facing out.
+///
+/// Meshes from [`crate::scene::MeshSource::load`] and [`crate::scene::shapes`] pass [`Mesh::validate`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// The shape's name or the file's name without its ending.
+    pub name: String,
+    /// Object space, metres.
+    pub positions: Vec<Vec3>,
+    /// Unit vectors, as many as positions.
+    pub normals: Vec<Vec3>,
+    /// As many as positions, or empty. (0, 0) is the lower left corner of the picture.
+    pub texture_coordinates: Vec<Vec2>,
+    /// Three vertex numbers a triangle.
+    pub indices: Vec<u32>,
+}
+
+impl Mesh {
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len() / 3
+    }
+
+    /// The smallest box around all positions.
+    pub fn bounds(&self) -> Bounds {
+        Bounds::of_points(self.positions.iter().copied())
+    }
+
+    /// The mesh with positions and normals in the space that `transform`, an affine matrix, leads to.
+    ///
+    /// Triangles still face out after a reflection: their winding is reversed.
+    pub fn transformed(&self, transform: &Mat4) -> Self {
+        let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.truncate());
+        // The cofactor matrix is the inverse transpose up to the determinant, and exists for singular matrices too.
+        let cofactor = glam::Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        let reflects = x.dot(y.cross(z)) < 0.0;
+        let sign = if reflects { -1.0 } else { 1.0 };
+        let mut mesh = Self {
+            name: self.name.clone(),
+            positions: self
+                .positions
+                .iter()
+                .map(|p| transform.transform_point3(*p))
+                .collect(),
+            normals: self
+                .normals
+                .iter()
+                .map(|n| (cofactor * *n * sign).normalize_or_zero())
+                .collect(),
+            texture_coordinates: self.texture_coordinates.clone(),
+            indices: self.indices.clone(),
+        };
+        if reflects {
+            for corners in mesh.indices.chunks_exact_mut(3) {
+                corners.swap(1, 2);
+            }
+        }
+        mesh
+    }
+
+    /// Replaces all normals by area-weighted ones, smooth across vertices at the same position.
+    ///
+    /// A vertex that no triangle of positive area touches gets +Y.
+    ///
+    /// # Panics
+    /// If an index is out of range, which [`Mesh::validate`] rules out.
+    pub fn smooth_normals(&mut self) {
+        self.normals = normals::smooth(&self.positions, &self.indices);
+    }
+
+    /// Checks what the field descriptions promise, and that at least one triangle has a positive area.
+    ///
+    /// # Errors
+    /// The first violation, with the number of its vertex or triangle.
+    pub fn validate(&self) -> Result<(), Fault> {
+        check_geometry(&self.positions, &self.indices)?;
+        if self.normals.len() != self.positions.len() {
+            let (normals, positions) = (self.normals.len(), self.positions.len());
+            let reason = format!("{normals} normals for {positions} positions");
+            return Err(Fault::new(Place::Whole, reason));
+        }
+        let not_unit = |n: &Vec3| !((n.length_squared() - 1.0).abs() < 1e-3);
+        if let Some(vertex) = self.normals.iter().position(not_unit) {
+            let reason = format!("the normal {} is not of unit length", self.normals[vertex]);
+            return Err(Fault::new(Place::Vertex(vertex), reason));
+        }
+        check_texture_coordinates(&self.texture_coordinates, self.positions.len())
+    }
+
+    /// A valid mesh from what a file gives: normals may be absent (empty) or, one by one, zero or not finite, and are
+    /// then computed.
+    pub(super) fn from_file(
+        positions: Vec<Vec3>,
+        mut normals: Vec<Vec3>,
+        texture_coordinates: Vec<Vec2>,
+        indices: Vec<u32>,
+    ) -> Result<Self, Fault> {
+        check_geometry(&positions, &indices)?;
+        check_texture_coordinates(&texture_coordinates, positions.len())?;
+        normals.resize(positions.len(), Vec3::ZERO);
+        for normal in &mut normals {
+            *normal = normal.as_dvec3().normalize_or_zero().as_vec3();
+        }
+        if normals.contains(&Vec3::ZERO) {
+            let smooth = normals::smooth(&positions, &indices);
+            for (normal, smooth) in normals.iter_mut().zip(smooth) {
+                if *normal == Vec3::ZERO {
+                    *normal = smooth;
+                }
+            }
+        }
+        Ok(Self {
+            name: String::new(),
+            positions,
+            normals,
+            texture_coordinates,
+            indices,
+        })
+    }
+}
+
+/// Every coordinate of every position must be finite, and there must not be more than 32-bit indices can name.
+pub(super) fn check_positions(positions: &[Vec3]) -> Result<(), Fault> {
+    if positions.len() >= u32::MAX as usize || positions.is_empty() {
+        let reason = format!(
+            "{} vertices; a mesh needs from 1 to 4294967294",
+            positions.len()
+        );
+        return Err(Fault::new(Place::Whole, reason));
+    }
+    match positions.iter().position(|position| !position.is_finite()) {
+        Some(vertex) => {
+            let reason = format!("the position {} is not finite", positions[vertex]);
+            Err(Fault::new(Place::Vertex(vertex), reason))
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_geometry(positions: &[Vec3], indices: &[u32]) -> Result<(), Fault> {
+    check_positions(positions)?;
+    if !indices.len().is_multiple_of(3) || indices.len() > u32::MAX as usize {
+        let reason = format!(
+            "{} indices; they must be a multiple of three below 2^32",
+            indices.len()
+        );
+        return Err(Fault::new(Place::Whole, reason));
+    }
+    let beyond = |&index: &u32| index as usize >= positions.len();
+    if let Some(corner) = indices.iter().position(beyond) {
+        let reason = format!(
+            "it names vertex {}, but there are {}",
+            indices[corner],
+            positions.len()
+        );
+        return Err(Fault::new(Place::Face(corner / 3), reason));
+    }
+    let has_area = |corners: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|i| positions[corners[i] as usize]);
+        normals::double_area_vector(a, b, c) != glam::DVec3::ZERO
+    };
+    if !indices.chunks_exact(3).any(has_area) {
+        let reason = format!(
+            "none of its {} triangles has a positive area; a mesh needs at least one",
+            indices.len() / 3
+        );
+        return Err(Fault::new(Place::Whole, reason));
+    }
+    Ok(())
+}
+
+fn check_texture_coordinates(coordinates: &[Vec2], vertex_count: usize) -> Result<(), Fault> {
+    if !coordinates.is_empty() && coordinates.len() != vertex_count {
+        let reason = format!(
+            "{} texture coordinates for {vertex_count} positions",
+            coordinates.len()
+        );
+        return Err(Fault::new(Place::Whole, reason));
+    }
+    match coordinates.iter().position(|uv| !uv.is_finite()) {
+        Some(vertex) => {
+            let reason = format!(
+                "the texture coordinate {} is not finite",
+                coordinates[vertex]
+            );
+            Err(Fault::new(Place::Vertex(vertex), reason))
+        }
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::shapes;
+    use glam::Quat;
+
+    fn winding_agrees(mesh: &Mesh) -> bool {
+        mesh.indices.chunks_exact(3).all(|corners| {
+            let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[corners[i] as usize]);
+            (b - a).cross(c - a).dot(mesh.normals[corners[0] as usize]) > 0.0
+        })
+    }
+
+    #[test]
+    fn transforms_keep_normals_unit_and_outward() {
+        let rotation = Quat::from_rotation_x(0.7) * Quat::from_rotation_y(-2.0);
+        for scale in [Vec3::new(2.0, 0.5, 3.0), Vec3::new(-2.0, 0.5, 3.0)] {
+            let transform = Mat4::from_scale_rotation_translation(scale, rotation, Vec3::ONE);
+            let mesh = shapes::cuboid().transformed(&transform);
+            mesh.validate().unwrap();
+            assert!(winding_agrees(&mesh), "{scale}");
+        }
+    }
+
+    #[test]
+    fn a_sheared_normal_stays_perpendicular_to_its_face() {
+        let shear = Mat4::from_cols_array(&[
+            1.0, 0.0, 0.0, 0.0, 0.8, 1.0, 0.0, 0.0, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+        ]);
+        let mesh = shapes::cuboid().transformed(&shear);
+        for corners in mesh.indices.chunks_exact(3) {
+            let [a, b] = [0, 1].map(|i| mesh.positions[corners[i] as usize]);
+            assert!((b - a).dot(mesh.normals[corners[0] as usize]).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn every_violation_is_found_and_located() {
+        let good = || shapes::cuboid();
+        let faulty = |change: fn(&mut Mesh)| {
+            let mut mesh = good();
+            change(&mut mesh);
+            mesh.validate().unwrap_err()
+        };
+        assert!(good().validate().is_ok());
+        assert_eq!(faulty(|m| m.positions[3].y = f32::NAN).place, Place::Vertex(3));
+        assert_eq!(faulty(|m| m.indices[4] = 24).place, Place::Face(1));
+        assert_eq!(faulty(|m| m.normals[5] *= 2.0).place, Place::Vertex(5));
+        assert_eq!(faulty(|m| m.normals[5].x = f32::NAN).place, Place::Vertex(5));
+        assert_eq!(
+            faulty(|m| m.texture_coordinates[7].x = f32::INFINITY).place,
+            Place::Vertex(7)
+        );
+        for change in [
+            |m: &mut Mesh| m.indices.clear(),
+            |m: &mut Mesh| m.indices.truncate(4),
+            |m: &mut Mesh| m.positions.fill(Vec3::ONE),
+            |m: &mut Mesh| *m = Mesh::default(),
+            |m: &mut Mesh| m.normals.truncate(3),
+            |m: &mut Mesh| m.texture_coordinates.truncate(3),
+        ] {
+            assert_eq!(faulty(change).place, Place::Whole);
+        }
+    }
+
+    #[test]
+    fn missing_zero_and_broken_normals_are_computed() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let given = [Vec3::NAN, Vec3::ZERO, Vec3::new(0.0, 3.0, 0.0)];
+        for (normals, expected) in [
+            (vec![], [Vec3::Z; 3]),
+            (given.to_vec(), [Vec3::Z, Vec3::Z, Vec3::Y]),
+        ] {
+            let mesh = Mesh::from_file(positions.clone(), normals, vec![], vec![0, 1, 2]).unwrap();
+            assert_eq!(mesh.normals, expected);
+            mesh.validate().unwrap();
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! What is rendered, on the CPU only: meshes, cameras, lights and seeded random numbers.
+//!
+//! The world is right handed with +Y up. A [`MeshSource`] is what a user types (a built-in shape or a file);
+//! [`MeshSource::load`] turns it into a checked [`Mesh`] or an [`Error`] that names the file and the place in it.
+
+mod bounds;
+mod camera;
+mod error;
+mod formats;
+mod light;
+mod mesh;
+mod normals;
+mod polygon;
+pub mod random;
+pub mod shapes;
+mod source;
+
+pub use bounds::Bounds;
+pub use camera::Camera;
+pub use error::{Error, Fault, Place};
+pub use light::Light;
+pub use mesh::Mesh;
+pub use source::MeshSource;

@@ -1,0 +1,217 @@
+use crate::scene::error::{Fault, Place};
+use crate::scene::mesh;
+use earcut::Earcut;
+use glam::{DVec2, DVec3, Vec2, Vec3};
+
+/// Longest polygon that is cut: ear clipping takes quadratic time on hostile input.
+const MAX_CORNERS: usize = 65_536;
+
+/// Polygons as OBJ and PLY files give them.
+#[derive(Debug, Default)]
+pub(super) struct PolygonMesh {
+    pub positions: Vec<Vec3>,
+    /// As many as positions, or empty.
+    pub normals: Vec<Vec3>,
+    /// As many as positions, or empty.
+    pub texture_coordinates: Vec<Vec2>,
+    /// Vertex numbers of all polygons, one after the other.
+    pub corners: Vec<u32>,
+    /// Corners of each polygon.
+    pub arities: Vec<u32>,
+}
+
+impl PolygonMesh {
+    /// Cuts every polygon into triangles. Polygons of fewer than three corners (points and lines) are left out.
+    pub fn into_mesh(self) -> Result<mesh::Mesh, Fault> {
+        mesh::check_positions(&self.positions)?;
+        let mut cutter = Cutter::default();
+        let mut indices = Vec::with_capacity(self.corners.len());
+        let mut rest = &self.corners[..];
+        for (face, &arity) in self.arities.iter().enumerate() {
+            let Some((polygon, after)) = rest.split_at_checked(arity as usize) else {
+                let reason = format!("{} corners are missing", arity as usize - rest.len());
+                return Err(Fault::new(Place::Face(face), reason));
+            };
+            rest = after;
+            cutter
+                .cut(&self.positions, polygon, &mut indices)
+                .map_err(|reason| Fault::new(Place::Face(face), reason))?;
+        }
+        mesh::Mesh::from_file(
+            self.positions,
+            self.normals,
+            self.texture_coordinates,
+            indices,
+        )
+    }
+}
+
+/// Triangulates polygons in space; keeps its buffers from one polygon to the next.
+#[derive(Default)]
+struct Cutter {
+    earcut: Earcut<f64>,
+    points: Vec<DVec3>,
+    triangles: Vec<u32>,
+}
+
+impl Cutter {
+    /// Appends the triangles of one polygon, which keep its orientation.
+    ///
+    /// A fan around the first corner serves where no triangle of it turns over, which keeps every corner on a straight
+    /// edge connected; other polygons are clipped ear by ear in the plane of their normal.
+    fn cut(
+        &mut self,
+        positions: &[Vec3],
+        polygon: &[u32],
+        indices: &mut Vec<u32>,
+    ) -> Result<(), String> {
+        if let Some(&index) = polygon.iter().find(|&&i| i as usize >= positions.len()) {
+            return Err(format!(
+                "it names vertex {index}, but there are {}",
+                positions.len()
+            ));
+        }
+        if polygon.len() <= 3 {
+            indices.extend(polygon.chunks_exact(3).flatten());
+            return Ok(());
+        }
+        if polygon.len() > MAX_CORNERS {
+            return Err(format!(
+                "a polygon has {} corners, more than {MAX_CORNERS}; cut it into smaller ones",
+                polygon.len()
+            ));
+        }
+        // Relative to the first corner, so that a polygon far from the origin keeps its precision.
+        let origin = positions[polygon[0] as usize].as_dvec3();
+        self.points.clear();
+        self.points.extend(
+            polygon
+                .iter()
+                .map(|&index| positions[index as usize].as_dvec3() - origin),
+        );
+        let normal = newell_normal(&self.points);
+        let turns_over = |pair: &[DVec3]| pair[0].cross(pair[1]).dot(normal) < 0.0;
+        self.triangles.clear();
+        if self.points[1..].windows(2).any(turns_over) {
+            self.clip(normal);
+        }
+        if self.triangles.is_empty() {
+            let last = polygon.len() as u32 - 1;
+            self.triangles
+                .extend((1..last).flat_map(|corner| [0, corner, corner + 1]));
+        }
+        indices.extend(self.triangles.iter().map(|&corner| polygon[corner as usize]));
+        Ok(())
+    }
+
+    fn clip(&mut self, normal: DVec3) {
+        let (x, y) = normal.normalize().any_orthonormal_pair();
+        let plane = |point: &DVec3| DVec2::new(point.dot(x), point.dot(y));
+        self.earcut.earcut(
+            self.points.iter().map(|point| plane(point).to_array()),
+            &[],
+            &mut self.triangles,
+        );
+        for corners in self.triangles.chunks_exact_mut(3) {
+            let [a, b, c] = [0, 1, 2].map(|i| plane(&self.points[corners[i] as usize]));
+            if (b - a).perp_dot(c - a) < 0.0 {
+                corners.swap(1, 2);
+            }
+        }
+    }
+}
+
+/// The sum of the cross products of neighbouring corners (Newell's method): normal to the plane that fits a polygon
+/// best, of a length twice the polygon's area. Zero for a polygon without area.
+fn newell_normal(points: &[DVec3]) -> DVec3 {
+    points
+        .iter()
+        .zip(points.iter().cycle().skip(1))
+        .map(|(a, b)| a.cross(*b))
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::normals::double_area_vector;
+    use glam::Quat;
+
+    /// Cuts one polygon given in a plane and then placed somewhere in space.
+    fn cut(outline: &[[f32; 2]]) -> (Vec<Vec3>, Vec<u32>, Vec3) {
+        let rotation = Quat::from_rotation_x(1.1) * Quat::from_rotation_y(0.4);
+        let place = |p: &[f32; 2]| rotation * Vec3::new(p[0], p[1], 0.0) + Vec3::new(9.0, -7.0, 3.0);
+        let positions: Vec<Vec3> = outline.iter().map(place).collect();
+        let polygon: Vec<u32> = (0..outline.len() as u32).collect();
+        let mut indices = Vec::new();
+        Cutter::default()
+            .cut(&positions, &polygon, &mut indices)
+            .unwrap();
+        (positions, indices, rotation * Vec3::Z)
+    }
+
+    /// The sum of signed areas equals the polygon's area only when no triangle overlaps another or lies outside.
+    fn assert_area(outline: &[[f32; 2]], area: f64) {
+        let (positions, indices, normal) = cut(outline);
+        let areas: Vec<f64> = indices
+            .chunks_exact(3)
+            .map(|t| {
+                let [a, b, c] = [0, 1, 2].map(|i| positions[t[i] as usize]);
+                double_area_vector(a, b, c).dot(normal.as_dvec3()) / 2.0
+            })
+            .collect();
+        assert!(areas.iter().all(|a| *a > -1e-5), "{areas:?}");
+        assert!((areas.iter().sum::<f64>() - area).abs() < 1e-4, "{areas:?}");
+        assert_eq!(areas.len(), outline.len() - 2);
+    }
+
+    #[test]
+    fn concave_polygons_keep_their_area_and_orientation() {
+        let l_shape = [[0., 0.], [3., 0.], [3., 1.], [1., 1.], [1., 3.], [0., 3.]];
+        let arrow = [[0., 0.], [2., -1.], [0.5, 0.], [2., 1.]];
+        let comb = [
+            [0., 0.], [5., 0.], [5., 3.], [4., 3.], [4., 1.], [3., 1.], [3., 3.], [2., 3.], [2., 1.], [1., 1.],
+            [1., 3.], [0., 3.],
+        ];
+        for start in 0..6 {
+            let mut turned = l_shape;
+            turned.rotate_left(start);
+            assert_area(&turned, 5.0);
+        }
+        for start in 0..4 {
+            let mut turned = arrow;
+            turned.rotate_left(start);
+            assert_area(&turned, 1.5);
+        }
+        assert_area(&comb, 11.0);
+    }
+
+    #[test]
+    fn corners_on_a_straight_edge_stay_connected() {
+        let (_, indices, _) = cut(&[[0., 0.], [1., 0.], [2., 0.], [2., 2.], [0., 2.]]);
+        for corner in 0..5 {
+            assert!(indices.contains(&corner), "{indices:?}");
+        }
+        assert_eq!(indices.len(), 9);
+    }
+
+    #[test]
+    fn a_polygon_without_area_keeps_its_triangles() {
+        let (_, indices, _) = cut(&[[0., 0.], [1., 0.], [2., 0.], [3., 0.]]);
+        assert_eq!(indices.len(), 6);
+    }
+
+    #[test]
+    fn points_and_lines_are_left_out_and_bad_polygons_named() {
+        let mesh = |corners: Vec<u32>, arities: Vec<u32>| {
+            let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+            PolygonMesh { positions, corners, arities, ..PolygonMesh::default() }.into_mesh()
+        };
+        assert_eq!(mesh(vec![0, 0, 1, 0, 1, 2], vec![1, 2, 3]).unwrap().indices, [0, 1, 2]);
+        assert_eq!(mesh(vec![0, 1, 2, 0, 1, 2, 3], vec![3, 4]).unwrap_err().place, Place::Face(1));
+        assert_eq!(mesh(vec![0, 1, 2, 0], vec![3, 4]).unwrap_err().place, Place::Face(1));
+        let long = vec![0; MAX_CORNERS + 1];
+        let arity = long.len() as u32;
+        assert_eq!(mesh(long, vec![arity]).unwrap_err().place, Place::Face(0));
+    }
+}

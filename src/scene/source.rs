@@ -1,0 +1,90 @@
+use crate::scene::{Error, Mesh, formats, shapes};
+use glam::{UVec2, Vec2};
+use std::convert::Infallible;
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Where a mesh comes from: one of the built-in shapes or a file.
+///
+/// As text: `teapot`, `sphere`, `box` or `plane`; anything else is a path, so that a file named `box` is `./box`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum MeshSource {
+    /// [`shapes::teapot`].
+    Teapot,
+    /// [`shapes::sphere`] of 32 slices and 32 stacks, 1,984 triangles.
+    Sphere,
+    /// [`shapes::cuboid`].
+    Box,
+    /// [`shapes::plane`], 2 m x 2 m in 32 x 32 cells.
+    Plane,
+    /// An OBJ, PLY, STL, glTF or GLB file, told apart by the file's ending.
+    File(PathBuf),
+}
+
+impl MeshSource {
+    /// Builds the shape or reads the file.
+    ///
+    /// # Errors
+    /// For files only: one that cannot be read, has an unknown ending, is malformed, or holds no triangle.
+    pub fn load(&self) -> Result<Mesh, Error> {
+        match self {
+            Self::Teapot => Ok(shapes::teapot()),
+            Self::Sphere => Ok(shapes::sphere(32, 32)),
+            Self::Box => Ok(shapes::cuboid()),
+            Self::Plane => Ok(shapes::plane(Vec2::splat(2.0), UVec2::splat(32))),
+            Self::File(path) => formats::load(path),
+        }
+    }
+}
+
+impl FromStr for MeshSource {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(match text {
+            "teapot" => Self::Teapot,
+            "sphere" => Self::Sphere,
+            "box" => Self::Box,
+            "plane" => Self::Plane,
+            path => Self::File(path.into()),
+        })
+    }
+}
+
+impl fmt::Display for MeshSource {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Teapot => formatter.write_str("teapot"),
+            Self::Sphere => formatter.write_str("sphere"),
+            Self::Box => formatter.write_str("box"),
+            Self::Plane => formatter.write_str("plane"),
+            Self::File(path) => path.display().fmt(formatter),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_round_trips() {
+        for text in ["teapot", "sphere", "box", "plane", "meshes/a.obj", "./box", ""] {
+            let Ok(source) = text.parse::<MeshSource>();
+            assert_eq!(source.to_string(), text);
+            let is_file = matches!(source, MeshSource::File(_));
+            assert_eq!(is_file, !["teapot", "sphere", "box", "plane"].contains(&text));
+        }
+    }
+
+    #[test]
+    fn shapes_load_valid_with_their_counts() {
+        for (text, triangles) in [("teapot", 6_320), ("sphere", 1_984), ("box", 12), ("plane", 2_048)] {
+            let Ok(source) = text.parse::<MeshSource>();
+            let mesh = source.load().unwrap();
+            mesh.validate().unwrap();
+            assert_eq!((mesh.name.as_str(), mesh.triangle_count()), (text, triangles));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+use std::path::PathBuf;
+
+use super::Compiler;
+
+/// Why a shader could not be read, compiled, reflected or accepted. Every message is one line.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error("reading {}: {source}; check that the path exists and is readable", path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("reading shader {}: the first line must be `#version 450`", path.display())]
+    Version { path: PathBuf },
+    #[error("{}:{line}: {problem}", path.display())]
+    Directive { path: PathBuf, line: usize, problem: DirectiveProblem },
+    #[error(
+        "{}{}: {compiler} refuses the shader `{shader}`: {message}",
+        path.display(),
+        line.map(|line| format!(":{line}")).unwrap_or_default()
+    )]
+    Compile {
+        shader: String,
+        compiler: Compiler,
+        path: PathBuf,
+        /// Line in `path`, from 1; absent when the compiler names none (a missing `main`).
+        line: Option<usize>,
+        message: String,
+    },
+    #[error(
+        "shader `{shader}` must build with naga too, but: {reason}; rewrite it or give the reason in NAGA_EXCEPTIONS"
+    )]
+    NagaRefused { shader: String, reason: String },
+    #[error("NAGA_EXCEPTIONS lists `{shader}`, {problem}; remove the entry")]
+    StaleException { shader: String, problem: &'static str },
+    #[error("shader `{shader}`: {source}")]
+    Reflect { shader: String, source: ReflectError },
+}
+
+/// What is wrong with a preprocessor line that the includes depend on.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+pub enum DirectiveProblem {
+    #[error("expected `#include \"path/from/the/shader/folder.glsl\"`")]
+    IncludeSyntax,
+    #[error("no included file `{0}`; paths start at the shader folder and may not be absolute or use `..`")]
+    IncludeMissing(String),
+    #[error("include cycle: {0}; move what both need into a third file")]
+    IncludeCycle(String),
+    #[error("`#include` inside `#if`; move it out, a file is included once whatever the condition")]
+    IncludeConditional,
+    #[error("`#line` is not supported; remove it, lines are mapped to their files already")]
+    Line,
+}
+
+/// A binary whose interface cannot be read.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+#[error("reflecting the SPIR-V binary: {0}")]
+pub struct ReflectError(pub String);
+
+/// Where naga's binary would not fit the layouts built from glslang's.
+#[derive(Debug, thiserror::Error, PartialEq, Eq)]
+#[error("glslang and naga disagree on {what}: {glslang} against {naga}")]
+pub struct InterfaceMismatch {
+    pub what: String,
+    pub glslang: String,
+    pub naga: String,
+}

@@ -1,0 +1,82 @@
+//! The shaders that naga need not compile.
+
+use super::{CompiledShader, Error, Stage};
+
+/// Vertex, fragment and compute shaders outside naga's GLSL subset, each with the reason.
+/// Geometry shaders are excluded by their kind and do not belong here.
+pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[];
+
+/// Checks that `exceptions` lists exactly the vertex, fragment and compute shaders that naga refuses.
+///
+/// # Errors
+/// A refused shader that is not listed, and a listed one that naga accepts, that does not exist or that is
+/// excluded by its kind.
+pub fn check_exceptions(shaders: &[CompiledShader], exceptions: &[(&str, &str)]) -> Result<(), Error> {
+    for shader in shaders {
+        let listed = exceptions.iter().any(|(name, _)| *name == shader.name);
+        match &shader.naga {
+            Err(reason) if !listed && shader.stage != Stage::Geometry => {
+                return Err(Error::NagaRefused { shader: shader.name.clone(), reason: reason.clone() });
+            }
+            Ok(_) if listed => return Err(stale(&shader.name, "which naga accepts")),
+            _ => {}
+        }
+    }
+    for (name, _) in exceptions {
+        match shaders.iter().find(|shader| shader.name == *name) {
+            None => return Err(stale(name, "which does not exist")),
+            Some(shader) if shader.stage == Stage::Geometry => {
+                return Err(stale(name, "whose stage naga never compiles"));
+            }
+            Some(_) => {}
+        }
+    }
+    Ok(())
+}
+
+fn stale(shader: &str, problem: &'static str) -> Error {
+    Error::StaleException { shader: shader.to_owned(), problem }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shader(name: &str, stage: Stage, accepted: bool) -> CompiledShader {
+        CompiledShader {
+            name: name.to_owned(),
+            stage,
+            glslang: Vec::new(),
+            naga: accepted.then(Vec::new).ok_or_else(|| "atomics".to_owned()),
+        }
+    }
+
+    fn check(exceptions: &[&str]) -> Result<(), String> {
+        let shaders = [
+            shader("plain.frag", Stage::Fragment, true),
+            shader("atomic.comp", Stage::Compute, false),
+            shader("strip.geom", Stage::Geometry, false),
+        ];
+        let exceptions: Vec<_> = exceptions.iter().map(|name| (*name, "reason")).collect();
+        check_exceptions(&shaders, &exceptions).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn exactly_the_refused_shaders_are_listed() {
+        assert_eq!(check(&["atomic.comp"]), Ok(()));
+    }
+
+    #[test]
+    fn unlisted_and_stale_entries_fail() {
+        let cases: [(&[&str], &str); 4] = [
+            (&[], "`atomic.comp` must build with naga too, but: atomics"),
+            (&["atomic.comp", "plain.frag"], "`plain.frag`, which naga accepts"),
+            (&["atomic.comp", "gone.vert"], "`gone.vert`, which does not exist"),
+            (&["atomic.comp", "strip.geom"], "`strip.geom`, whose stage naga never compiles"),
+        ];
+        for (exceptions, expected) in cases {
+            let message = check(exceptions).unwrap_err();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What a shader stage reads and writes, as its SPIR-V binary says.
+
+use super::Stage;
+
+pub use spirq::ty::ImageFormat;
+
+/// The interface of one entry point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Interface {
+    pub stage: Stage,
+    /// Threads of a workgroup along x, y and z; compute shaders only.
+    pub local_size: Option<[u32; 3]>,
+    /// Every resource that the binary declares, by ascending set and binding.
+    pub bindings: Vec<Binding>,
+    pub push_constants: Option<Block>,
+    /// Located inputs by ascending location; built-ins are not listed.
+    pub inputs: Vec<Location>,
+    /// Located outputs by ascending location; built-ins are not listed.
+    pub outputs: Vec<Location>,
+}
+
+/// One descriptor binding.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Binding {
+    pub set: u32,
+    pub binding: u32,
+    /// Name of the variable, or of its block when the block has no instance name.
+    pub name: String,
+    pub kind: BindingKind,
+    /// Number of descriptors: 1, or the length of an array of them.
+    pub count: u32,
+    /// Contents of a uniform or storage buffer.
+    pub block: Option<Block>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BindingKind {
+    UniformBuffer,
+    StorageBuffer { readonly: bool },
+    SampledImage,
+    Sampler,
+    StorageImage { format: ImageFormat },
+    CombinedImageSampler,
+}
+
+/// A block of memory shared with the host.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Name of the GLSL block or structure.
+    pub name: String,
+    /// End of the last member; without a trailing run-time array. Of an array's element: its stride.
+    pub size_bytes: u32,
+    pub members: Vec<Member>,
+}
+
+/// One member of a block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Member {
+    pub name: String,
+    pub offset_bytes: u32,
+    /// Size of the whole member, arrays included; 0 for a run-time array.
+    pub size_bytes: u32,
+    /// Distance of neighbours, for an array.
+    pub array_stride_bytes: Option<u32>,
+    /// Layout of the structure that the member, or each element of it, is.
+    pub block: Option<Block>,
+}
+
+/// One located input or output.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Location {
+    pub location: u32,
+    pub name: String,
+    pub format: Format,
+    /// Consecutive locations taken: 1, or more for arrays and matrices.
+    pub count: u32,
+}
+
+/// Scalar or vector type of an input or output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Format {
+    pub scalar: Scalar,
+    /// 1 to 4.
+    pub components: u32,
+}
+
+/// 32-bit scalar type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scalar {
+    Float,
+    Int,
+    Uint,
+}
+
+impl Interface {
+    /// The resource at a set and binding.
+    pub fn binding(&self, set: u32, binding: u32) -> Option<&Binding> {
+        let matches = |known: &&Binding| (known.set, known.binding) == (set, binding);
+        self.bindings.iter().find(matches)
+    }
+}
+
+impl Block {
+    /// The member of that name.
+    pub fn member(&self, name: &str) -> Option<&Member> {
+        self.members.iter().find(|member| member.name == name)
+    }
+
+    /// The block within blocks that hold nothing else: naga wraps each block in one more structure.
+    pub(super) fn unwrapped(&self) -> &Block {
+        match self.members.as_slice() {
+            [member] if member.offset_bytes == 0 && member.array_stride_bytes.is_none() => {
+                member.block.as_ref().map_or(self, Block::unwrapped)
+            }
+            _ => self,
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! GLSL 4.50 to SPIR-V 1.5 by glslang and by naga: includes, line numbers, reflection.
+//!
+//! The build script compiles every shader with [`compile_dir`] and embeds the binaries as [`EMBEDDED`];
+//! `--shader-dir` calls the same function at run time.
+
+mod agreement;
+#[cfg(embedded_shaders)]
+mod embedded;
+mod error;
+mod exceptions;
+mod glslang;
+mod include;
+mod interface;
+mod layout;
+mod naga;
+mod reflection;
+
+use std::fmt;
+use std::fs;
+use std::path::Path;
+
+pub use agreement::check_same_interface;
+#[cfg(embedded_shaders)]
+pub use embedded::EMBEDDED;
+pub use error::{DirectiveProblem, Error, InterfaceMismatch, ReflectError};
+pub use exceptions::{NAGA_EXCEPTIONS, check_exceptions};
+pub use include::Source;
+pub use interface::{Binding, BindingKind, Block, Format, ImageFormat, Interface, Location, Member, Scalar};
+pub use layout::{HostBlock, LayoutMismatch};
+
+/// The stage of a shader, told by the ending of its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stage {
+    Vertex,
+    Geometry,
+    Fragment,
+    Compute,
+}
+
+impl Stage {
+    /// The stage of `.vert`, `.geom`, `.frag` and `.comp` files; none for any other ending.
+    pub fn from_file_name(name: &str) -> Option<Stage> {
+        match name.rsplit_once('.')?.1 {
+            "vert" => Some(Stage::Vertex),
+            "geom" => Some(Stage::Geometry),
+            "frag" => Some(Stage::Fragment),
+            "comp" => Some(Stage::Compute),
+            _ => None,
+        }
+    }
+}
+
+/// The two compilers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Compiler {
+    Glslang,
+    Naga,
+}
+
+impl fmt::Display for Compiler {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Compiler::Glslang => "glslang",
+            Compiler::Naga => "naga",
+        })
+    }
+}
+
+/// A shader compiled by the build script.
+#[derive(Clone, Copy, Debug)]
+pub struct EmbeddedShader {
+    /// Path below the shader folder, with `/`: `caustics/position-map.frag`.
+    pub name: &'static str,
+    pub stage: Stage,
+    /// SPIR-V words of glslang.
+    pub glslang: &'static [u32],
+    /// SPIR-V words of naga, or why there are none.
+    pub naga: Result<&'static [u32], &'static str>,
+}
+
+/// A shader compiled from its file.
+#[derive(Clone, Debug)]
+pub struct CompiledShader {
+    /// Path below the shader folder, with `/`: `caustics/position-map.frag`.
+    pub name: String,
+    pub stage: Stage,
+    /// SPIR-V words of glslang.
+    pub glslang: Vec<u32>,
+    /// SPIR-V words of naga, or why there are none.
+    pub naga: Result<Vec<u32>, String>,
+}
+
+impl From<&EmbeddedShader> for CompiledShader {
+    fn from(embedded: &EmbeddedShader) -> CompiledShader {
+        CompiledShader {
+            name: embedded.name.to_owned(),
+            stage: embedded.stage,
+            glslang: embedded.glslang.to_vec(),
+            naga: embedded.naga.map(<[u32]>::to_vec).map_err(str::to_owned),
+        }
+    }
+}
+
+/// What a compiler says about a source, with the line in the text that it saw.
+struct Diagnostic {
+    line: Option<usize>,
+    message: String,
+}
+
+impl Diagnostic {
+    fn without_line(message: &str) -> Diagnostic {
+        Diagnostic { line: None, message: message.to_owned() }
+    }
+
+    fn into_error(self, shader: &str, compiler: Compiler, source: &Source) -> Error {
+        let origin = self.line.and_then(|line| source.origin(line));
+        Error::Compile {
+            shader: shader.to_owned(),
+            compiler,
+            path: origin.map_or(source.path(), |(path, _)| path).to_owned(),
+            line: origin.map(|(_, line)| line),
+            message: self.message.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
+    }
+}
+
+/// Compiles every shader below `root`, sorted by name. Files with other endings are left alone.
+///
+/// # Errors
+/// The first file that cannot be read, include that cannot be resolved and shader that glslang refuses.
+/// A shader that naga refuses, or gives another interface, is no error here but the reason in
+/// [`CompiledShader::naga`], which [`check_exceptions`] judges.
+pub fn compile_dir(root: &Path) -> Result<Vec<CompiledShader>, Error> {
+    let mut names = Vec::new();
+    list_shaders(root, "", &mut names)?;
+    names.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+    names.iter().map(|(name, stage)| compile(root, name, *stage)).collect()
+}
+
+fn list_shaders(folder: &Path, prefix: &str, names: &mut Vec<(String, Stage)>) -> Result<(), Error> {
+    let read_error = |source| Error::Read { path: folder.to_owned(), source };
+    for entry in fs::read_dir(folder).map_err(read_error)? {
+        let entry = entry.map_err(read_error)?;
+        let file_name = entry.file_name();
+        let name = format!("{prefix}{}", file_name.to_string_lossy());
+        if entry.file_type().map_err(read_error)?.is_dir() {
+            list_shaders(&entry.path(), &format!("{name}/"), names)?;
+        } else if let Some(stage) = Stage::from_file_name(&name) {
+            names.push((name, stage));
+        }
+    }
+    Ok(())
+}
+
+fn compile(root: &Path, name: &str, stage: Stage) -> Result<CompiledShader, Error> {
+    let source = Source::read(root, name)?;
+    let glslang = glslang::compile(stage, &source.text)
+        .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Glslang, &source))?;
+    let interface =
+        Interface::reflect(&glslang).map_err(|source| Error::Reflect { shader: name.to_owned(), source })?;
+    let naga = naga::compile(stage, &source.text)
+        .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Naga, &source).to_string())
+        .and_then(|words| check_fit(&interface, &words).map(|()| words));
+    let listed = NAGA_EXCEPTIONS.iter().find(|(exception, _)| *exception == name);
+    Ok(CompiledShader {
+        name: name.to_owned(),
+        stage,
+        glslang,
+        naga: naga.map_err(|reason| listed.map_or(reason, |(_, listed)| (*listed).to_owned())),
+    })
+}
+
+/// Why naga's binary cannot stand in for the one that `interface` was read from, if so.
+fn check_fit(interface: &Interface, naga: &[u32]) -> Result<(), String> {
+    let naga = Interface::reflect(naga).map_err(|error| error.to_string())?;
+    check_same_interface(interface, &naga).map_err(|error| error.to_string())
+}

@@ -1,0 +1,112 @@
+//! naga: compiles what lies inside its GLSL subset.
+
+use std::error::Error;
+use std::panic;
+
+use ::naga::back::spv::{self, BindingMap, PipelineOptions, WriterFlags, ZeroInitializeWorkgroupMemoryMode};
+use ::naga::front::glsl::{Frontend, Options};
+use ::naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+use ::naga::valid::{ValidationFlags, Validator};
+use ::naga::{Module, ShaderStage, TypeInner};
+
+use super::{Diagnostic, Stage};
+
+/// Compiles flattened GLSL 4.50 to SPIR-V 1.5, adding nothing that the source does not say.
+pub fn compile(stage: Stage, text: &str) -> Result<Vec<u32>, Diagnostic> {
+    let shader_stage = match stage {
+        Stage::Vertex => ShaderStage::Vertex,
+        Stage::Fragment => ShaderStage::Fragment,
+        Stage::Compute => ShaderStage::Compute,
+        Stage::Geometry => return Err(Diagnostic::without_line("naga has no geometry stage")),
+    };
+    // naga panics on some GLSL that it does not know, such as an `inout` argument that is a member.
+    panic::catch_unwind(|| translate(shader_stage, text)).unwrap_or_else(|panic| {
+        let message = panic.downcast_ref::<String>().map(String::as_str);
+        let message = message.or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(Diagnostic::without_line(&format!("naga panicked: {}", message.unwrap_or("it gives no message"))))
+    })
+}
+
+fn translate(shader_stage: ShaderStage, text: &str) -> Result<Vec<u32>, Diagnostic> {
+    let module = Frontend::default().parse(&Options::from(shader_stage), text).map_err(|errors| {
+        match errors.errors.first() {
+            Some(error) => {
+                Diagnostic { line: error.location(text).map(|at| at.line_number as usize), message: error.to_string() }
+            }
+            None => Diagnostic::without_line("naga names no reason"),
+        }
+    })?;
+    refuse_miscompiled(&module, text)?;
+    let info =
+        Validator::new(ValidationFlags::all(), spv::supported_capabilities()).validate(&module).map_err(|error| {
+            Diagnostic {
+                line: error.location(text).map(|at| at.line_number as usize),
+                message: describe_chain(error.as_inner()),
+            }
+        })?;
+    let pipeline = PipelineOptions { shader_stage, entry_point: "main".to_owned() };
+    spv::write_vec(&module, &info, &writer_options(), Some(&pipeline))
+        .map_err(|error| Diagnostic::without_line(&describe_chain(&error)))
+}
+
+/// Refuses what naga accepts and translates wrongly.
+fn refuse_miscompiled(module: &Module, text: &str) -> Result<(), Diagnostic> {
+    if let Some(index) = text.lines().position(|line| line.contains("gl_WorkGroupSize")) {
+        return Err(Diagnostic {
+            line: Some(index + 1),
+            message: "naga writes invalid SPIR-V for gl_WorkGroupSize; use a constant".to_owned(),
+        });
+    }
+    let is_array = |inner: &TypeInner| matches!(inner, TypeInner::Array { .. });
+    let nested = module.types.iter().find(|(_, ty)| match ty.inner {
+        TypeInner::Array { base, .. } => is_array(&module.types[base].inner),
+        _ => false,
+    });
+    if let Some((handle, _)) = nested {
+        let span = module.types.get_span(handle);
+        return Err(Diagnostic {
+            line: span.is_defined().then(|| span.location(text).line_number as usize),
+            message: "naga swaps the dimensions of nested arrays; use one dimension".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// Every option spelt out: naga's defaults flip Y, clamp depth, bound loops, zero workgroup memory and
+/// guard divisions, which glslang does not, so that a comparison of the two would compare these.
+fn writer_options() -> spv::Options<'static> {
+    spv::Options {
+        lang_version: (1, 5),
+        flags: WriterFlags::DEBUG,
+        // With an empty map this means: keep the sets and bindings of the source.
+        fake_missing_bindings: true,
+        binding_map: BindingMap::default(),
+        capabilities: None,
+        bounds_check_policies: BoundsCheckPolicies {
+            index: BoundsCheckPolicy::Unchecked,
+            buffer: BoundsCheckPolicy::Unchecked,
+            image_load: BoundsCheckPolicy::Unchecked,
+            binding_array: BoundsCheckPolicy::Unchecked,
+        },
+        zero_initialize_workgroup_memory: ZeroInitializeWorkgroupMemoryMode::None,
+        force_loop_bounding: false,
+        ray_query_initialization_tracking: false,
+        trace_ray_argument_validation: false,
+        use_storage_input_output_16: false,
+        debug_info: None,
+        task_dispatch_limits: None,
+        mesh_shader_primitive_indices_clamp: false,
+        emit_int_div_checks: false,
+    }
+}
+
+fn describe_chain(error: &dyn Error) -> String {
+    let mut message = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        message.push_str(": ");
+        message.push_str(&cause.to_string());
+        source = cause.source();
+    }
+    message
+}

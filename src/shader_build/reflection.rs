@@ -1,0 +1,188 @@
+//! Reads an [`Interface`] out of SPIR-V.
+
+use spirq::ReflectConfig;
+use spirq::constant::ConstantValue;
+use spirq::entry_point::EntryPoint;
+use spirq::spirv::{ExecutionMode, ExecutionModel};
+use spirq::ty::{AccessType, DescriptorType, ScalarType, StructType, Type};
+use spirq::var::Variable;
+
+use super::interface::{Binding, BindingKind, Block, Format, Interface, Location, Member, Scalar};
+use super::{ReflectError, Stage};
+
+const HEADER_WORDS: usize = 5;
+
+impl Interface {
+    /// Reflects a binary with one entry point.
+    ///
+    /// # Errors
+    /// A binary that is not SPIR-V, has not exactly one entry point, or declares what no shader here
+    /// may: 64-bit inputs, input attachments, texel buffers, acceleration structures.
+    pub fn reflect(words: &[u32]) -> Result<Interface, ReflectError> {
+        if words.len() < HEADER_WORDS {
+            return Err(refuse("it is shorter than a header; compile the shader again"));
+        }
+        let entry_points =
+            ReflectConfig::new().spv(words).ref_all_rscs(true).reflect().map_err(|error| refuse(&error.to_string()))?;
+        match entry_points.as_slice() {
+            [entry_point] => read_entry_point(entry_point),
+            other => Err(refuse(&format!("it has {} entry points; compile one stage a binary", other.len()))),
+        }
+    }
+}
+
+fn refuse(problem: &str) -> ReflectError {
+    ReflectError(problem.to_owned())
+}
+
+fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError> {
+    let stage = match entry_point.exec_model {
+        ExecutionModel::Vertex => Stage::Vertex,
+        ExecutionModel::Geometry => Stage::Geometry,
+        ExecutionModel::Fragment => Stage::Fragment,
+        ExecutionModel::GLCompute => Stage::Compute,
+        other => return Err(refuse(&format!("unsupported stage {other:?}"))),
+    };
+    let mut interface = Interface {
+        stage,
+        local_size: read_local_size(entry_point),
+        bindings: Vec::new(),
+        push_constants: None,
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+    };
+    for variable in &entry_point.vars {
+        let name = variable.name().unwrap_or_default();
+        match variable {
+            Variable::Input { location, ty, .. } => {
+                // A geometry stage sees one element for each vertex of its primitive.
+                let ty = match ty {
+                    Type::Array(array) if stage == Stage::Geometry => &array.element_ty,
+                    other => other,
+                };
+                interface.inputs.push(read_location(location.loc(), name, ty)?);
+            }
+            Variable::Output { location, ty, .. } => {
+                interface.outputs.push(read_location(location.loc(), name, ty)?);
+            }
+            Variable::Descriptor { .. } => {
+                interface.bindings.push(read_binding(variable)?);
+            }
+            Variable::PushConstant { ty, .. } => {
+                interface.push_constants = read_block(ty)?;
+            }
+            Variable::SpecConstant { .. } => {}
+        }
+    }
+    interface.bindings.sort_by_key(|binding| (binding.set, binding.binding));
+    interface.inputs.sort_by_key(|input| input.location);
+    interface.outputs.sort_by_key(|output| output.location);
+    Ok(interface)
+}
+
+fn read_local_size(entry_point: &EntryPoint) -> Option<[u32; 3]> {
+    let modes = &entry_point.exec_modes;
+    let mode = modes.iter().find(|mode| mode.exec_mode == ExecutionMode::LocalSize)?;
+    let size = |axis: usize| match mode.operands.get(axis)?.value {
+        ConstantValue::U32(threads) => Some(threads),
+        _ => None,
+    };
+    Some([size(0)?, size(1)?, size(2)?])
+}
+
+fn read_binding(variable: &Variable) -> Result<Binding, ReflectError> {
+    let Variable::Descriptor { name, desc_bind, desc_ty, ty, nbind } = variable else {
+        return Err(refuse("a variable that is no descriptor was read as one"));
+    };
+    let (set, binding) = desc_bind.into_inner();
+    let kind = match (desc_ty, ty) {
+        (DescriptorType::UniformBuffer(), _) => BindingKind::UniformBuffer,
+        (DescriptorType::StorageBuffer(access), _) => {
+            BindingKind::StorageBuffer { readonly: *access == AccessType::ReadOnly }
+        }
+        (DescriptorType::SampledImage(), _) => BindingKind::SampledImage,
+        (DescriptorType::Sampler(), _) => BindingKind::Sampler,
+        (DescriptorType::CombinedImageSampler(), _) => BindingKind::CombinedImageSampler,
+        (DescriptorType::StorageImage(_), Type::StorageImage(image)) => BindingKind::StorageImage { format: image.fmt },
+        (other, _) => {
+            return Err(refuse(&format!(
+                "set {set} binding {binding} is an unsupported {other:?}; use a buffer, texture, sampler or image"
+            )));
+        }
+    };
+    let block = read_block(ty)?;
+    let block_name = block.as_ref().map(|block| block.name.clone());
+    Ok(Binding { set, binding, name: name.clone().or(block_name).unwrap_or_default(), kind, count: *nbind, block })
+}
+
+fn read_location(location: u32, name: &str, ty: &Type) -> Result<Location, ReflectError> {
+    let (format, count) = read_format(ty)
+        .ok_or_else(|| refuse(&format!("`{name}` at location {location} is a block or a 64-bit value; declare a variable for each 32-bit scalar or vector")))?;
+    Ok(Location { location, name: name.to_owned(), format, count })
+}
+
+/// The format of a type and the number of locations it takes.
+fn read_format(ty: &Type) -> Option<(Format, u32)> {
+    match ty {
+        Type::Scalar(scalar) => Some((read_scalar(scalar, 1)?, 1)),
+        Type::Vector(vector) => Some((read_scalar(&vector.scalar_ty, vector.nscalar)?, 1)),
+        Type::Matrix(matrix) => {
+            let column = &matrix.vector_ty;
+            Some((read_scalar(&column.scalar_ty, column.nscalar)?, matrix.nvector))
+        }
+        Type::Array(array) => {
+            let (format, count) = read_format(&array.element_ty)?;
+            Some((format, count.checked_mul(array.nelement?)?))
+        }
+        _ => None,
+    }
+}
+
+fn read_scalar(ty: &ScalarType, components: u32) -> Option<Format> {
+    let scalar = match ty {
+        ScalarType::Float { bits: 32 } => Scalar::Float,
+        ScalarType::Integer { bits: 32, is_signed: true } => Scalar::Int,
+        ScalarType::Integer { bits: 32, is_signed: false } => Scalar::Uint,
+        _ => return None,
+    };
+    Some(Format { scalar, components })
+}
+
+fn read_block(ty: &Type) -> Result<Option<Block>, ReflectError> {
+    match ty {
+        Type::Struct(structure) => read_structure(structure).map(Some),
+        _ => Ok(None),
+    }
+}
+
+fn read_structure(structure: &StructType) -> Result<Block, ReflectError> {
+    let members = structure.members.iter().map(|member| {
+        let (array_stride, element) = match &member.ty {
+            Type::Array(array) => (array.stride, &*array.element_ty),
+            other => (None, other),
+        };
+        let array_stride_bytes = array_stride.map(bytes).transpose()?;
+        let mut block = read_block(element)?;
+        if let (Some(block), Some(stride)) = (&mut block, array_stride_bytes) {
+            block.size_bytes = stride;
+        }
+        Ok(Member {
+            name: member.name.clone().unwrap_or_default(),
+            offset_bytes: bytes(member.offset.unwrap_or_default())?,
+            size_bytes: bytes(member.ty.nbyte().unwrap_or_default())?,
+            array_stride_bytes,
+            block,
+        })
+    });
+    let members = members.collect::<Result<Vec<_>, ReflectError>>()?;
+    let end = |member: &Member| member.offset_bytes.saturating_add(member.size_bytes);
+    Ok(Block {
+        name: structure.name.clone().unwrap_or_default(),
+        size_bytes: members.iter().map(end).max().unwrap_or_default(),
+        members,
+    })
+}
+
+fn bytes(size: usize) -> Result<u32, ReflectError> {
+    u32::try_from(size).map_err(|_| refuse("a block is larger than 4 GiB"))
+}
