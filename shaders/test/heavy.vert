@@ -4,7 +4,7 @@
 
 #include "test/chain.glsl"
 
-layout(push_constant) uniform Load {
+layout(push_constant, std430) uniform Load {
     uint iterations; // steps of the chain for each vertex
 } load;
 

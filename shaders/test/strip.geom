@@ -9,7 +9,7 @@ layout(location = 0) in vec4 colour[];
 
 layout(location = 0) out vec4 quad_colour;
 
-layout(push_constant) uniform Quad {
+layout(push_constant, std430) uniform Quad {
     vec2 half_extent; // normalised device coordinates
 } quad;
 

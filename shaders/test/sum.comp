@@ -13,7 +13,7 @@ layout(set = 0, binding = 1, std430) buffer Sums {
     float sums[];
 };
 
-layout(push_constant) uniform Range {
+layout(push_constant, std430) uniform Range {
     uint value_count;
 } range;
 

@@ -42,7 +42,9 @@ impl Device {
             .pipeline_statistics_query(on(Feature::PipelineStatistics))
             .occlusion_query_precise(on(Feature::PreciseOcclusion));
         let mut v12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
-        let mut v13 = vk::PhysicalDeviceVulkan13Features::default().synchronization2(true);
+        let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
+            .synchronization2(true)
+            .maintenance4(on(Feature::Maintenance4));
         let priorities = [1.0];
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];

@@ -8,13 +8,16 @@ use std::time::Instant;
 use ash::vk;
 use bytemuck::Pod;
 
+use super::access::Access;
 use super::barrier::{self, Barriers};
+use super::bindings::Use;
 use super::commands::Commands;
 use super::device::Device;
 use super::error::Error;
 use super::pass::{Body, Inner, Pass, PassInfo};
 use super::physical::Feature;
 use super::query::{Counter, QueryPool};
+use super::transfer;
 
 /// How a frame is observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +64,17 @@ pub struct PassSample {
     pub counts: Option<Counts>,
 }
 
+/// A stretch of time that a pass took, in milliseconds from the start of recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// Index into [`FrameSample::passes`].
+    pub pass: usize,
+    pub start_ms: f64,
+    pub duration_ms: f64,
+    /// On the GPU: its clock is laid so that the first stamp of a submission falls on the host's moment of submitting.
+    pub on_gpu: bool,
+}
+
 /// What was observed of a frame.
 #[derive(Debug, Clone, Default)]
 pub struct FrameSample {
@@ -70,6 +84,8 @@ pub struct FrameSample {
     pub bracket_ms: Option<f64>,
     /// In the order of first recording.
     pub passes: Vec<PassSample>,
+    /// Each call's stretch of time: host work always, GPU work in a stamped frame.
+    pub spans: Vec<Span>,
 }
 
 /// Queries of one frame; a pass beyond them is reported as not measured.
@@ -139,6 +155,7 @@ impl Recorder {
         record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
     ) -> Result<&FrameSample, E> {
         self.sample.passes.clear();
+        self.sample.spans.clear();
         self.sample.bracket_ms = None;
         let started = Instant::now();
         let mut frame = Frame { recorder: self, mode, submission: 0, started };
@@ -197,7 +214,7 @@ impl Recorder {
         barrier::full(device, self.commands.buffer);
     }
 
-    fn read_stamps(&mut self, mode: Mode) -> Result<(), Error> {
+    fn read_stamps(&mut self, mode: Mode, submitted_ms: f64) -> Result<(), Error> {
         let Some(pool) = &mut self.stamps else { return Ok(()) };
         let (mask, period_ns) = (self.stamp_mask, self.period_ns);
         let difference_ms = |w: &[u64]| (w[1].wrapping_sub(w[0]) & mask) as f64 * period_ns * 1e-6;
@@ -208,8 +225,12 @@ impl Recorder {
             }
             return Ok(());
         }
+        let mut start_ms = submitted_ms;
         for (window, &pass) in stamps.windows(2).zip(&self.intervals) {
-            *self.sample.passes[pass].gpu_ms.get_or_insert(0.0) += difference_ms(window);
+            let duration_ms = difference_ms(window);
+            *self.sample.passes[pass].gpu_ms.get_or_insert(0.0) += duration_ms;
+            self.sample.spans.push(Span { pass, start_ms, duration_ms, on_gpu: true });
+            start_ms += duration_ms;
         }
         Ok(())
     }
@@ -223,7 +244,7 @@ impl Recorder {
         let compute = read(&mut self.compute_counts)?;
         for one in &self.counted {
             let counts = self.sample.passes[one.pass].counts.get_or_insert_with(Counts::default);
-            let mut add = |total: &mut Option<u64>, value: Option<&u64>| {
+            let add = |total: &mut Option<u64>, value: Option<&u64>| {
                 if let Some(value) = value {
                     *total.get_or_insert(0) += value;
                 }
@@ -277,13 +298,14 @@ impl Frame<'_> {
         {
             r.write_stamp(query);
         }
+        let submitted_ms = self.started.elapsed().as_secs_f64() * 1e3;
         let submitted = r.commands.submit_and_wait();
         r.sample.frame_ms = self.started.elapsed().as_secs_f64() * 1e3;
         r.keep.clear();
         submitted?;
         match self.mode {
             Mode::Plain => Ok(()),
-            Mode::Stamped | Mode::Bracketed => r.read_stamps(self.mode),
+            Mode::Stamped | Mode::Bracketed => r.read_stamps(self.mode, submitted_ms),
             Mode::Counted => r.read_counts(),
         }
     }
@@ -370,13 +392,35 @@ impl Frame<'_> {
         })
     }
 
+    /// Records a copy; what the host is to read is made visible to it.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`].
+    pub fn copy(&mut self, pass: &Pass) -> Result<(), Error> {
+        let Body::Copy { from, to } = &pass.inner.body else { return Err(not_a(pass, "copy")) };
+        self.envelope(pass, |device, commands| {
+            transfer::record_copy(&device.raw, commands, from, to);
+            1
+        })?;
+        if to.is_readback() {
+            let r = &mut *self.recorder;
+            let uses = [Use { resource: to.into(), access: Access::HostRead, discard: false }];
+            r.barriers.collect(pass.info().name, &uses)?;
+            r.barriers.record(&r.commands.device, r.commands.buffer);
+        }
+        Ok(())
+    }
+
     /// Runs and times host work that the method needs.
     pub fn host<T>(&mut self, info: &Arc<PassInfo>, work: impl FnOnce() -> T) -> T {
         let at = self.sample_of(info);
         let started = Instant::now();
         let result = work();
+        let duration_ms = started.elapsed().as_secs_f64() * 1e3;
+        let start_ms = (started - self.started).as_secs_f64() * 1e3;
+        self.recorder.sample.spans.push(Span { pass: at, start_ms, duration_ms, on_gpu: false });
         let sample = &mut self.recorder.sample.passes[at];
-        *sample.host_ms.get_or_insert(0.0) += started.elapsed().as_secs_f64() * 1e3;
+        *sample.host_ms.get_or_insert(0.0) += duration_ms;
         sample.calls += 1;
         result
     }
@@ -414,14 +458,15 @@ impl Recorder {
     fn bind(&self, inner: &Inner) {
         let point = match inner.body {
             Body::Graphics { .. } => vk::PipelineBindPoint::GRAPHICS,
-            Body::Compute => vk::PipelineBindPoint::COMPUTE,
+            Body::Compute | Body::Copy { .. } => vk::PipelineBindPoint::COMPUTE,
         };
+        let Some(pipeline) = &inner.pipeline else { return };
         let raw = &self.commands.device.raw;
         // SAFETY: recording; pipeline, layout and set belong together and are kept by the frame.
         unsafe {
-            raw.cmd_bind_pipeline(self.commands.buffer, point, inner.pipeline.raw);
+            raw.cmd_bind_pipeline(self.commands.buffer, point, pipeline.raw);
             if let Some(bindings) = &inner.bindings {
-                let layout = inner.pipeline.program.layout;
+                let layout = pipeline.program.layout;
                 raw.cmd_bind_descriptor_sets(self.commands.buffer, point, layout, 0, &[bindings.set], &[]);
             }
         }
@@ -435,7 +480,7 @@ impl Recorder {
             pass,
             samples: take(&mut self.samples_passed, is_graphics),
             graphics: take(&mut self.graphics_counts, is_graphics),
-            compute: take(&mut self.compute_counts, !is_graphics),
+            compute: take(&mut self.compute_counts, matches!(inner.body, Body::Compute)),
         };
         self.each_counter(&counted, |raw, commands, pool, query| {
             let flags = if pool.1 { vk::QueryControlFlags::PRECISE } else { vk::QueryControlFlags::empty() };
@@ -550,7 +595,8 @@ impl Dispatch<'_> {
 }
 
 fn push(device: &Device, commands: vk::CommandBuffer, inner: &Inner, bytes: &[u8]) {
-    let program = &inner.pipeline.program;
+    let Some(pipeline) = &inner.pipeline else { return };
+    let program = &pipeline.program;
     // The host struct may carry its alignment's tail; the block's own size is what the layout declares.
     let bytes = &bytes[..bytes.len().min(program.push_bytes as usize)];
     // SAFETY: the build of the pass checked the struct against the block; the range was declared in the layout.

@@ -34,7 +34,7 @@ pub use access::{Access, Stages};
 pub use buffer::{Buffer, BufferDesc, BufferView, Location};
 pub use device::Device;
 pub use error::Error;
-pub use frame::{Counts, Dispatch, Draw, Frame, FrameSample, Mode, PassSample, Recorder};
+pub use frame::{Counts, Dispatch, Draw, Frame, FrameSample, Mode, PassSample, Recorder, Span};
 pub use image::{Image, ImageDesc, ImageView, Sampler};
 pub use instance::Instance;
 pub use pass::{Pass, PassInfo, PassKind};

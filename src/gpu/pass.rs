@@ -81,7 +81,8 @@ pub struct Pass {
 
 pub(crate) struct Inner {
     pub info: Arc<PassInfo>,
-    pub pipeline: Arc<Pipeline>,
+    /// `None` for a copy.
+    pub pipeline: Option<Arc<Pipeline>>,
     pub bindings: Option<Arc<Bindings>>,
     pub uses: Vec<Use>,
     pub body: Body,
@@ -98,6 +99,10 @@ pub(crate) enum Body {
         indices: Option<BufferView>,
     },
     Compute,
+    Copy {
+        from: Resource,
+        to: Arc<Buffer>,
+    },
 }
 
 /// Everything that the builder was told; kept so that a pass can be said again about other resources.
@@ -135,6 +140,29 @@ impl Pass {
         Self::builder(name, section, vec![shader.to_owned()])
     }
 
+    /// A pass that copies `from`, a view of an image or a buffer, into `to`, texels tightly packed. A buffer that the
+    /// host reads back is made visible to it.
+    pub fn copy(name: &'static str, section: &'static str, from: impl Into<Resource>, to: &Arc<Buffer>) -> Pass {
+        let from = from.into();
+        let uses = vec![
+            Use { resource: from.clone(), access: Access::CopySource, discard: false },
+            Use { resource: to.into(), access: Access::CopyDestination, discard: true },
+        ];
+        let info = Arc::new(PassInfo {
+            name,
+            section,
+            kind: PassKind::Transfer,
+            shaders: Vec::new(),
+            reads: vec![from.name().to_owned()],
+            writes: vec![to.name().to_owned()],
+            blend: Vec::new(),
+            depth: None,
+            compiler: None,
+        });
+        let sentence = Self::builder(name, section, Vec::new()).sentence;
+        Pass { inner: Arc::new(Inner { info, pipeline: None, bindings: None, uses, body: Body::Copy { from, to: to.clone() }, sentence }) }
+    }
+
     fn builder(name: &'static str, section: &'static str, shaders: Vec<String>) -> PassBuilder {
         PassBuilder {
             sentence: Sentence {
@@ -158,7 +186,7 @@ impl Pass {
 
     /// Threads of a workgroup, for a compute pass.
     pub(crate) fn local_size(&self) -> [u32; 3] {
-        let module = self.inner.pipeline.program.modules.first();
+        let module = self.inner.pipeline.as_ref().and_then(|p| p.program.modules.first());
         module.and_then(|m| m.interface.local_size).unwrap_or([1, 1, 1])
     }
 
@@ -299,13 +327,16 @@ impl Again {
     /// As [`PassBuilder::build`].
     pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
         let render_pass = match &self.pass.inner.body {
-            Body::Compute => None,
+            Body::Compute | Body::Copy { .. } => None,
             // Load operations alone may differ, which keeps the new render pass compatible with the pipeline.
             Body::Graphics { .. } => {
                 Some(RenderPass::new(shaders.device(), self.sentence.name, &self.sentence.targets)?)
             }
         };
-        finish(shaders.device(), self.sentence, self.pass.inner.pipeline.clone(), render_pass)
+        let Some(pipeline) = self.pass.inner.pipeline.clone() else {
+            return Err(Error::Pass { pass: self.sentence.name.into(), problem: "a copy is not said again".into() });
+        };
+        finish(shaders.device(), self.sentence, pipeline, render_pass)
     }
 }
 
@@ -337,7 +368,7 @@ fn finish(
     };
     check_conflicts(sentence.name, &uses)?;
     let info = Arc::new(describe(&sentence, &pipeline.program, &uses));
-    Ok(Pass { inner: Arc::new(Inner { info, pipeline, bindings, uses, body, sentence }) })
+    Ok(Pass { inner: Arc::new(Inner { info, pipeline: Some(pipeline), bindings, uses, body, sentence }) })
 }
 
 fn add_fixed_function_uses(sentence: &Sentence, uses: &mut Vec<Use>) {

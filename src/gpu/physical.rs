@@ -54,10 +54,12 @@ pub enum Feature {
     PreciseOcclusion,
     /// Time stamps on the graphics and compute queue.
     Timestamps,
+    /// `maintenance4` of Vulkan 1.3: a stage may write what the next does not read.
+    Maintenance4,
 }
 
 impl Feature {
-    pub const ALL: [Feature; 11] = [
+    pub const ALL: [Feature; 12] = [
         Feature::Synchronization2,
         Feature::HostQueryReset,
         Feature::IndependentBlend,
@@ -69,6 +71,7 @@ impl Feature {
         Feature::PipelineStatistics,
         Feature::PreciseOcclusion,
         Feature::Timestamps,
+        Feature::Maintenance4,
     ];
 
     /// The name that the capability report and the error messages use.
@@ -85,6 +88,7 @@ impl Feature {
             Feature::PipelineStatistics => "pipeline-statistics",
             Feature::PreciseOcclusion => "precise-occlusion",
             Feature::Timestamps => "timestamps",
+            Feature::Maintenance4 => "maintenance4",
         }
     }
 }
@@ -230,6 +234,7 @@ fn supported_features(
         Feature::FragmentStores => core.fragment_stores_and_atomics == vk::TRUE,
         Feature::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
         Feature::PreciseOcclusion => core.occlusion_query_precise == vk::TRUE,
+        Feature::Maintenance4 => v13.maintenance4 == vk::TRUE,
         Feature::Timestamps => queue.is_some_and(|(_, bits)| bits > 0),
     };
     Feature::ALL.into_iter().filter(|f| has(f)).collect()

@@ -125,7 +125,7 @@ impl Pipeline {
             Some(test) => vk::PipelineDepthStencilStateCreateInfo::default()
                 .depth_test_enable(true)
                 .depth_write_enable(test == DepthTest::LessWrite)
-                .depth_compare_op(vk::CompareOp::LESS),
+                .depth_compare_op(test.compare()),
         };
         let blends: Vec<_> = targets.colors.iter().map(|(_, blend)| blend.state()).collect();
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);

@@ -75,6 +75,8 @@ pub enum DepthTest {
     LessWrite,
     /// Nearer fragments pass; nothing is written.
     LessReadOnly,
+    /// Fragments of the depth that is there pass; nothing is written.
+    EqualReadOnly,
 }
 
 impl DepthTest {
@@ -82,13 +84,21 @@ impl DepthTest {
         match self {
             DepthTest::LessWrite => "less, write",
             DepthTest::LessReadOnly => "less, read only",
+            DepthTest::EqualReadOnly => "equal, read only",
+        }
+    }
+
+    pub(crate) fn compare(self) -> vk::CompareOp {
+        match self {
+            DepthTest::LessWrite | DepthTest::LessReadOnly => vk::CompareOp::LESS,
+            DepthTest::EqualReadOnly => vk::CompareOp::EQUAL,
         }
     }
 
     pub(crate) fn access(self) -> Access {
         match self {
             DepthTest::LessWrite => Access::DepthTarget,
-            DepthTest::LessReadOnly => Access::DepthReadOnly,
+            DepthTest::LessReadOnly | DepthTest::EqualReadOnly => Access::DepthReadOnly,
         }
     }
 }

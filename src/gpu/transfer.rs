@@ -32,11 +32,7 @@ pub fn upload(
         Use { resource: (&staging).into(), access: Access::CopySource, discard: false },
         Use { resource: (&buffer).into(), access: Access::CopyDestination, discard: true },
     ];
-    once(device, "upload", &uses, |raw, commands| {
-        let region = vk::BufferCopy::default().size(size_bytes);
-        // SAFETY: recording; both buffers are at least `size_bytes` long and outlive the submission.
-        unsafe { raw.cmd_copy_buffer(commands, staging.raw, buffer.raw, &[region]) };
-    })?;
+    once(device, "upload", &uses, |raw, commands| record_copy(raw, commands, &uses[0].resource, &buffer))?;
     Ok(buffer)
 }
 
@@ -45,18 +41,7 @@ pub fn upload(
 /// # Errors
 /// [`Error::ReadBeforeWrite`] when no pass has written it; what Vulkan answers.
 pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>, Error> {
-    let size_bytes = buffer.size_bytes();
-    let target = readback(device, buffer.name(), size_bytes)?;
-    let uses = [
-        Use { resource: buffer.into(), access: Access::CopySource, discard: false },
-        Use { resource: (&target).into(), access: Access::CopyDestination, discard: true },
-    ];
-    once(device, "readback", &uses, |raw, commands| {
-        let region = vk::BufferCopy::default().size(size_bytes);
-        // SAFETY: recording; both buffers have `size_bytes` and outlive the submission.
-        unsafe { raw.cmd_copy_buffer(commands, buffer.raw, target.raw, &[region]) };
-    })?;
-    target.read(size_bytes, <[u8]>::to_vec)
+    read(device, buffer.into(), buffer.size_bytes())
 }
 
 /// Reads the texels of a view back: layers, then rows, then columns, tightly packed.
@@ -64,33 +49,46 @@ pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>
 /// # Errors
 /// [`Error::ReadBeforeWrite`] when no pass has written it; what Vulkan answers.
 pub fn read_image(device: &Arc<Device>, view: &Arc<ImageView>) -> Result<Vec<u8>, Error> {
-    let image: &Arc<Image> = view.image();
     let layer_count = view.layers.end - view.layers.start;
     let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(layer_count);
-    let size_bytes = texels * texel_bytes(image)?;
-    let target = readback(device, image.name(), size_bytes)?;
+    read(device, view.into(), texels * texel_bytes(view.image())?)
+}
+
+fn read(device: &Arc<Device>, from: Resource, size_bytes: u64) -> Result<Vec<u8>, Error> {
+    let desc = BufferDesc::new(format!("{} readback", from.name()), size_bytes).location(Location::Readback);
+    let target = Buffer::new(device, desc)?;
     let uses = [
-        Use { resource: view.into(), access: Access::CopySource, discard: false },
+        Use { resource: from, access: Access::CopySource, discard: false },
         Use { resource: (&target).into(), access: Access::CopyDestination, discard: true },
     ];
-    once(device, "readback", &uses, |raw, commands| {
-        let region = vk::BufferImageCopy::default()
-            .image_subresource(
-                vk::ImageSubresourceLayers::default()
-                    .aspect_mask(image.aspect())
-                    .base_array_layer(view.layers.start)
-                    .layer_count(layer_count),
-            )
-            .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
-        let layout = Access::CopySource.words().layout;
-        // SAFETY: recording; the image is in that layout by the barrier, the buffer holds every texel.
-        unsafe { raw.cmd_copy_image_to_buffer(commands, image.raw, layout, target.raw, &[region]) };
-    })?;
+    once(device, "readback", &uses, |raw, commands| record_copy(raw, commands, &uses[0].resource, &target))?;
     target.read(size_bytes, <[u8]>::to_vec)
 }
 
-fn readback(device: &Arc<Device>, name: &str, size_bytes: u64) -> Result<Arc<Buffer>, Error> {
-    Buffer::new(device, BufferDesc::new(format!("{name} readback"), size_bytes).location(Location::Readback))
+/// Records a copy of all of `from` to the start of `to`, texels tightly packed. The barriers are the caller's.
+pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: &Resource, to: &Buffer) {
+    match from {
+        Resource::Buffer(view) => {
+            let size = (view.range.end - view.range.start).min(to.size_bytes());
+            let region = vk::BufferCopy::default().src_offset(view.range.start).size(size);
+            // SAFETY: recording; the region lies inside both buffers, which outlive the submission.
+            unsafe { raw.cmd_copy_buffer(commands, view.buffer.raw, to.raw, &[region]) };
+        }
+        Resource::Image(view) => {
+            let subresource = vk::ImageSubresourceLayers::default()
+                .aspect_mask(view.image.aspect())
+                .base_array_layer(view.layers.start)
+                .layer_count(view.layers.end - view.layers.start);
+            let region = vk::BufferImageCopy::default()
+                .image_subresource(subresource)
+                .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
+            let layout = Access::CopySource.words().layout;
+            // SAFETY: recording; the image is in that layout by its barrier, and whoever made `to` sized it for the
+            // view's texels; both outlive the submission.
+            unsafe { raw.cmd_copy_image_to_buffer(commands, view.image.raw, layout, to.raw, &[region]) };
+        }
+        Resource::Sampler(_) => {}
+    }
 }
 
 /// Records one piece of work between its barriers, submits it and waits. What a copy writes for the host is made

@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! Record --> console (String)     json (String, and back)     csv (String)
-//! trace::Run --> trace (String)   plot::LineChart, plot::BarChart --> SVG (String)
+//! TraceRun --> trace (String)   plot::LineChart, plot::BarChart --> SVG (String)
 //! any text --> output::write (temporary file, renamed)
 //! ```
 

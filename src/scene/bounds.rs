@@ -8,18 +8,15 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds of no points at all: `min` is +infinity, `max` -infinity. It is neutral under [`Bounds::union`].
-    pub const EMPTY: Self = Self {
-        min: Vec3::INFINITY,
-        max: Vec3::NEG_INFINITY,
-    };
+    /// The bounds of no points at all: `min` is +infinity, `max` -infinity. It is neutral under
+    /// [`Bounds::union`].
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The smallest box around `points`; [`Bounds::EMPTY`] without any.
     pub fn of_points(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, point| Self {
-            min: bounds.min.min(point),
-            max: bounds.max.max(point),
-        })
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |bounds, point| Self { min: bounds.min.min(point), max: bounds.max.max(point) })
     }
 
     /// True for a box that holds no point.
@@ -35,7 +32,8 @@ impl Bounds {
         self.min * 0.5 + self.max * 0.5
     }
 
-    /// The vector from `min` to `max`; its length is the diameter of the box. Zero when the box is empty.
+    /// The vector from `min` to `max`; its length is the diameter of the box. Zero when the box is
+    /// empty.
     pub fn diagonal(&self) -> Vec3 {
         if self.is_empty() {
             return Vec3::ZERO;
@@ -45,10 +43,7 @@ impl Bounds {
 
     /// The smallest box around both.
     pub fn union(&self, other: &Self) -> Self {
-        Self {
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
-        }
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// True for a point inside the box or on its surface.

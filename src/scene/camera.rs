@@ -22,7 +22,8 @@ pub struct Camera {
 impl Camera {
     /// World to view: the camera at the origin, looking along -Z, +Y up.
     ///
-    /// Where `up` is parallel to the view, as when looking straight down, -Z or else +Y takes its place.
+    /// Where `up` is parallel to the view, as when looking straight down, -Z or else +Y takes its
+    /// place.
     pub fn view(&self) -> Mat4 {
         let forward = (self.target - self.eye).normalize_or(Vec3::NEG_Z);
         let up = [self.up.normalize_or_zero(), Vec3::NEG_Z, Vec3::Y]
@@ -49,16 +50,11 @@ impl Camera {
             return fault("eye, target and up must be finite numbers".to_owned());
         }
         if (self.target - self.eye).normalize_or_zero() == Vec3::ZERO {
-            return fault(format!(
-                "eye and target are both {}; move one of them",
-                self.eye
-            ));
+            return fault(format!("eye and target are both {}; move one of them", self.eye));
         }
         if !(self.vertical_fov_rad > 0.0 && self.vertical_fov_rad < std::f32::consts::PI) {
             let fov_deg = self.vertical_fov_rad.to_degrees();
-            return fault(format!(
-                "the vertical field of view is {fov_deg} degrees; it must lie between 0 and 180"
-            ));
+            return fault(format!("the vertical field of view is {fov_deg} degrees; it must lie between 0 and 180"));
         }
         if !(self.near_m > 0.0 && self.far_m > self.near_m && self.far_m.is_finite()) {
             return fault(format!(
@@ -88,7 +84,8 @@ mod tests {
     #[test]
     fn clip_space_is_that_of_vulkan() {
         let clip = |point: Vec3| (camera().projection(2.0) * camera().view()).project_point3(point);
-        // At a field of view of 90 degrees the half height equals the distance, and the half width twice that.
+        // At a field of view of 90 degrees the half height equals the distance, and the half width
+        // twice that.
         assert!(clip(Vec3::new(0.0, 5.0, 0.0)).abs_diff_eq(clip(Vec3::Y * 5.0), 1e-6));
         assert!((clip(Vec3::new(0.0, 5.0, 0.0)).y + 1.0).abs() < 1e-6);
         assert!((clip(Vec3::new(10.0, 0.0, 0.0)).x - 1.0).abs() < 1e-6);
@@ -98,10 +95,7 @@ mod tests {
 
     #[test]
     fn looking_along_up_gives_a_usable_view() {
-        let down = Camera {
-            eye: Vec3::Y * 3.0,
-            ..camera()
-        };
+        let down = Camera { eye: Vec3::Y * 3.0, ..camera() };
         let view = down.view();
         assert!(view.is_finite());
         assert!((view.transform_point3(Vec3::ZERO) - Vec3::new(0.0, 0.0, -3.0)).length() < 1e-6);

@@ -10,20 +10,12 @@ pub enum Error {
     #[error("cannot read {}: it is not a regular file; name a mesh file", path.display())]
     NotAFile { path: PathBuf },
     #[error("cannot load mesh {}: unknown file ending {ending:?}; known endings are {known}", path.display())]
-    UnknownEnding {
-        path: PathBuf,
-        ending: String,
-        known: String,
-    },
+    UnknownEnding { path: PathBuf, ending: String, known: String },
     #[error(
         "cannot read {}: its {size_bytes} bytes exceed the limit of {limit_bytes}; split or simplify the mesh",
         path.display()
     )]
-    TooLarge {
-        path: PathBuf,
-        size_bytes: u64,
-        limit_bytes: u64,
-    },
+    TooLarge { path: PathBuf, size_bytes: u64, limit_bytes: u64 },
     #[error("cannot load mesh {}: {fault}", path.display())]
     Malformed { path: PathBuf, fault: Fault },
     #[error("cannot use the camera: {reason}")]
@@ -56,15 +48,12 @@ pub enum Place {
 
 impl Fault {
     pub(super) fn new(place: Place, reason: impl Into<String>) -> Self {
-        Self {
-            place,
-            reason: reason.into(),
-        }
+        Self { place, reason: reason.into() }
     }
 
     /// A fault reported by a format library, whose messages may span lines and quote whole files.
     pub(super) fn foreign(place: Place, error: &impl fmt::Display) -> Self {
-        const LONGEST: usize = 200;
+        const LONGEST: usize = 400;
         let text = error.to_string();
         let mut reason = text
             .lines()
@@ -100,10 +89,10 @@ mod tests {
 
     #[test]
     fn foreign_messages_become_one_short_line() {
-        let message = format!("bad\n\tString: 'x'\n\tError: {}\u{7}", "y".repeat(500));
+        let message = format!("bad\n\tString: 'x'\n\tError: {}\u{7}", "y".repeat(1_000));
         let fault = Fault::foreign(Place::Line(3), &message);
         let shown = fault.to_string();
         assert!(shown.starts_with("line 3: bad; Error: yyy"), "{shown}");
-        assert!(shown.chars().count() < 220 && !shown.contains(char::is_control));
+        assert!(shown.chars().count() < 420 && !shown.contains(char::is_control));
     }
 }

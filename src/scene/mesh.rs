@@ -4,7 +4,8 @@ use glam::{Mat4, Vec2, Vec3};
 
 /// An indexed triangle mesh, counter-clockwise triangles facing out.
 ///
-/// Meshes from [`crate::scene::MeshSource::load`] and [`crate::scene::shapes`] pass [`Mesh::validate`].
+/// Meshes from [`crate::scene::MeshSource::load`] and [`crate::scene::shapes`] pass
+/// [`Mesh::validate`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
     /// The shape's name or the file's name without its ending.
@@ -29,27 +30,21 @@ impl Mesh {
         Bounds::of_points(self.positions.iter().copied())
     }
 
-    /// The mesh with positions and normals in the space that `transform`, an affine matrix, leads to.
+    /// The mesh with positions and normals in the space that `transform`, an affine matrix, leads
+    /// to.
     ///
     /// Triangles still face out after a reflection: their winding is reversed.
     pub fn transformed(&self, transform: &Mat4) -> Self {
         let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.truncate());
-        // The cofactor matrix is the inverse transpose up to the determinant, and exists for singular matrices too.
+        // The cofactor matrix is the inverse transpose up to the determinant, and exists for
+        // singular matrices too.
         let cofactor = glam::Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
         let reflects = x.dot(y.cross(z)) < 0.0;
         let sign = if reflects { -1.0 } else { 1.0 };
         let mut mesh = Self {
             name: self.name.clone(),
-            positions: self
-                .positions
-                .iter()
-                .map(|p| transform.transform_point3(*p))
-                .collect(),
-            normals: self
-                .normals
-                .iter()
-                .map(|n| (cofactor * *n * sign).normalize_or_zero())
-                .collect(),
+            positions: self.positions.iter().map(|p| transform.transform_point3(*p)).collect(),
+            normals: self.normals.iter().map(|n| (cofactor * *n * sign).normalize_or_zero()).collect(),
             texture_coordinates: self.texture_coordinates.clone(),
             indices: self.indices.clone(),
         };
@@ -71,7 +66,8 @@ impl Mesh {
         self.normals = normals::smooth(&self.positions, &self.indices);
     }
 
-    /// Checks what the field descriptions promise, and that at least one triangle has a positive area.
+    /// Checks what the field descriptions promise, and that at least one triangle has a positive
+    /// area.
     ///
     /// # Errors
     /// The first violation, with the number of its vertex or triangle.
@@ -82,16 +78,16 @@ impl Mesh {
             let reason = format!("{normals} normals for {positions} positions");
             return Err(Fault::new(Place::Whole, reason));
         }
-        let not_unit = |n: &Vec3| !((n.length_squared() - 1.0).abs() < 1e-3);
-        if let Some(vertex) = self.normals.iter().position(not_unit) {
+        let is_unit = |n: &Vec3| (n.length_squared() - 1.0).abs() < 1e-3;
+        if let Some(vertex) = self.normals.iter().position(|normal| !is_unit(normal)) {
             let reason = format!("the normal {} is not of unit length", self.normals[vertex]);
             return Err(Fault::new(Place::Vertex(vertex), reason));
         }
         check_texture_coordinates(&self.texture_coordinates, self.positions.len())
     }
 
-    /// A valid mesh from what a file gives: normals may be absent (empty) or, one by one, zero or not finite, and are
-    /// then computed.
+    /// A valid mesh from what a file gives: normals may be absent (empty) or, one by one, zero or
+    /// not finite, and are then computed.
     pub(super) fn from_file(
         positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -112,23 +108,15 @@ impl Mesh {
                 }
             }
         }
-        Ok(Self {
-            name: String::new(),
-            positions,
-            normals,
-            texture_coordinates,
-            indices,
-        })
+        Ok(Self { name: String::new(), positions, normals, texture_coordinates, indices })
     }
 }
 
-/// Every coordinate of every position must be finite, and there must not be more than 32-bit indices can name.
+/// Every coordinate of every position must be finite, and there must not be more than 32-bit
+/// indices can name.
 pub(super) fn check_positions(positions: &[Vec3]) -> Result<(), Fault> {
     if positions.len() >= u32::MAX as usize || positions.is_empty() {
-        let reason = format!(
-            "{} vertices; a mesh needs from 1 to 4294967294",
-            positions.len()
-        );
+        let reason = format!("{} vertices; a mesh needs from 1 to 4294967294", positions.len());
         return Err(Fault::new(Place::Whole, reason));
     }
     match positions.iter().position(|position| !position.is_finite()) {
@@ -143,19 +131,12 @@ pub(super) fn check_positions(positions: &[Vec3]) -> Result<(), Fault> {
 fn check_geometry(positions: &[Vec3], indices: &[u32]) -> Result<(), Fault> {
     check_positions(positions)?;
     if !indices.len().is_multiple_of(3) || indices.len() > u32::MAX as usize {
-        let reason = format!(
-            "{} indices; they must be a multiple of three below 2^32",
-            indices.len()
-        );
+        let reason = format!("{} indices; they must be a multiple of three below 2^32", indices.len());
         return Err(Fault::new(Place::Whole, reason));
     }
     let beyond = |&index: &u32| index as usize >= positions.len();
     if let Some(corner) = indices.iter().position(beyond) {
-        let reason = format!(
-            "it names vertex {}, but there are {}",
-            indices[corner],
-            positions.len()
-        );
+        let reason = format!("it names vertex {}, but there are {}", indices[corner], positions.len());
         return Err(Fault::new(Place::Face(corner / 3), reason));
     }
     let has_area = |corners: &[u32]| {
@@ -163,10 +144,8 @@ fn check_geometry(positions: &[Vec3], indices: &[u32]) -> Result<(), Fault> {
         normals::double_area_vector(a, b, c) != glam::DVec3::ZERO
     };
     if !indices.chunks_exact(3).any(has_area) {
-        let reason = format!(
-            "none of its {} triangles has a positive area; a mesh needs at least one",
-            indices.len() / 3
-        );
+        let reason =
+            format!("none of its {} triangles has a positive area; a mesh needs at least one", indices.len() / 3);
         return Err(Fault::new(Place::Whole, reason));
     }
     Ok(())
@@ -174,18 +153,12 @@ fn check_geometry(positions: &[Vec3], indices: &[u32]) -> Result<(), Fault> {
 
 fn check_texture_coordinates(coordinates: &[Vec2], vertex_count: usize) -> Result<(), Fault> {
     if !coordinates.is_empty() && coordinates.len() != vertex_count {
-        let reason = format!(
-            "{} texture coordinates for {vertex_count} positions",
-            coordinates.len()
-        );
+        let reason = format!("{} texture coordinates for {vertex_count} positions", coordinates.len());
         return Err(Fault::new(Place::Whole, reason));
     }
     match coordinates.iter().position(|uv| !uv.is_finite()) {
         Some(vertex) => {
-            let reason = format!(
-                "the texture coordinate {} is not finite",
-                coordinates[vertex]
-            );
+            let reason = format!("the texture coordinate {} is not finite", coordinates[vertex]);
             Err(Fault::new(Place::Vertex(vertex), reason))
         }
         None => Ok(()),
@@ -218,9 +191,8 @@ mod tests {
 
     #[test]
     fn a_sheared_normal_stays_perpendicular_to_its_face() {
-        let shear = Mat4::from_cols_array(&[
-            1.0, 0.0, 0.0, 0.0, 0.8, 1.0, 0.0, 0.0, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
-        ]);
+        let shear =
+            Mat4::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 0.8, 1.0, 0.0, 0.0, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         let mesh = shapes::cuboid().transformed(&shear);
         for corners in mesh.indices.chunks_exact(3) {
             let [a, b] = [0, 1].map(|i| mesh.positions[corners[i] as usize]);
@@ -241,10 +213,7 @@ mod tests {
         assert_eq!(faulty(|m| m.indices[4] = 24).place, Place::Face(1));
         assert_eq!(faulty(|m| m.normals[5] *= 2.0).place, Place::Vertex(5));
         assert_eq!(faulty(|m| m.normals[5].x = f32::NAN).place, Place::Vertex(5));
-        assert_eq!(
-            faulty(|m| m.texture_coordinates[7].x = f32::INFINITY).place,
-            Place::Vertex(7)
-        );
+        assert_eq!(faulty(|m| m.texture_coordinates[7].x = f32::INFINITY).place, Place::Vertex(7));
         for change in [
             |m: &mut Mesh| m.indices.clear(),
             |m: &mut Mesh| m.indices.truncate(4),
@@ -261,10 +230,7 @@ mod tests {
     fn missing_zero_and_broken_normals_are_computed() {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let given = [Vec3::NAN, Vec3::ZERO, Vec3::new(0.0, 3.0, 0.0)];
-        for (normals, expected) in [
-            (vec![], [Vec3::Z; 3]),
-            (given.to_vec(), [Vec3::Z, Vec3::Z, Vec3::Y]),
-        ] {
+        for (normals, expected) in [(vec![], [Vec3::Z; 3]), (given.to_vec(), [Vec3::Z, Vec3::Z, Vec3::Y])] {
             let mesh = Mesh::from_file(positions.clone(), normals, vec![], vec![0, 1, 2]).unwrap();
             assert_eq!(mesh.normals, expected);
             mesh.validate().unwrap();

@@ -1,7 +1,8 @@
 //! What is rendered, on the CPU only: meshes, cameras, lights and seeded random numbers.
 //!
-//! The world is right handed with +Y up. A [`MeshSource`] is what a user types (a built-in shape or a file);
-//! [`MeshSource::load`] turns it into a checked [`Mesh`] or an [`Error`] that names the file and the place in it.
+//! The world is right handed with +Y up. A [`MeshSource`] is what a user types (a built-in shape or
+//! a file); [`MeshSource::load`] turns it into a checked [`Mesh`] or an [`Error`] that names the
+//! file and the place in it.
 
 mod bounds;
 mod camera;

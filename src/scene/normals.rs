@@ -1,7 +1,8 @@
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
-/// Numbers points so that equal positions share a number. Numbers are given in the order of first use.
+/// Numbers points so that equal positions share a number. Numbers are given in the order of first
+/// use.
 #[derive(Default)]
 pub(super) struct Weld(HashMap<[u32; 3], u32>);
 
@@ -18,8 +19,9 @@ impl Weld {
 
 /// Area-weighted vertex normals of a triangle list, in single precision and of unit length.
 ///
-/// Vertices at one position share a normal, so that seams of texture coordinates stay smooth. A vertex that no triangle
-/// of positive area touches gets +Y. Positions must be finite and indices in range.
+/// Vertices at one position share a normal, so that seams of texture coordinates stay smooth. A
+/// vertex that no triangle of positive area touches gets +Y. Positions must be finite and indices
+/// in range.
 pub(super) fn smooth(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
     let mut weld = Weld::default();
     let points: Vec<u32> = positions.iter().map(|p| weld.number(*p).0).collect();
@@ -31,13 +33,11 @@ pub(super) fn smooth(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
             sums[points[corner] as usize] += area_vector;
         }
     }
-    points
-        .iter()
-        .map(|&point| sums[point as usize].normalize_or(DVec3::Y).as_vec3())
-        .collect()
+    points.iter().map(|&point| sums[point as usize].normalize_or(DVec3::Y).as_vec3()).collect()
 }
 
-/// The normal of a triangle scaled by twice its area, in double precision so that no finite input overflows.
+/// The normal of a triangle scaled by twice its area, in double precision so that no finite input
+/// overflows.
 pub(super) fn double_area_vector(a: Vec3, b: Vec3, c: Vec3) -> DVec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     (b - a).cross(c - a)
@@ -49,7 +49,8 @@ mod tests {
 
     #[test]
     fn a_seam_of_doubled_vertices_is_smooth_and_weighted_by_area() {
-        // Two faces at a right angle share the edge x = z = 0; the second is three times as large as the first.
+        // Two faces at a right angle share the edge x = z = 0; the second is three times as large
+        // as the first.
         let positions = [
             Vec3::new(0.0, 0.0, 0.0),
             Vec3::new(1.0, 0.0, 0.0),

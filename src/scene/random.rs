@@ -16,7 +16,8 @@ impl Random {
         Self::with_stream(seed, 0)
     }
 
-    /// One of 2^63 independent generators of the same seed, so that each particle system or noise layer can own one.
+    /// One of 2^63 independent generators of the same seed, so that each particle system or noise
+    /// layer can own one.
     pub fn with_stream(seed: u64, stream: u64) -> Self {
         Self(Pcg32::new(seed, stream))
     }
@@ -31,7 +32,8 @@ impl Random {
         (self.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
 
-    /// Uniform in [`low`, `high`], for finite bounds in either order. `high` can appear only through rounding.
+    /// Uniform in [`low`, `high`], for finite bounds in either order. `high` can appear only
+    /// through rounding.
     pub fn range(&mut self, low: f32, high: f32) -> f32 {
         let t = self.unit();
         low * (1.0 - t) + high * t
@@ -40,11 +42,7 @@ impl Random {
     /// A unit vector, uniform on the sphere.
     pub fn direction(&mut self) -> Vec3 {
         loop {
-            let point = Vec3::new(
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-            );
+            let point = Vec3::new(self.range(-1.0, 1.0), self.range(-1.0, 1.0), self.range(-1.0, 1.0));
             let length_squared = point.length_squared();
             if (1e-6..=1.0).contains(&length_squared) {
                 return point / length_squared.sqrt();
@@ -83,10 +81,7 @@ mod tests {
             bins[(value * 10.0) as usize] += 1;
         }
         // 10,000 expected, standard deviation 95.
-        assert!(
-            bins.iter().all(|&count| (9_500..10_500).contains(&count)),
-            "{bins:?}"
-        );
+        assert!(bins.iter().all(|&count| (9_500..10_500).contains(&count)), "{bins:?}");
     }
 
     #[test]

@@ -7,7 +7,8 @@ use std::str::FromStr;
 
 /// Where a mesh comes from: one of the built-in shapes or a file.
 ///
-/// As text: `teapot`, `sphere`, `box` or `plane`; anything else is a path, so that a file named `box` is `./box`.
+/// As text: `teapot`, `sphere`, `box` or `plane`; anything else is a path, so that a file named
+/// `box` is `./box`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum MeshSource {
     /// [`shapes::teapot`].
@@ -26,7 +27,8 @@ impl MeshSource {
     /// Builds the shape or reads the file.
     ///
     /// # Errors
-    /// For files only: one that cannot be read, has an unknown ending, is malformed, or holds no triangle.
+    /// For files only: one that cannot be read, has an unknown ending, is malformed, or holds no
+    /// triangle.
     pub fn load(&self) -> Result<Mesh, Error> {
         match self {
             Self::Teapot => Ok(shapes::teapot()),

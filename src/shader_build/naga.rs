@@ -11,6 +11,15 @@ use ::naga::{Module, ShaderStage, TypeInner};
 
 use super::{Diagnostic, Stage};
 
+const DO_WHILE: &str = "naga's `continue` skips the condition of a do-while loop; use `while` or `for`";
+
+/// Text that naga 30.0.1 accepts and translates wrongly, and what to write instead.
+const MISCOMPILED: &[(&str, &str)] = &[
+    ("gl_WorkGroupSize", "naga writes invalid SPIR-V for gl_WorkGroupSize; use a constant"),
+    ("do {", DO_WHILE),
+    ("do{", DO_WHILE),
+];
+
 /// Compiles flattened GLSL 4.50 to SPIR-V 1.5, adding nothing that the source does not say.
 pub fn compile(stage: Stage, text: &str) -> Result<Vec<u32>, Diagnostic> {
     let shader_stage = match stage {
@@ -51,11 +60,10 @@ fn translate(shader_stage: ShaderStage, text: &str) -> Result<Vec<u32>, Diagnost
 
 /// Refuses what naga accepts and translates wrongly.
 fn refuse_miscompiled(module: &Module, text: &str) -> Result<(), Diagnostic> {
-    if let Some(index) = text.lines().position(|line| line.contains("gl_WorkGroupSize")) {
-        return Err(Diagnostic {
-            line: Some(index + 1),
-            message: "naga writes invalid SPIR-V for gl_WorkGroupSize; use a constant".to_owned(),
-        });
+    for (pattern, message) in MISCOMPILED {
+        if let Some(index) = text.lines().position(|line| line.contains(pattern)) {
+            return Err(Diagnostic { line: Some(index + 1), message: (*message).to_owned() });
+        }
     }
     let is_array = |inner: &TypeInner| matches!(inner, TypeInner::Array { .. });
     let nested = module.types.iter().find(|(_, ty)| match ty.inner {

@@ -10,6 +10,9 @@ use spirq::var::Variable;
 use super::interface::{Binding, BindingKind, Block, Format, Interface, Location, Member, Scalar};
 use super::{ReflectError, Stage};
 
+/// First word of every binary.
+pub(super) const SPIRV_MAGIC: u32 = 0x0723_0203;
+
 const HEADER_WORDS: usize = 5;
 
 impl Interface {
@@ -19,8 +22,8 @@ impl Interface {
     /// A binary that is not SPIR-V, has not exactly one entry point, or declares what no shader here
     /// may: 64-bit inputs, input attachments, texel buffers, acceleration structures.
     pub fn reflect(words: &[u32]) -> Result<Interface, ReflectError> {
-        if words.len() < HEADER_WORDS {
-            return Err(refuse("it is shorter than a header; compile the shader again"));
+        if words.len() < HEADER_WORDS || words[0] != SPIRV_MAGIC {
+            return Err(refuse("it does not begin as SPIR-V; compile the shader again"));
         }
         let entry_points =
             ReflectConfig::new().spv(words).ref_all_rscs(true).reflect().map_err(|error| refuse(&error.to_string()))?;
@@ -116,8 +119,12 @@ fn read_binding(variable: &Variable) -> Result<Binding, ReflectError> {
 }
 
 fn read_location(location: u32, name: &str, ty: &Type) -> Result<Location, ReflectError> {
-    let (format, count) = read_format(ty)
-        .ok_or_else(|| refuse(&format!("`{name}` at location {location} is a block or a 64-bit value; declare a variable for each 32-bit scalar or vector")))?;
+    let Some((format, count)) = read_format(ty) else {
+        return Err(refuse(&format!(
+            "`{name}` at location {location} is a block or a 64-bit value; \
+             declare a variable for each 32-bit scalar or vector"
+        )));
+    };
     Ok(Location { location, name: name.to_owned(), format, count })
 }
 

@@ -24,8 +24,8 @@ const FRAME_RESAMPLES: usize = 500;
 const SEED: u64 = 0x66_75_6d_61_72_6f_6c_65;
 
 /// Compares two sides, each with the samples of one measured time per process. Absent when a side has no process, a
-/// process has no samples, or a median is not positive, so that no ratio exists. With one process on a side the interval
-/// knows the noise of frames only.
+/// process has no samples, or a median is not positive, so that no ratio exists. With one process on a side the
+/// interval knows the noise of frames only.
 pub(super) fn estimate(a: &[Vec<f64>], b: &[Vec<f64>]) -> Option<Ratio> {
     let a_log = log_medians(a)?;
     let b_log = log_medians(b)?;
@@ -212,12 +212,17 @@ fn student_t_975(freedom: usize) -> f64 {
     const TABLE: [f64; 10] = [
         12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281,
     ];
-    let z = NORMAL_975;
-    let v = freedom as f64;
-    TABLE.get(freedom.wrapping_sub(1)).copied().unwrap_or(
-        z + (z.powi(3) + z) / (4.0 * v)
-            + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * v * v),
-    )
+    if let Some(tabulated) = TABLE.get(freedom.saturating_sub(1)) {
+        return *tabulated;
+    }
+    let (z, v) = (NORMAL_975, freedom as f64);
+    let terms = [
+        z,
+        (z.powi(3) + z) / 4.0,
+        (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0,
+        (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0,
+    ];
+    terms.iter().rev().fold(0.0, |sum, term| sum / v + term)
 }
 
 #[cfg(test)]

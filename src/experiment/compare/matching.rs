@@ -1,7 +1,8 @@
 //! Which runs of two sides may be compared, and why others may not.
 //!
-//! Two runs are the same configuration when everything that fixes their work is equal: [`fields`]. The device's type must be
-//! equal too. What else may shift a time (driver, CPU, build profile, ...) is a warning, as it may be what is compared.
+//! Two runs are the same configuration when everything that fixes their work is equal: [`fields`]. The device's type
+//! must be equal too. What else may shift a time (driver, CPU, build profile, ...) is a warning, as it may be what is
+//! compared.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Whether B is faster or slower than A, decided from several records a side.
 //!
-//! Runs are matched by what was measured (see [`matching`]); each record, and each process inside one, is one process
-//! of its side. The frame decides: the ratio of its medians B / A has an interval of 95 % (see [`bootstrap`]), and
+//! Runs are matched by what was measured (`matching.rs`); each record, and each process inside one, is one process of
+//! its side. The frame decides: the ratio of its medians B / A has an interval of 95 % (`bootstrap.rs`), and
 //!
 //! - `SAME`: the whole interval lies within [`SAME_MARGIN`] of 1, or both sides hold the very same samples;
 //! - `SLOWER`, `FASTER`: the interval lies above or below 1;

@@ -183,7 +183,8 @@ fn what_was_measured_differently_cannot_be_compared() {
         compare(&[input("a.json", vec![original.clone()])], &[other], None)
     };
     assert!(with(|_| ()).is_ok());
-    let cases: [(&str, fn(&mut Input)); 8] = [
+    type Change = fn(&mut Input);
+    let cases: [(&str, Change); 8] = [
         ("paper is \"gas\"", |b| {
             b.record.runs[0].paper = "lava".into()
         }),

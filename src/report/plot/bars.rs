@@ -1,8 +1,12 @@
 //! Bars: grouped values and histograms.
 
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{PlotError, chart, color, extent, from_zero, padded, render, tick};
+use super::{
+    AXIS, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render, split_legend,
+    tick,
+};
 
 /// Groups of bars from zero, one bar per series in each group, with a legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,24 +47,27 @@ impl BarChart {
             title: self.title.clone(),
         })?);
         render(&self.title, |canvas| {
-            // The first coordinates name the groups, the second place bars inside them.
-            let mut chart = chart(canvas, &self.title)
-                .build_cartesian_2d((0..count).into_segmented(), y.clone())?
-                .set_secondary_coord(0.0..count as f64, y);
+            let names = self.series.iter().map(|series| series.name.as_str());
+            let marks: Vec<_> = names.map(|name| (name, Mark::Patch)).collect();
+            let canvas = split_legend(canvas, &marks)?;
+            let mut chart =
+                chart(&canvas, &self.title).build_cartesian_2d(0.0..count as f64, y.clone())?;
             chart
                 .configure_mesh()
+                .label_style(LABEL)
+                .axis_desc_style(AXIS)
                 .disable_x_mesh()
-                .x_labels(count)
-                .x_label_formatter(&|segment| match segment {
-                    SegmentValue::CenterOf(group) => {
-                        self.groups.get(*group).cloned().unwrap_or_default()
-                    }
-                    SegmentValue::Exact(_) | SegmentValue::Last => String::new(),
-                })
+                .x_labels(0)
                 .y_label_formatter(&|value| tick(*value))
                 .y_desc(&self.y_label)
                 .light_line_style(TRANSPARENT)
                 .draw()?;
+            let centered = Pos::new(HPos::Center, VPos::Top);
+            let name_style = LABEL.into_text_style(&canvas).pos(centered);
+            for (group, name) in self.groups.iter().enumerate() {
+                let (x, y) = chart.backend_coord(&(group as f64 + 0.5, y.start));
+                canvas.draw_text(name, &name_style, (x, y + 8))?;
+            }
             // A fifth of each group's width stays free as the gap to the next.
             let width = 0.8 / self.series.len() as f64;
             for (index, series) in self.series.iter().enumerate() {
@@ -70,17 +77,8 @@ impl BarChart {
                     let top = series.value(group)?;
                     Some(Rectangle::new([(left, 0.0), (left + width, top)], style))
                 });
-                chart
-                    .draw_secondary_series(bars)?
-                    .label(&series.name)
-                    .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 20, y + 5)], style));
+                chart.draw_series(bars)?;
             }
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::UpperRight)
-                .background_style(WHITE.mix(0.8))
-                .border_style(BLACK.mix(0.3))
-                .draw()?;
             Ok(())
         })
     }
@@ -120,6 +118,8 @@ impl Histogram {
                 .build_cartesian_2d(x.clone(), from_zero(0.0..highest))?;
             chart
                 .configure_mesh()
+                .label_style(LABEL)
+                .axis_desc_style(AXIS)
                 .disable_x_mesh()
                 .x_desc(&self.x_label)
                 .y_desc("samples")
@@ -177,6 +177,40 @@ mod tests {
             ..chart
         };
         assert!(matches!(empty.to_svg(), Err(PlotError::NoData { .. })));
+    }
+
+    #[test]
+    fn names_stand_under_the_middle_of_their_bars() {
+        for count in 1..6 {
+            let chart = BarChart {
+                title: String::new(),
+                y_label: String::new(),
+                groups: (0..count).map(|group| format!("group {group}")).collect(),
+                series: vec![BarSeries {
+                    name: String::new(),
+                    values: vec![Some(1.0); count],
+                }],
+            };
+            let svg = chart.to_svg().unwrap();
+            let document = roxmltree::Document::parse(&svg).unwrap();
+            let number = |node: roxmltree::Node, name: &str| -> f64 {
+                node.attribute(name).unwrap().parse().unwrap()
+            };
+            let middles = document
+                .descendants()
+                .filter(|node| node.has_tag_name("rect"))
+                .filter(|node| node.attribute("fill") == Some("#0072B2"))
+                .filter(|node| number(*node, "height") > 50.0)
+                .map(|bar| number(bar, "x") + 0.5 * number(bar, "width"));
+            let names = document
+                .descendants()
+                .filter(|node| node.has_tag_name("text"))
+                .filter(|node| node.text().is_some_and(|t| t.contains("group")))
+                .map(|name| number(name, "x"));
+            let distances: Vec<f64> = middles.zip(names).map(|(bar, name)| bar - name).collect();
+            assert_eq!(distances.len(), count);
+            assert!(distances.iter().all(|d| d.abs() < 2.0), "{distances:?}");
+        }
     }
 
     #[test]

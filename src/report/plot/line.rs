@@ -4,10 +4,12 @@ use std::error::Error;
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
-use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use super::{Canvas, PlotError, chart, color, extent, from_zero, padded, render, tick};
+use super::{
+    AXIS, Canvas, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render,
+    split_legend, tick,
+};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
@@ -91,9 +93,16 @@ impl LineChart {
         Y: AsRangedCoord<Value = f64>,
         Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let mut chart = chart(canvas, &self.title).build_cartesian_2d(x, y)?;
+        let marks = self.series.iter().map(|series| match series.reference {
+            true => (series.name.as_str(), Mark::Dashes),
+            false => (series.name.as_str(), Mark::Line),
+        });
+        let canvas = split_legend(canvas, &marks.collect::<Vec<_>>())?;
+        let mut chart = chart(&canvas, &self.title).build_cartesian_2d(x, y)?;
         chart
             .configure_mesh()
+            .label_style(LABEL)
+            .axis_desc_style(AXIS)
             .x_desc(&self.x_label)
             .y_desc(&self.y_label)
             .x_label_formatter(&|value| tick(*value))
@@ -103,29 +112,13 @@ impl LineChart {
         for (index, (series, points)) in self.series.iter().zip(lines).enumerate() {
             let style = color(index).stroke_width(2);
             let points = points.iter().copied();
-            let drawn = if series.reference {
-                let line = DashedLineSeries::new(points.clone(), 8, 6, style);
-                chart.draw_series(line)?
+            if series.reference {
+                chart.draw_series(DashedLineSeries::new(points.clone(), 8, 6, style))?;
             } else {
-                chart.draw_series(LineSeries::new(points.clone(), style))?
-            };
-            let reference = series.reference;
-            drawn.label(&series.name).legend(move |(x, y)| {
-                let line = [(x, y), (x + 20, y)];
-                if reference {
-                    DashedPathElement::new(line, 8, 4, style).into_dyn()
-                } else {
-                    PathElement::new(line, style).into_dyn()
-                }
-            });
+                chart.draw_series(LineSeries::new(points.clone(), style))?;
+            }
             chart.draw_series(points.map(|point| Circle::new(point, 3, color(index).filled())))?;
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperLeft)
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.3))
-            .draw()?;
         Ok(())
     }
 }

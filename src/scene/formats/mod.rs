@@ -1,6 +1,6 @@
-//! Mesh files. Every reader takes the bytes of a file and gives a valid mesh or the place of the first fault: it checks
-//! the sizes that a header claims against the bytes that are there before it allocates, and checks what the format's
-//! library would panic on before it hands the bytes over.
+//! Mesh files. Every reader takes the bytes of a file and gives a valid mesh or the place of the
+//! first fault: it checks the sizes that a header claims against the bytes that are there before it
+//! allocates, and checks what the format's library would panic on before it hands the bytes over.
 
 mod gltf;
 mod gltf_accessor;
@@ -19,7 +19,8 @@ const MAX_FILE_BYTES: u64 = 4 << 30;
 
 type Parse = fn(bytes: Vec<u8>, directory: &Path) -> Result<Mesh, Fault>;
 
-/// File endings and their readers. A reader may look for further files in the mesh file's directory.
+/// File endings and their readers. A reader may look for further files in the mesh file's
+/// directory.
 const FORMATS: [(&str, Parse); 5] = [
     ("obj", |bytes, _| obj::parse(&bytes)),
     ("ply", |bytes, _| ply::parse(&bytes)),
@@ -28,13 +29,11 @@ const FORMATS: [(&str, Parse); 5] = [
     ("glb", |bytes, directory| gltf::parse(&bytes, directory)),
 ];
 
-/// Reads the mesh at `path` with the reader for its ending, in either case; the mesh takes the file's name.
+/// Reads the mesh at `path` with the reader for its ending, in either case; the mesh takes the
+/// file's name.
 pub(super) fn load(path: &Path) -> Result<Mesh, Error> {
     let ending = path.extension().unwrap_or_default().to_string_lossy();
-    let Some((_, parse)) = FORMATS
-        .iter()
-        .find(|(known, _)| ending.eq_ignore_ascii_case(known))
-    else {
+    let Some((_, parse)) = FORMATS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known)) else {
         return Err(Error::UnknownEnding {
             path: path.to_owned(),
             ending: ending.into_owned(),
@@ -43,44 +42,25 @@ pub(super) fn load(path: &Path) -> Result<Mesh, Error> {
     };
     let bytes = read(path)?;
     let directory = path.parent().unwrap_or(Path::new(""));
-    let mesh = parse(bytes, directory).map_err(|fault| Error::Malformed {
-        path: path.to_owned(),
-        fault,
-    })?;
+    let mesh = parse(bytes, directory).map_err(|fault| Error::Malformed { path: path.to_owned(), fault })?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    Ok(Mesh {
-        name: name.into_owned(),
-        ..mesh
-    })
+    Ok(Mesh { name: name.into_owned(), ..mesh })
 }
 
 /// The bytes of a regular file, which rules out devices and pipes that never end.
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    let failed = |source| Error::Read {
-        path: path.to_owned(),
-        source,
-    };
+    let failed = |source| Error::Read { path: path.to_owned(), source };
     let metadata = fs::metadata(path).map_err(failed)?;
     if !metadata.is_file() {
-        return Err(Error::NotAFile {
-            path: path.to_owned(),
-        });
+        return Err(Error::NotAFile { path: path.to_owned() });
     }
     if metadata.len() > MAX_FILE_BYTES {
-        return Err(Error::TooLarge {
-            path: path.to_owned(),
-            size_bytes: metadata.len(),
-            limit_bytes: MAX_FILE_BYTES,
-        });
+        return Err(Error::TooLarge { path: path.to_owned(), size_bytes: metadata.len(), limit_bytes: MAX_FILE_BYTES });
     }
     let mut bytes = Vec::new();
-    bytes
-        .try_reserve_exact(metadata.len() as usize)
-        .map_err(|error| failed(error.into()))?;
+    bytes.try_reserve_exact(metadata.len() as usize).map_err(|error| failed(error.into()))?;
     // A file that grows meanwhile is cut, and its reader says so.
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut bytes))
-        .map_err(failed)?;
+    File::open(path).and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut bytes)).map_err(failed)?;
     Ok(bytes)
 }
 

@@ -3,58 +3,36 @@ use crate::scene::error::{Fault, Place};
 use crate::scene::polygon::PolygonMesh;
 use glam::{Vec2, Vec3};
 
-/// Reads the polygons of a Wavefront OBJ file; groups, materials, colours, lines and points are left out.
+/// Reads the polygons of a Wavefront OBJ file; groups, materials, colours, lines and points are
+/// left out.
 ///
-/// Faces may name vertices that follow, or count back from the last with negative numbers. Where only some corners of
-/// the file name a normal (or a texture coordinate), none of them counts.
+/// Faces may name vertices that follow, or count back from the last with negative numbers. Where
+/// only some corners of the file name a normal (or a texture coordinate), none of them counts.
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let statements = Statements::extract(decode(bytes)?)?;
-    let options = tobj::LoadOptions {
-        single_index: true,
-        ..tobj::LoadOptions::default()
-    };
-    let (models, _) = tobj::load_obj_buf(&mut statements.text.as_bytes(), &options, |_| {
-        Ok(Default::default())
-    })
-    .map_err(|error| Fault::foreign(Place::Whole, &error))?;
+    let options = tobj::LoadOptions { single_index: true, ..tobj::LoadOptions::default() };
+    let (models, _) = tobj::load_obj_buf(&mut statements.text.as_bytes(), &options, |_| Ok(Default::default()))
+        .map_err(|error| Fault::foreign(Place::Whole, &error))?;
     // Without group statements there is exactly one model.
-    let mesh = models
-        .into_iter()
-        .next()
-        .map(|model| model.mesh)
-        .unwrap_or_default();
+    let mesh = models.into_iter().next().map(|model| model.mesh).unwrap_or_default();
     if mesh.indices.is_empty() {
         return Err(Fault::new(Place::Whole, "it has no faces"));
     }
     // tobj leaves the list of arities empty where every face is a triangle.
-    let arities = if mesh.face_arities.is_empty() {
-        vec![3; mesh.indices.len() / 3]
-    } else {
-        mesh.face_arities
-    };
+    let arities = if mesh.face_arities.is_empty() { vec![3; mesh.indices.len() / 3] } else { mesh.face_arities };
     let vectors = |values: &[f32]| values.chunks_exact(3).map(Vec3::from_slice).collect();
     let positions: Vec<Vec3> = vectors(&mesh.positions);
     let mut normals: Vec<Vec3> = vectors(&mesh.normals);
-    let mut texture_coordinates: Vec<Vec2> = mesh
-        .texcoords
-        .chunks_exact(2)
-        .map(Vec2::from_slice)
-        .collect();
-    // tobj gives nothing, not a gap, for a corner without normal: shorter lists cannot be told apart.
+    let mut texture_coordinates: Vec<Vec2> = mesh.texcoords.chunks_exact(2).map(Vec2::from_slice).collect();
+    // tobj gives nothing, not a gap, for a corner without normal: shorter lists cannot be told
+    // apart.
     if normals.len() != positions.len() {
         normals.clear();
     }
     if texture_coordinates.len() != positions.len() {
         texture_coordinates.clear();
     }
-    PolygonMesh {
-        positions,
-        normals,
-        texture_coordinates,
-        corners: mesh.indices,
-        arities,
-    }
-    .into_mesh()
+    PolygonMesh { positions, normals, texture_coordinates, corners: mesh.indices, arities }.into_mesh()
 }
 
 fn decode(bytes: &[u8]) -> Result<&str, Fault> {
@@ -65,20 +43,20 @@ fn decode(bytes: &[u8]) -> Result<&str, Fault> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let before = &bytes[..error.valid_up_to()];
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        Fault::new(
-            Place::Line(line),
-            "it is not UTF-8 text; convert the file to UTF-8",
-        )
+        Fault::new(Place::Line(line), "it is not UTF-8 text; convert the file to UTF-8")
     })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-/// What an index can count: positions, texture coordinates and normals, in the order in which a corner names them.
+/// What an index can count: positions, texture coordinates and normals, in the order in which a
+/// corner names them.
 const KINDS: [&str; 3] = ["positions", "texture coordinates", "normals"];
 
-/// The statements that make polygons, checked and one a line, as `tobj` takes them without surprises.
+/// The statements that make polygons, checked and one a line, as `tobj` takes them without
+/// surprises.
 ///
-/// The check is here because `tobj` tells no line numbers, lets NaN pass and computes with indices that overflow.
+/// The check is here because `tobj` tells no line numbers, lets NaN pass and computes with indices
+/// that overflow.
 #[derive(Default)]
 struct Statements {
     text: String,
@@ -91,14 +69,10 @@ impl Statements {
     fn extract(source: &str) -> Result<Self, Fault> {
         let mut statements = Self::default();
         for (line, statement) in logical_lines(source) {
-            statements
-                .add(line, &statement)
-                .map_err(|reason| Fault::new(Place::Line(line), reason))?;
+            statements.add(line, &statement).map_err(|reason| Fault::new(Place::Line(line), reason))?;
         }
-        for ((index, line), (count, kind)) in statements
-            .largest
-            .into_iter()
-            .zip(statements.counts.into_iter().zip(KINDS))
+        for ((index, line), (count, kind)) in
+            statements.largest.into_iter().zip(statements.counts.into_iter().zip(KINDS))
         {
             if index > count {
                 let reason = format!("index {index} is out of range; the file has {count} {kind}");
@@ -126,16 +100,11 @@ impl Statements {
             (1, _) => 2,
             _ => 3,
         };
-        let numbers = words.get(..kept).ok_or_else(|| {
-            format!(
-                "{keyword} needs {kept} numbers, but there are {}",
-                words.len()
-            )
-        })?;
+        let numbers = words
+            .get(..kept)
+            .ok_or_else(|| format!("{keyword} needs {kept} numbers, but there are {}", words.len()))?;
         for (place, word) in numbers.iter().enumerate() {
-            let number: f32 = word
-                .parse()
-                .map_err(|_| format!("{:?} is not a number", shortened(word)))?;
+            let number: f32 = word.parse().map_err(|_| format!("{:?} is not a number", shortened(word)))?;
             if !number.is_finite() || (place == 3 && number == 0.0) {
                 return Err(format!("{keyword} must not contain {number}"));
             }
@@ -171,15 +140,11 @@ impl Statements {
     }
 
     fn check_index(&mut self, kind: usize, part: &str, line: usize) -> Result<(), String> {
-        let index: isize = part
-            .parse()
-            .map_err(|_| format!("{:?} is not an index", shortened(part)))?;
+        let index: isize = part.parse().map_err(|_| format!("{:?} is not an index", shortened(part)))?;
         let magnitude = index.unsigned_abs();
         if index == 0 || (index < 0 && magnitude > self.counts[kind]) {
             let (count, kind) = (self.counts[kind], KINDS[kind]);
-            return Err(format!(
-                "index {index} is out of range; {count} {kind} precede it and counting starts at 1"
-            ));
+            return Err(format!("index {index} is out of range; {count} {kind} precede it and counting starts at 1"));
         }
         if index > 0 && magnitude > self.largest[kind].0 {
             self.largest[kind] = (magnitude, line);
@@ -305,10 +270,7 @@ mod tests {
     fn other_encodings_and_missing_faces_are_refused() {
         let latin = [SQUARE.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
         assert_eq!(parse(&latin).unwrap_err().place, Place::Line(5));
-        let wide: Vec<u8> = "\u{feff}v 0 0 0"
-            .encode_utf16()
-            .flat_map(u16::to_le_bytes)
-            .collect();
+        let wide: Vec<u8> = "\u{feff}v 0 0 0".encode_utf16().flat_map(u16::to_le_bytes).collect();
         assert!(parse(&wide).unwrap_err().reason.contains("UTF-16"));
         assert!(square_with("").unwrap_err().reason.contains("no faces"));
         assert!(parse(b"").unwrap_err().reason.contains("no faces"));

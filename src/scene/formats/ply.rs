@@ -4,25 +4,18 @@ use crate::scene::polygon::PolygonMesh;
 use glam::{Vec2, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{
-    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
-    ScalarType,
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// Reads the `vertex` and `face` elements of a PLY file in any of its three encodings.
 ///
-/// Vertices may carry normals (`nx`, `ny`, `nz`) and texture coordinates (`s`, `t` or `u`, `v` or `texture_u`,
-/// `texture_v`); all else is left out.
+/// Vertices may carry normals (`nx`, `ny`, `nz`) and texture coordinates (`s`, `t` or `u`, `v` or
+/// `texture_u`, `texture_v`); all else is left out.
 pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let mut source = Source {
-        reader: Reader::new(bytes),
-        size: bytes.len(),
-        is_ascii: true,
-    };
-    let header = Parser::<Ignored>::new()
-        .read_header(&mut source.reader)
-        .map_err(|error| source.fault(&error))?;
+    let mut source = Source { reader: Reader::new(bytes), size: bytes.len(), is_ascii: true };
+    let header = Parser::<Ignored>::new().read_header(&mut source.reader).map_err(|error| source.fault(&error))?;
     source.is_ascii = header.encoding == Encoding::Ascii;
     check_sizes(&header, source.reader.get_ref().len())?;
     let mut mesh = PolygonMesh::default();
@@ -34,10 +27,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
         }
     }
     if mesh.arities.is_empty() {
-        return Err(Fault::new(
-            Place::Whole,
-            "it has no faces; a point cloud needs to be meshed first",
-        ));
+        return Err(Fault::new(Place::Whole, "it has no faces; a point cloud needs to be meshed first"));
     }
     mesh.into_mesh()
 }
@@ -50,11 +40,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn read<E: PropertyAccess>(
-        &mut self,
-        element: &ElementDef,
-        header: &Header,
-    ) -> Result<Vec<E>, Fault> {
+    fn read<E: PropertyAccess>(&mut self, element: &ElementDef, header: &Header) -> Result<Vec<E>, Fault> {
         Parser::<E>::new()
             .read_payload_for_element(&mut self.reader, element, header)
             .map_err(|error| self.fault(&error))
@@ -112,16 +98,8 @@ fn smallest_binary_bytes(data_type: &PropertyType) -> usize {
     }
 }
 
-fn add_vertices(
-    vertices: Vec<Vertex>,
-    element: &ElementDef,
-    mesh: &mut PolygonMesh,
-) -> Result<(), Fault> {
-    let has = |names: &[&str]| {
-        names
-            .iter()
-            .all(|name| element.properties.contains_key(*name))
-    };
+fn add_vertices(vertices: Vec<Vertex>, element: &ElementDef, mesh: &mut PolygonMesh) -> Result<(), Fault> {
+    let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
     if !has(&["x", "y", "z"]) {
         let reason = "its vertices have no properties x, y and z";
         return Err(Fault::new(Place::Whole, reason));
@@ -137,10 +115,7 @@ fn add_vertices(
 }
 
 fn add_faces(faces: Vec<Face>, element: &ElementDef, mesh: &mut PolygonMesh) -> Result<(), Fault> {
-    if !CORNER_LISTS
-        .iter()
-        .any(|name| element.properties.contains_key(*name))
-    {
+    if !CORNER_LISTS.iter().any(|name| element.properties.contains_key(*name)) {
         let reason = "its faces have no property vertex_indices or vertex_index";
         return Err(Fault::new(Place::Whole, reason));
     }
@@ -202,9 +177,7 @@ impl PropertyAccess for Face {
         }
         // A negative number is out of range in any mesh, and is reported as such.
         fn unsigned<T: TryInto<u32>>(list: Vec<T>) -> Vec<u32> {
-            list.into_iter()
-                .map(|index| index.try_into().unwrap_or(u32::MAX))
-                .collect()
+            list.into_iter().map(|index| index.try_into().unwrap_or(u32::MAX)).collect()
         }
         self.corners = match property {
             Property::ListChar(list) => unsigned(list),
@@ -278,9 +251,10 @@ mod tests {
     #[test]
     fn attributes_are_read_and_other_elements_skipped() {
         let text = "ply\r\nformat ascii 1.0\r\ncomment a\r\nelement camera 2\r\nproperty list uchar float a\r\n\
-                    element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nproperty float nx\r\n\
-                    property float ny\r\nproperty float nz\r\nproperty float s\r\nproperty float t\r\n\
-                    element face 1\r\nproperty uchar flag\r\nproperty list uchar uint vertex_indices\r\nend_header\r\n\
+                    element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n\
+                    property float nx\r\nproperty float ny\r\nproperty float nz\r\n\
+                    property float s\r\nproperty float t\r\nelement face 1\r\nproperty uchar flag\r\n\
+                    property list uchar uint vertex_indices\r\nend_header\r\n\
                     1 2.5\r\n0\r\n0 0 0 0 3 0 0.25 0.5\r\n1 0 0 0 3 0 0 1\r\n0 1 0 0 0 0 1 1\r\n9 3 0 1 2\r\n";
         let mesh = parse(text.as_bytes()).unwrap();
         assert_eq!(mesh.normals, [Vec3::Y, Vec3::Y, Vec3::Z]);
@@ -291,8 +265,8 @@ mod tests {
     fn counts_beyond_the_file_are_refused_before_reading() {
         let header = |format: &str, count: &str| {
             format!(
-                "ply\nformat {format} 1.0\nelement vertex {count}\nproperty float x\nproperty float y\nproperty float z\n\
-                 element face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n"
+                "ply\nformat {format} 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n\
+                 property float z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n"
             )
         };
         for format in ["ascii", "binary_little_endian", "binary_big_endian"] {

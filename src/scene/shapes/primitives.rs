@@ -5,8 +5,8 @@ use std::f32::consts::{PI, TAU};
 /// Most cells along one direction: 4096 x 4096 make 33,554,432 triangles.
 const MAX_CELLS: u32 = 4096;
 
-/// A sphere of radius 1 m around the origin, cut along meridians (`slices`) and parallels (`stacks`), with poles on the
-/// Y axis: `2 * slices * (stacks - 1)` triangles.
+/// A sphere of radius 1 m around the origin, cut along meridians (`slices`) and parallels
+/// (`stacks`), with poles on the Y axis: `2 * slices * (stacks - 1)` triangles.
 ///
 /// `slices` is brought into 3..=4096 and `stacks` into 2..=4096.
 pub fn sphere(slices: u32, stacks: u32) -> Mesh {
@@ -31,8 +31,8 @@ pub fn sphere(slices: u32, stacks: u32) -> Mesh {
     mesh
 }
 
-/// A flat rectangle in y = 0 around the origin, facing +Y, `size_m.x` along X and `size_m.y` along Z, in
-/// `cells.x` x `cells.y` cells of two triangles.
+/// A flat rectangle in y = 0 around the origin, facing +Y, `size_m.x` along X and `size_m.y` along
+/// Z, in `cells.x` x `cells.y` cells of two triangles.
 ///
 /// `size_m` must be positive and finite; `cells` is brought into 1..=4096 each.
 pub fn plane(size_m: Vec2, cells: UVec2) -> Mesh {
@@ -43,12 +43,10 @@ pub fn plane(size_m: Vec2, cells: UVec2) -> Mesh {
     })
 }
 
-/// A cube from (-1, -1, -1) to (1, 1, 1) m: 12 triangles, 24 vertices, since each face has its own normals.
+/// A cube from (-1, -1, -1) to (1, 1, 1) m: 12 triangles, 24 vertices, since each face has its own
+/// normals.
 pub fn cuboid() -> Mesh {
-    let mut mesh = Mesh {
-        name: "box".to_owned(),
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { name: "box".to_owned(), ..Mesh::default() };
     for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
         let up = if normal.y == 0.0 { Vec3::Y } else { Vec3::X };
         let right = up.cross(normal);
@@ -64,13 +62,10 @@ pub fn cuboid() -> Mesh {
     mesh
 }
 
-/// `cells.x` x `cells.y` cells of a surface that maps (u, v) in [0, 1]^2 to position and normal and faces the side from
-/// which u, v turn counter-clockwise.
+/// `cells.x` x `cells.y` cells of a surface that maps (u, v) in [0, 1]^2 to position and normal and
+/// faces the side from which u, v turn counter-clockwise.
 fn grid(name: &str, cells: UVec2, surface: impl Fn(f32, f32) -> (Vec3, Vec3)) -> Mesh {
-    let mut mesh = Mesh {
-        name: name.to_owned(),
-        ..Mesh::default()
-    };
+    let mut mesh = Mesh { name: name.to_owned(), ..Mesh::default() };
     for row in 0..=cells.y {
         for column in 0..=cells.x {
             let uv = Vec2::new(column as f32, row as f32) / cells.as_vec2();
@@ -114,19 +109,14 @@ mod tests {
 
     fn signed_volume(mesh: &Mesh) -> f64 {
         let position = |index: u32| mesh.positions[index as usize].as_dvec3();
-        mesh.indices
-            .chunks_exact(3)
-            .map(|t| position(t[0]).dot(position(t[1]).cross(position(t[2]))) / 6.0)
-            .sum()
+        mesh.indices.chunks_exact(3).map(|t| position(t[0]).dot(position(t[1]).cross(position(t[2]))) / 6.0).sum()
     }
 
     fn faces_its_normals(mesh: &Mesh) -> bool {
         mesh.indices.chunks_exact(3).all(|corners| {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[corners[i] as usize]);
             let area_vector = double_area_vector(a, b, c);
-            corners
-                .iter()
-                .all(|&i| area_vector.dot(mesh.normals[i as usize].as_dvec3()) > 0.0)
+            corners.iter().all(|&i| area_vector.dot(mesh.normals[i as usize].as_dvec3()) > 0.0)
         })
     }
 

@@ -1,11 +1,12 @@
-//! Control points of the Utah teapot, Martin Newell, University of Utah, 1975, in the public domain.
+//! Control points of the Utah teapot, Martin Newell, University of Utah, 1975, in the public
+//! domain.
 //!
-//! These are the 306 points of the classic list without the four that no patch names and the twelve given twice, in the
-//! order of `TeapotGeometry` of the npm package `three` 0.187.0. +Z is up; the height is Blinn's, three quarters of the
-//! original.
+//! These are the 306 points of the classic list without the four that no patch names and the twelve
+//! given twice, in the order of `TeapotGeometry` of the npm package `three` 0.187.0. +Z is up; the
+//! height is Blinn's, three quarters of the original.
 
-/// Control points of each of 32 bicubic Bezier patches, four rows of four: rim (4), body (8), handle (4), spout (4),
-/// lid (8), bottom (4).
+/// Control points of each of 32 bicubic Bezier patches, four rows of four: rim (4), body (8),
+/// handle (4), spout (4), lid (8), bottom (4).
 pub(super) const PATCHES: [[u16; 16]; 32] = [
     [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
     [3, 16, 17, 18, 7, 19, 20, 21, 11, 22, 23, 24, 15, 25, 26, 27],

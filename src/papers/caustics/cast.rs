@@ -1,0 +1,126 @@
+//! Caustics casting (section 4.6): the receivers under the viewer's camera, each lit by its combined map.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::maps::{self, FAR};
+use super::method::Method;
+use super::parameters::Parameters;
+use super::receiver::{BoxBlock, LitReceiver, Vertex};
+use crate::gpu::transfer::upload;
+use crate::gpu::{
+    Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary,
+};
+use crate::host_block;
+
+host_block! {
+    struct CameraBlock {
+        view_projection: [f32; 16],
+    }
+}
+
+host_block! {
+    struct CastConstants {
+        bounds: BoxBlock,
+        albedo: [f32; 4],
+        ambient: [f32; 4],
+    }
+}
+
+/// What is seen where there is no receiver: light scattered back by deep water, linear RGB.
+const DEEP_WATER: Load = Load::Clear([0.004, 0.030, 0.055, 1.0]);
+
+/// The picture and its camera.
+pub struct Picture {
+    pub color: Arc<ImageView>,
+    depth: Arc<ImageView>,
+    camera: Arc<Buffer>,
+}
+
+impl Picture {
+    /// # Errors
+    /// [`Error::Limit`] for a size that the device does not allow.
+    pub fn new(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
+        let device = shaders.device();
+        let image = |name: &str, format, usage| {
+            let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
+            Image::new(device, desc.usage(usage))?.view()
+        };
+        let camera = &parameters.camera;
+        let aspect = parameters.width as f32 / parameters.height as f32;
+        let block = CameraBlock { view_projection: (camera.projection(aspect) * camera.view()).to_cols_array() };
+        Ok(Picture {
+            color: image("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?,
+            depth: image("picture-depth", maps::DEPTH, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+            camera: upload(
+                device,
+                &format!("{label}/camera"),
+                vk::BufferUsageFlags::UNIFORM_BUFFER,
+                bytemuck::bytes_of(&block),
+            )?,
+        })
+    }
+}
+
+/// One receiver's part of the cast under one light.
+pub struct Cast {
+    pass: Pass,
+    ambient: [f32; 3],
+}
+
+/// Where a part stands among all parts of the cast.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// Index of the light; the first lays down depth and ambient light, the others are added (eq. 4-20).
+    pub light: usize,
+    /// Index of the receiver.
+    pub receiver: usize,
+}
+
+impl Cast {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        picture: &Picture,
+        lit: &LitReceiver,
+        method: &dyn Method,
+        nearest: &Arc<Sampler>,
+        place: Place,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
+        let load = |clear| if place == (Place { light: 0, receiver: 0 }) { clear } else { Load::Keep };
+        let (blend, test) = if place.light == 0 {
+            (Blend::Replace, DepthTest::LessWrite)
+        } else {
+            (Blend::Add, DepthTest::EqualReadOnly)
+        };
+        let pass = Pass::graphics("cast", "4.6", "caustics/cast.vert", "caustics/cast.frag")
+            .vertices::<Vertex>(&lit.receiver.vertices)
+            .indices(&lit.receiver.indices)
+            .constants::<CastConstants>()
+            .with("camera", &picture.camera)
+            .with("combined_map", method.combined_map())
+            .with("position_map", method.position_map())
+            .with("nearest", nearest)
+            .color(&picture.color, load(DEEP_WATER), blend)
+            .depth(&picture.depth, load(FAR), test)
+            .build(shaders)?;
+        let ambient = if place.light == 0 { parameters.ambient.to_array() } else { [0.0; 3] };
+        Ok(Cast { pass, ambient })
+    }
+
+    /// Draws the receiver into the picture.
+    pub fn draw(&self, frame: &mut Frame<'_>, lit: &LitReceiver, method: &dyn Method) -> Result<(), Error> {
+        let [r, g, b] = self.ambient;
+        let constants = CastConstants {
+            bounds: lit.box_block(),
+            albedo: lit.receiver.albedo.extend(0.0).to_array(),
+            ambient: [r, g, b, method.height_slack_m(lit)],
+        };
+        frame.graphics(&self.pass, |draw| {
+            draw.constants(&constants).indices(lit.receiver.index_count);
+        })
+    }
+}

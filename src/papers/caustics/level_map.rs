@@ -1,0 +1,140 @@
+//! The level map of one receiver under one light (section 5.2.2): one position map and one diffuse map, however many
+//! planes.
+
+use std::sync::Arc;
+
+use super::illumination::{IlluminationVolumes, Ray};
+use super::maps::{self, BACKGROUND, BLACK, FAR};
+use super::method::{CombineConstants, Method};
+use super::parameters::Parameters;
+use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
+use super::water::Water;
+use crate::gpu::bindings::Resource;
+use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, Sampler, ShaderLibrary};
+
+/// The maps and passes of the method.
+pub struct LevelMap {
+    /// Position and diffuse map in one pass with two targets, or one after the other (figures 5-6 and 5-5).
+    maps: Vec<Pass>,
+    caustics_map: Pass,
+    combine: Pass,
+    position: Arc<ImageView>,
+    diffuse: Arc<ImageView>,
+    caustics: Arc<ImageView>,
+    combined: Arc<ImageView>,
+}
+
+impl LevelMap {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        lit: &LitReceiver,
+        water: &Water,
+        volumes: &IlluminationVolumes,
+        nearest: &Arc<Sampler>,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
+        let map = |name: &str, format| maps::map(shaders, format!("{label}/{name}"), format, parameters);
+        let position = map("position-map", maps::POSITION)?;
+        let diffuse = map("diffuse-map", maps::LIGHT)?;
+        let caustics = map("caustics-map", maps::CAUSTICS)?;
+        let combined = map("combined-map", maps::LIGHT)?;
+        let depth = map("position-depth", maps::DEPTH)?;
+
+        let draw = |name, fragment| {
+            Pass::graphics(name, "4.2.2", "caustics/receiver-map.vert", fragment)
+                .vertices::<Vertex>(&lit.receiver.vertices)
+                .indices(&lit.receiver.indices)
+                .constants::<MapConstants>()
+                .depth(&depth, FAR, DepthTest::LessWrite)
+        };
+        let maps = if parameters.mrt {
+            vec![
+                draw("position-diffuse-map", "caustics/position-diffuse-map.frag")
+                    .color(&position, BACKGROUND, Blend::Replace)
+                    .color(&diffuse, BLACK, Blend::Replace)
+                    .build(shaders)?,
+            ]
+        } else {
+            vec![
+                draw("position-map", "caustics/position-map.frag")
+                    .color(&position, BACKGROUND, Blend::Replace)
+                    .build(shaders)?,
+                draw("diffuse-map", "caustics/diffuse-map.frag").color(&diffuse, BLACK, Blend::Replace).build(shaders)?,
+            ]
+        };
+
+        let caustics_map =
+            Pass::graphics("caustics-map", "4.4, 4.5", "caustics/caustics-map.vert", "caustics/caustics-map.frag")
+                .vertices::<Ray>(&volumes.rays)
+                .indices(&water.indices)
+                .constants::<PlaneConstants>()
+                .with("position_map", &position)
+                .with("nearest", nearest)
+                .color(&caustics, BLACK, Blend::Add)
+                .build(shaders)?;
+
+        let combine = Pass::graphics("combine", "5.2.2", "common/fullscreen.vert", "caustics/combine.frag")
+            .constants::<CombineConstants>()
+            .with("caustics_map", &caustics)
+            .with("diffuse_map", &diffuse)
+            .with("nearest", nearest)
+            .color(&combined, Load::Discard, Blend::Replace)
+            .build(shaders)?;
+
+        Ok(LevelMap { maps, caustics_map, combine, position, diffuse, caustics, combined })
+    }
+}
+
+impl Method for LevelMap {
+    fn create_maps(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
+        for map in &self.maps {
+            frame.graphics(map, |draw| {
+                draw.constants(&lit.map_constants(None)).indices(lit.receiver.index_count);
+            })?;
+        }
+        Ok(())
+    }
+
+    fn create_caustics(
+        &self,
+        frame: &mut Frame<'_>,
+        lit: &LitReceiver,
+        volumes: &IlluminationVolumes,
+    ) -> Result<(), Error> {
+        frame.graphics(&self.caustics_map, |draw| {
+            for cell in &lit.cells {
+                draw.constants(&lit.plane_constants(cell, volumes)).indices(volumes.index_count);
+            }
+        })
+    }
+
+    fn combine(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
+        frame.graphics(&self.combine, |draw| {
+            draw.constants(&CombineConstants::of(lit)).vertices(3);
+        })
+    }
+
+    fn position_map(&self) -> &Arc<ImageView> {
+        &self.position
+    }
+
+    fn height_slack_m(&self, _lit: &LitReceiver) -> f32 {
+        0.0
+    }
+
+    fn combined_map(&self) -> &Arc<ImageView> {
+        &self.combined
+    }
+
+    fn targets(&self) -> Vec<(&'static str, Resource)> {
+        vec![
+            ("position-map", (&self.position).into()),
+            ("diffuse-map", (&self.diffuse).into()),
+            ("caustics-map", (&self.caustics).into()),
+            ("combined-map", (&self.combined).into()),
+        ]
+    }
+}

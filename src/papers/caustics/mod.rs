@@ -1,0 +1,195 @@
+//! `caustics`: N. Tipprasert's refractive water caustics with level maps, chapters 4 and 5.
+//!
+//! ```text
+//! reference-planes ─► position-diffuse-map ─────────┐            (volumetric: slice-images)
+//! water-surface ─► illumination-volumes ─► caustics-map ─► combine ─► cast
+//! ```
+
+mod cast;
+mod illumination;
+mod level_map;
+mod maps;
+mod method;
+pub mod parameters;
+mod planes;
+mod receiver;
+pub mod reference;
+mod volumetric;
+pub mod water;
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::DVec3;
+
+use self::cast::{Cast, Picture, Place};
+use self::illumination::IlluminationVolumes;
+use self::level_map::LevelMap;
+use self::method::Method;
+use self::planes::{Axes, ReceiverBox};
+use self::receiver::{LitReceiver, Receiver};
+use self::volumetric::Volumetric;
+use self::water::{Grid, Water};
+use super::Paper;
+use crate::gpu::bindings::Resource;
+use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, Sampler, ShaderLibrary};
+
+pub use self::parameters::{ParameterError, Parameters, Variant, WaveParameters};
+pub use self::receiver::ReceiverInput;
+
+/// What a device must have for this paper, beyond the baseline of the Vulkan layer.
+pub const NEEDS: [Feature; 2] = [Feature::BlendR32Float, Feature::BlendRgba16Float];
+
+/// The paper under one variant.
+pub struct Caustics {
+    parameters: Parameters,
+    place_planes: Arc<PassInfo>,
+    water: Water,
+    lights: Vec<LightPasses>,
+    picture: Picture,
+}
+
+/// What belongs to one light.
+struct LightPasses {
+    volumes: IlluminationVolumes,
+    receivers: Vec<ReceiverPasses>,
+}
+
+/// What belongs to one receiver under one light.
+struct ReceiverPasses {
+    lit: LitReceiver,
+    method: Box<dyn Method>,
+    cast: Cast,
+}
+
+impl Caustics {
+    /// Makes every resource and pass; `label` goes before the names of the resources.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers. The caller has validated `parameters`, and every receiver has a vertex.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        variant: Variant,
+        parameters: &Parameters,
+        inputs: &[ReceiverInput],
+    ) -> Result<Self, Error> {
+        let nearest = Sampler::new(shaders.device(), "nearest", vk::Filter::NEAREST)?;
+        let receivers = inputs
+            .iter()
+            .map(|input| Receiver::new(shaders, label, input).map(Arc::new))
+            .collect::<Result<Vec<_>, _>>()?;
+        let picture = Picture::new(shaders, label, parameters)?;
+        let center = world_center(&receivers);
+        let index = f64::from(parameters.refraction_index);
+        let all_axes: Vec<Axes> =
+            parameters.lights.iter().map(|light| Axes::aligned_with(light, center, index)).collect();
+        let boxes: Vec<_> = parameters
+            .lights
+            .iter()
+            .zip(&all_axes)
+            .flat_map(|(&light, &axes)| {
+                receivers.iter().map(move |r| (ReceiverBox::around(axes, &r.positions), light))
+            })
+            .collect();
+        let water = Water::new(shaders, label, Grid::over(&boxes, parameters), parameters)?;
+
+        let mut lights = Vec::new();
+        for (light_index, (light, &axes)) in parameters.lights.iter().zip(&all_axes).enumerate() {
+            let volumes = IlluminationVolumes::new(shaders, label, &water, light, &axes, parameters)?;
+            let mut passes = Vec::new();
+            for (receiver_index, receiver) in receivers.iter().enumerate() {
+                let lit = LitReceiver::new(receiver, axes, light, parameters);
+                let method: Box<dyn Method> = match variant {
+                    Variant::LevelMap => {
+                        Box::new(LevelMap::new(shaders, label, &lit, &water, &volumes, &nearest, parameters)?)
+                    }
+                    Variant::Volumetric => {
+                        Box::new(Volumetric::new(shaders, label, &lit, &water, &volumes, &nearest, parameters)?)
+                    }
+                };
+                let place = Place { light: light_index, receiver: receiver_index };
+                let cast = Cast::new(shaders, &picture, &lit, method.as_ref(), &nearest, place, parameters)?;
+                passes.push(ReceiverPasses { lit, method, cast });
+            }
+            lights.push(LightPasses { volumes, receivers: passes });
+        }
+        let planes_pass = match variant {
+            Variant::LevelMap => "reference-planes",
+            Variant::Volumetric => "sample-planes",
+        };
+        Ok(Caustics {
+            parameters: parameters.clone(),
+            place_planes: PassInfo::host(planes_pass, "4.2.1", &["receiver"], &["planes"]),
+            water,
+            lights,
+            picture,
+        })
+    }
+
+    /// The mesh of the water as it was made, which may differ from the number of triangles asked for.
+    pub fn grid(&self) -> Grid {
+        self.water.grid
+    }
+}
+
+fn world_center(receivers: &[Arc<Receiver>]) -> DVec3 {
+    let points = receivers.iter().flat_map(|r| r.positions.iter().copied());
+    crate::scene::Bounds::of_points(points).center().as_dvec3()
+}
+
+impl Paper for Caustics {
+    /// Figures 4-15 and 4-17: for each light, the planes, the receivers' maps, the illumination volumes, the caustics
+    /// maps plane by plane, their combination; then everything is cast.
+    fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
+        let time_s = f64::from(number) * f64::from(self.parameters.time_step_s);
+        let planes = self.parameters.planes;
+        frame.host(&self.place_planes, || {
+            let lit = self.lights.iter_mut().flat_map(|light| &mut light.receivers);
+            lit.for_each(|one| one.lit.slice(planes));
+        });
+        for one in self.lights.iter().flat_map(|light| &light.receivers) {
+            one.method.create_maps(frame, &one.lit)?;
+        }
+        self.water.animate(frame, time_s)?;
+        for light in &self.lights {
+            light.volumes.refract(frame)?;
+            for one in &light.receivers {
+                one.method.create_caustics(frame, &one.lit, &light.volumes)?;
+            }
+            for one in &light.receivers {
+                one.method.combine(frame, &one.lit)?;
+            }
+        }
+        for one in self.lights.iter().flat_map(|light| &light.receivers) {
+            one.cast.draw(frame, &one.lit, one.method.as_ref())?;
+        }
+        Ok(())
+    }
+
+    fn picture(&self) -> &Arc<ImageView> {
+        &self.picture.color
+    }
+
+    fn targets(&self) -> Vec<(String, Resource)> {
+        let mut targets = vec![("water".to_owned(), Resource::from(&self.water.vertices))];
+        for (l, light) in self.lights.iter().enumerate() {
+            targets.push((numbered("illumination-volumes", &[l]), (&light.volumes.rays).into()));
+            for (r, one) in light.receivers.iter().enumerate() {
+                let named = one.method.targets().into_iter();
+                targets.extend(named.map(|(name, target)| (numbered(name, &[l, r]), target)));
+            }
+        }
+        targets.push(("picture".to_owned(), (&self.picture.color).into()));
+        targets
+    }
+}
+
+/// A target's name, with the indices of its light and receiver when one of them is not the first.
+fn numbered(name: &str, indices: &[usize]) -> String {
+    if indices.iter().all(|&i| i == 0) {
+        return name.to_owned();
+    }
+    let indices: Vec<String> = indices.iter().map(usize::to_string).collect();
+    format!("{name}.{}", indices.join("."))
+}

@@ -1,0 +1,201 @@
+//! What a user can set, under the thesis's own words.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+
+use crate::scene::{Camera, Light};
+
+/// The methods that the thesis compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variant {
+    /// Section 5.2.2: one position map and one diffuse map, however many planes.
+    LevelMap,
+    /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
+    Volumetric,
+}
+
+impl Variant {
+    pub const ALL: [Variant; 2] = [Variant::LevelMap, Variant::Volumetric];
+
+    pub fn word(self) -> &'static str {
+        match self {
+            Variant::LevelMap => "level-map",
+            Variant::Volumetric => "volumetric",
+        }
+    }
+}
+
+/// The water's waves: a sum of sines with seeded directions and phases.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WaveParameters {
+    /// Number of waves, 0 (flat water) to 64.
+    pub count: u32,
+    /// Sum of their amplitudes in metres, at least 0.
+    pub amplitude_m: f32,
+    /// Longest wavelength in metres; the others are shorter, down to 2/5 of it.
+    pub wavelength_m: f32,
+}
+
+/// Every number of a configuration. [`Parameters::validate`] checks the ranges given here.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameters {
+    /// Reference (or sample) planes, 1 to 4096.
+    pub planes: u32,
+    /// Texels a side of the position, diffuse, caustics and slice maps, at least 1.
+    pub map_size: u32,
+    /// Triangles of the water's mesh, 2 to 20,000,000; rounded to a whole number of cells.
+    pub water_triangles: u32,
+    /// Position and diffuse map in one pass with two targets; in two passes without.
+    pub mrt: bool,
+    /// Refraction index of water against air, above 1 and at most 4.
+    pub refraction_index: f32,
+    /// Absorption K of eq. 4-17 per metre, at least 0.
+    pub absorption_per_m: f32,
+    /// Depth of the pool's floor below the water's level in metres, above 0.
+    pub water_depth_m: f32,
+    pub waves: WaveParameters,
+    pub lights: Vec<Light>,
+    /// Ambient light I_a, linear RGB, at least 0.
+    pub ambient: Vec3,
+    /// Time between two frames in seconds, at least 0.
+    pub time_step_s: f32,
+    pub seed: u64,
+    pub camera: Camera,
+    /// Size of the picture in pixels.
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Parameters {
+            planes: 31,
+            map_size: 512,
+            water_triangles: 10_000,
+            mrt: true,
+            refraction_index: 4.0 / 3.0,
+            absorption_per_m: 0.1,
+            water_depth_m: 3.0,
+            waves: WaveParameters { count: 12, amplitude_m: 0.06, wavelength_m: 1.2 },
+            lights: vec![Light::Parallel { direction: Vec3::new(0.35, -1.0, -0.2), intensity: Vec3::splat(1.0) }],
+            ambient: Vec3::new(0.10, 0.13, 0.16),
+            time_step_s: 1.0 / 30.0,
+            seed: 1,
+            camera: Camera {
+                eye: Vec3::new(-2.2, -0.9, 3.4),
+                target: Vec3::new(0.0, -2.45, 0.0),
+                up: Vec3::Y,
+                vertical_fov_rad: 0.75,
+                near_m: 0.1,
+                far_m: 100.0,
+            },
+            width: 800,
+            height: 600,
+        }
+    }
+}
+
+/// A parameter outside its range.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name} {value}: {range}")]
+pub struct ParameterError {
+    pub name: &'static str,
+    pub value: String,
+    pub range: String,
+}
+
+impl Parameters {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// The first parameter outside its range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        let check = |good: bool, name: &'static str, value: String, range: &str| {
+            if good { Ok(()) } else { Err(ParameterError { name, value, range: range.to_owned() }) }
+        };
+        check((1..=4096).contains(&self.planes), "--planes", self.planes.to_string(), "must be 1 to 4096")?;
+        check(self.map_size >= 1, "--map-size", self.map_size.to_string(), "must be at least 1 texel")?;
+        check(
+            (2..=20_000_000).contains(&self.water_triangles),
+            "--water-triangles",
+            self.water_triangles.to_string(),
+            "must be 2 to 20000000",
+        )?;
+        let n = self.refraction_index;
+        check(n > 1.0 && n <= 4.0, "--refraction-index", n.to_string(), "must be above 1 and at most 4")?;
+        let k = self.absorption_per_m;
+        check(k >= 0.0 && k.is_finite(), "--absorption", k.to_string(), "must be at least 0 per metre")?;
+        let depth = self.water_depth_m;
+        check(
+            depth > 0.0 && depth <= 1000.0,
+            "--water-depth",
+            depth.to_string(),
+            "must be above 0 and at most 1000 metres",
+        )?;
+        let waves = self.waves;
+        check(waves.count <= 64, "--waves", waves.count.to_string(), "must be 0 to 64")?;
+        check(
+            (0.0..=10.0).contains(&waves.amplitude_m),
+            "--amplitude",
+            waves.amplitude_m.to_string(),
+            "must be 0 to 10 metres",
+        )?;
+        check(
+            waves.wavelength_m > 0.0 && waves.wavelength_m <= 1000.0,
+            "--wavelength",
+            waves.wavelength_m.to_string(),
+            "must be above 0 and at most 1000 metres",
+        )?;
+        let steepness = self.steepest_slope();
+        check(
+            steepness <= 10.0,
+            "--amplitude",
+            waves.amplitude_m.to_string(),
+            "with this --wavelength the waves are steeper than 10; lower one or raise the other",
+        )?;
+        check(!self.lights.is_empty(), "--light", "none".into(), "at least one light is needed")?;
+        for light in &self.lights {
+            self.validate_light(light)?;
+        }
+        let step = self.time_step_s;
+        check(step >= 0.0 && step.is_finite(), "--time-step", step.to_string(), "must be at least 0 seconds")?;
+        check(self.width >= 1 && self.height >= 1, "--size", format!("{}x{}", self.width, self.height), "has no pixel")?;
+        self.camera.validate().map_err(|e| ParameterError {
+            name: "--camera",
+            value: String::new(),
+            range: e.to_string(),
+        })
+    }
+
+    fn validate_light(&self, light: &Light) -> Result<(), ParameterError> {
+        let error = |range: &str| {
+            Err(ParameterError { name: "--light", value: format!("{light:?}"), range: range.to_owned() })
+        };
+        let intensity = match *light {
+            Light::Parallel { direction, intensity } => {
+                if !direction.is_finite() || direction.normalize_or_zero().y > -0.05 {
+                    return error("must shine downwards, at least 3 degrees below the horizon");
+                }
+                intensity
+            }
+            Light::Point { position, intensity } => {
+                if !position.is_finite() || position.y <= self.waves.amplitude_m {
+                    return error("must lie above the water");
+                }
+                intensity
+            }
+        };
+        if intensity.is_finite() && intensity.min_element() >= 0.0 {
+            Ok(())
+        } else {
+            error("must have an intensity of at least 0")
+        }
+    }
+
+    /// The steepest slope that the sum of the waves could reach.
+    pub fn steepest_slope(&self) -> f32 {
+        // The shortest wave is 2/5 of the longest.
+        self.waves.amplitude_m * 2.0 * PI / (0.4 * self.waves.wavelength_m)
+    }
+}

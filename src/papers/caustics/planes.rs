@@ -1,0 +1,108 @@
+//! Reference planes: the receiver's box aligned with the light, and its cells (section 4.2.1).
+
+use glam::{DVec3, Vec3};
+
+use crate::scene::Light;
+
+/// The share of its diagonal by which a box is higher than its receiver, half of it on either side, so that a flat
+/// receiver that faces the light has a height and no surface lies on the near or far plane.
+const HEIGHT_PADDING: f64 = 1e-3;
+/// A receiver seen edge-on has no width or depth; its map then covers this share of the diagonal.
+const LEAST_EXTENT: f64 = 1e-3;
+
+/// The axes that all boxes of one light share: V = -T, against the light refracted at flat water.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axes {
+    pub u: DVec3,
+    pub v: DVec3,
+    pub w: DVec3,
+}
+
+impl Axes {
+    /// Aligns with `light`; a point light aims at the centre of the world's box (figures 4-5 and 4-7). The thesis takes
+    /// a random N for eq. 4-1; it is fixed here, so that runs repeat: U = normalize(N x V), W = U x V.
+    pub fn aligned_with(light: &Light, world_center: DVec3, refraction_index: f64) -> Self {
+        let incident = match *light {
+            Light::Parallel { direction, .. } => direction.as_dvec3().normalize(),
+            Light::Point { position, .. } => (world_center - position.as_dvec3()).normalize(),
+        };
+        // Eq. 2-8 at N = +Y.
+        let eta = 1.0 / refraction_index;
+        let cos_incident = -incident.y;
+        let cos_refracted = (1.0 - eta * eta * (1.0 - cos_incident * cos_incident)).sqrt();
+        let refracted = (incident * eta + DVec3::Y * (eta * cos_incident - cos_refracted)).normalize();
+        let v = -refracted;
+        let n = if v.z.abs() > 0.99 { DVec3::X } else { DVec3::Z };
+        let u = n.cross(v).normalize();
+        Axes { u, v, w: u.cross(v) }
+    }
+
+    /// Coordinates of a point or direction along the axes.
+    pub fn along(&self, p: DVec3) -> DVec3 {
+        DVec3::new(p.dot(self.u), p.dot(self.v), p.dot(self.w))
+    }
+
+    /// The point or direction with these coordinates.
+    pub fn world(&self, p: DVec3) -> DVec3 {
+        self.u * p.x + self.v * p.y + self.w * p.z
+    }
+}
+
+/// A receiver's box: its centre P0 along the axes, and its width along U, height along V and depth along W, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReceiverBox {
+    pub axes: Axes,
+    pub center: DVec3,
+    pub extent: DVec3,
+}
+
+impl ReceiverBox {
+    /// The tight box of `positions` (eq. 4-2 and 4-3), padded.
+    pub fn around(axes: Axes, positions: &[Vec3]) -> Self {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for p in positions {
+            let p = axes.along(p.as_dvec3());
+            low = low.min(p);
+            high = high.max(p);
+        }
+        let tight = high - low;
+        let diagonal = tight.length();
+        let least = (LEAST_EXTENT * diagonal).max(f64::MIN_POSITIVE);
+        ReceiverBox {
+            axes,
+            center: (low + high) / 2.0,
+            extent: DVec3::new(tight.x.max(least), tight.y + HEIGHT_PADDING * diagonal, tight.z.max(least)),
+        }
+    }
+
+    /// The eight corners in the world.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let side = |bit: usize| if i >> bit & 1 == 0 { -0.5 } else { 0.5 };
+            self.axes.world(self.center + self.extent * DVec3::new(side(0), side(1), side(2)))
+        })
+    }
+}
+
+/// A plane and the heights along V from the box's centre that it accepts, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    pub plane: f32,
+    /// Lowest height accepted.
+    pub lower: f32,
+    /// First height no longer accepted.
+    pub upper: f32,
+}
+
+/// Slices a box of `height` into `count` equal cells with a plane at the centre of each, the nearest to the light
+/// first; epsilon of eq. 4-15 is half a cell. Neighbours share one boundary value, so that every height is accepted by
+/// exactly one cell; the uppermost is closed.
+pub fn slice(height: f64, count: u32, cells: &mut Vec<Cell>) {
+    cells.clear();
+    let boundary = |i: u32| (height / 2.0 - height * f64::from(i) / f64::from(count)) as f32;
+    cells.extend((0..count).map(|i| Cell {
+        plane: ((height / 2.0) - height * (f64::from(i) + 0.5) / f64::from(count)) as f32,
+        lower: boundary(i + 1),
+        upper: if i == 0 { boundary(0).next_up() } else { boundary(i) },
+    }));
+}

@@ -1,0 +1,242 @@
+//! The water: a regular triangle mesh under a sum of sine waves, large enough that its refracted light covers every
+//! receiver.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use ash::vk;
+use glam::{DVec2, DVec3};
+
+use super::parameters::Parameters;
+use super::planes::ReceiverBox;
+use crate::gpu::transfer::upload;
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
+use crate::host_block;
+use crate::scene::Light;
+use crate::scene::random::Random;
+
+/// Height of the flat water in the world.
+pub const LEVEL_M: f64 = 0.0;
+/// The share of a footprint's extent that the mesh reaches beyond it on every side.
+const MARGIN: f64 = 0.1;
+const GRAVITY_M_S2: f64 = 9.81;
+
+host_block! {
+    struct WaveBlock {
+        vector: [f32; 4],
+        amplitude: [f32; 4],
+    }
+}
+
+host_block! {
+    struct Surface {
+        corner: [f32; 2],
+        cell: [f32; 2],
+        columns: u32,
+        rows: u32,
+        wave_count: u32,
+        level_m: f32,
+        time_s: f32,
+    }
+}
+
+/// One sine wave of the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wave {
+    /// Wave vector along x and z, rad/m.
+    pub vector: DVec2,
+    /// rad/s, of deep water: omega = sqrt(g k).
+    pub angular_frequency: f64,
+    pub phase_rad: f64,
+    pub amplitude_m: f64,
+}
+
+/// The seeded waves of a configuration: amplitudes in proportion to wavelength, so that all have one slope.
+pub fn waves(parameters: &Parameters) -> Vec<Wave> {
+    let mut random = Random::new(parameters.seed);
+    let count = parameters.waves.count;
+    let share = |i: u32| 0.4f64.powf(if count > 1 { f64::from(i) / f64::from(count - 1) } else { 0.0 });
+    let total: f64 = (0..count).map(share).sum();
+    (0..count)
+        .map(|i| {
+            let number = TAU / (f64::from(parameters.waves.wavelength_m) * share(i));
+            let angle = TAU * f64::from(random.unit());
+            Wave {
+                vector: DVec2::from_angle(angle) * number,
+                angular_frequency: (GRAVITY_M_S2 * number).sqrt(),
+                phase_rad: TAU * f64::from(random.unit()),
+                amplitude_m: f64::from(parameters.waves.amplitude_m) * share(i) / total,
+            }
+        })
+        .collect()
+}
+
+/// The regular mesh: where it lies and how many cells it has along x and z; each cell is two triangles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// x and z of the first vertex, metres.
+    pub corner: DVec2,
+    /// Cell size along x and z, metres.
+    pub cell: DVec2,
+    pub columns: u32,
+    pub rows: u32,
+}
+
+impl Grid {
+    /// A mesh of about `triangles` triangles, twice as many cells along z as along x where that divides (10,000 are 50 x
+    /// 100 cells), over the footprint of `boxes` under `light`s and a margin.
+    pub fn over(boxes: &[(ReceiverBox, Light)], parameters: &Parameters) -> Self {
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut deepest = LEVEL_M;
+        for (receiver, light) in boxes {
+            for corner in receiver.corners() {
+                let place = entry_point(light, corner, receiver, f64::from(parameters.refraction_index));
+                low = low.min(place);
+                high = high.max(place);
+                deepest = deepest.min(corner.y);
+            }
+        }
+        // A wave of slope s turns a ray by about s (1 - 1/n): what it moves the footprint's edge by.
+        let turn = f64::from(parameters.steepest_slope()) * (1.0 - 1.0 / f64::from(parameters.refraction_index));
+        let margin = (high - low) * MARGIN + DVec2::splat(turn.min(1.0) * (LEVEL_M - deepest));
+        let (low, high) = (low - margin, high + margin);
+        let (columns, rows) = cells(parameters.water_triangles);
+        let cell = (high - low) / DVec2::new(f64::from(columns), f64::from(rows));
+        Grid { corner: low, cell, columns, rows }
+    }
+
+    pub fn vertex_count(&self) -> u32 {
+        (self.columns + 1) * (self.rows + 1)
+    }
+
+    pub fn triangle_count(&self) -> u32 {
+        2 * self.columns * self.rows
+    }
+
+    /// x and z of the middle, metres.
+    pub fn center(&self) -> DVec2 {
+        self.corner + self.cell * DVec2::new(f64::from(self.columns), f64::from(self.rows)) / 2.0
+    }
+
+    /// Three indices a triangle, row by row.
+    pub fn indices(&self) -> Vec<u32> {
+        let stride = self.columns + 1;
+        let cell = |row: u32, column: u32| {
+            let a = row * stride + column;
+            let (b, c, d) = (a + 1, a + stride, a + stride + 1);
+            [a, c, b, b, c, d]
+        };
+        (0..self.rows).flat_map(|row| (0..self.columns).flat_map(move |column| cell(row, column))).collect()
+    }
+}
+
+/// Cells along x and z for a number of triangles: an exact division near one to two where there is one.
+fn cells(triangles: u32) -> (u32, u32) {
+    let cells = (triangles / 2).max(1);
+    let ideal = (f64::from(cells) / 2.0).sqrt();
+    let (least, most) = ((ideal / 1.5).ceil().max(1.0) as u32, (ideal * 1.5).floor().max(1.0) as u32);
+    let exact = (least..=most)
+        .filter(|columns| cells.is_multiple_of(*columns))
+        .min_by(|a, b| (f64::from(*a) - ideal).abs().total_cmp(&(f64::from(*b) - ideal).abs()));
+    let columns = exact.unwrap_or((ideal.round() as u32).max(1));
+    (columns, (f64::from(cells) / f64::from(columns)).round() as u32)
+}
+
+/// x and z where light to `target` enters flat water.
+fn entry_point(light: &Light, target: DVec3, receiver: &ReceiverBox, refraction_index: f64) -> DVec2 {
+    match *light {
+        Light::Parallel { .. } => {
+            let v = receiver.axes.v;
+            let entry = target + v * ((LEVEL_M - target.y) / v.y);
+            DVec2::new(entry.x, entry.z)
+        }
+        Light::Point { position, .. } => {
+            // Fermat: between the foot of the light and the foot of the target the entry point has equal optical slopes;
+            // the difference is monotonic, so bisection finds it.
+            let position = position.as_dvec3();
+            let (from, to) = (DVec2::new(position.x, position.z), DVec2::new(target.x, target.z));
+            let (above, below) = (position.y - LEVEL_M, LEVEL_M - target.y);
+            let distance = from.distance(to);
+            let sine = |run: f64, rise: f64| run / run.hypot(rise).max(f64::MIN_POSITIVE);
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..60 {
+                let middle = (low + high) / 2.0;
+                let excess = sine(distance * middle, above)
+                    - refraction_index * sine(distance * (1.0 - middle), below);
+                if excess < 0.0 { low = middle } else { high = middle }
+            }
+            from.lerp(to, low)
+        }
+    }
+}
+
+/// The water on the device.
+pub struct Water {
+    pub grid: Grid,
+    pub vertices: Arc<Buffer>,
+    pub indices: Arc<Buffer>,
+    animate: Pass,
+    wave_count: u32,
+}
+
+/// Bytes of a `WaterVertex` of the shaders: position and normal, four floats each.
+const VERTEX_BYTES: u64 = 32;
+
+impl Water {
+    /// Uploads waves and indices; `label` goes before the resources' names.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(shaders: &ShaderLibrary, label: &str, grid: Grid, parameters: &Parameters) -> Result<Self, Error> {
+        let device = shaders.device();
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let mut blocks: Vec<WaveBlock> = waves(parameters)
+            .iter()
+            .map(|wave| WaveBlock {
+                vector: [
+                    wave.vector.x as f32,
+                    wave.vector.y as f32,
+                    wave.angular_frequency as f32,
+                    wave.phase_rad as f32,
+                ],
+                amplitude: [wave.amplitude_m as f32, 0.0, 0.0, 0.0],
+            })
+            .collect();
+        let wave_count = blocks.len() as u32;
+        // Flat water has no wave, but a buffer has at least one element.
+        blocks.resize(blocks.len().max(1), WaveBlock { vector: [0.0; 4], amplitude: [0.0; 4] });
+        let name = |what: &str| format!("{label}/{what}");
+        let waves = upload(device, &name("waves"), storage, bytemuck::cast_slice(&blocks))?;
+        let size_bytes = u64::from(grid.vertex_count()) * VERTEX_BYTES;
+        let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(storage))?;
+        let indices = upload(
+            device,
+            &name("water-indices"),
+            vk::BufferUsageFlags::INDEX_BUFFER,
+            bytemuck::cast_slice(&grid.indices()),
+        )?;
+        let animate = Pass::compute("water-surface", "5.2", "caustics/water-surface.comp")
+            .with("waves", &waves)
+            .with("water", &vertices)
+            .constants::<Surface>()
+            .build(shaders)?;
+        Ok(Water { grid, vertices, indices, animate, wave_count })
+    }
+
+    /// Evaluates the waves at `time_s`.
+    pub fn animate(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
+        frame.compute(&self.animate, |dispatch| {
+            dispatch
+                .constants(&Surface {
+                    corner: self.grid.corner.as_vec2().to_array(),
+                    cell: self.grid.cell.as_vec2().to_array(),
+                    columns: self.grid.columns + 1,
+                    rows: self.grid.rows + 1,
+                    wave_count: self.wave_count,
+                    level_m: LEVEL_M as f32,
+                    time_s: time_s as f32,
+                })
+                .threads(self.grid.vertex_count(), 1, 1);
+        })
+    }
+}

@@ -1,0 +1,165 @@
+use super::*;
+
+/// A square in the plane z = 0: four positions, then the indices 0 1 2 3 0 2 as bytes.
+const SQUARE: [[f32; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
+
+fn square_bytes() -> Vec<u8> {
+    let mut bytes: Vec<u8> = SQUARE.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    bytes.extend([0, 1, 2, 3, 0, 2]);
+    bytes
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in bytes.chunks(3) {
+        let word = chunk.iter().chain(&[0, 0]).take(3).fold(0, |w, b| w << 8 | usize::from(*b));
+        for place in 0..4 {
+            let digit = DIGITS[word >> (18 - 6 * place) & 63];
+            text.push(if place <= chunk.len() { digit.into() } else { '=' });
+        }
+    }
+    text
+}
+
+/// A document with one square; `nodes` and `primitive` are JSON, `uri` names the buffer.
+fn document(nodes: &str, primitive: &str, uri: Option<&str>) -> String {
+    let uri = uri.map_or(String::new(), |uri| format!(r#""uri":"{uri}","#));
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":{nodes},
+        "meshes":[{{"primitives":[{primitive}]}}],"buffers":[{{{uri}"byteLength":54}}],
+        "bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":6}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
+        {{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}},
+        {{"bufferView":1,"componentType":5121,"count":4,"type":"SCALAR"}}]}}"#
+    )
+}
+
+const NODE: &str = r#"[{"mesh":0}]"#;
+
+fn embedded(nodes: &str, primitive: &str) -> Result<Mesh, Fault> {
+    let uri = format!("data:application/octet-stream;base64,{}", base64(&square_bytes()));
+    parse(document(nodes, primitive, Some(&uri)).as_bytes(), Path::new(""))
+}
+
+fn binary(json: &str, chunk: &[u8]) -> Vec<u8> {
+    let mut json = json.as_bytes().to_vec();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut chunk = chunk.to_vec();
+    chunk.resize(chunk.len().next_multiple_of(4), 0);
+    let mut bytes = b"glTF\x02\0\0\0".to_vec();
+    bytes.extend((28 + json.len() as u32 + chunk.len() as u32).to_le_bytes());
+    for (kind, data) in [(b"JSON", json), (b"BIN\0", chunk)] {
+        bytes.extend((data.len() as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(data);
+    }
+    bytes
+}
+
+const STRIP: &str = r#"{"attributes":{"POSITION":0},"indices":2,"mode":5}"#;
+const FAN: &str = r#"{"attributes":{"POSITION":0},"mode":6}"#;
+const LIST: &str = r#"{"attributes":{"POSITION":0},"indices":1}"#;
+
+#[test]
+fn lists_strips_and_fans_are_triangles_of_the_right_orientation() {
+    assert_eq!(embedded(NODE, LIST).unwrap().indices, [0, 1, 2, 3, 0, 2]);
+    assert_eq!(embedded(NODE, FAN).unwrap().indices, [1, 2, 0, 2, 3, 0]);
+    assert_eq!(embedded(NODE, STRIP).unwrap().indices, [0, 1, 2, 1, 3, 2]);
+    assert_eq!(embedded(NODE, FAN).unwrap().normals, [Vec3::Z; 4]);
+    let points = r#"{"attributes":{"POSITION":0},"mode":0}"#;
+    let mixed = embedded(NODE, &format!("{points},{FAN},{LIST}")).unwrap();
+    assert_eq!((mixed.triangle_count(), mixed.positions.len()), (4, 8));
+    assert!(embedded(NODE, points).unwrap_err().reason.contains("no triangles"));
+}
+
+#[test]
+fn text_binary_and_external_files_are_equal() {
+    let mesh = embedded(NODE, LIST).unwrap();
+    let glb = binary(&document(NODE, LIST, None), &square_bytes());
+    assert_eq!(parse(&glb, Path::new("")).unwrap(), mesh);
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("a b.bin"), square_bytes()).unwrap();
+    let external = |uri| parse(document(NODE, LIST, Some(uri)).as_bytes(), directory.path());
+    assert_eq!(external("a%20b.bin").unwrap(), mesh);
+    for uri in ["none.bin", "%", "%ff", "http://a/b.bin", ".", "data:;base64,!"] {
+        let fault = external(uri).expect_err(uri);
+        assert_eq!(fault.place, Place::Part("buffer 0".to_owned()), "{fault}");
+    }
+    std::fs::write(directory.path().join("short.bin"), [0; 53]).unwrap();
+    assert!(external("short.bin").unwrap_err().reason.contains("53"));
+}
+
+#[test]
+fn node_transforms_are_applied_down_the_tree() {
+    let nodes = r#"[{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"scale":[2,2,2]},
+        {"mesh":0,"scale":[-1,1,1]}]"#;
+    let mesh = embedded(nodes, LIST).unwrap();
+    assert_eq!(mesh.bounds().min, Vec3::new(9.0, 0.0, 0.0));
+    assert_eq!(mesh.bounds().max, Vec3::new(12.0, 2.0, 0.0));
+    assert_eq!(mesh.positions[1], Vec3::new(12.0, 0.0, 0.0));
+    assert_eq!(mesh.normals, [Vec3::Z; 8]);
+}
+
+#[test]
+fn loops_and_shared_nodes_are_refused() {
+    for nodes in [
+        r#"[{"mesh":0,"children":[0]}]"#,
+        r#"[{"children":[1]},{"children":[0]}]"#,
+        r#"[{"children":[1,1]},{"mesh":0}]"#,
+    ] {
+        assert!(embedded(nodes, LIST).unwrap_err().reason.contains("twice"), "{nodes}");
+    }
+}
+
+#[test]
+fn accessors_beyond_their_buffers_are_refused() {
+    let json = document(NODE, LIST, None);
+    for (from, to) in [
+        (r#""count":4,"type":"VEC3""#, r#""count":4000000000,"type":"VEC3""#),
+        (r#""count":4,"type":"VEC3""#, r#""count":18446744073709551615,"type":"VEC3""#),
+        (r#""count":4,"type":"VEC3""#, r#""count":0,"type":"VEC3""#),
+        (r#""count":4,"type":"VEC3""#, r#""count":4,"type":"VEC2""#),
+        (r#""componentType":5126"#, r#""componentType":5123"#),
+        (r#""byteOffset":48,"#, r#""byteOffset":18446744073709551615,"#),
+        (r#""byteOffset":48,"#, r#""byteOffset":49,"#),
+        (r#""byteLength":48}"#, r#""byteLength":48,"byteStride":16}"#),
+        (r#""byteLength":48}"#, r#""byteLength":48,"byteStride":8}"#),
+        (r#""byteLength":48}"#, r#""byteLength":48,"byteStride":0}"#),
+        (r#"{"bufferView":0,"componentType":5126"#, r#"{"componentType":5126"#),
+        (r#""byteLength":54}"#, r#""byteLength":4000000000}"#),
+        (r#""POSITION":0"#, r#""POSITION":9"#),
+        (r#""POSITION":0"#, r#""NORMAL":0"#),
+        (r#""scenes":[{"nodes":[0]}]"#, r#""scenes":[{"nodes":[7]}]"#),
+        (r#""scene":0,"scenes":[{"nodes":[0]}],"#, ""),
+        (r#""asset""#, r#""extensionsRequired":["X"],"asset""#),
+    ] {
+        assert!(json.contains(from), "{from}");
+        let changed = binary(&json.replacen(from, to, 1), &square_bytes());
+        let fault = parse(&changed, Path::new("")).expect_err(to);
+        assert!(!fault.to_string().contains('\n'), "{fault}");
+    }
+}
+
+#[test]
+fn bad_contents_and_containers_are_refused() {
+    let json = document(NODE, LIST, None);
+    let mut nan = square_bytes();
+    nan[14] = 0xc0;
+    nan[15] = 0x7f;
+    let fault = parse(&binary(&json, &nan), Path::new("")).unwrap_err();
+    assert_eq!(fault.place, Place::Vertex(1));
+    let mut index = square_bytes();
+    index[50] = 4;
+    let fault = parse(&binary(&json, &index), Path::new("")).unwrap_err();
+    assert!(fault.to_string().starts_with("mesh 0, primitive 0: "), "{fault}");
+    let good = binary(&json, &square_bytes());
+    for length in [0_u32, 3, 11, 4_000_000_000] {
+        let mut bytes = good.clone();
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        assert_eq!(parse(&bytes, Path::new("")).unwrap_err().place, Place::Byte(8));
+        let mut bytes = good.clone();
+        bytes[12..16].copy_from_slice(&length.to_le_bytes());
+        assert!(parse(&bytes, Path::new("")).is_err());
+    }
+}

@@ -1,0 +1,254 @@
+//! The module as a whole, on the real shaders and on broken ones.
+
+use std::fs;
+use std::path::Path;
+
+use super::reflection::SPIRV_MAGIC;
+use super::*;
+
+const SHADERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders");
+
+/// Compiles `a.frag`, which includes `b.glsl`.
+fn compile_pair(shader: &str, included: &str) -> Result<CompiledShader, Error> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.frag"), shader).unwrap();
+    fs::write(folder.path().join("b.glsl"), included).unwrap();
+    compile_dir(folder.path()).map(|mut shaders| shaders.remove(0))
+}
+
+fn compile_fragment(declarations: &str, body: &str) -> CompiledShader {
+    let main = format!("{declarations}\nvoid main() {{\n{body}\n}}\n");
+    compile_pair("#version 450\nlayout(location = 0) out vec4 target;\n#include \"b.glsl\"\n", &main).unwrap()
+}
+
+fn reflect_embedded(name: &str) -> Interface {
+    let shader = EMBEDDED.iter().find(|shader| shader.name == name).unwrap();
+    Interface::reflect(shader.glslang).unwrap()
+}
+
+#[test]
+fn the_embedded_shaders_are_those_of_the_folder() {
+    let compiled = compile_dir(Path::new(SHADERS)).unwrap();
+    assert!(compiled.len() >= 10);
+    assert_eq!(compiled.len(), EMBEDDED.len());
+    for (compiled, embedded) in compiled.iter().zip(EMBEDDED) {
+        assert_eq!(compiled.name, embedded.name);
+        assert_eq!(compiled.stage, embedded.stage);
+        assert_eq!(compiled.glslang, embedded.glslang);
+        assert_eq!(compiled.naga.as_deref().ok(), embedded.naga.ok());
+    }
+    check_exceptions(&compiled, NAGA_EXCEPTIONS).unwrap();
+}
+
+#[test]
+fn every_naga_binary_fits_the_interface_of_glslang() {
+    for shader in EMBEDDED {
+        if let Ok(naga) = shader.naga {
+            let glslang = Interface::reflect(shader.glslang).unwrap();
+            let naga = Interface::reflect(naga).unwrap();
+            assert_eq!(check_same_interface(&glslang, &naga), Ok(()), "{}", shader.name);
+        }
+    }
+}
+
+#[test]
+fn a_glslang_error_names_the_included_file_and_line() {
+    let error =
+        compile_pair("#version 450\n\n#include \"b.glsl\"\nvoid main() {}\n", "\n\nfloat f() { return missing; }\n");
+    let Err(Error::Compile { compiler, path, line, message, .. }) = &error else {
+        panic!("expected a compile error, got {error:?}");
+    };
+    assert_eq!(*compiler, Compiler::Glslang);
+    assert!(path.ends_with("b.glsl"));
+    assert_eq!(*line, Some(3));
+    assert!(message.contains("'missing' : undeclared identifier"), "{message}");
+}
+
+#[test]
+fn an_error_after_an_include_names_the_shader_and_its_line() {
+    let error =
+        compile_pair("#version 450\n#include \"b.glsl\"\nvoid main() {\n  missing();\n}\n", "int a;\nint b;\nint c;\n");
+    let Err(Error::Compile { path, line, .. }) = error else {
+        panic!("expected a compile error, got {error:?}");
+    };
+    assert!(path.ends_with("a.frag"));
+    assert_eq!(line, Some(4));
+}
+
+#[test]
+fn a_link_error_has_no_line() {
+    let error = compile_pair("#version 450\n", "").unwrap_err();
+    assert!(matches!(error, Error::Compile { line: None, .. }));
+    assert!(error.to_string().contains("a.frag: glslang refuses the shader"), "{error}");
+    assert!(!error.to_string().contains('\n'));
+}
+
+#[test]
+fn a_naga_error_names_the_included_file_and_line() {
+    let shader = compile_fragment(
+        "layout(set = 0, binding = 0) buffer Count { uint count; };",
+        "target = vec4(0.0);\natomicAdd(count, 1u);",
+    );
+    let reason = shader.naga.unwrap_err();
+    assert!(reason.contains("b.glsl:4: naga refuses the shader `a.frag`"), "{reason}");
+    assert!(reason.contains("atomicAdd"), "{reason}");
+}
+
+#[test]
+fn naga_refuses_what_it_would_miscompile() {
+    let cases = [
+        ("float grid[2][3];", "target = vec4(grid[1][2]);", "nested arrays"),
+        ("", "int i = 0;\ndo {\n i++;\n} while (i < 3);\ntarget = vec4(i);", "do-while"),
+        ("void f(inout float a) {}", "vec2 v = vec2(1.0);\nf(v.y);\ntarget = v.xyxy;", "panicked"),
+        (
+            "layout(push_constant) uniform P { float a[3]; } p;",
+            "target = vec4(p.a[1]);",
+            "disagree on member 0 (`a`) of the push constants: (0, 12, Some(4)) against (0, 48, Some(16))",
+        ),
+    ];
+    for (declarations, body, expected) in cases {
+        let reason = compile_fragment(declarations, body).naga.unwrap_err();
+        assert!(reason.contains(expected), "{reason}");
+    }
+}
+
+#[test]
+fn vertex_inputs_outputs_and_buffers_reflect() {
+    let interface = reflect_embedded("test/sprites.vert");
+    assert_eq!(interface.stage, Stage::Vertex);
+    assert_eq!(interface.local_size, None);
+    let places = |locations: &[Location]| {
+        let place = |at: &Location| (at.location, at.name.clone(), at.format, at.count);
+        locations.iter().map(place).collect::<Vec<_>>()
+    };
+    let vec4 = Format { scalar: Scalar::Float, components: 4 };
+    let uint = Format { scalar: Scalar::Uint, components: 1 };
+    assert_eq!(places(&interface.inputs), [(0, "tint".to_owned(), vec4, 1)]);
+    assert_eq!(
+        places(&interface.outputs),
+        [(0, "colour".to_owned(), vec4, 1), (1, "sprite_index".to_owned(), uint, 1)]
+    );
+    let [sprites] = interface.bindings.as_slice() else {
+        panic!("expected one binding, got {:?}", interface.bindings);
+    };
+    assert_eq!((sprites.set, sprites.binding, sprites.count), (0, 0, 1));
+    assert_eq!(sprites.kind, BindingKind::StorageBuffer { readonly: true });
+    let block = sprites.block.as_ref().unwrap();
+    assert_eq!((block.name.as_str(), block.size_bytes), ("Sprites", 0));
+    let array = block.member("sprites").unwrap();
+    assert_eq!((array.offset_bytes, array.size_bytes, array.array_stride_bytes), (0, 0, Some(16)));
+    let radius = array.block.as_ref().unwrap().member("radius_px").unwrap();
+    assert_eq!((radius.offset_bytes, radius.size_bytes), (12, 4));
+}
+
+#[test]
+fn uniform_blocks_textures_and_samplers_reflect() {
+    let interface = reflect_embedded("test/sprites.frag");
+    let kinds: Vec<_> = interface.bindings.iter().map(|at| (at.name.as_str(), at.kind)).collect();
+    assert_eq!(
+        kinds,
+        [
+            ("scene", BindingKind::UniformBuffer),
+            ("palette", BindingKind::SampledImage),
+            ("nearest", BindingKind::Sampler),
+        ]
+    );
+    let scene = interface.binding(1, 0).unwrap().block.as_ref().unwrap();
+    let members: Vec<_> = scene
+        .members
+        .iter()
+        .map(|at| (at.name.as_str(), at.offset_bytes, at.size_bytes, at.array_stride_bytes))
+        .collect();
+    assert_eq!(
+        members,
+        [
+            ("view_projection", 0, 64, None),
+            ("lights", 64, 32, Some(16)),
+            ("weights", 96, 48, Some(16)),
+            ("ambient", 144, 12, None),
+            ("light_count", 156, 4, None),
+        ]
+    );
+    assert_eq!((scene.name.as_str(), scene.size_bytes), ("Scene", 160));
+    assert_eq!(interface.outputs.len(), 2);
+}
+
+#[test]
+fn compute_shaders_reflect() {
+    let filter = reflect_embedded("test/filter.comp");
+    assert_eq!(filter.local_size, Some([8, 8, 1]));
+    let result = filter.binding(1, 0).unwrap();
+    assert_eq!(result.kind, BindingKind::StorageImage { format: ImageFormat::Rgba32f });
+
+    let sum = reflect_embedded("test/sum.comp");
+    assert_eq!(sum.local_size, Some([64, 1, 1]));
+    let sums = sum.binding(0, 1).unwrap();
+    assert_eq!(sums.name, "Sums");
+    assert_eq!(sums.kind, BindingKind::StorageBuffer { readonly: false });
+    let range = sum.push_constants.unwrap();
+    assert_eq!((range.name.as_str(), range.size_bytes), ("Range", 4));
+}
+
+#[test]
+fn geometry_inputs_reflect_for_one_vertex() {
+    let strip = EMBEDDED.iter().find(|shader| shader.name == "test/strip.geom").unwrap();
+    assert!(strip.naga.unwrap_err().contains("no geometry stage"));
+    let interface = Interface::reflect(strip.glslang).unwrap();
+    assert_eq!(interface.stage, Stage::Geometry);
+    assert_eq!((interface.inputs[0].name.as_str(), interface.inputs[0].count), ("colour", 1));
+}
+
+#[test]
+fn each_difference_of_interfaces_is_found() {
+    let original = reflect_embedded("test/sprites.frag");
+    let push = reflect_embedded("test/heavy.frag").push_constants;
+    let differs = |change: &dyn Fn(&mut Interface)| {
+        let mut changed = original.clone();
+        change(&mut changed);
+        check_same_interface(&original, &changed).unwrap_err().what
+    };
+    assert_eq!(differs(&|at| at.bindings[1].kind = BindingKind::Sampler), "set 1 binding 1");
+    assert_eq!(differs(&|at| at.bindings[1].binding = 7), "set 1 binding 7");
+    assert_eq!(differs(&|at| at.bindings[2].count = 2), "set 1 binding 2");
+    assert_eq!(differs(&|at| at.stage = Stage::Vertex), "the stage");
+    assert_eq!(differs(&|at| at.local_size = Some([8, 1, 1])), "the workgroup size");
+    assert_eq!(differs(&|at| at.push_constants = push.clone()), "the push constants");
+    assert_eq!(differs(&|at| at.outputs[0].format.components = 3), "the output locations");
+    assert_eq!(
+        differs(&|at| at.bindings[0].block.as_mut().unwrap().members[3].offset_bytes = 148),
+        "member 3 (`ambient`) of set 1 binding 0"
+    );
+    assert_eq!(
+        differs(&|at| {
+            let lights = &mut at.bindings[0].block.as_mut().unwrap().members[1];
+            lights.block.as_mut().unwrap().members[1].offset_bytes = 8;
+        }),
+        "member 1 (`power`) of member 1 (`lights`) of set 1 binding 0"
+    );
+}
+
+#[test]
+fn an_unused_binding_may_be_missing_from_naga() {
+    let original = reflect_embedded("test/sprites.frag");
+    let mut fewer = original.clone();
+    fewer.bindings.pop();
+    assert_eq!(check_same_interface(&original, &fewer), Ok(()));
+    assert!(check_same_interface(&fewer, &original).is_err());
+}
+
+#[test]
+fn what_is_no_spirv_is_refused() {
+    let fullscreen = EMBEDDED.iter().find(|shader| shader.name == "common/fullscreen.vert").unwrap();
+    let mut words = fullscreen.glslang.to_vec();
+    assert!(Interface::reflect(&words).is_ok());
+    words[0] = words[0].swap_bytes();
+    assert!(Interface::reflect(&words).is_err());
+    assert!(Interface::reflect(&[]).is_err());
+    assert!(Interface::reflect(&[SPIRV_MAGIC; 5]).is_err());
+}
+
+#[test]
+fn a_missing_folder_is_named() {
+    let error = compile_dir(Path::new("no/such/folder")).unwrap_err();
+    assert!(error.to_string().starts_with("reading no/such/folder: "), "{error}");
+}
