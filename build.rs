@@ -7,15 +7,20 @@
 mod shader_build;
 
 use std::env;
+use std::ffi::OsString;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use shader_build::{CompiledShader, NAGA_EXCEPTIONS, check_exceptions, compile_dir};
 
 fn main() -> ExitCode {
+    println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=shaders");
+    // All of it: whether the working tree is dirty is part of every record.
+    println!("cargo::rerun-if-changed=src");
+    describe_build();
     println!("cargo::rustc-check-cfg=cfg(embedded_shaders)");
     println!("cargo::rustc-cfg=embedded_shaders");
     match embed_shaders() {
@@ -23,6 +28,33 @@ fn main() -> ExitCode {
         Err(message) => {
             println!("cargo::error={message}");
             ExitCode::FAILURE
+        }
+    }
+}
+
+/// Tells the library which commit, compiler and profile it is built from, as far as they are known.
+fn describe_build() {
+    for path in [".git/HEAD", ".git/logs/HEAD"] {
+        if Path::new(path).exists() {
+            println!("cargo::rerun-if-changed={path}");
+        }
+    }
+    let answer = |program: OsString, arguments: &[&str]| {
+        let output = Command::new(program).args(arguments).output().ok().filter(|o| o.status.success())?;
+        Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    let commit = answer("git".into(), &["rev-parse", "HEAD"]);
+    let dirty = answer("git".into(), &["--no-optional-locks", "status", "--porcelain"]).map(|s| !s.is_empty());
+    let rustc = env::var_os("RUSTC").and_then(|rustc| answer(rustc, &["-V"]));
+    let facts = [
+        ("FUMAROLE_GIT_COMMIT", commit),
+        ("FUMAROLE_GIT_DIRTY", dirty.map(|d| d.to_string())),
+        ("FUMAROLE_RUSTC", rustc),
+        ("FUMAROLE_PROFILE", env::var("PROFILE").ok()),
+    ];
+    for (name, value) in facts {
+        if let Some(value) = value {
+            println!("cargo::rustc-env={name}={value}");
         }
     }
 }

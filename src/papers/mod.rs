@@ -5,7 +5,7 @@ pub mod caustics;
 use std::sync::Arc;
 
 use crate::gpu::bindings::Resource;
-use crate::gpu::{Error, Frame, ImageView};
+use crate::gpu::{Buffer, Error, Frame, ImageView};
 
 /// A paper's method with its resources, ready to record frames.
 pub trait Paper {
@@ -18,6 +18,26 @@ pub trait Paper {
     /// The finished picture, 8-bit sRGB.
     fn picture(&self) -> &Arc<ImageView>;
 
-    /// The intermediate targets and buffers that `--dump` knows, by name.
-    fn targets(&self) -> Vec<(String, Resource)>;
+    /// The intermediate targets and buffers that `--dump` knows.
+    fn targets(&self) -> Vec<Target>;
+}
+
+/// A target or buffer that can be written out.
+pub struct Target {
+    pub name: String,
+    pub resource: Resource,
+    /// Floats a row, for a buffer; images have their own shape.
+    pub columns: u32,
+}
+
+impl Target {
+    /// An image.
+    pub fn image(name: impl Into<String>, view: &Arc<ImageView>) -> Self {
+        Target { name: name.into(), resource: view.into(), columns: 0 }
+    }
+
+    /// A buffer of rows of `columns` 32-bit floats.
+    pub fn table(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
+        Target { name: name.into(), resource: buffer.into(), columns }
+    }
 }

@@ -86,9 +86,12 @@ impl Stage {
 }
 
 /// The two compilers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Compiler {
+    /// The reference compiler: it has every shader and is the default of every pass.
+    #[default]
     Glslang,
+    /// Wherever it has a binary; glslang elsewhere.
     Naga,
 }
 

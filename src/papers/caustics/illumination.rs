@@ -21,6 +21,9 @@ host_block! {
     }
 }
 
+/// Floats of a [`Ray`].
+pub const RAY_FLOATS: u32 = (std::mem::size_of::<Ray>() / 4) as u32;
+
 host_block! {
     struct LightConstants {
         source: [f32; 4],

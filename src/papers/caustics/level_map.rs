@@ -9,7 +9,6 @@ use super::method::{CombineConstants, Method};
 use super::parameters::Parameters;
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
 use super::water::Water;
-use crate::gpu::bindings::Resource;
 use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, Sampler, ShaderLibrary};
 
 /// The maps and passes of the method.
@@ -129,12 +128,12 @@ impl Method for LevelMap {
         &self.combined
     }
 
-    fn targets(&self) -> Vec<(&'static str, Resource)> {
+    fn targets(&self) -> Vec<(&'static str, &Arc<ImageView>)> {
         vec![
-            ("position-map", (&self.position).into()),
-            ("diffuse-map", (&self.diffuse).into()),
-            ("caustics-map", (&self.caustics).into()),
-            ("combined-map", (&self.combined).into()),
+            ("position-map", &self.position),
+            ("diffuse-map", &self.diffuse),
+            ("caustics-map", &self.caustics),
+            ("combined-map", &self.combined),
         ]
     }
 }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::illumination::IlluminationVolumes;
 use super::receiver::LitReceiver;
-use crate::gpu::bindings::Resource;
 use crate::gpu::{Error, Frame, ImageView};
 use crate::host_block;
 
@@ -47,5 +46,5 @@ pub trait Method {
     fn combined_map(&self) -> &Arc<ImageView>;
 
     /// What `--dump` knows, by name.
-    fn targets(&self) -> Vec<(&'static str, Resource)>;
+    fn targets(&self) -> Vec<(&'static str, &Arc<ImageView>)>;
 }

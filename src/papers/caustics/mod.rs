@@ -30,8 +30,7 @@ use self::planes::{Axes, ReceiverBox};
 use self::receiver::{LitReceiver, Receiver};
 use self::volumetric::Volumetric;
 use self::water::{Grid, Water};
-use super::Paper;
-use crate::gpu::bindings::Resource;
+use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, Sampler, ShaderLibrary};
 
 pub use self::parameters::{ParameterError, Parameters, Variant, WaveParameters};
@@ -131,6 +130,11 @@ impl Caustics {
     pub fn grid(&self) -> Grid {
         self.water.grid
     }
+
+    /// How many times a receiver is lit by a light: each has planes and a caustics map of its own.
+    pub fn lit_receiver_count(&self) -> usize {
+        self.lights.iter().map(|light| light.receivers.len()).sum()
+    }
 }
 
 fn world_center(receivers: &[Arc<Receiver>]) -> DVec3 {
@@ -171,16 +175,17 @@ impl Paper for Caustics {
         &self.picture.color
     }
 
-    fn targets(&self) -> Vec<(String, Resource)> {
-        let mut targets = vec![("water".to_owned(), Resource::from(&self.water.vertices))];
+    fn targets(&self) -> Vec<Target> {
+        let mut targets = vec![Target::table("water", &self.water.vertices, water::VERTEX_FLOATS)];
         for (l, light) in self.lights.iter().enumerate() {
-            targets.push((numbered("illumination-volumes", &[l]), (&light.volumes.rays).into()));
+            let name = numbered("illumination-volumes", &[l]);
+            targets.push(Target::table(name, &light.volumes.rays, illumination::RAY_FLOATS));
             for (r, one) in light.receivers.iter().enumerate() {
                 let named = one.method.targets().into_iter();
-                targets.extend(named.map(|(name, target)| (numbered(name, &[l, r]), target)));
+                targets.extend(named.map(|(name, view)| Target::image(numbered(name, &[l, r]), view)));
             }
         }
-        targets.push(("picture".to_owned(), (&self.picture.color).into()));
+        targets.push(Target::image("picture", &self.picture.color));
         targets
     }
 }

@@ -9,7 +9,6 @@ use super::method::{CombineConstants, Method};
 use super::parameters::Parameters;
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
 use super::water::Water;
-use crate::gpu::bindings::Resource;
 use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageView, Load, Pass, Sampler, ShaderLibrary};
 use crate::host_block;
 
@@ -154,12 +153,12 @@ impl Method for Volumetric {
         &self.combined
     }
 
-    fn targets(&self) -> Vec<(&'static str, Resource)> {
+    fn targets(&self) -> Vec<(&'static str, &Arc<ImageView>)> {
         vec![
-            ("illumination-map", (&self.slices).into()),
-            ("caustics-map", (&self.caustics).into()),
-            ("position-map", (&self.position).into()),
-            ("combined-map", (&self.combined).into()),
+            ("illumination-map", &self.slices),
+            ("caustics-map", &self.caustics),
+            ("position-map", &self.position),
+            ("combined-map", &self.combined),
         ]
     }
 }

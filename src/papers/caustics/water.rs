@@ -179,8 +179,8 @@ pub struct Water {
     wave_count: u32,
 }
 
-/// Bytes of a `WaterVertex` of the shaders: position and normal, four floats each.
-const VERTEX_BYTES: u64 = 32;
+/// Floats of a `WaterVertex` of the shaders: position and normal, four each.
+pub const VERTEX_FLOATS: u32 = 8;
 
 impl Water {
     /// Uploads waves and indices; `label` goes before the resources' names.
@@ -207,7 +207,7 @@ impl Water {
         blocks.resize(blocks.len().max(1), WaveBlock { vector: [0.0; 4], amplitude: [0.0; 4] });
         let name = |what: &str| format!("{label}/{what}");
         let waves = upload(device, &name("waves"), storage, bytemuck::cast_slice(&blocks))?;
-        let size_bytes = u64::from(grid.vertex_count()) * VERTEX_BYTES;
+        let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
         let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(storage))?;
         let indices = upload(
             device,

@@ -1,0 +1,132 @@
+#!/bin/sh
+# Makes this machine able to build, test and run fumarole: checks what that needs, installs what is missing with
+# apt-get on Debian and Ubuntu, and is silent when all is there. Exits 1, having changed nothing, where it cannot.
+set -eu
+
+here=$(dirname "$0")
+# An ordinary user's PATH on Debian lacks ldconfig.
+PATH=$PATH:/usr/sbin:/sbin
+
+say() {
+    printf 'setup: %s\n' "$1" >&2
+}
+
+fail() {
+    say "$1"
+    exit 1
+}
+
+# Prints what is wrong with the Rust toolchain and the way out, or nothing.
+rust_problem() {
+    required=$(sed -n 's/^rust-version *= *"\(.*\)".*/\1/p' "$here/Cargo.toml")
+    for tool in rustc cargo; do
+        if ! answer=$(cd "$here" && "$tool" --version 2>/dev/null); then
+            echo "no working $tool on PATH; install Rust $required or later with rustup (https://rustup.rs) and open a new shell"
+            return
+        fi
+        found=$(printf '%s\n' "$answer" | cut -d ' ' -f 2)
+        if [ "$(printf '%s\n' "$required" "$found" | sort -V | head -n 1)" != "$required" ]; then
+            echo "$tool is $found, needed is $required or later; run 'rustup update stable' (rustup: https://rustup.rs)"
+            return
+        fi
+    done
+}
+
+# Rust links through cc, the shader compiler is built with c++, and a compiler without its standard library is no use.
+has_cpp_compiler() {
+    command -v cc >/dev/null &&
+        echo '#include <cstddef>' | c++ -x c++ -fsyntax-only - 2>/dev/null
+}
+
+has_vulkan_loader() (
+    ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1 ' && exit
+    IFS=:
+    for directory in ${LD_LIBRARY_PATH:-}; do
+        [ -e "$directory/libvulkan.so.1" ] && exit
+    done
+    exit 1
+)
+
+# has_manifest TEXT KIND PATHS: whether TEXT stands in a manifest of this KIND where the Vulkan loader looks for it,
+# or in one of the files and directories of the colon-separated PATHS.
+has_manifest() (
+    configuration=${XDG_CONFIG_HOME:-${HOME:-}/.config}:${XDG_CONFIG_DIRS:-/etc/xdg}:/usr/local/etc:/etc
+    data=${XDG_DATA_HOME:-${HOME:-}/.local/share}:${XDG_DATA_DIRS:-/usr/local/share:/usr/share}
+    IFS=:
+    for directory in $configuration $data; do
+        grep -rqsF "$1" "$directory/vulkan/$2" && exit
+    done
+    for path in $3; do
+        grep -rqsF "$1" "$path" && exit
+    done
+    exit 1
+)
+
+# Collects the missing pieces in words and as Debian's packages.
+find_missing() {
+    missing='' packages=''
+    has_cpp_compiler ||
+        need g++ 'a C++ compiler'
+    has_vulkan_loader ||
+        need libvulkan1 'the Vulkan loader libvulkan.so.1'
+    has_manifest libvulkan_lvp icd.d "${VK_DRIVER_FILES:-}:${VK_ICD_FILENAMES:-}:${VK_ADD_DRIVER_FILES:-}" ||
+        need mesa-vulkan-drivers "Mesa's lavapipe driver"
+    has_manifest VK_LAYER_KHRONOS_validation explicit_layer.d "${VK_LAYER_PATH:-}:${VK_ADD_LAYER_PATH:-}" ||
+        need vulkan-validationlayers 'the Khronos validation layer'
+}
+
+need() {
+    missing="$missing${missing:+, }$2 (package $1)"
+    packages="$packages $1"
+}
+
+has_apt() {
+    grep -Eqs '^ID(_LIKE)?=.*(debian|ubuntu)' /etc/os-release && command -v apt-get >/dev/null
+}
+
+# Prints the command that gives root's rights: `env` for root itself.
+root_command() {
+    if [ "$(id -u)" -eq 0 ]; then
+        echo env
+    elif sudo -n true 2>/dev/null; then
+        echo 'sudo -n env'
+    elif [ -t 0 ] && command -v sudo >/dev/null; then
+        echo 'sudo env'
+    else
+        return 1
+    fi
+}
+
+# A package manager of a machine that has just booted may hold the lock for minutes.
+apt() {
+    $as_root DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 "$@" </dev/null 2>&1
+}
+
+install_packages() {
+    say "installing$packages"
+    # A source that cannot be reached need not be the one that holds the packages; if it is, the installation fails.
+    log=$(apt update) || true
+    # shellcheck disable=SC2086
+    if ! log="$log
+$(apt install -y --no-install-recommends $packages)"; then
+        printf '%s\n' "$log" | tail -n 20 >&2
+        fail "apt-get could not install$packages: see its messages above"
+    fi
+}
+
+rust=$(rust_problem)
+find_missing
+if [ -n "$rust" ]; then
+    say "$rust"
+    [ -z "$missing" ] || say "missing as well: $missing"
+    exit 1
+elif [ -z "$missing" ]; then
+    exit 0
+elif ! has_apt; then
+    fail "missing: $missing; install them by their names in this system, which is not Debian or Ubuntu, and run this again"
+elif ! as_root=$(root_command); then
+    fail "missing: $missing; no root and no sudo here, so let an administrator run: apt-get install$packages"
+fi
+install_packages
+find_missing
+[ -z "$missing" ] || fail "still missing after the installation: $missing"

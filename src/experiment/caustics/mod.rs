@@ -1,0 +1,241 @@
+//! The experiments of the `caustics` paper: what a user set up, its scene, its measured runs.
+
+pub mod table_5_1;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use glam::{Mat4, UVec2, Vec2, Vec3};
+use serde_json::{Map, Value, json};
+
+use super::error::Error;
+use super::machine::Machine;
+use super::measure::{Measurement, Schedule, Watch, measure};
+use super::run::{self, Subject, assemble};
+use crate::gpu::live::MemoryUse;
+use crate::papers::Paper;
+use crate::papers::caustics::{Caustics, Parameters, ReceiverInput, Variant};
+use crate::report::record::{Limits, Run};
+use crate::report::trace::TraceRun;
+use crate::scene::{Bounds, Light, MeshSource, shapes};
+
+pub const PAPER: &str = "caustics";
+
+/// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
+/// over it.
+const RECEIVER_SIZE_M: f32 = 2.0;
+/// Gap between receivers in metres.
+const GAP_M: f32 = 0.3;
+/// Cells a side of the pool's floor: its map needs no more than its normals and edges.
+const FLOOR_CELLS: u32 = 8;
+
+/// What a user set up.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    pub parameters: Parameters,
+    pub meshes: Vec<MeshSource>,
+    /// Whether the pool's floor receives caustics as well.
+    pub floor: bool,
+    pub preset: Option<String>,
+    /// Which of several fresh processes this is.
+    pub process: u32,
+}
+
+/// A setup with its meshes loaded and placed.
+pub struct Scene {
+    pub receivers: Vec<ReceiverInput>,
+    pub load_ms: f64,
+}
+
+impl Setup {
+    /// Checks the parameters, loads the meshes, scales each to two metres and stands it on the pool's floor, one beside
+    /// the other.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`], [`Error::Scene`].
+    pub fn load(&self) -> Result<Scene, Error> {
+        self.parameters.validate()?;
+        let started = Instant::now();
+        let floor_m = -self.parameters.water_depth_m;
+        let mut receivers = Vec::new();
+        let mut next_x = 0.0;
+        for source in &self.meshes {
+            let mesh = source.load()?;
+            let bounds = mesh.bounds();
+            let scale = RECEIVER_SIZE_M / bounds.diagonal().max_element();
+            let size = bounds.diagonal() * scale;
+            let foot = Vec3::new(bounds.min.x, bounds.min.y, bounds.center().z) * scale;
+            let place = Mat4::from_translation(Vec3::new(next_x, floor_m, 0.0) - foot) * Mat4::from_scale(Vec3::splat(scale));
+            next_x += size.x + GAP_M;
+            receivers.push(ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.75, 0.75, 0.72) });
+        }
+        let width = next_x - GAP_M;
+        let center = Mat4::from_translation(Vec3::new(-width / 2.0, 0.0, 0.0));
+        for receiver in &mut receivers {
+            receiver.mesh = receiver.mesh.transformed(&center);
+        }
+        if self.floor {
+            receivers.push(floor(&receivers, floor_m));
+        }
+        Ok(Scene { receivers, load_ms: started.elapsed().as_secs_f64() * 1e3 })
+    }
+
+    /// Every parameter, under the names of the options.
+    pub fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Value> {
+        let p = &self.parameters;
+        let meshes: Vec<String> = self.meshes.iter().map(MeshSource::to_string).collect();
+        let triangles: usize = scene.receivers.iter().map(|r| r.mesh.triangle_count()).sum();
+        let lights: Vec<Value> = p.lights.iter().map(light_value).collect();
+        let entries = [
+            ("mesh", json!(meshes)),
+            ("receiver_triangles", json!(triangles)),
+            ("floor", json!(self.floor)),
+            ("planes", json!(p.planes)),
+            ("map_size", json!(p.map_size)),
+            ("water_triangles", json!(paper.grid().triangle_count())),
+            ("mrt", json!(p.mrt)),
+            ("refraction_index", json!(p.refraction_index)),
+            ("absorption", json!(p.absorption_per_m)),
+            ("water_depth", json!(p.water_depth_m)),
+            ("waves", json!(p.waves.count)),
+            ("amplitude", json!(p.waves.amplitude_m)),
+            ("wavelength", json!(p.waves.wavelength_m)),
+            ("lights", json!(lights)),
+            ("ambient", json!(p.ambient.to_array())),
+            ("camera", json!([p.camera.eye.to_array(), p.camera.target.to_array()])),
+            ("time_step", json!(p.time_step_s)),
+        ];
+        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+}
+
+fn light_value(light: &Light) -> Value {
+    match light {
+        Light::Parallel { direction, intensity } => {
+            json!({"direction": direction.to_array(), "intensity": intensity.to_array()})
+        }
+        Light::Point { position, intensity } => {
+            json!({"position": position.to_array(), "intensity": intensity.to_array()})
+        }
+    }
+}
+
+fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
+    let bounds = receivers.iter().map(|r| r.mesh.bounds()).reduce(|a, b| a.union(&b)).unwrap_or(Bounds::EMPTY);
+    let size = Vec2::splat(2.0 * RECEIVER_SIZE_M).max(Vec2::new(bounds.diagonal().x, bounds.diagonal().z) * 1.6);
+    let mesh = shapes::plane(size, UVec2::splat(FLOOR_CELLS));
+    // Just below the feet, so that no receiver's underside fights with it for the picture's depth.
+    let place = Mat4::from_translation(Vec3::new(0.0, floor_m - 1e-3 * RECEIVER_SIZE_M, 0.0));
+    ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
+}
+
+/// A variant with its resources, and what they cost.
+pub struct Built {
+    pub variant: Variant,
+    pub paper: Caustics,
+    pub build_ms: f64,
+    pub memory: Vec<MemoryUse>,
+    pub peak_bytes: u64,
+}
+
+/// Makes the resources of a variant.
+///
+/// # Errors
+/// [`Error::Gpu`].
+pub fn build(machine: &Machine, setup: &Setup, scene: &Scene, variant: Variant) -> Result<Built, Error> {
+    let live = Arc::clone(machine.device.live());
+    let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
+    live.reset_peak();
+    let started = Instant::now();
+    let paper = Caustics::new(&machine.shaders, variant.word(), variant, &setup.parameters, &scene.receivers)?;
+    let build_ms = started.elapsed().as_secs_f64() * 1e3;
+    let prefix = format!("{}/", variant.word());
+    let memory = live
+        .memory()
+        .into_iter()
+        .filter_map(|mut m| {
+            m.name = m.name.strip_prefix(&prefix)?.to_owned();
+            Some(m)
+        })
+        .collect();
+    Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before })
+}
+
+/// One variant's run with what the plots and the trace need of it.
+pub struct VariantRun {
+    pub run: Run,
+    pub measurement: Measurement,
+    pub trace: TraceRun,
+}
+
+/// Measures `variants` of one configuration, interleaved.
+///
+/// # Errors
+/// [`Error::Gpu`]; [`Error::Interrupted`] when not one frame was measured.
+pub fn bench(
+    machine: &mut Machine,
+    setup: &Setup,
+    scene: &Scene,
+    variants: &[Variant],
+    schedule: Schedule,
+    limits: Option<&Limits>,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<VariantRun>, Error> {
+    let mut built = variants
+        .iter()
+        .map(|&variant| build(machine, setup, scene, variant))
+        .collect::<Result<Vec<_>, _>>()?;
+    machine.device.wait_idle()?;
+    let stamp_floor_ms = machine.recorder.stamp_floor_ms()?;
+    let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
+    let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
+    machine.device.wait_idle()?;
+    let validation = machine.check_validation()?;
+    let warnings = machine.warnings();
+    let mut runs = Vec::new();
+    for (built, measurement) in built.iter().zip(measurements) {
+        if measurement.frame_ms.is_empty() {
+            return Err(Error::Interrupted);
+        }
+        let subject = Subject {
+            paper: PAPER,
+            variant: built.variant.word().to_owned(),
+            preset: setup.preset.clone(),
+            config: setup.config(scene, &built.paper),
+            width: setup.parameters.width,
+            height: setup.parameters.height,
+            seed: setup.parameters.seed,
+            process: setup.process,
+            load_ms: scene.load_ms,
+            build_ms: built.build_ms,
+            memory: built.memory.clone(),
+            peak_bytes: built.peak_bytes,
+            results: results(setup, &built.paper, &measurement),
+            limits: limits.cloned(),
+            stamp_floor_ms,
+            validation,
+            warnings: warnings.clone(),
+        };
+        let name = format!("{PAPER} {} {} planes", built.variant.word(), setup.parameters.planes);
+        runs.push(VariantRun {
+            run: assemble(subject, &measurement, schedule),
+            trace: run::trace(name, &measurement),
+            measurement,
+        });
+    }
+    Ok(runs)
+}
+
+/// The paper's own figures: the intersection triangles of a frame and how fast they are drawn.
+fn results(setup: &Setup, paper: &Caustics, measurement: &Measurement) -> Map<String, Value> {
+    let planes = u64::from(setup.parameters.planes) * paper.lit_receiver_count() as u64;
+    let triangles = planes * u64::from(paper.grid().triangle_count());
+    let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
+    let time_ms = caustics_map.and_then(|p| super::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);
+    let entries = [
+        ("planes_drawn", json!(planes)),
+        ("intersection_triangles", json!(triangles)),
+        ("intersection_triangles_per_s", json!(time_ms.map(|ms| triangles as f64 / ms * 1e3))),
+    ];
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}

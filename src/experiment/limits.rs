@@ -1,0 +1,119 @@
+//! What the device can do at most, measured in the same process, so that a pass can be shown as a share of it.
+
+use ash::vk;
+
+use super::machine::Machine;
+use super::statistics::median;
+use crate::gpu::{
+    Blend, Buffer, BufferDesc, Error, Frame, Image, ImageDesc, Load, Mode, Pass, Recorder, ShaderLibrary,
+};
+use crate::host_block;
+use crate::report::record::Limits;
+
+/// A load grows until it lasts this long: far above the resolution of a stamp, short enough for every run.
+const LEAST_MS: f64 = 8.0;
+const SAMPLES: usize = 5;
+const COPY_BYTES: u64 = 64 << 20;
+const THREADS: u32 = 1 << 14;
+/// Eight chains of four components, a multiplication and an addition each.
+const FLOPS_PER_ITERATION: f64 = 64.0;
+/// A side of the target of fill and blend rates.
+const SIDE: u32 = 1024;
+
+host_block! {
+    struct MultiplyAdd {
+        iterations: u32,
+        factor: f32,
+    }
+}
+
+/// Measures copy bandwidth (bytes read and written), multiply-adds, and the fill and additive blend rates of an 8-bit
+/// RGBA target. `None` for what has no time stamps.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
+    let Machine { recorder, shaders, .. } = machine;
+    Ok(Limits {
+        copy_gb_s: copy(recorder, shaders)?.map(|per_ms| per_ms * 1e-6),
+        fma_gflops: multiply_add(recorder, shaders)?.map(|per_ms| per_ms * 1e-6),
+        fill_gpix_s: fill(recorder, shaders, Blend::Replace)?.map(|per_ms| per_ms * 1e-6),
+        blend_gpix_s: fill(recorder, shaders, Blend::Add)?.map(|per_ms| per_ms * 1e-6),
+    })
+}
+
+/// Runs `record` with a growing load and returns `amount` per millisecond at a load that lasts.
+fn rate(
+    recorder: &mut Recorder,
+    amount: impl Fn(u32) -> f64,
+    record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
+) -> Result<Option<f64>, Error> {
+    let mut once = |load: u32| -> Result<Option<f64>, Error> {
+        let sample = recorder.run(Mode::Stamped, |frame| record(frame, load))?;
+        Ok(sample.passes.first().and_then(|p| p.gpu_ms).filter(|&ms| ms > 0.0))
+    };
+    once(1)?;
+    let mut load = 1;
+    while load < 1 << 16 && once(load)?.is_some_and(|ms| ms < LEAST_MS) {
+        load *= 2;
+    }
+    let mut times = Vec::with_capacity(SAMPLES);
+    for _ in 0..SAMPLES {
+        times.extend(once(load)?);
+    }
+    Ok(median(&times).map(|ms| amount(load) / ms))
+}
+
+fn copy(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Option<f64>, Error> {
+    let device = shaders.device();
+    // Uploaded, not only allocated: a driver may map untouched pages to one of zeros.
+    let bytes = vec![1u8; COPY_BYTES as usize];
+    let from = crate::gpu::transfer::upload(device, "limits/copy-source", vk::BufferUsageFlags::empty(), &bytes)?;
+    let to = Buffer::new(device, BufferDesc::new("limits/copy-destination", COPY_BYTES))?;
+    let pass = Pass::copy("copy", "", &from, &to);
+    rate(
+        recorder,
+        |load| 2.0 * COPY_BYTES as f64 * f64::from(load),
+        |frame, load| (0..load).try_for_each(|_| frame.copy(&pass)),
+    )
+}
+
+fn multiply_add(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Option<f64>, Error> {
+    let desc = BufferDesc::new("limits/results", u64::from(THREADS) * 16).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+    let results = Buffer::new(shaders.device(), desc)?;
+    let pass = Pass::compute("multiply-add", "", "limits/multiply-add.comp")
+        .with("results", &results)
+        .constants::<MultiplyAdd>()
+        .build(shaders)?;
+    let iterations = |load: u32| 64 * load;
+    rate(
+        recorder,
+        |load| f64::from(THREADS) * f64::from(iterations(load)) * FLOPS_PER_ITERATION,
+        |frame, load| {
+            frame.compute(&pass, |dispatch| {
+                let constants = MultiplyAdd { iterations: iterations(load), factor: 0.5 };
+                dispatch.constants(&constants).threads(THREADS, 1, 1);
+            })
+        },
+    )
+}
+
+fn fill(recorder: &mut Recorder, shaders: &ShaderLibrary, blend: Blend) -> Result<Option<f64>, Error> {
+    let desc = ImageDesc::new_2d("limits/target", vk::Format::R8G8B8A8_UNORM, SIDE, SIDE)
+        .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
+    let target = Image::new(shaders.device(), desc)?.view()?;
+    let pass = Pass::graphics("fill", "", "common/fullscreen.vert", "limits/constant.frag")
+        .color(&target, Load::Clear([0.0; 4]), blend)
+        .build(shaders)?;
+    rate(
+        recorder,
+        |load| f64::from(SIDE) * f64::from(SIDE) * f64::from(load),
+        |frame, load| {
+            frame.graphics(&pass, |draw| {
+                for _ in 0..load {
+                    draw.vertices(3);
+                }
+            })
+        },
+    )
+}
