@@ -1,4 +1,5 @@
 //! placeholder
+pub mod cli;
 pub mod experiment;
 pub mod gpu;
 pub mod image;

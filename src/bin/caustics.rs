@@ -1,1 +1,5 @@
-fn main(){}
+//! `caustics`: the paper's own benchmark binary.
+
+fn main() -> std::process::ExitCode {
+    fumarole::cli::caustics()
+}

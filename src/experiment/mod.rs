@@ -6,6 +6,7 @@ mod error;
 pub mod limits;
 pub mod machine;
 pub mod measure;
+pub mod picture;
 pub mod run;
 pub mod statistics;
 

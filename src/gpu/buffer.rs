@@ -214,6 +214,12 @@ pub struct BufferView {
     pub(crate) range: Range<u64>,
 }
 
+impl BufferView {
+    pub fn buffer(&self) -> &Arc<Buffer> {
+        &self.buffer
+    }
+}
+
 /// Allocates memory for a buffer (`linear`) or an image.
 pub(crate) fn allocate(
     device: &Arc<Device>,

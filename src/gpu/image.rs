@@ -219,6 +219,10 @@ impl ImageView {
         &self.image
     }
 
+    pub fn layer_count(&self) -> u32 {
+        self.layers.end - self.layers.start
+    }
+
     pub fn width(&self) -> u32 {
         self.image.desc.width
     }

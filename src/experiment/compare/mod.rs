@@ -115,6 +115,12 @@ pub struct Ratio {
     pub block_length: usize,
 }
 
+/// The ratio B / A of two methods measured frame by frame in turn in one process: drift hits both alike, so the noise
+/// of frames is all that its interval has to cover. Absent without samples.
+pub fn ratio_within_process(a: &[f64], b: &[f64]) -> Option<Ratio> {
+    bootstrap::estimate(&[a.to_vec()], &[b.to_vec()])
+}
+
 /// One time of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassComparison {

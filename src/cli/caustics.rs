@@ -1,0 +1,171 @@
+//! The options of the `caustics` paper under the thesis's own words, resolved into a setup.
+
+use clap::{Args, ValueEnum};
+use glam::Vec3;
+
+use super::options::{Size, parse_finite, parse_numbers, parse_size};
+use crate::experiment::caustics::Setup;
+use crate::papers::caustics::{Parameters, Variant};
+use crate::scene::{Light, MeshSource};
+
+/// The methods as words of the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum VariantWord {
+    LevelMap,
+    Volumetric,
+    All,
+}
+
+impl VariantWord {
+    /// The variants that a list of words means, in the order of the thesis, each once.
+    pub fn resolve(words: &[VariantWord]) -> Vec<Variant> {
+        let wanted = |variant: &Variant| {
+            words.iter().any(|word| match word {
+                VariantWord::LevelMap => *variant == Variant::LevelMap,
+                VariantWord::Volumetric => *variant == Variant::Volumetric,
+                VariantWord::All => true,
+            })
+        };
+        Variant::ALL.into_iter().filter(wanted).collect()
+    }
+}
+
+/// Figures and tables of the thesis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// Table 5-1 and figure 5-10 at their last row: teapot, 101 planes, 512 x 512 maps
+    #[value(name = "5-1")]
+    Table51,
+}
+
+impl Preset {
+    fn word(self) -> &'static str {
+        match self {
+            Preset::Table51 => "5-1",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Scene")]
+pub struct SceneArgs {
+    /// Take the numbers of a table or figure; options given beside it win
+    #[arg(long, value_enum)]
+    preset: Option<Preset>,
+    /// Receiver: teapot, sphere, box, plane, or an OBJ, PLY, STL, glTF or GLB file; repeatable
+    #[arg(long, value_name = "SHAPE|FILE")]
+    mesh: Vec<MeshSource>,
+    /// The pool's floor receives caustics as well
+    #[arg(long)]
+    floor: bool,
+    /// Reference (sample) planes of each receiver, 1 to 4096 [default: 31]
+    #[arg(long, value_name = "N")]
+    planes: Option<u32>,
+    /// Texels a side of the position, caustics and slice maps [default: 512]
+    #[arg(long, value_name = "N")]
+    map_size: Option<u32>,
+    /// Triangles of the water's mesh, 2 to 20000000; rounded to whole cells [default: 10000]
+    #[arg(long, value_name = "N")]
+    water_triangles: Option<u32>,
+    /// Position map and diffuse map in two passes (figure 5-5) instead of one with two targets (figure 5-6)
+    #[arg(long)]
+    no_mrt: bool,
+    /// Refraction index of water against air, above 1 and at most 4 [default: 1.3333]
+    #[arg(long, value_name = "N", value_parser = parse_finite)]
+    refraction_index: Option<f32>,
+    /// Absorption K of eq. 4-17 per metre, at least 0 [default: 0.1]
+    #[arg(long, value_name = "K", value_parser = parse_finite)]
+    absorption: Option<f32>,
+    /// Depth of the pool in metres, above 0 and at most 1000 [default: 3]
+    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    water_depth: Option<f32>,
+    /// Number of sine waves on the water, 0 (flat) to 64 [default: 12]
+    #[arg(long, value_name = "N")]
+    waves: Option<u32>,
+    /// Sum of the waves' amplitudes in metres, 0 to 10 [default: 0.06]
+    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    amplitude: Option<f32>,
+    /// Longest wavelength in metres, above 0 [default: 1.2]
+    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    wavelength: Option<f32>,
+    /// Direction of parallel light, x,y,z, downwards; repeatable [default: 0.35,-1,-0.2]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    light: Vec<[f32; 3]>,
+    /// Position of a point light above the water, x,y,z in metres; repeatable
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    point_light: Vec<[f32; 3]>,
+    /// Camera: eye and target, x,y,z,x,y,z in metres; the water's level is y = 0
+    #[arg(long, value_name = "EYE,TARGET", value_parser = parse_numbers::<6>, allow_hyphen_values = true)]
+    camera: Option<[f32; 6]>,
+    /// Size of the picture in pixels [default: 800x600]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    size: Option<Size>,
+    /// Seed of the waves' directions and phases [default: 1]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Simulated time between two frames in seconds, at least 0 [default: 0.0333]
+    #[arg(long, value_name = "S", value_parser = parse_finite)]
+    time_step: Option<f32>,
+}
+
+impl SceneArgs {
+    /// What was typed, over the preset's numbers, over the defaults.
+    pub fn resolve(&self, process: u32) -> Setup {
+        let mut p = Parameters::default();
+        match self.preset {
+            None => {}
+            Some(Preset::Table51) => {
+                p.planes = 101;
+                p.map_size = 512;
+                p.water_triangles = 10_000;
+            }
+        }
+        set(&mut p.planes, self.planes);
+        set(&mut p.map_size, self.map_size);
+        set(&mut p.water_triangles, self.water_triangles);
+        p.mrt &= !self.no_mrt;
+        set(&mut p.refraction_index, self.refraction_index);
+        set(&mut p.absorption_per_m, self.absorption);
+        set(&mut p.water_depth_m, self.water_depth);
+        set(&mut p.waves.count, self.waves);
+        set(&mut p.waves.amplitude_m, self.amplitude);
+        set(&mut p.waves.wavelength_m, self.wavelength);
+        match self.camera {
+            Some([ex, ey, ez, tx, ty, tz]) => {
+                p.camera.eye = Vec3::new(ex, ey, ez);
+                p.camera.target = Vec3::new(tx, ty, tz);
+            }
+            // The default camera keeps its height above the pool's floor.
+            None => {
+                let sunk = Parameters::default().water_depth_m - p.water_depth_m;
+                p.camera.eye.y += sunk;
+                p.camera.target.y += sunk;
+            }
+        }
+        if let Some(size) = self.size {
+            (p.width, p.height) = (size.width, size.height);
+        }
+        set(&mut p.seed, self.seed);
+        set(&mut p.time_step_s, self.time_step);
+        let intensity = Vec3::ONE;
+        let parallel = self.light.iter().map(|&d| Light::Parallel { direction: d.into(), intensity });
+        let points = self.point_light.iter().map(|&p| Light::Point { position: p.into(), intensity });
+        let lights: Vec<Light> = parallel.chain(points).collect();
+        if !lights.is_empty() {
+            p.lights = lights;
+        }
+        let meshes = if self.mesh.is_empty() { vec![MeshSource::Teapot] } else { self.mesh.clone() };
+        Setup { parameters: p, meshes, floor: self.floor, preset: self.preset.map(|p| p.word().to_owned()), process }
+    }
+
+    /// Whether a mesh was named.
+    pub fn names_meshes(&self) -> bool {
+        !self.mesh.is_empty()
+    }
+}
+
+fn set<T: Copy>(target: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *target = value;
+    }
+}

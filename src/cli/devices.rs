@@ -1,0 +1,90 @@
+//! `devices`: what is there, and what each paper finds on it.
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::failure::Failure;
+use super::outcome;
+use crate::gpu::physical::BASELINE;
+use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
+use crate::papers::caustics;
+
+#[derive(Debug, Clone, Args)]
+pub struct DevicesArgs {
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What each paper needs beyond the baseline.
+const PAPERS: [(&str, &[Feature]); 1] = [("caustics", &caustics::NEEDS)];
+
+pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
+    let instance = Instance::new(false)?;
+    let devices = PhysicalDevice::enumerate(&instance)?;
+    if devices.is_empty() {
+        return Err(Error::NoDevice { reason: "no driver offers one".into() }.into());
+    }
+    if arguments.json {
+        let document: Vec<Value> = devices.iter().map(json_of).collect();
+        print!("{}", outcome::text(&document)?);
+    } else {
+        devices.iter().for_each(print);
+    }
+    Ok(())
+}
+
+fn json_of(device: &PhysicalDevice) -> Value {
+    let features: serde_json::Map<String, Value> =
+        Feature::ALL.iter().map(|&f| (f.word().to_owned(), json!(device.has(f)))).collect();
+    let papers: serde_json::Map<String, Value> = PAPERS
+        .iter()
+        .map(|(name, needs)| {
+            let lacks = device.lacks(needs);
+            (name.to_string(), json!({"capable": lacks.is_empty(), "needs": words(needs), "lacks": lacks}))
+        })
+        .collect();
+    let limits = &device.limits;
+    json!({
+        "index": device.index, "name": device.name, "type": device.device_type.word(), "uuid": device.uuid_text(),
+        "driver": device.driver_name, "driver_version": device.driver_info,
+        "api_version": device.api_version_text(),
+        "limits": {
+            "max_image_dimension_2d": limits.max_image_dimension2_d,
+            "max_image_array_layers": limits.max_image_array_layers,
+            "max_storage_buffer_bytes": limits.max_storage_buffer_range,
+            "max_push_constant_bytes": limits.max_push_constants_size,
+            "timestamp_period_ns": limits.timestamp_period,
+            "timestamp_bits": device.queue.map(|q| q.1),
+        },
+        "features": features, "papers": papers,
+    })
+}
+
+fn words(needs: &[Feature]) -> Vec<&'static str> {
+    BASELINE.iter().chain(needs).map(|f| f.word()).collect()
+}
+
+fn print(device: &PhysicalDevice) {
+    let style = outcome::style();
+    println!("{}", style.bold(&format!("{}: {}", device.index, device.name)));
+    println!("  type     {}", device.device_type.word());
+    println!("  uuid     {}", device.uuid_text());
+    println!("  driver   {} {}", device.driver_name, device.driver_info);
+    println!("  vulkan   {}", device.api_version_text());
+    let has: Vec<&str> = Feature::ALL.iter().filter(|&&f| device.has(f)).map(|f| f.word()).collect();
+    let lacks: Vec<&str> = Feature::ALL.iter().filter(|&&f| !device.has(f)).map(|f| f.word()).collect();
+    println!("  has      {}", has.join(", "));
+    if !lacks.is_empty() {
+        println!("  lacks    {}", lacks.join(", "));
+    }
+    for (name, needs) in PAPERS {
+        let missing = device.lacks(needs);
+        let verdict = if missing.is_empty() {
+            style.green("capable")
+        } else {
+            style.red(&format!("lacks {}", missing.join(", ")))
+        };
+        println!("  {name:8} {verdict} (needs {})", words(needs).join(", "));
+    }
+}

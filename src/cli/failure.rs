@@ -1,0 +1,96 @@
+//! Exit codes: what a script can rely on.
+
+use std::process::ExitCode;
+
+use crate::experiment::compare::CompareError;
+use crate::experiment::{self, Error};
+use crate::report::json::ReadError;
+use crate::report::output::OutputError;
+use crate::{gpu, image};
+
+/// Why a command ended without doing all that was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// Exit code 1: it failed while running.
+    Running(String),
+    /// Exit code 2: bad arguments or bad input.
+    Input(String),
+    /// Exit code 3: no usable Vulkan device.
+    NoDevice(String),
+    /// Exit code 4: `compare` found a regression; its report is already printed.
+    Regression,
+}
+
+impl Failure {
+    /// Prints the error's one line on standard error and gives the exit code.
+    pub fn report(self) -> ExitCode {
+        let (code, message) = match self {
+            Failure::Running(message) => (1, message),
+            Failure::Input(message) => (2, message),
+            Failure::NoDevice(message) => (3, message),
+            Failure::Regression => return ExitCode::from(4),
+        };
+        // One line, whatever a library put into its own.
+        eprintln!("error: {}", message.split_whitespace().collect::<Vec<_>>().join(" "));
+        ExitCode::from(code)
+    }
+}
+
+impl From<gpu::Error> for Failure {
+    fn from(error: gpu::Error) -> Self {
+        use gpu::Error as E;
+        let message = error.to_string();
+        match error {
+            E::NoLoader { .. } | E::NoInstance { .. } | E::NoDevice { .. } | E::NoValidationLayer => {
+                Failure::NoDevice(message)
+            }
+            E::MissingFeature { .. } => Failure::NoDevice(message),
+            E::UnknownDevice { .. } | E::AmbiguousDevice { .. } | E::Limit { .. } | E::Shader { .. } => {
+                Failure::Input(message)
+            }
+            E::OutOfMemory { .. }
+            | E::Vulkan { .. }
+            | E::Allocation { .. }
+            | E::ReadBeforeWrite { .. }
+            | E::Pass { .. }
+            | E::Validation { .. } => Failure::Running(message),
+        }
+    }
+}
+
+impl From<experiment::Error> for Failure {
+    fn from(error: experiment::Error) -> Self {
+        match error {
+            Error::Gpu(error) => error.into(),
+            Error::Image(error) => error.into(),
+            Error::Scene(_) | Error::Parameter(_) | Error::Output(_) | Error::Input(_) => {
+                Failure::Input(error.to_string())
+            }
+            Error::Plot(_) | Error::Interrupted => Failure::Running(error.to_string()),
+        }
+    }
+}
+
+impl From<image::Error> for Failure {
+    fn from(error: image::Error) -> Self {
+        Failure::Input(error.to_string())
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        Failure::Input(error.to_string())
+    }
+}
+
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
+        Failure::Input(error.to_string())
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        Failure::Input(error.to_string())
+    }
+}

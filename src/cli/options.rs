@@ -1,0 +1,166 @@
+//! Options that every paper has, as they were typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::experiment::machine::MachineOptions;
+use crate::experiment::measure::Schedule;
+use crate::gpu::Compiler;
+
+/// `--size 800x600` and its like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    pub width: u32,
+    pub height: u32,
+}
+
+pub fn parse_size(text: &str) -> Result<Size, String> {
+    let parts = text.split_once(['x', 'X']).ok_or("give a width and a height, as 800x600")?;
+    let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a number of pixels"));
+    Ok(Size { width: number(parts.0)?, height: number(parts.1)? })
+}
+
+/// A number that is neither NaN nor infinite.
+pub fn parse_finite(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(format!("{text:?} is not a finite number")),
+    }
+}
+
+/// Comma-separated numbers, exactly `N` of them.
+pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
+    let values = text.split(',').map(|part| parse_finite(part.trim())).collect::<Result<Vec<_>, _>>()?;
+    let count = values.len();
+    values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
+}
+
+/// `5%` or `0.05`, as a share.
+pub fn parse_share(text: &str) -> Result<f64, String> {
+    let (number, scale) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value * scale),
+        _ => Err(format!("{text:?} is not a share: give 5% or 0.05")),
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CompilerWord {
+    Glslang,
+    Naga,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Device")]
+pub struct MachineArgs {
+    /// Device to use: an index, a part of its name, or its UUID [default: the best capable one]
+    #[arg(long, value_name = "INDEX|NAME|UUID")]
+    device: Option<String>,
+    /// Run under the validation layer with synchronization validation; any message is a failure
+    #[arg(long)]
+    validate: bool,
+    /// Whose SPIR-V to run, wherever it has a binary
+    #[arg(long, value_enum, default_value = "glslang")]
+    shader_compiler: CompilerWord,
+    /// Compile the shaders under DIR (laid out as shaders/) and use them instead of the built-in ones
+    #[arg(long, value_name = "DIR")]
+    shader_dir: Option<PathBuf>,
+}
+
+impl MachineArgs {
+    pub fn resolve(&self) -> MachineOptions {
+        MachineOptions {
+            device: self.device.clone(),
+            validate: self.validate,
+            compiler: match self.shader_compiler {
+                CompilerWord::Glslang => Compiler::Glslang,
+                CompilerWord::Naga => Compiler::Naga,
+            },
+            shader_dir: self.shader_dir.clone(),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Measuring")]
+pub struct MeasureArgs {
+    /// Frames before anything counts, 1 to 10000
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub warmup: u32,
+    /// Frames in one repetition, 1 to 100000
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub frames: Option<u32>,
+    /// Repetitions of those frames, 1 to 10000
+    #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub repeat: Option<u32>,
+    /// Repeat until plain frames took this many seconds, 0 to 3600
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = parse_seconds)]
+    pub min_time: f64,
+    /// Measure in this many fresh processes, 1 to 100
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub processes: u32,
+    /// Which process this is: set for the fresh ones
+    #[arg(long, hide = true, default_value_t = 0)]
+    pub process: u32,
+    /// Leave the device's own limits unmeasured
+    #[arg(long)]
+    pub no_limits: bool,
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=3600.0).contains(&value) => Ok(value),
+        _ => Err(format!("{text:?} is not a time of 0 to 3600 seconds")),
+    }
+}
+
+impl MeasureArgs {
+    pub fn schedule(&self, frames: u32, repeat: u32) -> Schedule {
+        Schedule {
+            warmup: self.warmup,
+            frames: self.frames.unwrap_or(frames),
+            repeat: self.repeat.unwrap_or(repeat),
+            min_time_s: self.min_time,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Output")]
+pub struct OutputArgs {
+    /// Folder for everything whose file is not named
+    #[arg(long, value_name = "DIR", default_value = "fumarole-out")]
+    pub out: PathBuf,
+    /// Write the result record; to standard output without a file
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    pub json: Option<PathBuf>,
+    /// Write one row for each run and pass
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write a trace for chrome://tracing and Perfetto
+    #[arg(long, value_name = "FILE")]
+    pub trace: Option<PathBuf>,
+    /// Write the last frame's picture; of several variants, the first one's
+    #[arg(long, value_name = "FILE.png")]
+    pub image: Option<PathBuf>,
+    /// Print nothing but errors and what was asked for on standard output
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl OutputArgs {
+    /// Whether the record goes to standard output, which then holds nothing else.
+    pub fn json_to_stdout(&self) -> bool {
+        self.json.as_deref().is_some_and(|path| path.as_os_str() == "-")
+    }
+
+    /// The files that will be written, to be checked before long work.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let json = self.json.as_ref().filter(|_| !self.json_to_stdout());
+        json.into_iter().chain(&self.csv).chain(&self.trace).chain(&self.image)
+    }
+}

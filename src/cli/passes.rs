@@ -1,0 +1,129 @@
+//! `passes`: the pass table of a variant, as one recorded frame shows it.
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::caustics::{SceneArgs, VariantWord};
+use super::failure::Failure;
+use super::options::MachineArgs;
+use super::outcome;
+use crate::experiment::caustics::{self, PAPER};
+use crate::experiment::machine::Machine;
+use crate::gpu::bindings::Resource;
+use crate::gpu::{Mode, PassInfo};
+use crate::papers::caustics::{NEEDS, Variant};
+use crate::papers::{Paper, Target};
+use crate::report::table::{Align, Table};
+
+#[derive(Debug, Clone, Args)]
+pub struct PassesArgs {
+    /// Variants to list, comma-separated, or all
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "all")]
+    variant: Vec<VariantWord>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+}
+
+struct Listed {
+    variant: Variant,
+    passes: Vec<(std::sync::Arc<PassInfo>, u32)>,
+    targets: Vec<Target>,
+}
+
+pub fn run(arguments: &PassesArgs) -> Result<(), Failure> {
+    let setup = arguments.scene.resolve(0);
+    let scene = setup.load()?;
+    let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+    let mut listed = Vec::new();
+    for variant in VariantWord::resolve(&arguments.variant) {
+        let mut built = caustics::build(&machine, &setup, &scene, variant)?;
+        let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+        let passes = sample.passes.iter().map(|p| (p.info.clone(), p.calls)).collect();
+        listed.push(Listed { variant, passes, targets: built.paper.targets() });
+    }
+    machine.check_validation()?;
+    if arguments.json {
+        let document: Vec<Value> = listed.iter().map(json_of).collect();
+        print!("{}", outcome::text(&document)?);
+    } else {
+        listed.iter().for_each(print);
+    }
+    Ok(())
+}
+
+fn json_of(listed: &Listed) -> Value {
+    let passes: Vec<Value> = listed
+        .passes
+        .iter()
+        .enumerate()
+        .map(|(order, (info, calls))| {
+            json!({
+                "order": order + 1, "name": info.name, "kind": info.kind.word(), "section": info.section,
+                "calls": calls, "shaders": info.shaders, "reads": info.reads, "writes": info.writes,
+                "blend": info.blend, "depth": info.depth, "stencil": Value::Null,
+                "shader_compiler": info.compiler.map(|c| c.to_string()),
+            })
+        })
+        .collect();
+    let targets: Vec<Value> =
+        listed.targets.iter().map(|t| json!({"name": t.name, "shape": shape(t)})).collect();
+    json!({"paper": PAPER, "variant": listed.variant.word(), "passes": passes, "targets": targets})
+}
+
+fn print(listed: &Listed) {
+    let style = outcome::style();
+    println!("{}", style.bold(&format!("{PAPER} {}", listed.variant.word())));
+    let mut table = Table::new(&[
+        ("", Align::Right),
+        ("pass", Align::Left),
+        ("kind", Align::Left),
+        ("section", Align::Left),
+        ("calls", Align::Right),
+        ("shaders", Align::Left),
+        ("reads", Align::Left),
+        ("writes", Align::Left),
+        ("blend", Align::Left),
+        ("depth", Align::Left),
+    ]);
+    let own = |names: &[String]| {
+        let prefix = format!("{}/", listed.variant.word());
+        names.iter().map(|n| n.strip_prefix(&prefix).unwrap_or(n)).collect::<Vec<_>>().join(" ")
+    };
+    for (order, (info, calls)) in listed.passes.iter().enumerate() {
+        table.push(vec![
+            (order + 1).to_string(),
+            info.name.to_owned(),
+            info.kind.word().to_owned(),
+            info.section.to_owned(),
+            calls.to_string(),
+            info.shaders.join(" "),
+            own(&info.reads),
+            own(&info.writes),
+            info.blend.join(" "),
+            info.depth.unwrap_or("").to_owned(),
+        ]);
+    }
+    print!("{}", table.render(style));
+    let targets: Vec<String> = listed.targets.iter().map(|t| format!("{} ({})", t.name, shape(t))).collect();
+    println!("targets for --dump: {}\n", targets.join(", "));
+}
+
+fn shape(target: &Target) -> String {
+    match &target.resource {
+        Resource::Image(view) => {
+            let layers = view.layer_count();
+            let layers = if layers > 1 { format!(" x {layers} layers") } else { String::new() };
+            format!("{} x {}{layers} {:?}", view.width(), view.height(), view.image().desc().format)
+        }
+        Resource::Buffer(view) => {
+            let rows = view.buffer().size_bytes() / 4 / u64::from(target.columns.max(1));
+            format!("{rows} rows of {} floats", target.columns)
+        }
+        Resource::Sampler(_) => String::new(),
+    }
+}

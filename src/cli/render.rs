@@ -1,0 +1,176 @@
+//! `render`: the picture of a frame or of a range of frames, and intermediate targets at full precision.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::caustics::{SceneArgs, VariantWord};
+use super::failure::Failure;
+use super::options::{MachineArgs, OutputArgs};
+use super::outcome;
+use super::watch::{interrupted, progress_bar};
+use crate::experiment::caustics::{self, PAPER};
+use crate::experiment::machine::Machine;
+use crate::experiment::picture;
+use crate::image;
+use crate::papers::Paper;
+use crate::papers::caustics::NEEDS;
+use crate::report::output::check_writable;
+
+#[derive(Debug, Clone, Args)]
+pub struct RenderArgs {
+    /// Variant to render
+    #[arg(long, value_enum, default_value = "level-map")]
+    variant: VariantWord,
+    /// Frame N, or the frames A..B from A up to but not including B
+    #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]
+    frame: Frames,
+    /// Write a target of the frame, by the file's ending: .exr, .npy or .png; `passes` lists the targets; repeatable
+    #[arg(long, value_name = "TARGET=FILE", value_parser = parse_dump)]
+    dump: Vec<Dump>,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// File of the picture; of several frames, the number goes before its ending [default: in --out]
+    #[arg(long, value_name = "FILE.png")]
+    image: Option<PathBuf>,
+    /// Folder of pictures that are not named
+    #[arg(long, value_name = "DIR", default_value = "fumarole-out")]
+    out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Frames {
+    first: u32,
+    end: u32,
+}
+
+fn parse_frames(text: &str) -> Result<Frames, String> {
+    let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a frame number"));
+    let frames = match text.split_once("..") {
+        None => {
+            let first = number(text)?;
+            Frames { first, end: first.checked_add(1).ok_or("the frame number is too large")? }
+        }
+        Some((first, end)) => Frames { first: number(first)?, end: number(end)? },
+    };
+    if frames.first < frames.end { Ok(frames) } else { Err(format!("{text} holds no frame")) }
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Dump {
+    target: String,
+    file: PathBuf,
+}
+
+fn parse_dump(text: &str) -> Result<Dump, String> {
+    match text.split_once('=') {
+        Some((target, file)) if !target.is_empty() && !file.is_empty() => {
+            Ok(Dump { target: target.to_owned(), file: file.into() })
+        }
+        _ => Err("give a target and a file, as caustics-map=map.exr".to_owned()),
+    }
+}
+
+pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
+    let output = OutputArgs {
+        out: arguments.out.clone(),
+        json: None,
+        csv: None,
+        trace: None,
+        image: None,
+        quiet: arguments.quiet,
+    };
+    let &[variant] = &VariantWord::resolve(&[arguments.variant])[..] else {
+        return Err(Failure::Input("rendering: --variant all: a picture shows one variant; name it".into()));
+    };
+    let frames = arguments.frame;
+    let is_range = frames.end - frames.first > 1;
+    if is_range && !arguments.dump.is_empty() {
+        return Err(Failure::Input("--dump writes one frame: give --frame one number".into()));
+    }
+    let picture_path = |number: u32| match &arguments.image {
+        Some(path) if is_range => numbered(path, number),
+        Some(path) => path.clone(),
+        None => arguments.out.join(format!("{PAPER}-{}-{number:04}.png", variant.word())),
+    };
+    for dump in &arguments.dump {
+        image::Format::of(&dump.file)?;
+        check_writable(&dump.file)?;
+    }
+    check_writable(&picture_path(frames.first))?;
+
+    let setup = arguments.scene.resolve(0);
+    let scene = setup.load()?;
+    let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+    if !arguments.quiet {
+        eprintln!("device: {}", machine.description());
+    }
+    let mut built = caustics::build(&machine, &setup, &scene, variant)?;
+    let targets = built.paper.targets();
+    for dump in &arguments.dump {
+        if !targets.iter().any(|t| t.name == dump.target) {
+            let known: Vec<&str> = targets.iter().map(|t| t.name.as_str()).collect();
+            let message = format!("--dump {}: no such target; there are {}", dump.target, known.join(", "));
+            return Err(Failure::Input(message));
+        }
+    }
+    let bar = progress_bar(arguments.quiet, PAPER);
+    bar.set_length(u64::from(frames.end - frames.first));
+    for number in frames.first..frames.end {
+        if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
+            break;
+        }
+        let rendered = picture::render(&mut machine, &mut built.paper, number)?;
+        let path = picture_path(number);
+        // Through the report's writer, which makes the folder.
+        check_writable(&path)?;
+        image::write_png(&path, &rendered)?;
+        bar.inc(1);
+        if !is_range {
+            outcome::wrote(&output, &path);
+        }
+    }
+    bar.finish_and_clear();
+    if is_range {
+        outcome::wrote(&output, &picture_path(frames.end - 1));
+    }
+    for dump in &arguments.dump {
+        for target in targets.iter().filter(|t| t.name == dump.target) {
+            image::write(&dump.file, &picture::read_target(&machine, target)?)?;
+            outcome::wrote(&output, &dump.file);
+        }
+    }
+    machine.check_validation()?;
+    Ok(())
+}
+
+/// `picture.png` for frame 7 is `picture-0007.png`.
+fn numbered(path: &Path, number: u32) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
+    path.with_file_name(format!("{stem}-{number:04}{ending}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_one_number_or_a_half_open_range() {
+        assert_eq!(parse_frames("7"), Ok(Frames { first: 7, end: 8 }));
+        assert_eq!(parse_frames("2..5"), Ok(Frames { first: 2, end: 5 }));
+        for text in ["", "x", "5..5", "6..2", "-1", "1..", "4294967295"] {
+            assert!(parse_frames(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_go_before_the_ending() {
+        assert_eq!(numbered(Path::new("a/b.png"), 7), Path::new("a/b-0007.png"));
+    }
+}
