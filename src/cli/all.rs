@@ -64,8 +64,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
         },
     };
     let variants = VariantWord::resolve(&[VariantWord::All]);
-    let measured =
-        caustics::bench(&mut machine, &setup, &scene, &variants, SCHEDULE, Some(&limits), &mut watch)?;
+    let measured = caustics::bench(&mut machine, &setup, &scene, &variants, SCHEDULE, Some(&limits), &mut watch)?;
     bar.finish_and_clear();
     let (mut runs, traces): (Vec<_>, Vec<_>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
     if let (Some(&variant), Some(run)) = (variants.first(), runs.first_mut()) {

@@ -28,10 +28,7 @@ pub struct CompareArgs {
 
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
     let read = |paths: &[PathBuf]| -> Result<Vec<Input>, Failure> {
-        paths
-            .iter()
-            .map(|path| Ok(Input { name: path.display().to_string(), record: json::read(path)? }))
-            .collect()
+        paths.iter().map(|path| Ok(Input { name: path.display().to_string(), record: json::read(path)? })).collect()
     };
     let comparison = compare(&read(&arguments.a)?, &read(&arguments.b)?, arguments.fail_above)?;
     match arguments.json.as_deref() {

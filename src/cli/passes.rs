@@ -70,8 +70,7 @@ fn json_of(listed: &Listed) -> Value {
             })
         })
         .collect();
-    let targets: Vec<Value> =
-        listed.targets.iter().map(|t| json!({"name": t.name, "shape": shape(t)})).collect();
+    let targets: Vec<Value> = listed.targets.iter().map(|t| json!({"name": t.name, "shape": shape(t)})).collect();
     json!({"paper": PAPER, "variant": listed.variant.word(), "passes": passes, "targets": targets})
 }
 

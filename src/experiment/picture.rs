@@ -60,7 +60,6 @@ pub fn read_target(machine: &Machine, target: &Target) -> Result<Raster, Error> 
 /// # Errors
 /// [`Error::Image`] when it cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, Error> {
-    let bytes = std::fs::read(path)
-        .map_err(|e| image::Error::Open { path: path.into(), reason: e.to_string() })?;
+    let bytes = std::fs::read(path).map_err(|e| image::Error::Open { path: path.into(), reason: e.to_string() })?;
     Ok(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect())
 }

@@ -7,7 +7,7 @@ use super::statistics::{median, repetition_noise, summarize};
 use crate::gpu::PassKind;
 use crate::gpu::live::MemoryUse;
 use crate::report::record::{self, Limits, Memory, Pass, ResourceMemory, Run, Statistics, Validation};
-use crate::report::trace::{Track, TraceEvent, TraceRun};
+use crate::report::trace::{TraceEvent, TraceRun, Track};
 
 /// Repetitions that scatter more than this are called noisy.
 const NOISY: f64 = 0.05;
@@ -48,9 +48,7 @@ pub fn assemble(subject: Subject, measurement: &Measurement, schedule: Schedule)
     if measurement.repeat < schedule.repeat {
         warnings.push(format!("interrupted after {} of {} repetitions", measurement.repeat, schedule.repeat));
     }
-    let sum = |host: bool| {
-        Some(subject.memory.iter().filter(|m| m.host_visible == host).map(|m| m.bytes).sum::<u64>())
-    };
+    let sum = |host: bool| Some(subject.memory.iter().filter(|m| m.host_visible == host).map(|m| m.bytes).sum::<u64>());
     Run {
         paper: subject.paper.to_owned(),
         variant: subject.variant,

@@ -43,9 +43,7 @@ pub fn summarize(samples: &[f64]) -> Option<Summary> {
         return None;
     }
     let ascending = sorted(samples);
-    let from = |fewest: usize, fraction: f64| {
-        percentile(&ascending, fraction).filter(|_| samples.len() >= fewest)
-    };
+    let from = |fewest: usize, fraction: f64| percentile(&ascending, fraction).filter(|_| samples.len() >= fewest);
     Some(Summary {
         min: *ascending.first()?,
         median: percentile(&ascending, 0.5)?,
@@ -126,10 +124,7 @@ mod tests {
         assert_eq!(summarize(&[]), None);
         assert_eq!(summarize(&[1.0, f64::NAN]), None);
         let one = summarize(&[2.0]).unwrap();
-        assert_eq!(
-            (one.min, one.median, one.mean, one.max),
-            (2.0, 2.0, 2.0, 2.0)
-        );
+        assert_eq!((one.min, one.median, one.mean, one.max), (2.0, 2.0, 2.0, 2.0));
         assert_eq!((one.p95, one.p99, one.mad), (None, None, None));
         let of = |count: u32| {
             let samples: Vec<f64> = (0..count).rev().map(f64::from).collect();

@@ -160,7 +160,16 @@ impl Pass {
             compiler: None,
         });
         let sentence = Self::builder(name, section, Vec::new()).sentence;
-        Pass { inner: Arc::new(Inner { info, pipeline: None, bindings: None, uses, body: Body::Copy { from, to: to.clone() }, sentence }) }
+        Pass {
+            inner: Arc::new(Inner {
+                info,
+                pipeline: None,
+                bindings: None,
+                uses,
+                body: Body::Copy { from, to: to.clone() },
+                sentence,
+            }),
+        }
     }
 
     fn builder(name: &'static str, section: &'static str, shaders: Vec<String>) -> PassBuilder {

@@ -79,9 +79,11 @@ pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: 
                 .aspect_mask(view.image.aspect())
                 .base_array_layer(view.layers.start)
                 .layer_count(view.layers.end - view.layers.start);
-            let region = vk::BufferImageCopy::default()
-                .image_subresource(subresource)
-                .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
+            let region = vk::BufferImageCopy::default().image_subresource(subresource).image_extent(vk::Extent3D {
+                width: view.width(),
+                height: view.height(),
+                depth: 1,
+            });
             let layout = Access::CopySource.words().layout;
             // SAFETY: recording; the image is in that layout by its barrier, and whoever made `to` sized it for the
             // view's texels; both outlive the submission.

@@ -33,20 +33,9 @@ pub fn run(run: &Run, style: Style) -> String {
 }
 
 fn title(run: &Run, style: Style) -> String {
-    let preset = run
-        .preset
-        .as_ref()
-        .map_or_else(String::new, |preset| format!(", {preset}"));
-    let repeat = if run.repeat > 1 {
-        format!(" × {} repetitions", run.repeat)
-    } else {
-        String::new()
-    };
-    let process = if run.process > 0 {
-        format!(", process {}", run.process)
-    } else {
-        String::new()
-    };
+    let preset = run.preset.as_ref().map_or_else(String::new, |preset| format!(", {preset}"));
+    let repeat = if run.repeat > 1 { format!(" × {} repetitions", run.repeat) } else { String::new() };
+    let process = if run.process > 0 { format!(", process {}", run.process) } else { String::new() };
     format!(
         "{}\n",
         style.bold(&format!(
@@ -87,9 +76,7 @@ fn passes(run: &Run) -> Table {
             pass.section.clone().unwrap_or_default(),
             pass.kind.name().to_owned(),
             pass.calls.to_string(),
-            pass.submission
-                .filter(|_| submissions)
-                .map_or_else(String::new, |index| index.to_string()),
+            pass.submission.filter(|_| submissions).map_or_else(String::new, |index| index.to_string()),
             gpu(pass),
             share(pass, run).map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
             host(pass),
@@ -101,11 +88,7 @@ fn passes(run: &Run) -> Table {
 
 fn share(pass: &Pass, run: &Run) -> Option<f64> {
     let times = [&pass.gpu_ms, &pass.host_ms];
-    let known: Vec<f64> = times
-        .into_iter()
-        .flatten()
-        .map(|time| time.median)
-        .collect();
+    let known: Vec<f64> = times.into_iter().flatten().map(|time| time.median).collect();
     let frame_ms = run.frame_ms.as_ref()?.median;
     (!known.is_empty() && frame_ms > 0.0).then(|| known.iter().sum::<f64>() / frame_ms)
 }
@@ -114,11 +97,7 @@ fn frame(run: &Run, style: Style) -> String {
     let Some(frame) = &run.frame_ms else {
         return format!("{}\n", style.dim("frame: not measured"));
     };
-    let mut text = format!(
-        "frame {} ms (min {}",
-        median_and_mad(frame),
-        milliseconds(frame.min)
-    );
+    let mut text = format!("frame {} ms (min {}", median_and_mad(frame), milliseconds(frame.min));
     let percentiles = [("p95", frame.p95), ("p99", frame.p99)];
     for (name, value) in percentiles {
         if let Some(value) = value {
@@ -129,11 +108,7 @@ fn frame(run: &Run, style: Style) -> String {
     if frame.median > 0.0 {
         let _ = write!(text, ", {:.1} frames/s", 1000.0 / frame.median);
     }
-    let rest = [
-        ("unaccounted", run.unaccounted_ms),
-        ("overlap", run.overlap_ms),
-        ("stamp floor", run.stamp_floor_ms),
-    ];
+    let rest = [("unaccounted", run.unaccounted_ms), ("overlap", run.overlap_ms), ("stamp floor", run.stamp_floor_ms)];
     for (name, value) in rest {
         if let Some(value) = value {
             let _ = write!(text, "; {name} {} ms", milliseconds(value));
@@ -171,14 +146,9 @@ mod tests {
     fn the_table_shows_every_pass_with_its_times() {
         let text = record(&example::full(), Style::default());
         let line = |name: &str| {
-            text.lines()
-                .find(|line| line.starts_with(name))
-                .unwrap_or_else(|| panic!("no line {name} in\n{text}"))
+            text.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("no line {name} in\n{text}"))
         };
-        assert_eq!(
-            line("gas slices"),
-            "gas slices, figure-7: 800 × 600, 3 frames, seed 1"
-        );
+        assert_eq!(line("gas slices"), "gas slices, figure-7: 800 × 600, 3 frames, seed 1");
         for part in ["2.000 ± 0.500", "40.0 %", "graphics", "30"] {
             assert!(line("splat").contains(part), "{part} in\n{text}");
         }

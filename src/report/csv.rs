@@ -55,11 +55,8 @@ pub fn to_string(record: &Record) -> String {
     let mut text = String::new();
     push_row(&mut text, COLUMNS.map(str::to_owned));
     for run in &record.runs {
-        let passes: Vec<Option<(usize, &Pass)>> = if run.passes.is_empty() {
-            vec![None]
-        } else {
-            run.passes.iter().enumerate().map(Some).collect()
-        };
+        let passes: Vec<Option<(usize, &Pass)>> =
+            if run.passes.is_empty() { vec![None] } else { run.passes.iter().enumerate().map(Some).collect() };
         for pass in passes {
             push_row(&mut text, row(record, run, pass));
         }
@@ -70,22 +67,12 @@ pub fn to_string(record: &Record) -> String {
 fn row(record: &Record, run: &Run, pass: Option<(usize, &Pass)>) -> [String; COLUMNS.len()] {
     let frame = |value: fn(&Summary) -> Option<f64>| cell(run.frame_ms.as_ref().and_then(value));
     let (index, pass) = pass.unzip();
-    let statistic = |value: fn(&Statistics) -> Option<u64>| {
-        cell(
-            pass.and_then(|pass| pass.statistics.as_ref())
-                .and_then(value),
-        )
-    };
+    let statistic =
+        |value: fn(&Statistics) -> Option<u64>| cell(pass.and_then(|pass| pass.statistics.as_ref()).and_then(value));
     let bytes = |value: fn(Bytes) -> u64| cell(pass.and_then(|pass| pass.bytes).map(value));
-    let gpu = |value: fn(&Summary) -> Option<f64>| {
-        cell(pass.and_then(|pass| pass.gpu_ms.as_ref()).and_then(value))
-    };
-    let median = |time: fn(&Pass) -> &Option<Summary>| {
-        cell(
-            pass.and_then(|pass| time(pass).as_ref())
-                .map(|time| time.median),
-        )
-    };
+    let gpu = |value: fn(&Summary) -> Option<f64>| cell(pass.and_then(|pass| pass.gpu_ms.as_ref()).and_then(value));
+    let median =
+        |time: fn(&Pass) -> &Option<Summary>| cell(pass.and_then(|pass| time(pass).as_ref()).map(|time| time.median));
     let device = &record.environment.device;
     [
         device.name.clone(),
@@ -142,11 +129,7 @@ fn push_row(text: &mut String, cells: [String; COLUMNS.len()]) {
 }
 
 fn quote(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
-    }
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
 }
 
 #[cfg(test)]

@@ -5,25 +5,17 @@ use super::record::{Build, Host};
 /// The current time in UTC, RFC 3339 to the second: `2026-01-31T12:00:00Z`.
 pub fn date() -> String {
     let now = jiff::Timestamp::now();
-    jiff::fmt::temporal::DateTimePrinter::new()
-        .precision(Some(0))
-        .timestamp_to_string(&now)
+    jiff::fmt::temporal::DateTimePrinter::new().precision(Some(0)).timestamp_to_string(&now)
 }
 
 /// The machine this process runs on, as far as the system tells.
 pub fn host() -> Host {
     Host {
-        os: read("/etc/os-release")
-            .and_then(|text| os_name(&text))
-            .unwrap_or_else(|| std::env::consts::OS.to_owned()),
+        os: read("/etc/os-release").and_then(|text| os_name(&text)).unwrap_or_else(|| std::env::consts::OS.to_owned()),
         kernel: read("/proc/sys/kernel/osrelease").map(|text| text.trim().to_owned()),
         cpu: read("/proc/cpuinfo").and_then(|text| cpu_name(&text)),
-        logical_cores: std::thread::available_parallelism()
-            .ok()
-            .and_then(|count| u32::try_from(count.get()).ok()),
-        lp_num_threads: std::env::var("LP_NUM_THREADS")
-            .ok()
-            .and_then(|value| value.trim().parse().ok()),
+        logical_cores: std::thread::available_parallelism().ok().and_then(|count| u32::try_from(count.get()).ok()),
+        lp_num_threads: std::env::var("LP_NUM_THREADS").ok().and_then(|value| value.trim().parse().ok()),
     }
 }
 
@@ -44,9 +36,7 @@ fn read(path: &str) -> Option<String> {
 }
 
 fn os_name(os_release: &str) -> Option<String> {
-    let value = os_release
-        .lines()
-        .find_map(|line| line.strip_prefix("PRETTY_NAME="))?;
+    let value = os_release.lines().find_map(|line| line.strip_prefix("PRETTY_NAME="))?;
     let name = value.trim().trim_matches(['"', '\'']);
     (!name.is_empty()).then(|| name.to_owned())
 }
@@ -77,10 +67,7 @@ mod tests {
     #[test]
     fn names_are_read_from_the_system_files() {
         let release = "NAME=\"Debian\"\nPRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\n";
-        assert_eq!(
-            os_name(release).as_deref(),
-            Some("Debian GNU/Linux 12 (bookworm)")
-        );
+        assert_eq!(os_name(release).as_deref(), Some("Debian GNU/Linux 12 (bookworm)"));
         assert_eq!(os_name("NAME=x\n"), None);
         let cpuinfo = "processor\t: 0\nmodel\t\t: 85\nmodel name\t: Some CPU @ 2.60GHz\n";
         assert_eq!(cpu_name(cpuinfo).as_deref(), Some("Some CPU @ 2.60GHz"));

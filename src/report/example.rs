@@ -34,13 +34,7 @@ pub fn environment() -> Environment {
         },
         loader: None,
         layers: vec![],
-        build: Build {
-            version: "0.1.0".to_owned(),
-            git_commit: None,
-            dirty: None,
-            rustc: None,
-            profile: None,
-        },
+        build: Build { version: "0.1.0".to_owned(), git_commit: None, dirty: None, rustc: None, profile: None },
     }
 }
 
@@ -117,15 +111,8 @@ pub fn full() -> Record {
         submission: Some(0),
         shader_compiler: Some("glslang".to_owned()),
         gpu_ms: summarize(&[1.5, 2.0, 2.5]),
-        statistics: Some(Statistics {
-            vertices: Some(90_000),
-            fragments: Some(1_600_000),
-            ..Statistics::default()
-        }),
-        bytes: Some(Bytes {
-            read: 1024,
-            written: 2048,
-        }),
+        statistics: Some(Statistics { vertices: Some(90_000), fragments: Some(1_600_000), ..Statistics::default() }),
+        bytes: Some(Bytes { read: 1024, written: 2048 }),
         ..pass("splat", PassKind::Graphics)
     };
     let run = Run {
@@ -144,15 +131,9 @@ pub fn full() -> Record {
             device_bytes: Some(1 << 20),
             host_bytes: Some(1 << 10),
             peak_bytes: Some(1 << 21),
-            by_resource: vec![ResourceMemory {
-                name: "density".to_owned(),
-                bytes: 1 << 19,
-            }],
+            by_resource: vec![ResourceMemory { name: "density".to_owned(), bytes: 1 << 19 }],
         },
-        limits: Some(Limits {
-            copy_gb_s: Some(6.5),
-            ..Limits::default()
-        }),
+        limits: Some(Limits { copy_gb_s: Some(6.5), ..Limits::default() }),
         results: object(json!({"fps": 200.0})),
         experiment: Some(ExperimentRow {
             row: "30 planes".to_owned(),
@@ -162,10 +143,7 @@ pub fn full() -> Record {
         }),
         validation: Validation::Clean,
         warnings: vec!["LP_NUM_THREADS is not set".to_owned()],
-        image: Some(ImageFile {
-            path: "fumarole-out/gas.png".to_owned(),
-            sha256: "0".repeat(64),
-        }),
+        image: Some(ImageFile { path: "fumarole-out/gas.png".to_owned(), sha256: "0".repeat(64) }),
         ..run()
     };
     let command = vec!["gas".to_owned(), "bench".to_owned()];

@@ -19,10 +19,7 @@ pub enum ReadError {
     )]
     Truncated { path: PathBuf, line: usize },
     #[error("cannot read the record {}: no JSON: {source}; name a file written by --json", .path.display())]
-    NotJson {
-        path: PathBuf,
-        source: serde_json::Error,
-    },
+    NotJson { path: PathBuf, source: serde_json::Error },
     #[error(
         "cannot read the record {}: its schema is {found}, not \"{SCHEMA}\"; name a file written by --json of this version",
         .path.display()
@@ -54,10 +51,7 @@ pub fn to_string(value: &impl Serialize) -> Result<String, serde_json::Error> {
 /// # Errors
 /// See [`ReadError`]: every message names the file, and the line or the field.
 pub fn read(path: &Path) -> Result<Record, ReadError> {
-    let text = fs::read_to_string(path).map_err(|source| ReadError::Unreadable {
-        path: path.to_owned(),
-        source,
-    })?;
+    let text = fs::read_to_string(path).map_err(|source| ReadError::Unreadable { path: path.to_owned(), source })?;
     parse(&text, path)
 }
 
@@ -73,30 +67,16 @@ pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
     let owned = || path.to_owned();
     let header: Header = serde_json::from_str(text).map_err(|source| {
         if source.is_eof() {
-            ReadError::Truncated {
-                path: owned(),
-                line: source.line(),
-            }
+            ReadError::Truncated { path: owned(), line: source.line() }
         } else if source.is_data() {
-            ReadError::WrongSchema {
-                path: owned(),
-                found: "absent".to_owned(),
-            }
+            ReadError::WrongSchema { path: owned(), found: "absent".to_owned() }
         } else {
-            ReadError::NotJson {
-                path: owned(),
-                source,
-            }
+            ReadError::NotJson { path: owned(), source }
         }
     })?;
     if header.schema.as_ref().and_then(Value::as_str) != Some(SCHEMA) {
-        let found = header
-            .schema
-            .map_or_else(|| "absent".to_owned(), |found| found.to_string());
-        return Err(ReadError::WrongSchema {
-            path: owned(),
-            found,
-        });
+        let found = header.schema.map_or_else(|| "absent".to_owned(), |found| found.to_string());
+        return Err(ReadError::WrongSchema { path: owned(), found });
     }
     let mut deserializer = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut deserializer).map_err(|error| ReadError::WrongField {
@@ -115,12 +95,7 @@ fn push_value(text: &mut String, value: &Value, depth: usize) {
             push_lines(text, ['{', '}'], items, depth);
         }
         Value::Array(items) if items.iter().any(|item| item.is_object() || item.is_array()) => {
-            push_lines(
-                text,
-                ['[', ']'],
-                items.iter().map(|item| (None, item)),
-                depth,
-            );
+            push_lines(text, ['[', ']'], items.iter().map(|item| (None, item)), depth);
         }
         plain => text.push_str(&plain.to_string()),
     }
@@ -216,10 +191,7 @@ mod tests {
             let error = error_of(foreign);
             assert!(matches!(error, ReadError::WrongSchema { .. }), "{error}");
         }
-        assert!(matches!(
-            error_of(&format!("{text}{text}")),
-            ReadError::NotJson { .. }
-        ));
+        assert!(matches!(error_of(&format!("{text}{text}")), ReadError::NotJson { .. }));
 
         let mut value = serde_json::to_value(example::full()).unwrap();
         value["runs"][0]["passes"][1]["gpu_ms"]["median"] = Value::from("fast");

@@ -37,14 +37,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 ///
 /// # Errors
 /// As [`write()`]; an error of `fill` counts as a failure to write.
-pub fn write_with(
-    path: &Path,
-    fill: impl FnOnce(&mut File) -> io::Result<()>,
-) -> Result<(), OutputError> {
-    let failed = |source| OutputError::Write {
-        path: path.to_owned(),
-        source,
-    };
+pub fn write_with(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), OutputError> {
+    let failed = |source| OutputError::Write { path: path.to_owned(), source };
     match Destination::find(path)? {
         Destination::Stream => {
             let mut stream = File::options().write(true).open(path).map_err(failed)?;
@@ -54,9 +48,7 @@ pub fn write_with(
             let mut temporary = create_beside(&target).map_err(failed)?;
             fill(temporary.as_file_mut()).map_err(failed)?;
             temporary.as_file().sync_all().map_err(failed)?;
-            temporary
-                .persist(&target)
-                .map_err(|error| failed(error.error))?;
+            temporary.persist(&target).map_err(|error| failed(error.error))?;
             Ok(())
         }
     }
@@ -72,10 +64,7 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
         Destination::Stream => File::options().write(true).open(path).map(drop),
         Destination::File(target) => create_beside(&target).and_then(NamedTempFile::close),
     };
-    opened.map_err(|source| OutputError::Write {
-        path: path.to_owned(),
-        source,
-    })
+    opened.map_err(|source| OutputError::Write { path: path.to_owned(), source })
 }
 
 enum Destination {
@@ -90,30 +79,21 @@ impl Destination {
         let Ok(metadata) = fs::metadata(path) else {
             // `Path` forgets a trailing separator, which asks for a directory.
             if path.as_os_str().as_encoded_bytes().ends_with(b"/") || path.file_name().is_none() {
-                return Err(OutputError::IsDirectory {
-                    path: path.to_owned(),
-                });
+                return Err(OutputError::IsDirectory { path: path.to_owned() });
             }
             create_directory(&parent(path))?;
             return Ok(Self::File(path.to_owned()));
         };
         if metadata.is_dir() {
-            return Err(OutputError::IsDirectory {
-                path: path.to_owned(),
-            });
+            return Err(OutputError::IsDirectory { path: path.to_owned() });
         }
         if !metadata.is_file() {
             return Ok(Self::Stream);
         }
         if metadata.permissions().readonly() {
-            return Err(OutputError::ReadOnly {
-                path: path.to_owned(),
-            });
+            return Err(OutputError::ReadOnly { path: path.to_owned() });
         }
-        let target = fs::canonicalize(path).map_err(|source| OutputError::Write {
-            path: path.to_owned(),
-            source,
-        })?;
+        let target = fs::canonicalize(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
         Ok(Self::File(target))
     }
 }
@@ -126,10 +106,7 @@ fn parent(path: &Path) -> PathBuf {
 }
 
 fn create_directory(path: &Path) -> Result<(), OutputError> {
-    fs::create_dir_all(path).map_err(|source| OutputError::CreateDirectory {
-        path: path.to_owned(),
-        source,
-    })
+    fs::create_dir_all(path).map_err(|source| OutputError::CreateDirectory { path: path.to_owned(), source })
 }
 
 fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
@@ -148,10 +125,8 @@ mod tests {
     use super::*;
 
     fn entries(directory: &Path) -> Vec<String> {
-        let mut names: Vec<_> = fs::read_dir(directory)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
+        let mut names: Vec<_> =
+            fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
     }
@@ -198,10 +173,7 @@ mod tests {
         write(&file, b"x").unwrap();
         for check in [check_writable, |path: &Path| write(path, b"y")] {
             let error = check(&file.join("under.json")).unwrap_err();
-            assert!(
-                matches!(error, OutputError::CreateDirectory { .. }),
-                "{error}"
-            );
+            assert!(matches!(error, OutputError::CreateDirectory { .. }), "{error}");
             let error = check(root.path()).unwrap_err();
             assert!(matches!(error, OutputError::IsDirectory { .. }), "{error}");
             let error = check(&root.path().join("new/")).unwrap_err();

@@ -22,12 +22,7 @@ pub struct Record {
 impl Record {
     /// A record of the current [`SCHEMA`].
     pub fn new(environment: Environment, command: Vec<String>, runs: Vec<Run>) -> Self {
-        Self {
-            schema: SCHEMA.to_owned(),
-            environment,
-            command,
-            runs,
-        }
+        Self { schema: SCHEMA.to_owned(), environment, command, runs }
     }
 }
 
@@ -293,10 +288,7 @@ mod tests {
     use crate::report::record::Record;
 
     fn validator() -> jsonschema::Validator {
-        let schema = include_str!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/schema/fumarole.bench-1.json"
-        ));
+        let schema = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.bench-1.json"));
         let schema: Value = serde_json::from_str(schema).unwrap();
         jsonschema::meta::validate(&schema).unwrap();
         jsonschema::validator_for(&schema).unwrap()

@@ -11,9 +11,7 @@ impl Style {
     /// Colours on a terminal, unless `NO_COLOR` is set and not empty (no-color.org).
     pub fn detect(is_terminal: bool) -> Self {
         let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        Self {
-            color: is_terminal && !refused,
-        }
+        Self { color: is_terminal && !refused }
     }
 
     pub fn bold(self, text: &str) -> String {
@@ -37,11 +35,7 @@ impl Style {
     }
 
     fn paint(self, code: &str, text: &str) -> String {
-        if self.color {
-            format!("\x1b[{code}m{text}\x1b[0m")
-        } else {
-            text.to_owned()
-        }
+        if self.color { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
     }
 }
 
@@ -60,13 +54,7 @@ pub struct Table {
 
 impl Table {
     pub fn new(columns: &[(&str, Align)]) -> Self {
-        Self {
-            columns: columns
-                .iter()
-                .map(|&(name, align)| (name.to_owned(), align))
-                .collect(),
-            rows: vec![],
-        }
+        Self { columns: columns.iter().map(|&(name, align)| (name.to_owned(), align)).collect(), rows: vec![] }
     }
 
     /// Adds a row; missing cells are empty, cells beyond the last column are left out.
@@ -77,16 +65,11 @@ impl Table {
 
     /// The table, each line ending in a newline. Columns in which no row has anything are left out.
     pub fn render(&self, style: Style) -> String {
-        let shown: Vec<usize> = (0..self.columns.len())
-            .filter(|&column| self.rows.iter().any(|row| !row[column].is_empty()))
-            .collect();
+        let shown: Vec<usize> =
+            (0..self.columns.len()).filter(|&column| self.rows.iter().any(|row| !row[column].is_empty())).collect();
         let width = |column: usize| {
             let cells = self.rows.iter().map(|row| row[column].as_str());
-            cells
-                .chain([self.columns[column].0.as_str()])
-                .map(|cell| cell.chars().count())
-                .max()
-                .unwrap_or(0)
+            cells.chain([self.columns[column].0.as_str()]).map(|cell| cell.chars().count()).max().unwrap_or(0)
         };
         let widths: Vec<usize> = shown.iter().map(|&column| width(column)).collect();
         let line = |cell: &dyn Fn(usize) -> String| {
@@ -115,11 +98,7 @@ mod tests {
 
     #[test]
     fn columns_are_aligned_and_empty_ones_left_out() {
-        let mut table = Table::new(&[
-            ("pass", Align::Left),
-            ("note", Align::Left),
-            ("ms", Align::Right),
-        ]);
+        let mut table = Table::new(&[("pass", Align::Left), ("note", Align::Left), ("ms", Align::Right)]);
         table.push(vec!["a".into(), String::new(), "1.0 ± 0.1".into()]);
         table.push(vec!["longer".into(), String::new(), "10.0".into()]);
         let expected = "pass           ms\na       1.0 ± 0.1\nlonger       10.0\n";

@@ -53,12 +53,7 @@ pub fn to_string(runs: &[TraceRun]) -> String {
     let mut events = vec![];
     for (index, run) in runs.iter().enumerate() {
         let process = index + 1;
-        events.push(metadata(
-            "process_name",
-            process,
-            0,
-            json!({"name": run.name}),
-        ));
+        events.push(metadata("process_name", process, 0, json!({"name": run.name})));
         let order = json!({"sort_index": index});
         events.push(metadata("process_sort_index", process, 0, order));
         for track in Track::ALL {
@@ -67,9 +62,10 @@ pub fn to_string(runs: &[TraceRun]) -> String {
             let order = json!({"sort_index": track.id()});
             events.push(metadata("thread_sort_index", process, track.id(), order));
         }
-        let drawable = run.events.iter().filter(|event| {
-            event.start_us.is_finite() && event.duration_us.is_finite() && event.duration_us >= 0.0
-        });
+        let drawable = run
+            .events
+            .iter()
+            .filter(|event| event.start_us.is_finite() && event.duration_us.is_finite() && event.duration_us >= 0.0);
         events.extend(drawable.map(|event| {
             json!({
                 "name": event.name, "ph": "X", "cat": event.track.name(), "pid": process, "tid": event.track.id(),
@@ -78,10 +74,7 @@ pub fn to_string(runs: &[TraceRun]) -> String {
         }));
     }
     let lines: Vec<String> = events.iter().map(Value::to_string).collect();
-    format!(
-        "{{\"displayTimeUnit\": \"ms\", \"traceEvents\": [\n{}\n]}}\n",
-        lines.join(",\n")
-    )
+    format!("{{\"displayTimeUnit\": \"ms\", \"traceEvents\": [\n{}\n]}}\n", lines.join(",\n"))
 }
 
 fn metadata(name: &str, process: usize, thread: u32, args: Value) -> Value {
@@ -115,9 +108,7 @@ mod tests {
         });
         let trace: Value = serde_json::from_str(&to_string(&runs)).unwrap();
         let events = trace["traceEvents"].as_array().unwrap();
-        let of_kind = |kind: &str| -> Vec<&Value> {
-            events.iter().filter(|event| event["ph"] == kind).collect()
-        };
+        let of_kind = |kind: &str| -> Vec<&Value> { events.iter().filter(|event| event["ph"] == kind).collect() };
         let complete = of_kind("X");
         assert_eq!(complete.len(), 4);
         let splat = complete[3];
@@ -137,10 +128,7 @@ mod tests {
         assert_eq!(name_of("thread_name", splat), Some(json!("GPU")));
         assert_eq!(name_of("process_name", splat), Some(json!("gas splats")));
         assert_eq!(name_of("thread_name", complete[0]), Some(json!("host")));
-        assert_eq!(
-            name_of("process_name", complete[0]),
-            Some(json!("gas \"slices\""))
-        );
+        assert_eq!(name_of("process_name", complete[0]), Some(json!("gas \"slices\"")));
     }
 
     #[test]

@@ -65,7 +65,8 @@ impl Setup {
             let scale = RECEIVER_SIZE_M / bounds.diagonal().max_element();
             let size = bounds.diagonal() * scale;
             let foot = Vec3::new(bounds.min.x, bounds.min.y, bounds.center().z) * scale;
-            let place = Mat4::from_translation(Vec3::new(next_x, floor_m, 0.0) - foot) * Mat4::from_scale(Vec3::splat(scale));
+            let place =
+                Mat4::from_translation(Vec3::new(next_x, floor_m, 0.0) - foot) * Mat4::from_scale(Vec3::splat(scale));
             next_x += size.x + GAP_M;
             receivers.push(ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.75, 0.75, 0.72) });
         }
@@ -181,10 +182,8 @@ pub fn bench(
     limits: Option<&Limits>,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<VariantRun>, Error> {
-    let mut built = variants
-        .iter()
-        .map(|&variant| build(machine, setup, scene, variant))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut built =
+        variants.iter().map(|&variant| build(machine, setup, scene, variant)).collect::<Result<Vec<_>, _>>()?;
     machine.device.wait_idle()?;
     let stamp_floor_ms = machine.recorder.stamp_floor_ms()?;
     let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();

@@ -32,9 +32,7 @@ pub(super) fn estimate(a: &[Vec<f64>], b: &[Vec<f64>]) -> Option<Ratio> {
     let center = mean(&b_log) - mean(&a_log);
     let block_length = block_length(&residuals(a.iter().chain(b))?);
     let draws_of = |side: &[Vec<f64>]| -> Vec<Vec<f64>> {
-        side.iter()
-            .map(|samples| resampled_log_medians(samples, block_length))
-            .collect()
+        side.iter().map(|samples| resampled_log_medians(samples, block_length)).collect()
     };
     let (a_draws, b_draws) = (draws_of(a), draws_of(b));
     let mut random = Pcg64Mcg::seed_from_u64(SEED + 1);
@@ -66,9 +64,7 @@ fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
         return None;
     }
     let medians = side.iter().map(|samples| median(samples));
-    medians
-        .map(|median| median.filter(|m| *m > 0.0).map(f64::ln))
-        .collect()
+    medians.map(|median| median.filter(|m| *m > 0.0).map(f64::ln)).collect()
 }
 
 /// What is left of each process's samples, as parts of its median, without what all processes share: frames differ by
@@ -101,16 +97,8 @@ fn block_length(series: &[Vec<f64>]) -> usize {
     let run = 5.max(n.log10().sqrt().ceil() as usize);
     let longest = (3.0 * n.sqrt()).min(n / 3.0).floor().max(1.0);
     let last_lag = (n.sqrt().ceil() as usize + run).min(count.saturating_sub(1));
-    let covariances: Vec<f64> = (0..=last_lag)
-        .map(|lag| {
-            mean(
-                &series
-                    .iter()
-                    .map(|s| autocovariance(s, lag))
-                    .collect::<Vec<_>>(),
-            )
-        })
-        .collect();
+    let covariances: Vec<f64> =
+        (0..=last_lag).map(|lag| mean(&series.iter().map(|s| autocovariance(s, lag)).collect::<Vec<_>>())).collect();
     let variance = covariances[0];
     if variance <= 0.0 || last_lag <= run {
         return 1;
@@ -131,11 +119,7 @@ fn block_length(series: &[Vec<f64>]) -> usize {
     }
     let length = (1.5 * (weighted / spectrum).powi(2) * n).cbrt();
     // A spectrum of zero leaves no finite length; the longest is the careful choice.
-    if length.is_finite() {
-        length.ceil().clamp(1.0, longest) as usize
-    } else {
-        longest as usize
-    }
+    if length.is_finite() { length.ceil().clamp(1.0, longest) as usize } else { longest as usize }
 }
 
 fn autocovariance(series: &[f64], lag: usize) -> f64 {
@@ -181,9 +165,7 @@ fn median_in_place(samples: &mut [f64]) -> f64 {
 }
 
 fn mean_of_drawn_processes(draws: &[Vec<f64>], frames: usize, random: &mut Pcg64Mcg) -> f64 {
-    let total: f64 = (0..draws.len())
-        .map(|_| draws[below(random, draws.len())][frames])
-        .sum();
+    let total: f64 = (0..draws.len()).map(|_| draws[below(random, draws.len())][frames]).sum();
     total / draws.len() as f64
 }
 
@@ -209,9 +191,7 @@ const NORMAL_975: f64 = 1.959_963_985;
 
 /// 97.5 % quantile of Student's t: tabulated, then its expansion in 1 / freedom (Abramowitz and Stegun, 26.7.5).
 fn student_t_975(freedom: usize) -> f64 {
-    const TABLE: [f64; 10] = [
-        12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281,
-    ];
+    const TABLE: [f64; 10] = [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
     if let Some(tabulated) = TABLE.get(freedom.saturating_sub(1)) {
         return *tabulated;
     }
@@ -233,10 +213,7 @@ mod tests {
     #[test]
     fn student_t_meets_its_tables() {
         for (freedom, expected) in [(1, 12.7062), (10, 2.2281), (11, 2.2010), (30, 2.0423)] {
-            assert!(
-                (student_t_975(freedom) - expected).abs() < 1e-3,
-                "{freedom}"
-            );
+            assert!((student_t_975(freedom) - expected).abs() < 1e-3, "{freedom}");
         }
     }
 
@@ -244,9 +221,7 @@ mod tests {
     fn blocks_are_as_long_as_the_correlation() {
         let series = |correlation: f64| {
             let mut noise = Noise::new(1);
-            (0..5)
-                .map(|_| noise.autoregressive(400, correlation))
-                .collect::<Vec<_>>()
+            (0..5).map(|_| noise.autoregressive(400, correlation)).collect::<Vec<_>>()
         };
         assert!(block_length(&series(0.0)) <= 4);
         let long = block_length(&series(0.9));
@@ -257,9 +232,7 @@ mod tests {
 
     #[test]
     fn content_shared_by_all_processes_leaves_the_ratio() {
-        let content: Vec<f64> = (0..200)
-            .map(|frame| 5.0 + 0.05 * f64::from(frame))
-            .collect();
+        let content: Vec<f64> = (0..200).map(|frame| 5.0 + 0.05 * f64::from(frame)).collect();
         let slower: Vec<f64> = content.iter().map(|x| 1.1 * x).collect();
         let found = estimate(&[content], &[slower]).unwrap();
         for value in [found.ratio, found.interval[0], found.interval[1]] {

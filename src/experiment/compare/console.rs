@@ -38,10 +38,7 @@ pub fn render(comparison: &Comparison, style: Style) -> String {
 fn title(run: &RunComparison) -> String {
     let preset = run.preset.as_ref();
     let preset = preset.map_or_else(String::new, |preset| format!(", {preset}"));
-    format!(
-        "{} {}{preset}: {} × {}",
-        run.paper, run.variant, run.width, run.height
-    )
+    format!("{} {}{preset}: {} × {}", run.paper, run.variant, run.width, run.height)
 }
 
 fn verdict(run: &RunComparison, comparison: &Comparison, style: Style) -> String {

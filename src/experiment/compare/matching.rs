@@ -13,21 +13,13 @@ use crate::report::record::{Record, Run};
 
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CompareError {
-    #[error(
-        "cannot compare: side {side} has no run; name at least one record with a finished run a side"
-    )]
+    #[error("cannot compare: side {side} has no run; name at least one record with a finished run a side")]
     NoRun { side: &'static str },
     #[error(
         "cannot compare {a_name} with {b_name}: {field} is {a_value} in the first and {b_value} in the second; measure \
          both sides alike"
     )]
-    Different {
-        field: String,
-        a_name: String,
-        a_value: String,
-        b_name: String,
-        b_value: String,
-    },
+    Different { field: String, a_name: String, a_value: String, b_name: String, b_value: String },
 }
 
 /// The runs of one configuration on one side.
@@ -53,10 +45,7 @@ impl<'a> Configuration<'a> {
     pub fn samples(&self, time: impl Fn(&Run) -> Option<Vec<f64>>) -> Vec<Vec<f64>> {
         let processes = self.processes.iter();
         let samples = processes.map(|runs| runs.iter().filter_map(|run| time(run)).flatten());
-        samples
-            .map(Iterator::collect::<Vec<f64>>)
-            .filter(|samples| !samples.is_empty())
-            .collect()
+        samples.map(Iterator::collect::<Vec<f64>>).filter(|samples| !samples.is_empty()).collect()
     }
 
     fn name(&self) -> String {
@@ -87,10 +76,7 @@ pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'
     let mut b = configurations("B", b, &mut warnings)?;
     let (mut pairs, mut alone) = (vec![], vec![]);
     for configuration in a {
-        match b
-            .iter()
-            .position(|other| other.fields == configuration.fields)
-        {
+        match b.iter().position(|other| other.fields == configuration.fields) {
             Some(index) => pairs.push((configuration, b.remove(index))),
             None => alone.push(configuration),
         }
@@ -123,9 +109,7 @@ fn configurations<'a>(
         let mut here: Vec<(BTreeMap<String, String>, u32, Vec<&Run>)> = vec![];
         for run in &input.record.runs {
             let fields = fields(run);
-            let known = here
-                .iter_mut()
-                .find(|(known, process, _)| *known == fields && *process == run.process);
+            let known = here.iter_mut().find(|(known, process, _)| *known == fields && *process == run.process);
             match known {
                 Some((_, _, runs)) => runs.push(run),
                 None => here.push((fields, run.process, vec![run])),
@@ -134,21 +118,14 @@ fn configurations<'a>(
         for (fields, _, runs) in here {
             let index = found.iter().position(|known| known.fields == fields);
             let index = index.unwrap_or_else(|| {
-                found.push(Configuration {
-                    fields,
-                    first: runs[0],
-                    source: &input.name,
-                    processes: vec![],
-                });
+                found.push(Configuration { fields, first: runs[0], source: &input.name, processes: vec![] });
                 found.len() - 1
             });
             let processes = &mut found[index].processes;
             // The same measurement twice is not two processes: it would make an interval of nothing.
             if processes.iter().any(|known| same_measurement(known, &runs)) {
-                let message = format!(
-                    "side {side}: {} repeats the samples of another process and is counted once",
-                    input.name
-                );
+                let message =
+                    format!("side {side}: {} repeats the samples of another process and is counted once", input.name);
                 if !warnings.contains(&message) {
                     warnings.push(message);
                 }
@@ -197,10 +174,7 @@ fn fields(run: &Run) -> BTreeMap<String, String> {
 /// Names of the fields that differ, the telling ones first.
 fn differences(a: &Configuration, b: &Configuration) -> Vec<String> {
     let names = a.fields.keys().chain(b.fields.keys());
-    let mut different: Vec<String> = names
-        .filter(|name| a.fields.get(*name) != b.fields.get(*name))
-        .cloned()
-        .collect();
+    let mut different: Vec<String> = names.filter(|name| a.fields.get(*name) != b.fields.get(*name)).cloned().collect();
     let rank = |name: &str| {
         let telling = ["paper", "variant", "preset"];
         telling.iter().position(|known| *known == name).unwrap_or(3)
@@ -245,10 +219,7 @@ fn check_environments(a: &[Input], b: &[Input]) -> Result<Vec<String>, CompareEr
         for ((name, expected), (_, found)) in expected.iter().zip(conditions(&input.record)) {
             let known = warnings.iter().any(|(known, _)| known == name);
             if *expected != found && !known {
-                let message = format!(
-                    "{name} is {expected} in {} and {found} in {}",
-                    first.name, input.name
-                );
+                let message = format!("{name} is {expected} in {} and {found} in {}", first.name, input.name);
                 warnings.push((name, message));
             }
         }
@@ -261,18 +232,12 @@ fn conditions(record: &Record) -> [(&'static str, Value); 8] {
     let (device, host) = (&environment.device, &environment.host);
     [
         ("device.name", Value::from(device.name.as_str())),
-        (
-            "device.driver_version",
-            Value::from(device.driver_version.clone()),
-        ),
+        ("device.driver_version", Value::from(device.driver_version.clone())),
         ("host.os", Value::from(host.os.as_str())),
         ("host.cpu", Value::from(host.cpu.clone())),
         ("host.logical_cores", Value::from(host.logical_cores)),
         ("host.lp_num_threads", Value::from(host.lp_num_threads)),
         ("layers", Value::from(environment.layers.clone())),
-        (
-            "build.profile",
-            Value::from(environment.build.profile.clone()),
-        ),
+        ("build.profile", Value::from(environment.build.profile.clone())),
     ]
 }

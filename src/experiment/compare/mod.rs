@@ -141,11 +141,7 @@ pub enum Clock {
 ///
 /// # Errors
 /// A side has no record or no run, or the sides were not measured alike; the message names the field that differs.
-pub fn compare(
-    a: &[Input],
-    b: &[Input],
-    fail_above: Option<f64>,
-) -> Result<Comparison, CompareError> {
+pub fn compare(a: &[Input], b: &[Input], fail_above: Option<f64>) -> Result<Comparison, CompareError> {
     let matched = matching::match_runs(a, b)?;
     let same_margin = fail_above.map_or(SAME_MARGIN, |limit| limit.clamp(0.0, SAME_MARGIN));
     let names = |side: &[Input]| side.iter().map(|input| input.name.clone()).collect();
@@ -153,9 +149,7 @@ pub fn compare(
         let mut run = compare_run(a, b, same_margin);
         // One process a side is no ground to fail on.
         run.regression = fail_above.is_some_and(|limit| {
-            let beyond = run
-                .frame
-                .is_some_and(|frame| frame.interval[0] > 1.0 + limit);
+            let beyond = run.frame.is_some_and(|frame| frame.interval[0] > 1.0 + limit);
             beyond && run.verdict == Verdict::Slower
         });
         run
@@ -180,11 +174,8 @@ fn compare_run(a: &Configuration, b: &Configuration, same_margin: f64) -> RunCom
     let (a_times, b_times) = (a.samples(frame_times), b.samples(frame_times));
     let identical = !a_times.is_empty() && same_samples(&a_times, &b_times);
     let frame = ratio(&a_times, &b_times, identical);
-    let (verdict, reason) = if identical {
-        (Verdict::Same, None)
-    } else {
-        decide(frame, a_times.len().min(b_times.len()), same_margin)
-    };
+    let (verdict, reason) =
+        if identical { (Verdict::Same, None) } else { decide(frame, a_times.len().min(b_times.len()), same_margin) };
     let run = a.first();
     RunComparison {
         paper: run.paper.clone(),
@@ -205,17 +196,11 @@ fn compare_run(a: &Configuration, b: &Configuration, same_margin: f64) -> RunCom
 
 fn decide(frame: Option<Ratio>, processes: usize, same_margin: f64) -> (Verdict, Option<String>) {
     let unclear = |reason: &str| (Verdict::Unclear, Some(reason.to_owned()));
-    let Some(Ratio {
-        interval: [low, high],
-        ..
-    }) = frame
-    else {
+    let Some(Ratio { interval: [low, high], .. }) = frame else {
         return unclear("a side did not time the frame");
     };
     if processes < 2 {
-        return unclear(
-            "one process on a side: how much processes differ is unknown; measure with --processes 5",
-        );
+        return unclear("one process on a side: how much processes differ is unknown; measure with --processes 5");
     }
     let margin = 1.0 + same_margin;
     if low >= 1.0 / margin && high <= margin {
@@ -225,9 +210,7 @@ fn decide(frame: Option<Ratio>, processes: usize, same_margin: f64) -> (Verdict,
     } else if high < 1.0 {
         (Verdict::Faster, None)
     } else {
-        unclear(
-            "the interval holds 1 and is wider than the margin; measure more processes or frames",
-        )
+        unclear("the interval holds 1 and is wider than the margin; measure more processes or frames")
     }
 }
 
@@ -256,11 +239,7 @@ fn compare_passes(a: &Configuration, b: &Configuration) -> Vec<PassComparison> {
                 continue;
             }
             let identical = same_samples(&a_times, &b_times);
-            compared.push(PassComparison {
-                name: name.to_owned(),
-                clock,
-                ratio: ratio(&a_times, &b_times, identical),
-            });
+            compared.push(PassComparison { name: name.to_owned(), clock, ratio: ratio(&a_times, &b_times, identical) });
         }
     }
     compared

@@ -32,25 +32,14 @@ impl Noise {
 
     /// One process's frame times: independent noise of the given relative deviation.
     pub fn frame_times(&mut self, count: usize, mean_ms: f64, deviation: f64) -> Vec<f64> {
-        (0..count)
-            .map(|_| mean_ms * (1.0 + deviation * self.normal()))
-            .collect()
+        (0..count).map(|_| mean_ms * (1.0 + deviation * self.normal())).collect()
     }
 
     /// One process's frame times as they are on a busy machine: the process as a whole is off by `drift`, and its
     /// frames by noise with correlation 0.9 from one to the next.
-    pub fn drifting_frame_times(
-        &mut self,
-        count: usize,
-        mean_ms: f64,
-        deviation: f64,
-        drift: f64,
-    ) -> Vec<f64> {
+    pub fn drifting_frame_times(&mut self, count: usize, mean_ms: f64, deviation: f64, drift: f64) -> Vec<f64> {
         let level = mean_ms * (1.0 + drift * self.normal());
         let noise = self.autoregressive(count, 0.9);
-        noise
-            .iter()
-            .map(|x| level * (1.0 + deviation * x))
-            .collect()
+        noise.iter().map(|x| level * (1.0 + deviation * x)).collect()
     }
 }

@@ -61,7 +61,9 @@ impl LevelMap {
                 draw("position-map", "caustics/position-map.frag")
                     .color(&position, BACKGROUND, Blend::Replace)
                     .build(shaders)?,
-                draw("diffuse-map", "caustics/diffuse-map.frag").color(&diffuse, BLACK, Blend::Replace).build(shaders)?,
+                draw("diffuse-map", "caustics/diffuse-map.frag")
+                    .color(&diffuse, BLACK, Blend::Replace)
+                    .build(shaders)?,
             ]
         };
 

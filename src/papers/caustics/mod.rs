@@ -87,9 +87,7 @@ impl Caustics {
             .lights
             .iter()
             .zip(&all_axes)
-            .flat_map(|(&light, &axes)| {
-                receivers.iter().map(move |r| (ReceiverBox::around(axes, &r.positions), light))
-            })
+            .flat_map(|(&light, &axes)| receivers.iter().map(move |r| (ReceiverBox::around(axes, &r.positions), light)))
             .collect();
         let water = Water::new(shaders, label, Grid::over(&boxes, parameters), parameters)?;
 

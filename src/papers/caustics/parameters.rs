@@ -160,7 +160,12 @@ impl Parameters {
         }
         let step = self.time_step_s;
         check(step >= 0.0 && step.is_finite(), "--time-step", step.to_string(), "must be at least 0 seconds")?;
-        check(self.width >= 1 && self.height >= 1, "--size", format!("{}x{}", self.width, self.height), "has no pixel")?;
+        check(
+            self.width >= 1 && self.height >= 1,
+            "--size",
+            format!("{}x{}", self.width, self.height),
+            "has no pixel",
+        )?;
         self.camera.validate().map_err(|e| ParameterError {
             name: "--camera",
             value: String::new(),
@@ -169,9 +174,8 @@ impl Parameters {
     }
 
     fn validate_light(&self, light: &Light) -> Result<(), ParameterError> {
-        let error = |range: &str| {
-            Err(ParameterError { name: "--light", value: format!("{light:?}"), range: range.to_owned() })
-        };
+        let error =
+            |range: &str| Err(ParameterError { name: "--light", value: format!("{light:?}"), range: range.to_owned() });
         let intensity = match *light {
             Light::Parallel { direction, intensity } => {
                 if !direction.is_finite() || direction.normalize_or_zero().y > -0.05 {

@@ -161,8 +161,7 @@ fn entry_point(light: &Light, target: DVec3, receiver: &ReceiverBox, refraction_
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..60 {
                 let middle = (low + high) / 2.0;
-                let excess = sine(distance * middle, above)
-                    - refraction_index * sine(distance * (1.0 - middle), below);
+                let excess = sine(distance * middle, above) - refraction_index * sine(distance * (1.0 - middle), below);
                 if excess < 0.0 { low = middle } else { high = middle }
             }
             from.lerp(to, low)

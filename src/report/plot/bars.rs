@@ -3,10 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{
-    AXIS, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render, split_legend,
-    tick,
-};
+use super::{AXIS, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render, split_legend, tick};
 
 /// Groups of bars from zero, one bar per series in each group, with a legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,19 +36,13 @@ impl BarChart {
     /// No series has a value that can be drawn, or drawing failed.
     pub fn to_svg(&self) -> Result<String, PlotError> {
         let count = self.groups.len();
-        let values = self
-            .series
-            .iter()
-            .flat_map(|series| (0..count).filter_map(|group| series.value(group)));
-        let y = from_zero(extent(values).ok_or_else(|| PlotError::NoData {
-            title: self.title.clone(),
-        })?);
+        let values = self.series.iter().flat_map(|series| (0..count).filter_map(|group| series.value(group)));
+        let y = from_zero(extent(values).ok_or_else(|| PlotError::NoData { title: self.title.clone() })?);
         render(&self.title, |canvas| {
             let names = self.series.iter().map(|series| series.name.as_str());
             let marks: Vec<_> = names.map(|name| (name, Mark::Patch)).collect();
             let canvas = split_legend(canvas, &marks)?;
-            let mut chart =
-                chart(&canvas, &self.title).build_cartesian_2d(0.0..count as f64, y.clone())?;
+            let mut chart = chart(&canvas, &self.title).build_cartesian_2d(0.0..count as f64, y.clone())?;
             chart
                 .configure_mesh()
                 .label_style(LABEL)
@@ -102,9 +93,7 @@ impl Histogram {
     /// There is no finite sample, or drawing failed.
     pub fn to_svg(&self) -> Result<String, PlotError> {
         let finite = || self.samples.iter().copied().filter(|x| x.is_finite());
-        let x = padded(extent(finite()).ok_or_else(|| PlotError::NoData {
-            title: self.title.clone(),
-        })?);
+        let x = padded(extent(finite()).ok_or_else(|| PlotError::NoData { title: self.title.clone() })?);
         let bins = self.bins.clamp(1, 1000);
         let width = (x.end - x.start) / bins as f64;
         let mut counts = vec![0_u32; bins];
@@ -114,8 +103,7 @@ impl Histogram {
         }
         let highest = f64::from(counts.iter().copied().max().unwrap_or(0));
         render(&self.title, |canvas| {
-            let mut chart = chart(canvas, &self.title)
-                .build_cartesian_2d(x.clone(), from_zero(0.0..highest))?;
+            let mut chart = chart(canvas, &self.title).build_cartesian_2d(x.clone(), from_zero(0.0..highest))?;
             chart
                 .configure_mesh()
                 .label_style(LABEL)
@@ -151,18 +139,12 @@ mod tests {
 
     #[test]
     fn bar_charts_name_groups_and_series_and_leave_absent_bars_out() {
-        let series = |name: &str, values: &[Option<f64>]| BarSeries {
-            name: name.to_owned(),
-            values: values.to_vec(),
-        };
+        let series = |name: &str, values: &[Option<f64>]| BarSeries { name: name.to_owned(), values: values.to_vec() };
         let chart = BarChart {
             title: "Table 2".to_owned(),
             y_label: "frame (ms)".to_owned(),
             groups: vec!["teapot".to_owned(), "box & sphere".to_owned()],
-            series: vec![
-                series("ours", &[Some(3.0), Some(4.0)]),
-                series("paper", &[Some(30.0), None]),
-            ],
+            series: vec![series("ours", &[Some(3.0), Some(4.0)]), series("paper", &[Some(30.0), None])],
         };
         let svg = chart.to_svg().unwrap();
         let texts = texts(&svg);
@@ -172,10 +154,7 @@ mod tests {
         // The legend's own patch is one more.
         assert_eq!((rectangles(&svg, 0), rectangles(&svg, 1)), (3, 2));
 
-        let empty = BarChart {
-            groups: vec![],
-            ..chart
-        };
+        let empty = BarChart { groups: vec![], ..chart };
         assert!(matches!(empty.to_svg(), Err(PlotError::NoData { .. })));
     }
 
@@ -186,16 +165,11 @@ mod tests {
                 title: String::new(),
                 y_label: String::new(),
                 groups: (0..count).map(|group| format!("group {group}")).collect(),
-                series: vec![BarSeries {
-                    name: String::new(),
-                    values: vec![Some(1.0); count],
-                }],
+                series: vec![BarSeries { name: String::new(), values: vec![Some(1.0); count] }],
             };
             let svg = chart.to_svg().unwrap();
             let document = roxmltree::Document::parse(&svg).unwrap();
-            let number = |node: roxmltree::Node, name: &str| -> f64 {
-                node.attribute(name).unwrap().parse().unwrap()
-            };
+            let number = |node: roxmltree::Node, name: &str| -> f64 { node.attribute(name).unwrap().parse().unwrap() };
             let middles = document
                 .descendants()
                 .filter(|node| node.has_tag_name("rect"))

@@ -7,8 +7,7 @@ use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
 use super::{
-    AXIS, Canvas, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render,
-    split_legend, tick,
+    AXIS, Canvas, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render, split_legend, tick,
 };
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,28 +50,17 @@ impl LineChart {
             .iter()
             .map(|series| {
                 let points = series.points.iter().copied();
-                points
-                    .filter(|&(x, y)| fits(x, self.x_scale) && fits(y, self.y_scale))
-                    .collect()
+                points.filter(|&(x, y)| fits(x, self.x_scale) && fits(y, self.y_scale)).collect()
             })
             .collect();
         let points = || lines.iter().flatten();
-        let (Some(x), Some(y)) = (
-            extent(points().map(|point| point.0)),
-            extent(points().map(|point| point.1)),
-        ) else {
-            return Err(PlotError::NoData {
-                title: self.title.clone(),
-            });
+        let (Some(x), Some(y)) = (extent(points().map(|point| point.0)), extent(points().map(|point| point.1))) else {
+            return Err(PlotError::NoData { title: self.title.clone() });
         };
         render(&self.title, |canvas| match (self.x_scale, self.y_scale) {
             (Scale::Linear, Scale::Linear) => self.draw(canvas, &lines, padded(x), from_zero(y)),
-            (Scale::Linear, Scale::Log) => {
-                self.draw(canvas, &lines, padded(x), decades(y).log_scale())
-            }
-            (Scale::Log, Scale::Linear) => {
-                self.draw(canvas, &lines, decades(x).log_scale(), from_zero(y))
-            }
+            (Scale::Linear, Scale::Log) => self.draw(canvas, &lines, padded(x), decades(y).log_scale()),
+            (Scale::Log, Scale::Linear) => self.draw(canvas, &lines, decades(x).log_scale(), from_zero(y)),
             (Scale::Log, Scale::Log) => {
                 let (x, y) = (decades(x).log_scale(), decades(y).log_scale());
                 self.draw(canvas, &lines, x, y)
@@ -80,13 +68,7 @@ impl LineChart {
         })
     }
 
-    fn draw<X, Y>(
-        &self,
-        canvas: &Canvas,
-        lines: &[Vec<(f64, f64)>],
-        x: X,
-        y: Y,
-    ) -> Result<(), Box<dyn Error>>
+    fn draw<X, Y>(&self, canvas: &Canvas, lines: &[Vec<(f64, f64)>], x: X, y: Y) -> Result<(), Box<dyn Error>>
     where
         X: AsRangedCoord<Value = f64>,
         X::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,

@@ -21,9 +21,7 @@ pub const SIZE: (u32, u32) = (960, 540);
 
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
-    #[error(
-        "cannot draw the plot \"{title}\": it has no point that can be drawn; measure at least one"
-    )]
+    #[error("cannot draw the plot \"{title}\": it has no point that can be drawn; measure at least one")]
     NoData { title: String },
     #[error("cannot draw the plot \"{title}\": {message}; write the numbers with --csv instead")]
     Drawing { title: String, message: String },
@@ -31,10 +29,7 @@ pub enum PlotError {
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-fn render(
-    title: &str,
-    draw: impl FnOnce(&Canvas) -> Result<(), Box<dyn Error>>,
-) -> Result<String, PlotError> {
+fn render(title: &str, draw: impl FnOnce(&Canvas) -> Result<(), Box<dyn Error>>) -> Result<String, PlotError> {
     let mut svg = String::new();
     let drawn = {
         let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -44,20 +39,13 @@ fn render(
             .and_then(|()| draw(&canvas))
             .and_then(|()| canvas.present().map_err(Into::into))
     };
-    drawn.map_err(|error| PlotError::Drawing {
-        title: title.to_owned(),
-        message: error.to_string(),
-    })?;
+    drawn.map_err(|error| PlotError::Drawing { title: title.to_owned(), message: error.to_string() })?;
     Ok(svg)
 }
 
 fn chart<'a, 'b>(canvas: &'b Canvas<'a>, title: &str) -> ChartBuilder<'b, 'b, SVGBackend<'a>> {
     let mut builder = ChartBuilder::on(canvas);
-    builder
-        .margin(16)
-        .caption(title, ("sans-serif", 22))
-        .x_label_area_size(52)
-        .y_label_area_size(76);
+    builder.margin(16).caption(title, ("sans-serif", 22)).x_label_area_size(52).y_label_area_size(76);
     builder
 }
 
@@ -74,10 +62,7 @@ enum Mark {
 
 /// Draws the legend, series by series in the order of their colours, in a strip on the right where it covers no data,
 /// and returns the rest of the canvas.
-fn split_legend<'a>(
-    canvas: &Canvas<'a>,
-    series: &[(&str, Mark)],
-) -> Result<Canvas<'a>, Box<dyn Error>> {
+fn split_legend<'a>(canvas: &Canvas<'a>, series: &[(&str, Mark)]) -> Result<Canvas<'a>, Box<dyn Error>> {
     const LINE_HEIGHT: i32 = 24;
     // An average letter is about half as wide as high; a name that is too long even so runs out of the picture.
     let longest = series.iter().map(|(name, _)| name.chars().count()).max();
@@ -90,10 +75,7 @@ fn split_legend<'a>(
         match mark {
             Mark::Line => strip.draw(&PathElement::new(line, style))?,
             Mark::Dashes => strip.draw(&DashedPathElement::new(line, 8, 4, style))?,
-            Mark::Patch => strip.draw(&Rectangle::new(
-                [(8, y - 6), (36, y + 6)],
-                color(index).filled(),
-            ))?,
+            Mark::Patch => strip.draw(&Rectangle::new([(8, y - 6), (36, y + 6)], color(index).filled()))?,
         }
         strip.draw(&Text::new((*name).to_owned(), (44, y - 7), LABEL))?;
     }
@@ -102,15 +84,8 @@ fn split_legend<'a>(
 
 /// Okabe and Ito's palette, which people with any colour vision can tell apart; it repeats after seven.
 fn color(index: usize) -> RGBColor {
-    const PALETTE: [(u8, u8, u8); 7] = [
-        (0, 114, 178),
-        (213, 94, 0),
-        (0, 158, 115),
-        (204, 121, 167),
-        (230, 159, 0),
-        (86, 180, 233),
-        (0, 0, 0),
-    ];
+    const PALETTE: [(u8, u8, u8); 7] =
+        [(0, 114, 178), (213, 94, 0), (0, 158, 115), (204, 121, 167), (230, 159, 0), (86, 180, 233), (0, 0, 0)];
     let (red, green, blue) = PALETTE[index % PALETTE.len()];
     RGBColor(red, green, blue)
 }
