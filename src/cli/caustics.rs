@@ -5,13 +5,14 @@ use glam::Vec3;
 
 use super::options::{Size, parse_finite, parse_numbers, parse_size};
 use crate::experiment::caustics::Setup;
-use crate::papers::caustics::{Parameters, Variant};
-use crate::scene::{Light, MeshSource};
+use crate::papers::caustics::{Parameters, SmartPlacement, Variant};
+use crate::scene::{Camera, Light, MeshSource};
 
 /// The methods as words of the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum VariantWord {
     LevelMap,
+    LevelMapSmart,
     Volumetric,
     All,
 }
@@ -22,11 +23,35 @@ impl VariantWord {
         let wanted = |variant: &Variant| {
             words.iter().any(|word| match word {
                 VariantWord::LevelMap => *variant == Variant::LevelMap,
+                VariantWord::LevelMapSmart => *variant == Variant::LevelMapSmart,
                 VariantWord::Volumetric => *variant == Variant::Volumetric,
                 VariantWord::All => true,
             })
         };
         Variant::ALL.into_iter().filter(wanted).collect()
+    }
+}
+
+/// How smart slicing places its planes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PlacementWord {
+    Fitted,
+    Kept,
+}
+
+/// Where the camera stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum CameraWord {
+    Above,
+    Below,
+    At([f32; 6]),
+}
+
+fn parse_camera(text: &str) -> Result<CameraWord, String> {
+    match text {
+        "above" => Ok(CameraWord::Above),
+        "below" => Ok(CameraWord::Below),
+        _ => parse_numbers::<6>(text).map(CameraWord::At).map_err(|e| format!("above, below, or eye and target: {e}")),
     }
 }
 
@@ -70,6 +95,15 @@ pub struct SceneArgs {
     /// Position map and diffuse map in two passes (figure 5-5) instead of one with two targets (figure 5-6)
     #[arg(long)]
     no_mrt: bool,
+    /// Depth levels of smart slicing's profile, 1 to 65536 [default: 100]
+    #[arg(long, value_name = "N")]
+    levels: Option<u32>,
+    /// Acceptance threshold of smart slicing in metres, above 0 [default: h / (2 (planes - 1)), as in table 5-4]
+    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    epsilon: Option<f32>,
+    /// Smart slicing: planes fitted into sub-boxes, or the uniform planes whose cell holds a texel
+    #[arg(long, value_enum, default_value = "fitted")]
+    smart_placement: PlacementWord,
     /// Refraction index of water against air, above 1 and at most 4 [default: 1.3333]
     #[arg(long, value_name = "N", value_parser = parse_finite)]
     refraction_index: Option<f32>,
@@ -88,15 +122,16 @@ pub struct SceneArgs {
     /// Longest wavelength in metres, above 0 [default: 1.2]
     #[arg(long, value_name = "M", value_parser = parse_finite)]
     wavelength: Option<f32>,
-    /// Direction of parallel light, x,y,z, downwards; repeatable [default: 0.35,-1,-0.2]
+    /// Direction of parallel light, x,y,z, downwards; repeatable [default: 0,-1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     light: Vec<[f32; 3]>,
     /// Position of a point light above the water, x,y,z in metres; repeatable
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     point_light: Vec<[f32; 3]>,
-    /// Camera: eye and target, x,y,z,x,y,z in metres; the water's level is y = 0
-    #[arg(long, value_name = "EYE,TARGET", value_parser = parse_numbers::<6>, allow_hyphen_values = true)]
-    camera: Option<[f32; 6]>,
+    /// Camera: above (through the water's surface), below (plainly underwater), or eye and target x,y,z,x,y,z in metres,
+    /// the water's level being y = 0 [default: above]
+    #[arg(long, value_name = "above|below|EYE,TARGET", value_parser = parse_camera, allow_hyphen_values = true)]
+    camera: Option<CameraWord>,
     /// Size of the picture in pixels [default: 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<Size>,
@@ -124,24 +159,26 @@ impl SceneArgs {
         set(&mut p.map_size, self.map_size);
         set(&mut p.water_triangles, self.water_triangles);
         p.mrt &= !self.no_mrt;
+        set(&mut p.smart.levels, self.levels);
+        p.smart.placement = match self.smart_placement {
+            PlacementWord::Fitted => SmartPlacement::Fitted { epsilon_m: self.epsilon },
+            PlacementWord::Kept => SmartPlacement::Kept,
+        };
         set(&mut p.refraction_index, self.refraction_index);
         set(&mut p.absorption_per_m, self.absorption);
         set(&mut p.water_depth_m, self.water_depth);
         set(&mut p.waves.count, self.waves);
         set(&mut p.waves.amplitude_m, self.amplitude);
         set(&mut p.waves.wavelength_m, self.wavelength);
-        match self.camera {
-            Some([ex, ey, ez, tx, ty, tz]) => {
-                p.camera.eye = Vec3::new(ex, ey, ez);
-                p.camera.target = Vec3::new(tx, ty, tz);
-            }
-            // The default camera keeps its height above the pool's floor.
-            None => {
-                let sunk = Parameters::default().water_depth_m - p.water_depth_m;
-                p.camera.eye.y += sunk;
-                p.camera.target.y += sunk;
-            }
-        }
+        p.camera = match self.camera.unwrap_or(CameraWord::Above) {
+            CameraWord::Above => Parameters::camera_above(p.water_depth_m),
+            CameraWord::Below => Parameters::camera_below(p.water_depth_m),
+            CameraWord::At([ex, ey, ez, tx, ty, tz]) => Camera {
+                eye: Vec3::new(ex, ey, ez),
+                target: Vec3::new(tx, ty, tz),
+                ..Parameters::camera_above(p.water_depth_m)
+            },
+        };
         if let Some(size) = self.size {
             (p.width, p.height) = (size.width, size.height);
         }

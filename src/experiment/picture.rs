@@ -17,7 +17,7 @@ use crate::papers::{Paper, Target};
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
 pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
-    machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?;
+    machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
     let view = paper.picture();
     let texels = transfer::read_image(&machine.device, view)?;
     Ok(Rgba8::new(view.width(), view.height(), texels)?)

@@ -146,6 +146,7 @@ impl Buffer {
         let mut guard = self.allocation();
         let target = guard
             .as_mut()
+            .filter(|_| self.is_mapped())
             .and_then(|a| a.mapped_slice_mut())
             .and_then(|s| s.get_mut(offset_bytes as usize..end as usize))
             .ok_or_else(|| self.not_mapped("writing"))?;
@@ -163,6 +164,7 @@ impl Buffer {
         let guard = self.allocation();
         let bytes = guard
             .as_ref()
+            .filter(|_| self.is_mapped())
             .and_then(|a| a.mapped_slice())
             .and_then(|s| s.get(..len_bytes as usize))
             .ok_or_else(|| self.not_mapped("reading"))?;

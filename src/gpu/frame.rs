@@ -310,6 +310,21 @@ impl Frame<'_> {
         }
     }
 
+    /// Submits what is recorded and waits for it, so that the host can read what `pass` copied; the rest of the frame is
+    /// another submission.
+    ///
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn wait_for(&mut self, pass: &Pass) -> Result<(), Error> {
+        let at = self.sample_of(pass.info());
+        let waiting = Instant::now();
+        self.finish()?;
+        let wait_ms = waiting.elapsed().as_secs_f64() * 1e3;
+        *self.recorder.sample.passes[at].wait_ms.get_or_insert(0.0) += wait_ms;
+        self.submission += 1;
+        self.begin()
+    }
+
     fn sample_of(&mut self, info: &Arc<PassInfo>) -> usize {
         let passes = &mut self.recorder.sample.passes;
         if let Some(at) = passes.iter().position(|p| p.info.name == info.name) {

@@ -28,6 +28,8 @@ pub mod program;
 mod query;
 pub mod render_pass;
 pub mod shader;
+#[cfg(test)]
+mod tests;
 pub mod transfer;
 
 pub use access::{Access, Stages};

@@ -279,7 +279,7 @@ impl PassBuilder {
             let pipeline = Pipeline::compute(device, name, &program)?;
             return finish(device, sentence, pipeline, None);
         }
-        let layout = vertex_layout.map_or(Ok(VertexLayout::default()), |of| of(name, &program))?;
+        let layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
         let render_pass = RenderPass::new(device, name, &sentence.targets)?;
         let targets = &sentence.targets;
         let pipeline = Pipeline::graphics(device, name, &program, &render_pass, targets, &layout, sentence.topology)?;

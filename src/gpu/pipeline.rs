@@ -29,6 +29,21 @@ pub struct VertexLayout {
 }
 
 impl VertexLayout {
+    /// The layout of a pass without a vertex buffer.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] for a vertex stage that has inputs.
+    pub(crate) fn none(pass: &str, program: &Program) -> Result<Self, Error> {
+        let mut vertex_stages = program.modules.iter().filter(|m| m.stage() == Stages::VERTEX);
+        match vertex_stages.find_map(|m| Some((m, m.interface.inputs.first()?))) {
+            None => Ok(VertexLayout::default()),
+            Some((module, input)) => Err(Error::Pass {
+                pass: pass.to_owned(),
+                problem: format!("shader {} fetches {} and no vertex buffer is declared", module.name, input.name),
+            }),
+        }
+    }
+
     /// The layout of host struct `T`, its fields matched to the vertex stage's inputs by name.
     ///
     /// # Errors

@@ -61,7 +61,7 @@ impl Program {
         for module in &modules {
             if let Some(block) = &module.interface.push_constants {
                 push_stages = push_stages | module.stage();
-                push_bytes = push_bytes.max(block.size_bytes as u32);
+                push_bytes = push_bytes.max(block.size_bytes);
             }
         }
         let limit = device.physical().limits.max_push_constants_size;
@@ -142,7 +142,7 @@ fn merge(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<Vec<Slot>, Error> 
             if binding.set != 0 {
                 return Err(problem("lies outside descriptor set 0"));
             }
-            let block_bytes = binding.block.as_ref().map(|b| b.size_bytes as u32);
+            let block_bytes = binding.block.as_ref().map(|b| b.size_bytes);
             match slots.iter_mut().find(|s| s.binding == binding.binding) {
                 None => slots.push(Slot {
                     binding: binding.binding,

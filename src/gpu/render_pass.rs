@@ -126,6 +126,31 @@ impl Targets {
         Some(vk::Extent2D { width, height })
     }
 
+    /// One extent for all, and nothing cleared that is not written.
+    fn check(&self, pass: &str) -> Result<(), Error> {
+        let problem = |problem: String| Err(Error::Pass { pass: pass.to_owned(), problem });
+        if let Some((target, test)) = &self.depth
+            && matches!(target.load, Load::Clear(_))
+            && test.access() == Access::DepthReadOnly
+        {
+            return problem(format!("clears depth {}, which it declares read only", target.view.image().name()));
+        }
+        let mut views = self.views().map(|t| &t.view);
+        let Some(first) = views.next() else { return Ok(()) };
+        match views.find(|v| (v.width(), v.height()) != (first.width(), first.height())) {
+            None => Ok(()),
+            Some(other) => problem(format!(
+                "its target {} has {} x {} texels and {} has {} x {}",
+                other.image().name(),
+                other.width(),
+                other.height(),
+                first.image().name(),
+                first.width(),
+                first.height()
+            )),
+        }
+    }
+
     fn views(&self) -> impl Iterator<Item = &Target> {
         self.colors.iter().map(|c| &c.0).chain(self.depth.iter().map(|d| &d.0))
     }
@@ -155,8 +180,11 @@ pub struct RenderPass {
 
 impl RenderPass {
     pub(crate) fn new(device: &Arc<Device>, pass: &str, targets: &Targets) -> Result<Arc<Self>, Error> {
+        targets.check(pass)?;
         let attachment = |target: &Target, access: Access| {
             let layout = access.words().layout;
+            // Storing is a write even of what was only tested, and no barrier waits for the write of a reader.
+            let store = if access.words().writes { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE };
             let load = match target.load {
                 Load::Clear(_) => vk::AttachmentLoadOp::CLEAR,
                 Load::Keep => vk::AttachmentLoadOp::LOAD,
@@ -167,13 +195,9 @@ impl RenderPass {
                 .format(target.view.image().desc().format)
                 .samples(vk::SampleCountFlags::TYPE_1)
                 .load_op(load)
-                .store_op(vk::AttachmentStoreOp::STORE)
+                .store_op(store)
                 .stencil_load_op(if has_stencil { load } else { vk::AttachmentLoadOp::DONT_CARE })
-                .stencil_store_op(if has_stencil {
-                    vk::AttachmentStoreOp::STORE
-                } else {
-                    vk::AttachmentStoreOp::DONT_CARE
-                })
+                .stencil_store_op(if has_stencil { store } else { vk::AttachmentStoreOp::DONT_CARE })
                 .initial_layout(layout)
                 .final_layout(layout)
         };

@@ -27,6 +27,8 @@ pub fn upload(
     let buffer = Buffer::new(device, BufferDesc::new(name, size_bytes).usage(usage))?;
     let staging =
         Buffer::new(device, BufferDesc::new(format!("{name} staging"), size_bytes).location(Location::Upload))?;
+    // A buffer has at least four bytes, and all of them are copied.
+    staging.write(0, &[0; 4])?;
     staging.write(0, bytes)?;
     let uses = [
         Use { resource: (&staging).into(), access: Access::CopySource, discard: false },

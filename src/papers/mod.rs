@@ -15,6 +15,12 @@ pub trait Paper {
     /// What the Vulkan layer answers.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
 
+    /// Records frame `number` with what a finished picture needs beyond the passes that the paper times.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
+
     /// The finished picture, 8-bit sRGB.
     fn picture(&self) -> &Arc<ImageView>;
 

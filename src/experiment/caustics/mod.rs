@@ -14,7 +14,7 @@ use super::measure::{Measurement, Schedule, Watch, measure};
 use super::run::{self, Subject, assemble};
 use crate::gpu::live::MemoryUse;
 use crate::papers::Paper;
-use crate::papers::caustics::{Caustics, Parameters, ReceiverInput, Variant};
+use crate::papers::caustics::{Caustics, Parameters, ReceiverInput, SmartPlacement, Variant};
 use crate::report::record::{Limits, Run};
 use crate::report::trace::TraceRun;
 use crate::scene::{Bounds, Light, MeshSource, shapes};
@@ -28,6 +28,8 @@ const RECEIVER_SIZE_M: f32 = 2.0;
 const GAP_M: f32 = 0.3;
 /// Cells a side of the pool's floor: its map needs no more than its normals and edges.
 const FLOOR_CELLS: u32 = 8;
+/// Side of the pool's floor in receivers.
+const FLOOR_SIZE: f32 = 3.0;
 
 /// What a user set up.
 #[derive(Debug, Clone)]
@@ -87,6 +89,10 @@ impl Setup {
         let meshes: Vec<String> = self.meshes.iter().map(MeshSource::to_string).collect();
         let triangles: usize = scene.receivers.iter().map(|r| r.mesh.triangle_count()).sum();
         let lights: Vec<Value> = p.lights.iter().map(light_value).collect();
+        let (placement, epsilon) = match p.smart.placement {
+            SmartPlacement::Fitted { epsilon_m } => ("fitted", epsilon_m),
+            SmartPlacement::Kept => ("kept", None),
+        };
         let entries = [
             ("mesh", json!(meshes)),
             ("receiver_triangles", json!(triangles)),
@@ -95,6 +101,9 @@ impl Setup {
             ("map_size", json!(p.map_size)),
             ("water_triangles", json!(paper.grid().triangle_count())),
             ("mrt", json!(p.mrt)),
+            ("levels", json!(p.smart.levels)),
+            ("smart_placement", json!(placement)),
+            ("epsilon", json!(epsilon)),
             ("refraction_index", json!(p.refraction_index)),
             ("absorption", json!(p.absorption_per_m)),
             ("water_depth", json!(p.water_depth_m)),
@@ -123,7 +132,7 @@ fn light_value(light: &Light) -> Value {
 
 fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
     let bounds = receivers.iter().map(|r| r.mesh.bounds()).reduce(|a, b| a.union(&b)).unwrap_or(Bounds::EMPTY);
-    let size = Vec2::splat(2.0 * RECEIVER_SIZE_M).max(Vec2::new(bounds.diagonal().x, bounds.diagonal().z) * 1.6);
+    let size = Vec2::splat(FLOOR_SIZE * RECEIVER_SIZE_M).max(Vec2::new(bounds.diagonal().x, bounds.diagonal().z) * 1.6);
     let mesh = shapes::plane(size, UVec2::splat(FLOOR_CELLS));
     // Just below the feet, so that no receiver's underside fights with it for the picture's depth.
     let place = Mat4::from_translation(Vec3::new(0.0, floor_m - 1e-3 * RECEIVER_SIZE_M, 0.0));
@@ -209,7 +218,7 @@ pub fn bench(
             build_ms: built.build_ms,
             memory: built.memory.clone(),
             peak_bytes: built.peak_bytes,
-            results: results(setup, &built.paper, &measurement),
+            results: results(&built.paper, &measurement),
             limits: limits.cloned(),
             stamp_floor_ms,
             validation,
@@ -226,8 +235,8 @@ pub fn bench(
 }
 
 /// The paper's own figures: the intersection triangles of a frame and how fast they are drawn.
-fn results(setup: &Setup, paper: &Caustics, measurement: &Measurement) -> Map<String, Value> {
-    let planes = u64::from(setup.parameters.planes) * paper.lit_receiver_count() as u64;
+fn results(paper: &Caustics, measurement: &Measurement) -> Map<String, Value> {
+    let planes = paper.plane_counts().iter().sum::<usize>() as u64;
     let triangles = planes * u64::from(paper.grid().triangle_count());
     let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
     let time_ms = caustics_map.and_then(|p| super::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);

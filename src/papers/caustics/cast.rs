@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use ash::vk;
+use glam::Mat4;
 
 use super::maps::{self, FAR};
 use super::method::Method;
@@ -31,28 +32,37 @@ host_block! {
 /// What is seen where there is no receiver: light scattered back by deep water, linear RGB.
 const DEEP_WATER: Load = Load::Clear([0.004, 0.030, 0.055, 1.0]);
 
-/// The picture and its camera.
-pub struct Picture {
+/// What the view from above needs to see beyond the picture's edges, where the surface turns its rays outwards.
+const WIDENING: f32 = 1.25;
+
+/// Colour and depth of the underwater scene as the viewer's camera sees it without the surface.
+pub struct Underwater {
+    /// Linear RGB.
     pub color: Arc<ImageView>,
-    depth: Arc<ImageView>,
+    pub depth: Arc<ImageView>,
+    pub view_projection: Mat4,
     camera: Arc<Buffer>,
 }
 
-impl Picture {
+impl Underwater {
     /// # Errors
     /// [`Error::Limit`] for a size that the device does not allow.
     pub fn new(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
         let device = shaders.device();
-        let image = |name: &str, format, usage| {
+        let image = |name: &str, format, attachment| {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
-            Image::new(device, desc.usage(usage))?.view()
+            Image::new(device, desc.usage(attachment | vk::ImageUsageFlags::SAMPLED))?.view()
         };
-        let camera = &parameters.camera;
-        let aspect = parameters.width as f32 / parameters.height as f32;
-        let block = CameraBlock { view_projection: (camera.projection(aspect) * camera.view()).to_cols_array() };
-        Ok(Picture {
-            color: image("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?,
-            depth: image("picture-depth", maps::DEPTH, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+        let mut camera = parameters.camera;
+        if parameters.is_seen_from_above() {
+            camera.vertical_fov_rad = 2.0 * ((camera.vertical_fov_rad / 2.0).tan() * WIDENING).atan();
+        }
+        let view_projection = camera.projection(parameters.aspect()) * camera.view();
+        let block = CameraBlock { view_projection: view_projection.to_cols_array() };
+        Ok(Underwater {
+            color: image("underwater-color", maps::LIGHT, vk::ImageUsageFlags::COLOR_ATTACHMENT)?,
+            depth: image("underwater-depth", maps::DEPTH, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+            view_projection,
             camera: upload(
                 device,
                 &format!("{label}/camera"),
@@ -83,7 +93,7 @@ impl Cast {
     /// What the Vulkan layer answers.
     pub fn new(
         shaders: &ShaderLibrary,
-        picture: &Picture,
+        underwater: &Underwater,
         lit: &LitReceiver,
         method: &dyn Method,
         nearest: &Arc<Sampler>,
@@ -100,18 +110,18 @@ impl Cast {
             .vertices::<Vertex>(&lit.receiver.vertices)
             .indices(&lit.receiver.indices)
             .constants::<CastConstants>()
-            .with("camera", &picture.camera)
+            .with("camera", &underwater.camera)
             .with("combined_map", method.combined_map())
             .with("position_map", method.position_map())
             .with("nearest", nearest)
-            .color(&picture.color, load(DEEP_WATER), blend)
-            .depth(&picture.depth, load(FAR), test)
+            .color(&underwater.color, load(DEEP_WATER), blend)
+            .depth(&underwater.depth, load(FAR), test)
             .build(shaders)?;
         let ambient = if place.light == 0 { parameters.ambient.to_array() } else { [0.0; 3] };
         Ok(Cast { pass, ambient })
     }
 
-    /// Draws the receiver into the picture.
+    /// Draws the receiver.
     pub fn draw(&self, frame: &mut Frame<'_>, lit: &LitReceiver, method: &dyn Method) -> Result<(), Error> {
         let [r, g, b] = self.ambient;
         let constants = CastConstants {

@@ -6,10 +6,13 @@ use std::sync::Arc;
 use super::illumination::{IlluminationVolumes, Ray};
 use super::maps::{self, BACKGROUND, BLACK, FAR};
 use super::method::{CombineConstants, Method};
-use super::parameters::Parameters;
+use super::parameters::{Parameters, SmartParameters};
+use super::planes::{DepthProfile, SmartPlacement};
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
 use super::water::Water;
-use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, Sampler, ShaderLibrary};
+use crate::gpu::{
+    Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Load, Location, Pass, PassInfo, Sampler, ShaderLibrary,
+};
 
 /// The maps and passes of the method.
 pub struct LevelMap {
@@ -21,6 +24,63 @@ pub struct LevelMap {
     diffuse: Arc<ImageView>,
     caustics: Arc<ImageView>,
     combined: Arc<ImageView>,
+    smart: Option<SmartSlicing>,
+}
+
+/// Depth profiling and the placement that follows from it (sections 4.7.2 and 5.2.3).
+struct SmartSlicing {
+    read_positions: Pass,
+    depth_profile: Arc<PassInfo>,
+    heights: Arc<Buffer>,
+    profile: DepthProfile,
+    parameters: SmartParameters,
+    planes: u32,
+}
+
+impl SmartSlicing {
+    fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        position: &Arc<ImageView>,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
+        let size_bytes = 4 * u64::from(parameters.map_size) * u64::from(parameters.map_size);
+        let desc = BufferDesc::new(format!("{label}/position-readback"), size_bytes).location(Location::Readback);
+        let heights = Buffer::new(shaders.device(), desc)?;
+        Ok(SmartSlicing {
+            read_positions: Pass::copy("read-positions", "5.2.3", position, &heights),
+            depth_profile: PassInfo::host("depth-profile", "4.7.2", &["position-map"], &["planes"]),
+            heights,
+            profile: DepthProfile::default(),
+            parameters: parameters.smart,
+            planes: parameters.planes,
+        })
+    }
+
+    /// Figure 5-9: the position map is read back, its levels are counted, planes are placed in the valid ones.
+    fn slice(&mut self, frame: &mut Frame<'_>, lit: &mut LitReceiver) -> Result<(), Error> {
+        frame.copy(&self.read_positions)?;
+        frame.wait_for(&self.read_positions)?;
+        let height = lit.aligned.extent.y;
+        let SmartParameters { levels, placement } = self.parameters;
+        // Uniform planes are kept or dropped by their own cells.
+        let levels = if placement == SmartPlacement::Kept { self.planes } else { levels };
+        frame.host(&self.depth_profile, || {
+            self.heights.read(self.heights.size_bytes(), |bytes| {
+                self.profile.collect(bytemuck::cast_slice(bytes), height, levels);
+                self.profile.place(height, self.planes, placement, &mut lit.cells);
+            })
+        })
+    }
+}
+
+/// How the box is sliced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slicing {
+    /// Uniformly (5.2.2).
+    Normal,
+    /// Where the receiver is (5.2.3).
+    Smart,
 }
 
 impl LevelMap {
@@ -33,6 +93,7 @@ impl LevelMap {
         water: &Water,
         volumes: &IlluminationVolumes,
         nearest: &Arc<Sampler>,
+        slicing: Slicing,
         parameters: &Parameters,
     ) -> Result<Self, Error> {
         let map = |name: &str, format| maps::map(shaders, format!("{label}/{name}"), format, parameters);
@@ -85,7 +146,11 @@ impl LevelMap {
             .color(&combined, Load::Discard, Blend::Replace)
             .build(shaders)?;
 
-        Ok(LevelMap { maps, caustics_map, combine, position, diffuse, caustics, combined })
+        let smart = match slicing {
+            Slicing::Normal => None,
+            Slicing::Smart => Some(SmartSlicing::new(shaders, label, &position, parameters)?),
+        };
+        Ok(LevelMap { smart, maps, caustics_map, combine, position, diffuse, caustics, combined })
     }
 }
 
@@ -97,6 +162,13 @@ impl Method for LevelMap {
             })?;
         }
         Ok(())
+    }
+
+    fn refine_planes(&mut self, frame: &mut Frame<'_>, lit: &mut LitReceiver) -> Result<(), Error> {
+        match &mut self.smart {
+            Some(smart) => smart.slice(frame, lit),
+            None => Ok(()),
+        }
     }
 
     fn create_caustics(

@@ -25,6 +25,11 @@ pub trait Method {
     /// The receiver into maps: the position and diffuse map, or a slice image for every plane.
     fn create_maps(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error>;
 
+    /// Places the planes anew by what the maps hold; methods that do not know keep the uniform ones.
+    fn refine_planes(&mut self, _frame: &mut Frame<'_>, _lit: &mut LitReceiver) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// The intersection triangles of every plane into the caustics map.
     fn create_caustics(
         &self,

@@ -1,8 +1,9 @@
 //! `caustics`: N. Tipprasert's refractive water caustics with level maps, chapters 4 and 5.
 //!
 //! ```text
-//! reference-planes ─► position-diffuse-map ─────────┐            (volumetric: slice-images)
-//! water-surface ─► illumination-volumes ─► caustics-map ─► combine ─► cast
+//! reference-planes ─► position-diffuse-map ─────────┐            (volumetric: slice-images;
+//!                                                    │             smart: read-positions, depth-profile)
+//! water-surface ─► illumination-volumes ─► caustics-map ─► combine ─► cast (─► view)
 //! ```
 
 mod cast;
@@ -14,6 +15,7 @@ pub mod parameters;
 mod planes;
 mod receiver;
 pub mod reference;
+mod view;
 mod volumetric;
 pub mod water;
 
@@ -22,18 +24,19 @@ use std::sync::Arc;
 use ash::vk;
 use glam::DVec3;
 
-use self::cast::{Cast, Picture, Place};
+use self::cast::{Cast, Place, Underwater};
 use self::illumination::IlluminationVolumes;
-use self::level_map::LevelMap;
+use self::level_map::{LevelMap, Slicing};
 use self::method::Method;
 use self::planes::{Axes, ReceiverBox};
 use self::receiver::{LitReceiver, Receiver};
+use self::view::View;
 use self::volumetric::Volumetric;
 use self::water::{Grid, Water};
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, Sampler, ShaderLibrary};
 
-pub use self::parameters::{ParameterError, Parameters, Variant, WaveParameters};
+pub use self::parameters::{ParameterError, Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
@@ -45,7 +48,8 @@ pub struct Caustics {
     place_planes: Arc<PassInfo>,
     water: Water,
     lights: Vec<LightPasses>,
-    picture: Picture,
+    underwater: Underwater,
+    view: View,
 }
 
 /// What belongs to one light.
@@ -78,7 +82,7 @@ impl Caustics {
             .iter()
             .map(|input| Receiver::new(shaders, label, input).map(Arc::new))
             .collect::<Result<Vec<_>, _>>()?;
-        let picture = Picture::new(shaders, label, parameters)?;
+        let underwater = Underwater::new(shaders, label, parameters)?;
         let center = world_center(&receivers);
         let index = f64::from(parameters.refraction_index);
         let all_axes: Vec<Axes> =
@@ -98,29 +102,36 @@ impl Caustics {
             for (receiver_index, receiver) in receivers.iter().enumerate() {
                 let lit = LitReceiver::new(receiver, axes, light, parameters);
                 let method: Box<dyn Method> = match variant {
-                    Variant::LevelMap => {
-                        Box::new(LevelMap::new(shaders, label, &lit, &water, &volumes, &nearest, parameters)?)
+                    Variant::LevelMap | Variant::LevelMapSmart => {
+                        let slicing =
+                            if variant == Variant::LevelMap { Slicing::Normal } else { Slicing::Smart };
+                        let map =
+                            LevelMap::new(shaders, label, &lit, &water, &volumes, &nearest, slicing, parameters)?;
+                        Box::new(map)
                     }
                     Variant::Volumetric => {
                         Box::new(Volumetric::new(shaders, label, &lit, &water, &volumes, &nearest, parameters)?)
                     }
                 };
                 let place = Place { light: light_index, receiver: receiver_index };
-                let cast = Cast::new(shaders, &picture, &lit, method.as_ref(), &nearest, place, parameters)?;
+                let cast = Cast::new(shaders, &underwater, &lit, method.as_ref(), &nearest, place, parameters)?;
                 passes.push(ReceiverPasses { lit, method, cast });
             }
             lights.push(LightPasses { volumes, receivers: passes });
         }
         let planes_pass = match variant {
             Variant::LevelMap => "reference-planes",
+            // The planes themselves wait for the depth profile.
+            Variant::LevelMapSmart => "bounding-box",
             Variant::Volumetric => "sample-planes",
         };
         Ok(Caustics {
             parameters: parameters.clone(),
             place_planes: PassInfo::host(planes_pass, "4.2.1", &["receiver"], &["planes"]),
+            view: View::new(shaders, label, &underwater, &water, &nearest, parameters)?,
+            underwater,
             water,
             lights,
-            picture,
         })
     }
 
@@ -129,9 +140,13 @@ impl Caustics {
         self.water.grid
     }
 
-    /// How many times a receiver is lit by a light: each has planes and a caustics map of its own.
-    pub fn lit_receiver_count(&self) -> usize {
-        self.lights.iter().map(|light| light.receivers.len()).sum()
+    fn time_s(&self, number: u32) -> f64 {
+        f64::from(number) * f64::from(self.parameters.time_step_s)
+    }
+
+    /// The planes of each receiver under each light, as the last recorded frame placed them.
+    pub fn plane_counts(&self) -> Vec<usize> {
+        self.lights.iter().flat_map(|light| &light.receivers).map(|one| one.lit.cells.len()).collect()
     }
 }
 
@@ -144,7 +159,7 @@ impl Paper for Caustics {
     /// Figures 4-15 and 4-17: for each light, the planes, the receivers' maps, the illumination volumes, the caustics
     /// maps plane by plane, their combination; then everything is cast.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        let time_s = f64::from(number) * f64::from(self.parameters.time_step_s);
+        let time_s = self.time_s(number);
         let planes = self.parameters.planes;
         frame.host(&self.place_planes, || {
             let lit = self.lights.iter_mut().flat_map(|light| &mut light.receivers);
@@ -152,6 +167,9 @@ impl Paper for Caustics {
         });
         for one in self.lights.iter().flat_map(|light| &light.receivers) {
             one.method.create_maps(frame, &one.lit)?;
+        }
+        for one in self.lights.iter_mut().flat_map(|light| &mut light.receivers) {
+            one.method.refine_planes(frame, &mut one.lit)?;
         }
         self.water.animate(frame, time_s)?;
         for light in &self.lights {
@@ -169,8 +187,13 @@ impl Paper for Caustics {
         Ok(())
     }
 
+    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
+        self.record(frame, number)?;
+        self.view.draw(frame, self.time_s(number))
+    }
+
     fn picture(&self) -> &Arc<ImageView> {
-        &self.picture.color
+        &self.view.picture
     }
 
     fn targets(&self) -> Vec<Target> {
@@ -183,7 +206,9 @@ impl Paper for Caustics {
                 targets.extend(named.map(|(name, view)| Target::image(numbered(name, &[l, r]), view)));
             }
         }
-        targets.push(Target::image("picture", &self.picture.color));
+        targets.push(Target::image("underwater-color", &self.underwater.color));
+        targets.push(Target::image("underwater-depth", &self.underwater.depth));
+        targets.push(Target::image("picture", &self.view.picture));
         targets
     }
 }

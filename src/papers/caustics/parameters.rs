@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
+pub use super::planes::SmartPlacement;
 use crate::scene::{Camera, Light};
 
 /// The methods that the thesis compares.
@@ -11,19 +12,30 @@ use crate::scene::{Camera, Light};
 pub enum Variant {
     /// Section 5.2.2: one position map and one diffuse map, however many planes.
     LevelMap,
+    /// Section 5.2.3: planes only where a depth profile finds the receiver.
+    LevelMapSmart,
     /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
     Volumetric,
 }
 
 impl Variant {
-    pub const ALL: [Variant; 2] = [Variant::LevelMap, Variant::Volumetric];
+    pub const ALL: [Variant; 3] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric];
 
     pub fn word(self) -> &'static str {
         match self {
             Variant::LevelMap => "level-map",
+            Variant::LevelMapSmart => "level-map-smart",
             Variant::Volumetric => "volumetric",
         }
     }
+}
+
+/// Smart slicing (section 4.7.2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SmartParameters {
+    /// Depth levels of the profile, 1 to 65,536.
+    pub levels: u32,
+    pub placement: SmartPlacement,
 }
 
 /// The water's waves: a sum of sines with seeded directions and phases.
@@ -48,6 +60,7 @@ pub struct Parameters {
     pub water_triangles: u32,
     /// Position and diffuse map in one pass with two targets; in two passes without.
     pub mrt: bool,
+    pub smart: SmartParameters,
     /// Refraction index of water against air, above 1 and at most 4.
     pub refraction_index: f32,
     /// Absorption K of eq. 4-17 per metre, at least 0.
@@ -74,22 +87,16 @@ impl Default for Parameters {
             map_size: 512,
             water_triangles: 10_000,
             mrt: true,
+            smart: SmartParameters { levels: 100, placement: SmartPlacement::Fitted { epsilon_m: None } },
             refraction_index: 4.0 / 3.0,
             absorption_per_m: 0.1,
             water_depth_m: 3.0,
             waves: WaveParameters { count: 12, amplitude_m: 0.06, wavelength_m: 1.2 },
-            lights: vec![Light::Parallel { direction: Vec3::new(0.35, -1.0, -0.2), intensity: Vec3::splat(1.0) }],
+            lights: vec![Light::Parallel { direction: Vec3::NEG_Y, intensity: Vec3::splat(1.0) }],
             ambient: Vec3::new(0.10, 0.13, 0.16),
             time_step_s: 1.0 / 30.0,
             seed: 1,
-            camera: Camera {
-                eye: Vec3::new(-2.2, -0.9, 3.4),
-                target: Vec3::new(0.0, -2.45, 0.0),
-                up: Vec3::Y,
-                vertical_fov_rad: 0.75,
-                near_m: 0.1,
-                far_m: 100.0,
-            },
+            camera: Parameters::camera_above(3.0),
             width: 800,
             height: 600,
         }
@@ -122,6 +129,12 @@ impl Parameters {
             self.water_triangles.to_string(),
             "must be 2 to 20000000",
         )?;
+        let levels = self.smart.levels;
+        check((1..=65_536).contains(&levels), "--levels", levels.to_string(), "must be 1 to 65536")?;
+        if let SmartPlacement::Fitted { epsilon_m: Some(epsilon) } = self.smart.placement {
+            let good = epsilon > 0.0 && epsilon.is_finite();
+            check(good, "--epsilon", epsilon.to_string(), "must be above 0 metres")?;
+        }
         let n = self.refraction_index;
         check(n > 1.0 && n <= 4.0, "--refraction-index", n.to_string(), "must be above 1 and at most 4")?;
         let k = self.absorption_per_m;
@@ -194,6 +207,40 @@ impl Parameters {
             Ok(())
         } else {
             error("must have an intensity of at least 0")
+        }
+    }
+
+    /// Whether the camera looks through the water's surface.
+    pub fn is_seen_from_above(&self) -> bool {
+        self.camera.eye.y > self.waves.amplitude_m
+    }
+
+    /// Width over height of the picture.
+    pub fn aspect(&self) -> f32 {
+        self.width as f32 / self.height as f32
+    }
+
+    /// The camera above the water of a pool of `depth_m`, looking down at its floor.
+    pub fn camera_above(depth_m: f32) -> Camera {
+        Camera {
+            eye: Vec3::new(-2.4, 2.2, 4.6),
+            target: Vec3::new(0.0, 0.7 - depth_m, 0.0),
+            up: Vec3::Y,
+            vertical_fov_rad: 0.75,
+            near_m: 0.1,
+            far_m: 100.0 + depth_m,
+        }
+    }
+
+    /// The plain underwater view of a pool of `depth_m`.
+    pub fn camera_below(depth_m: f32) -> Camera {
+        Camera {
+            eye: Vec3::new(-2.2, 2.1 - depth_m, 3.4),
+            target: Vec3::new(0.0, 0.55 - depth_m, 0.0),
+            up: Vec3::Y,
+            vertical_fov_rad: 0.75,
+            near_m: 0.1,
+            far_m: 100.0,
         }
     }
 

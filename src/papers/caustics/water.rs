@@ -174,8 +174,9 @@ pub struct Water {
     pub grid: Grid,
     pub vertices: Arc<Buffer>,
     pub indices: Arc<Buffer>,
+    pub waves: Arc<Buffer>,
+    pub wave_count: u32,
     animate: Pass,
-    wave_count: u32,
 }
 
 /// Floats of a `WaterVertex` of the shaders: position and normal, four each.
@@ -219,7 +220,7 @@ impl Water {
             .with("water", &vertices)
             .constants::<Surface>()
             .build(shaders)?;
-        Ok(Water { grid, vertices, indices, animate, wave_count })
+        Ok(Water { grid, vertices, indices, waves, wave_count, animate })
     }
 
     /// Evaluates the waves at `time_s`.

@@ -1,0 +1,105 @@
+#version 450
+
+// The scene as seen from above the water (chapter 1, section 2.4): what is refracted at the surface comes from the colour and the
+// depth texture of the underwater scene, what is reflected from the sky, weighted by Fresnel's equations.
+
+#include "caustics/waves.glsl"
+#include "caustics/refraction.glsl"
+
+layout(set = 0, binding = 1) uniform texture2D underwater_color;
+layout(set = 0, binding = 2) uniform texture2D underwater_depth;
+layout(set = 0, binding = 3) uniform sampler nearest;
+
+layout(set = 0, binding = 4) uniform View {
+    mat4 inverse_view_projection; // of the viewer
+    mat4 underwater_view_projection; // of the textures, whose camera sees a little more
+    mat4 underwater_inverse;
+    vec4 eye; // metres; w: height of the flat water
+    vec4 size; // of the picture in pixels; of the textures in texels
+} view;
+
+layout(push_constant) uniform Water {
+    float time_s;
+    uint wave_count;
+    float eta; // refraction index of air over that of water
+    float absorption_per_m;
+} water;
+
+layout(location = 0) out vec4 color;
+
+const vec3 DEEP_WATER = vec3(0.004, 0.030, 0.055); // light scattered back by deep water, as the cast's background
+const int SURFACE_STEPS = 5; // Newton's method converges in three on waves of moderate slope
+const int SCENE_STEPS = 6;
+
+vec3 sky(vec3 direction) {
+    float height = clamp(direction.y, 0.0, 1.0);
+    return mix(vec3(0.75, 0.85, 0.95), vec3(0.18, 0.36, 0.70), sqrt(height));
+}
+
+// Unpolarised reflectance of a dielectric.
+float fresnel(float cos_incident, float cos_refracted, float eta) {
+    float parallel = (cos_incident - eta * cos_refracted) / (cos_incident + eta * cos_refracted);
+    float perpendicular = (eta * cos_incident - cos_refracted) / (eta * cos_incident + cos_refracted);
+    return 0.5 * (parallel * parallel + perpendicular * perpendicular);
+}
+
+vec3 unproject(mat4 inverse, vec2 ndc, float depth) {
+    vec4 point = inverse * vec4(ndc, depth, 1.0);
+    return point.xyz / point.w;
+}
+
+// Texel of the underwater textures where a point of the world is seen.
+ivec2 texel_of(vec3 point) {
+    vec4 clip = view.underwater_view_projection * vec4(point, 1.0);
+    vec2 uv = 0.5 * clip.xy / max(clip.w, 1.0e-6) + 0.5;
+    return ivec2(clamp(uv * view.size.zw, vec2(0.0), view.size.zw - 1.0));
+}
+
+void main() {
+    vec2 ndc = 2.0 * gl_FragCoord.xy / view.size.xy - 1.0;
+    vec3 ray = normalize(unproject(view.inverse_view_projection, ndc, 1.0) - view.eye.xyz);
+    if (ray.y > -1.0e-3) {
+        color = vec4(sky(ray), 1.0);
+        return;
+    }
+
+    // Where the ray meets the waves.
+    float way = (view.eye.w - view.eye.y) / ray.y;
+    vec3 wave = vec3(0.0);
+    for (int i = 0; i < SURFACE_STEPS; i++) {
+        vec3 point = view.eye.xyz + ray * way;
+        wave = wave_at(point.xz, water.time_s, water.wave_count);
+        float above = point.y - view.eye.w - wave.x;
+        float rate = min(ray.y - dot(wave.yz, ray.xz), -0.02);
+        way -= above / rate;
+    }
+    vec3 surface = view.eye.xyz + ray * way;
+    // Far waves are smaller than a pixel; their slopes would be noise.
+    vec3 normal = wave_normal(wave.yz / (1.0 + 0.002 * way * way));
+    vec3 mirrored = reflect(ray, normal);
+    vec3 refracted;
+    if (!refract_ray(ray, normal, water.eta, refracted)) {
+        color = vec4(sky(mirrored), 1.0);
+        return;
+    }
+
+    // What the refracted ray hits: the textures say what is seen in a direction and how deep; the depth of the surface seen there
+    // corrects the way, until both agree.
+    float depth = 1.0;
+    float travel = 1.0;
+    ivec2 texel = ivec2(0);
+    for (int i = 0; i < SCENE_STEPS; i++) {
+        texel = texel_of(surface + refracted * travel);
+        depth = texelFetch(sampler2D(underwater_depth, nearest), texel, 0).r;
+        vec2 there = (vec2(texel) + 0.5) / view.size.zw * 2.0 - 1.0;
+        vec3 seen = unproject(view.underwater_inverse, there, depth);
+        travel = max(dot(seen - surface, refracted), 0.0);
+    }
+    vec3 below = DEEP_WATER;
+    if (depth < 1.0) {
+        vec3 lit = texelFetch(sampler2D(underwater_color, nearest), texel, 0).rgb;
+        below = mix(DEEP_WATER, lit, exp(-water.absorption_per_m * travel));
+    }
+    float reflectance = fresnel(-dot(ray, normal), -dot(refracted, normal), water.eta);
+    color = vec4(mix(below, sky(mirrored), reflectance), 1.0);
+}

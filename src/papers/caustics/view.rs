@@ -1,0 +1,107 @@
+//! The finished picture: the cast seen through the water's surface from above (chapter 1), or plainly from below.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::cast::Underwater;
+use super::parameters::Parameters;
+use super::water::{LEVEL_M, Water};
+use crate::gpu::transfer::upload;
+use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    struct ViewBlock {
+        inverse_view_projection: [f32; 16],
+        underwater_view_projection: [f32; 16],
+        underwater_inverse: [f32; 16],
+        eye: [f32; 4],
+        size: [f32; 4],
+    }
+}
+
+host_block! {
+    struct WaterConstants {
+        time_s: f32,
+        wave_count: u32,
+        eta: f32,
+        absorption_per_m: f32,
+    }
+}
+
+/// The last pass of a picture; no experiment times it, since the thesis's times end with the cast.
+pub struct View {
+    pub picture: Arc<ImageView>,
+    pass: Pass,
+    /// Constants of the view from above, but for the time.
+    above: Option<WaterConstants>,
+}
+
+impl View {
+    /// # Errors
+    /// [`Error::Limit`] for a size that the device does not allow.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        underwater: &Underwater,
+        water: &Water,
+        nearest: &Arc<Sampler>,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let desc = ImageDesc::new_2d(
+            format!("{label}/picture"),
+            vk::Format::R8G8B8A8_SRGB,
+            parameters.width,
+            parameters.height,
+        );
+        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
+        if !parameters.is_seen_from_above() {
+            let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-below.frag")
+                .with("underwater_color", &underwater.color)
+                .with("nearest", nearest)
+                .color(&picture, Load::Discard, Blend::Replace)
+                .build(shaders)?;
+            return Ok(View { picture, pass, above: None });
+        }
+        let camera = &parameters.camera;
+        let matrix = camera.projection(parameters.aspect()) * camera.view();
+        let (texel_width, texel_height) = (underwater.color.width(), underwater.color.height());
+        let block = ViewBlock {
+            inverse_view_projection: matrix.inverse().to_cols_array(),
+            underwater_view_projection: underwater.view_projection.to_cols_array(),
+            underwater_inverse: underwater.view_projection.inverse().to_cols_array(),
+            eye: camera.eye.extend(LEVEL_M as f32).to_array(),
+            size: [parameters.width as f32, parameters.height as f32, texel_width as f32, texel_height as f32],
+        };
+        let name = format!("{label}/view");
+        let view = upload(device, &name, vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
+        let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-above.frag")
+            .with("waves", &water.waves)
+            .with("underwater_color", &underwater.color)
+            .with("underwater_depth", &underwater.depth)
+            .with("nearest", nearest)
+            .with("view", &view)
+            .constants::<WaterConstants>()
+            .color(&picture, Load::Discard, Blend::Replace)
+            .build(shaders)?;
+        let above = WaterConstants {
+            time_s: 0.0,
+            wave_count: water.wave_count,
+            eta: 1.0 / parameters.refraction_index,
+            absorption_per_m: parameters.absorption_per_m,
+        };
+        Ok(View { picture, pass, above: Some(above) })
+    }
+
+    /// Draws the picture from the cast.
+    pub fn draw(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
+        frame.graphics(&self.pass, |draw| {
+            if let Some(above) = self.above {
+                draw.constants(&WaterConstants { time_s: time_s as f32, ..above });
+            }
+            draw.vertices(3);
+        })
+    }
+}
