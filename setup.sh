@@ -48,7 +48,8 @@ has_vulkan_loader() (
 )
 
 # has_manifest TEXT KIND PATHS: whether TEXT stands in a manifest of this KIND where the Vulkan loader looks for it,
-# or in one of the files and directories of the colon-separated PATHS.
+# or in one of the files and directories of the colon-separated PATHS. The versions that manifests state are no
+# guide: Mesa 22.3's says 1.1 of a driver for 1.3. The program itself refuses a driver that is too old.
 has_manifest() (
     configuration=${XDG_CONFIG_HOME:-${HOME:-}/.config}:${XDG_CONFIG_DIRS:-/etc/xdg}:/usr/local/etc:/etc
     data=${XDG_DATA_HOME:-${HOME:-}/.local/share}:${XDG_DATA_DIRS:-/usr/local/share:/usr/share}
@@ -104,8 +105,8 @@ apt() {
 
 install_packages() {
     say "installing$packages"
-    # A source that cannot be reached need not be the one that holds the packages; if it is, the installation fails.
-    log=$(apt update) || true
+    # A source that fails need not be the one that holds the packages; if it is, the installation fails as well.
+    log=$(apt update) || say "apt-get update failed; going on with the package lists that are here"
     # shellcheck disable=SC2086
     if ! log="$log
 $(apt install -y --no-install-recommends $packages)"; then

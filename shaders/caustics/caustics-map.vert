@@ -16,8 +16,9 @@ void main() {
     float descent = origin.y - plane.height;
     float lit = descent > 0.0 ? origin.w : 0.0;
     vec2 place = origin.xz + slope.xy * descent - plane.center;
-    // Eq. 4-17: d is the way along the ray, descent / cos(theta_t).
-    float transmitted = exp(-plane.absorption_per_m * descent * slope.z);
+    // Eq. 4-17: d is the way along the ray, descent / cos(theta_t). Behind the water it would grow without bound, and reach
+    // the texels next to the edge that the triangle's other vertices span.
+    float transmitted = exp(-plane.absorption_per_m * (max(descent, 0.0) * slope.z));
     surface = vec4(origin.xyz, lit);
     weight = incident.xyz * (slope.z * transmitted);
     gl_Position = vec4(place * plane.to_clip, 0.5, 1.0);

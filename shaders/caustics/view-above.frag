@@ -12,9 +12,10 @@ layout(set = 0, binding = 3) uniform sampler nearest;
 
 layout(set = 0, binding = 4) uniform View {
     mat4 inverse_view_projection; // of the viewer
-    mat4 underwater_view_projection; // of the textures, whose camera sees a little more
+    mat4 underwater_view_projection; // of the textures' camera
     mat4 underwater_inverse;
     vec4 eye; // metres; w: height of the flat water
+    vec4 underwater_eye;
     vec4 size; // of the picture in pixels; of the textures in texels
 } view;
 
@@ -23,13 +24,15 @@ layout(push_constant) uniform Water {
     uint wave_count;
     float eta; // refraction index of air over that of water
     float absorption_per_m;
+    float floor_depth_m; // of the deepest that can be seen, below the flat water
 } water;
 
 layout(location = 0) out vec4 color;
 
 const vec3 DEEP_WATER = vec3(0.004, 0.030, 0.055); // light scattered back by deep water, as the cast's background
 const int SURFACE_STEPS = 5; // Newton's method converges in three on waves of moderate slope
-const int SCENE_STEPS = 6;
+const int SCENE_STEPS = 64;
+const int REFINEMENTS = 8;
 
 vec3 sky(vec3 direction) {
     float height = clamp(direction.y, 0.0, 1.0);
@@ -53,6 +56,19 @@ ivec2 texel_of(vec3 point) {
     vec4 clip = view.underwater_view_projection * vec4(point, 1.0);
     vec2 uv = 0.5 * clip.xy / max(clip.w, 1.0e-6) + 0.5;
     return ivec2(clamp(uv * view.size.zw, vec2(0.0), view.size.zw - 1.0));
+}
+
+// How far a point lies behind the surface that the underwater camera sees in its direction, metres; negative in front of it, and
+// where nothing is seen.
+float depth_behind(vec3 point) {
+    ivec2 texel = texel_of(point);
+    float depth = texelFetch(sampler2D(underwater_depth, nearest), texel, 0).r;
+    if (depth >= 1.0) {
+        return -1.0;
+    }
+    vec2 there = (vec2(texel) + 0.5) / view.size.zw * 2.0 - 1.0;
+    vec3 seen = unproject(view.underwater_inverse, there, depth);
+    return distance(point, view.underwater_eye.xyz) - distance(seen, view.underwater_eye.xyz);
 }
 
 void main() {
@@ -83,20 +99,46 @@ void main() {
         return;
     }
 
-    // What the refracted ray hits: the textures say what is seen in a direction and how deep; the depth of the surface seen there
-    // corrects the way, until both agree.
-    float depth = 1.0;
-    float travel = 1.0;
-    ivec2 texel = ivec2(0);
-    for (int i = 0; i < SCENE_STEPS; i++) {
-        texel = texel_of(surface + refracted * travel);
-        depth = texelFetch(sampler2D(underwater_depth, nearest), texel, 0).r;
-        vec2 there = (vec2(texel) + 0.5) / view.size.zw * 2.0 - 1.0;
-        vec3 seen = unproject(view.underwater_inverse, there, depth);
-        travel = max(dot(seen - surface, refracted), 0.0);
+    // What the refracted ray hits: followed through the depth texture until it runs behind what is seen there. Far behind means
+    // that it passes behind an object, which is no hit.
+    float reach = water.floor_depth_m / max(-refracted.y, 0.05) * 1.05;
+    float stride = reach / float(SCENE_STEPS);
+    float travel = 0.0;
+    float nearer = 0.0;
+    bool hit = false;
+    // A ray that passes behind an object may end where the textures never look; what it came closest to then stands for it.
+    float closest = 1.0e30;
+    float closest_travel = -1.0;
+    for (int i = 1; i <= SCENE_STEPS; i++) {
+        travel = stride * float(i);
+        float behind = depth_behind(surface + refracted * travel);
+        if (behind > 0.0 && behind < 2.0 * stride) {
+            hit = true;
+            break;
+        }
+        if (behind > 0.0 && behind < closest) {
+            closest = behind;
+            closest_travel = travel;
+        }
+        nearer = travel;
+    }
+    if (!hit) {
+        travel = closest_travel;
+    } else {
+        float farther = travel;
+        for (int i = 0; i < REFINEMENTS; i++) {
+            travel = 0.5 * (nearer + farther);
+            if (depth_behind(surface + refracted * travel) > 0.0) {
+                farther = travel;
+            } else {
+                nearer = travel;
+            }
+        }
+        travel = farther;
     }
     vec3 below = DEEP_WATER;
-    if (depth < 1.0) {
+    if (travel >= 0.0) {
+        ivec2 texel = texel_of(surface + refracted * travel);
         vec3 lit = texelFetch(sampler2D(underwater_color, nearest), texel, 0).rgb;
         below = mix(DEEP_WATER, lit, exp(-water.absorption_per_m * travel));
     }

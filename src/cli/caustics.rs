@@ -116,7 +116,7 @@ pub struct SceneArgs {
     /// Number of sine waves on the water, 0 (flat) to 64 [default: 12]
     #[arg(long, value_name = "N")]
     waves: Option<u32>,
-    /// Sum of the waves' amplitudes in metres, 0 to 10 [default: 0.06]
+    /// Sum of the waves' amplitudes in metres, 0 to 10 [default: 0.05]
     #[arg(long, value_name = "M", value_parser = parse_finite)]
     amplitude: Option<f32>,
     /// Longest wavelength in metres, above 0 [default: 1.2]

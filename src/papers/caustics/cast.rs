@@ -3,17 +3,19 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 use super::maps::{self, FAR};
 use super::method::Method;
 use super::parameters::Parameters;
 use super::receiver::{BoxBlock, LitReceiver, Vertex};
+use super::water::LEVEL_M;
 use crate::gpu::transfer::upload;
 use crate::gpu::{
     Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary,
 };
 use crate::host_block;
+use crate::scene::Camera;
 
 host_block! {
     struct CameraBlock {
@@ -32,15 +34,40 @@ host_block! {
 /// What is seen where there is no receiver: light scattered back by deep water, linear RGB.
 const DEEP_WATER: Load = Load::Clear([0.004, 0.030, 0.055, 1.0]);
 
-/// What the view from above needs to see beyond the picture's edges, where the surface turns its rays outwards.
-const WIDENING: f32 = 1.25;
+/// What the view from above needs to see beyond the picture's edges, where the waves turn its rays outwards.
+const WIDENING: f32 = 1.4;
 
-/// Colour and depth of the underwater scene as the viewer's camera sees it without the surface.
+/// The camera of the underwater textures. From above it stands where the refracted ray of the picture's middle comes from, so
+/// that what hides what under water is, but for the waves, what the viewer sees; farther by the refraction index, as an
+/// object under water seems nearer.
+fn underwater_camera(parameters: &Parameters) -> Camera {
+    let camera = parameters.camera;
+    let forward = (camera.target - camera.eye).normalize();
+    if !parameters.is_seen_from_above() || forward.y > -0.05 {
+        return camera;
+    }
+    let level = LEVEL_M as f32;
+    let n = parameters.refraction_index;
+    let way = (level - camera.eye.y) / forward.y;
+    let entry = camera.eye + forward * way;
+    let sin2_refracted = (1.0 - forward.y * forward.y) / (n * n);
+    let refracted = (forward / n + Vec3::Y * (-forward.y / n - (1.0 - sin2_refracted).sqrt())).normalize();
+    Camera {
+        eye: entry - refracted * (way * n),
+        target: entry + refracted,
+        vertical_fov_rad: 2.0 * ((camera.vertical_fov_rad / 2.0).tan() / n * WIDENING).atan(),
+        far_m: camera.far_m * n,
+        ..camera
+    }
+}
+
+/// Colour and depth of the underwater scene as a camera sees it that stands for the viewer's without the surface.
 pub struct Underwater {
     /// Linear RGB.
     pub color: Arc<ImageView>,
     pub depth: Arc<ImageView>,
     pub view_projection: Mat4,
+    pub eye: Vec3,
     camera: Arc<Buffer>,
 }
 
@@ -53,16 +80,14 @@ impl Underwater {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
             Image::new(device, desc.usage(attachment | vk::ImageUsageFlags::SAMPLED))?.view()
         };
-        let mut camera = parameters.camera;
-        if parameters.is_seen_from_above() {
-            camera.vertical_fov_rad = 2.0 * ((camera.vertical_fov_rad / 2.0).tan() * WIDENING).atan();
-        }
+        let camera = underwater_camera(parameters);
         let view_projection = camera.projection(parameters.aspect()) * camera.view();
         let block = CameraBlock { view_projection: view_projection.to_cols_array() };
         Ok(Underwater {
             color: image("underwater-color", maps::LIGHT, vk::ImageUsageFlags::COLOR_ATTACHMENT)?,
             depth: image("underwater-depth", maps::DEPTH, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
             view_projection,
+            eye: camera.eye,
             camera: upload(
                 device,
                 &format!("{label}/camera"),

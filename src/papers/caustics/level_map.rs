@@ -11,7 +11,8 @@ use super::planes::{DepthProfile, SmartPlacement};
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
 use super::water::Water;
 use crate::gpu::{
-    Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Load, Location, Pass, PassInfo, Sampler, ShaderLibrary,
+    Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Load, Location, Pass, PassInfo, Sampler,
+    ShaderLibrary,
 };
 
 /// The maps and passes of the method.

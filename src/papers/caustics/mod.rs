@@ -103,10 +103,8 @@ impl Caustics {
                 let lit = LitReceiver::new(receiver, axes, light, parameters);
                 let method: Box<dyn Method> = match variant {
                     Variant::LevelMap | Variant::LevelMapSmart => {
-                        let slicing =
-                            if variant == Variant::LevelMap { Slicing::Normal } else { Slicing::Smart };
-                        let map =
-                            LevelMap::new(shaders, label, &lit, &water, &volumes, &nearest, slicing, parameters)?;
+                        let slicing = if variant == Variant::LevelMap { Slicing::Normal } else { Slicing::Smart };
+                        let map = LevelMap::new(shaders, label, &lit, &water, &volumes, &nearest, slicing, parameters)?;
                         Box::new(map)
                     }
                     Variant::Volumetric => {

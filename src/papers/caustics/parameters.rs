@@ -91,7 +91,7 @@ impl Default for Parameters {
             refraction_index: 4.0 / 3.0,
             absorption_per_m: 0.1,
             water_depth_m: 3.0,
-            waves: WaveParameters { count: 12, amplitude_m: 0.06, wavelength_m: 1.2 },
+            waves: WaveParameters { count: 12, amplitude_m: 0.05, wavelength_m: 1.2 },
             lights: vec![Light::Parallel { direction: Vec3::NEG_Y, intensity: Vec3::splat(1.0) }],
             ambient: Vec3::new(0.10, 0.13, 0.16),
             time_step_s: 1.0 / 30.0,
@@ -223,10 +223,10 @@ impl Parameters {
     /// The camera above the water of a pool of `depth_m`, looking down at its floor.
     pub fn camera_above(depth_m: f32) -> Camera {
         Camera {
-            eye: Vec3::new(-2.4, 2.2, 4.6),
-            target: Vec3::new(0.0, 0.7 - depth_m, 0.0),
+            eye: Vec3::new(-1.7, 2.4, 3.6),
+            target: Vec3::new(0.0, 0.5 - depth_m, 0.0),
             up: Vec3::Y,
-            vertical_fov_rad: 0.75,
+            vertical_fov_rad: 0.65,
             near_m: 0.1,
             far_m: 100.0 + depth_m,
         }

@@ -17,6 +17,7 @@ host_block! {
         underwater_view_projection: [f32; 16],
         underwater_inverse: [f32; 16],
         eye: [f32; 4],
+        underwater_eye: [f32; 4],
         size: [f32; 4],
     }
 }
@@ -27,6 +28,7 @@ host_block! {
         wave_count: u32,
         eta: f32,
         absorption_per_m: f32,
+        floor_depth_m: f32,
     }
 }
 
@@ -73,6 +75,7 @@ impl View {
             underwater_view_projection: underwater.view_projection.to_cols_array(),
             underwater_inverse: underwater.view_projection.inverse().to_cols_array(),
             eye: camera.eye.extend(LEVEL_M as f32).to_array(),
+            underwater_eye: underwater.eye.extend(0.0).to_array(),
             size: [parameters.width as f32, parameters.height as f32, texel_width as f32, texel_height as f32],
         };
         let name = format!("{label}/view");
@@ -91,6 +94,7 @@ impl View {
             wave_count: water.wave_count,
             eta: 1.0 / parameters.refraction_index,
             absorption_per_m: parameters.absorption_per_m,
+            floor_depth_m: parameters.water_depth_m,
         };
         Ok(View { picture, pass, above: Some(above) })
     }

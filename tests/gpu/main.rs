@@ -1,0 +1,16 @@
+//! Tests of the Vulkan layer.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod barriers;
+mod counters;
+mod devices;
+mod fixtures;
+mod memory_model;
+mod pictures;
+mod refusals;
+mod resources;
+mod sentences;
+mod sequences;
+mod timing;
