@@ -46,6 +46,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     outcome::check(&output)?;
 
     let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+    outcome::say_device(&output, &machine);
     let limits = limits::measure(&mut machine)?;
     let setup = Setup {
         parameters: Parameters::default(),

@@ -41,8 +41,11 @@ const REPEAT: u32 = 3;
 pub fn run(arguments: &BenchArgs) -> Result<(), Failure> {
     outcome::check(&arguments.output)?;
     if arguments.measure.processes > 1 {
-        let record = processes::run(arguments.measure.processes)?;
-        return outcome::publish(&arguments.output, &record, &[]);
+        let output = &arguments.output;
+        let record = processes::run(arguments.measure.processes, output.quiet)?;
+        // The first process has written the picture and the trace.
+        output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
+        return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
     let setup = arguments.scene.resolve(arguments.measure.process);
     let variants = VariantWord::resolve(&arguments.variant);
@@ -59,6 +62,10 @@ fn measure(
 ) -> Result<(Record, Vec<TraceRun>), Failure> {
     let scene = setup.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+    // The table names the device itself.
+    if arguments.output.json_to_stdout() {
+        outcome::say_device(&arguments.output, &machine);
+    }
     let limits = if arguments.measure.no_limits { None } else { Some(limits::measure(&mut machine)?) };
     let bar = progress_bar(arguments.output.quiet, PAPER);
     let mut watch = Watch {

@@ -99,28 +99,28 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N")]
     levels: Option<u32>,
     /// Acceptance threshold of smart slicing in metres, above 0 [default: h / (2 (planes - 1)), as in table 5-4]
-    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     epsilon: Option<f32>,
     /// Smart slicing: planes fitted into sub-boxes, or the uniform planes whose cell holds a texel
     #[arg(long, value_enum, default_value = "fitted")]
     smart_placement: PlacementWord,
     /// Refraction index of water against air, above 1 and at most 4 [default: 1.3333]
-    #[arg(long, value_name = "N", value_parser = parse_finite)]
+    #[arg(long, value_name = "N", value_parser = parse_finite, allow_negative_numbers = true)]
     refraction_index: Option<f32>,
     /// Absorption K of eq. 4-17 per metre, at least 0 [default: 0.1]
-    #[arg(long, value_name = "K", value_parser = parse_finite)]
+    #[arg(long, value_name = "K", value_parser = parse_finite, allow_negative_numbers = true)]
     absorption: Option<f32>,
     /// Depth of the pool in metres, above 0 and at most 1000 [default: 3]
-    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     water_depth: Option<f32>,
     /// Number of sine waves on the water, 0 (flat) to 64 [default: 12]
     #[arg(long, value_name = "N")]
     waves: Option<u32>,
     /// Sum of the waves' amplitudes in metres, 0 to 10 [default: 0.05]
-    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     amplitude: Option<f32>,
     /// Longest wavelength in metres, above 0 [default: 1.2]
-    #[arg(long, value_name = "M", value_parser = parse_finite)]
+    #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     wavelength: Option<f32>,
     /// Direction of parallel light, x,y,z, downwards; repeatable [default: 0,-1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
@@ -139,7 +139,7 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Simulated time between two frames in seconds, at least 0 [default: 0.0333]
-    #[arg(long, value_name = "S", value_parser = parse_finite)]
+    #[arg(long, value_name = "S", value_parser = parse_finite, allow_negative_numbers = true)]
     time_step: Option<f32>,
 }
 
@@ -193,6 +193,16 @@ impl SceneArgs {
         }
         let meshes = if self.mesh.is_empty() { vec![MeshSource::Teapot] } else { self.mesh.clone() };
         Setup { parameters: p, meshes, floor: self.floor, preset: self.preset.map(|p| p.word().to_owned()), process }
+    }
+
+    /// Whether a number of planes was named.
+    pub fn names_planes(&self) -> bool {
+        self.planes.is_some()
+    }
+
+    /// Whether a camera was named.
+    pub fn names_camera(&self) -> bool {
+        self.camera.is_some()
     }
 
     /// Whether a mesh was named.

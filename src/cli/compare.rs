@@ -13,11 +13,11 @@ use crate::report::{json, output};
 #[derive(Debug, Clone, Args)]
 pub struct CompareArgs {
     /// Records of side A, comma-separated; several processes a side make a verdict possible
-    #[arg(value_name = "A.json[,..]", value_delimiter = ',', required = true)]
-    a: Vec<PathBuf>,
+    #[arg(value_name = "A.json[,..]", value_parser = parse_side)]
+    a: Side,
     /// Records of side B, comma-separated
-    #[arg(value_name = "B.json[,..]", value_delimiter = ',', required = true)]
-    b: Vec<PathBuf>,
+    #[arg(value_name = "B.json[,..]", value_parser = parse_side)]
+    b: Side,
     /// Exit with 4 when B is slower than A by more than this, with certainty
     #[arg(long, value_name = "5%", value_parser = parse_share)]
     fail_above: Option<f64>,
@@ -26,18 +26,29 @@ pub struct CompareArgs {
     json: Option<PathBuf>,
 }
 
+/// The records of one side.
+#[derive(Debug, Clone)]
+struct Side(Vec<PathBuf>);
+
+fn parse_side(text: &str) -> Result<Side, String> {
+    if text.split(',').any(str::is_empty) {
+        return Err("give files, separated by commas".to_owned());
+    }
+    Ok(Side(text.split(',').map(PathBuf::from).collect()))
+}
+
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
-    let read = |paths: &[PathBuf]| -> Result<Vec<Input>, Failure> {
-        paths.iter().map(|path| Ok(Input { name: path.display().to_string(), record: json::read(path)? })).collect()
+    let read = |side: &Side| -> Result<Vec<Input>, Failure> {
+        side.0.iter().map(|path| Ok(Input { name: path.display().to_string(), record: json::read(path)? })).collect()
     };
     let comparison = compare(&read(&arguments.a)?, &read(&arguments.b)?, arguments.fail_above)?;
     match arguments.json.as_deref() {
-        Some(path) if path == Path::new("-") => print!("{}", outcome::text(&comparison)?),
+        Some(path) if path == Path::new("-") => outcome::print(&outcome::text(&comparison)?)?,
         Some(path) => {
             output::write(path, outcome::text(&comparison)?.as_bytes())?;
-            print!("{}", render(&comparison, outcome::style()));
+            outcome::print(&render(&comparison, outcome::style()))?;
         }
-        None => print!("{}", render(&comparison, outcome::style())),
+        None => outcome::print(&render(&comparison, outcome::style()))?,
     }
     if comparison.has_regression() { Err(Failure::Regression) } else { Ok(()) }
 }

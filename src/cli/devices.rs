@@ -27,11 +27,10 @@ pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
     }
     if arguments.json {
         let document: Vec<Value> = devices.iter().map(json_of).collect();
-        print!("{}", outcome::text(&document)?);
+        outcome::print(&outcome::text(&document)?)
     } else {
-        devices.iter().for_each(print);
+        outcome::print(&devices.iter().map(text_of).collect::<String>())
     }
-    Ok(())
 }
 
 fn json_of(device: &PhysicalDevice) -> Value {
@@ -65,18 +64,20 @@ fn words(needs: &[Feature]) -> Vec<&'static str> {
     BASELINE.iter().chain(needs).map(|f| f.word()).collect()
 }
 
-fn print(device: &PhysicalDevice) {
+fn text_of(device: &PhysicalDevice) -> String {
     let style = outcome::style();
-    println!("{}", style.bold(&format!("{}: {}", device.index, device.name)));
-    println!("  type     {}", device.device_type.word());
-    println!("  uuid     {}", device.uuid_text());
-    println!("  driver   {} {}", device.driver_name, device.driver_info);
-    println!("  vulkan   {}", device.api_version_text());
+    let mut lines = vec![
+        style.bold(&format!("{}: {}", device.index, device.name)),
+        format!("  type     {}", device.device_type.word()),
+        format!("  uuid     {}", device.uuid_text()),
+        format!("  driver   {} {}", device.driver_name, device.driver_info),
+        format!("  vulkan   {}", device.api_version_text()),
+    ];
     let has: Vec<&str> = Feature::ALL.iter().filter(|&&f| device.has(f)).map(|f| f.word()).collect();
     let lacks: Vec<&str> = Feature::ALL.iter().filter(|&&f| !device.has(f)).map(|f| f.word()).collect();
-    println!("  has      {}", has.join(", "));
+    lines.push(format!("  has      {}", has.join(", ")));
     if !lacks.is_empty() {
-        println!("  lacks    {}", lacks.join(", "));
+        lines.push(format!("  lacks    {}", lacks.join(", ")));
     }
     for (name, needs) in PAPERS {
         let missing = device.lacks(needs);
@@ -85,6 +86,7 @@ fn print(device: &PhysicalDevice) {
         } else {
             style.red(&format!("lacks {}", missing.join(", ")))
         };
-        println!("  {name:8} {verdict} (needs {})", words(needs).join(", "));
+        lines.push(format!("  {name:8} {verdict} (needs {})", words(needs).join(", ")));
     }
+    lines.join("\n") + "\n"
 }

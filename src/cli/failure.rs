@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use super::outcome;
 use crate::experiment::compare::CompareError;
 use crate::experiment::{self, Error};
 use crate::report::json::ReadError;
@@ -31,7 +32,7 @@ impl Failure {
             Failure::Regression => return ExitCode::from(4),
         };
         // One line, whatever a library put into its own.
-        eprintln!("error: {}", message.split_whitespace().collect::<Vec<_>>().join(" "));
+        outcome::say(&format!("error: {}", message.split_whitespace().collect::<Vec<_>>().join(" ")));
         ExitCode::from(code)
     }
 }

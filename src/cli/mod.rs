@@ -46,7 +46,6 @@ struct CausticsArgs {
     verb: Verb,
 }
 
-/// The paper's own binary.
 #[derive(Debug, Parser)]
 #[command(name = "caustics", version, propagate_version = true)]
 /// Refractive water caustics with level maps (Tipprasert), pass by pass
@@ -58,7 +57,7 @@ struct CausticsBinary {
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// List the passes in the paper's order
-    Passes(passes::PassesArgs),
+    Passes(Box<passes::PassesArgs>),
     /// Time one configuration in one or more variants, interleaved
     Bench(Box<bench::BenchArgs>),
     /// Reproduce one table or figure, ours beside the paper's

@@ -91,14 +91,14 @@ pub struct MeasureArgs {
     /// Frames before anything counts, 1 to 10000
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub warmup: u32,
-    /// Frames in one repetition, 1 to 100000
+    /// Frames in one repetition, 1 to 100000 [default: 10, in an experiment 3]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: Option<u32>,
-    /// Repetitions of those frames, 1 to 10000
+    /// Repetitions of those frames, 1 to 10000 [default: 3]
     #[arg(long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub repeat: Option<u32>,
     /// Repeat until plain frames took this many seconds, 0 to 3600
-    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = parse_seconds)]
+    #[arg(long, value_name = "S", default_value_t = 0.0, value_parser = parse_seconds, allow_negative_numbers = true)]
     pub min_time: f64,
     /// Measure in this many fresh processes, 1 to 100
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]

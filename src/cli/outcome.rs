@@ -1,10 +1,12 @@
 //! Writing what a measurement leaves behind.
 
-use std::io::IsTerminal;
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
 use super::failure::Failure;
 use super::options::OutputArgs;
+use crate::experiment::machine::Machine;
+use crate::image;
 use crate::report::output::{check_writable, write};
 use crate::report::record::Record;
 use crate::report::table::Style;
@@ -13,21 +15,64 @@ use crate::report::{console, csv, json, trace};
 
 /// How standard output may be coloured.
 pub fn style() -> Style {
-    Style::detect(std::io::stdout().is_terminal())
+    Style::detect(io::stdout().is_terminal())
+}
+
+/// Prints on standard output. A reader that has left, as `head` does, wants no more: that is no failure.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Input(format!("writing to standard output: {e}; send it where there is space")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Says a line on standard error, if anybody listens.
+pub fn say(line: &str) {
+    let _unheard = writeln!(io::stderr(), "{line}");
+}
+
+/// Says which device was chosen.
+pub fn say_device(output: &OutputArgs, machine: &Machine) {
+    if !output.quiet {
+        say(&format!("device: {}", machine.description()));
+    }
 }
 
 /// Fails before long work if a file could not be written after it.
 pub fn check(output: &OutputArgs) -> Result<(), Failure> {
-    output.files().try_for_each(|path| Ok(check_writable(path)?))
+    output.image.iter().try_for_each(|path| check_picture(path))?;
+    output.files().try_for_each(|path| check_file(path))
+}
+
+/// Fails for a file that cannot be written, and for `-`, which only `--json` knows.
+pub fn check_file(path: &Path) -> Result<(), Failure> {
+    if path.as_os_str() == "-" {
+        return Err(Failure::Input("-: only --json writes to standard output; name a file, or ./-".into()));
+    }
+    Ok(check_writable(path)?)
+}
+
+/// Fails for a picture whose ending promises another format than it gets.
+pub fn check_picture(path: &Path) -> Result<(), Failure> {
+    match image::Format::of(path) {
+        Ok(image::Format::Png) => Ok(()),
+        _ => Err(Failure::Input(format!("--image {}: pictures are PNG; end the name in .png", path.display()))),
+    }
 }
 
 /// Writes record, rows and trace where the options say, and prints the table.
 pub fn publish(output: &OutputArgs, record: &Record, traces: &[TraceRun]) -> Result<(), Failure> {
-    if output.json_to_stdout() {
-        print!("{}", text(record)?);
+    // The files are written even when nothing can be printed.
+    let printed = if output.json_to_stdout() {
+        print(&text(record)?)
     } else if !output.quiet {
-        print!("{}", console::record(record, style()));
-    }
+        print(&console::record(record, style()))
+    } else {
+        Ok(())
+    };
     if let Some(path) = output.json.as_deref().filter(|_| !output.json_to_stdout()) {
         save(output, path, text(record)?.as_bytes())?;
     }
@@ -37,7 +82,7 @@ pub fn publish(output: &OutputArgs, record: &Record, traces: &[TraceRun]) -> Res
     if let Some(path) = &output.trace {
         save(output, path, trace::to_string(traces).as_bytes())?;
     }
-    Ok(())
+    printed
 }
 
 /// A document as JSON text.
@@ -55,6 +100,6 @@ pub fn save(output: &OutputArgs, path: &Path, bytes: &[u8]) -> Result<(), Failur
 /// Says on standard error that a file was written.
 pub fn wrote(output: &OutputArgs, path: &Path) {
     if !output.quiet {
-        eprintln!("wrote {}", path.display());
+        say(&format!("wrote {}", path.display()));
     }
 }

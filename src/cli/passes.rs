@@ -49,11 +49,10 @@ pub fn run(arguments: &PassesArgs) -> Result<(), Failure> {
     machine.check_validation()?;
     if arguments.json {
         let document: Vec<Value> = listed.iter().map(json_of).collect();
-        print!("{}", outcome::text(&document)?);
+        outcome::print(&outcome::text(&document)?)
     } else {
-        listed.iter().for_each(print);
+        outcome::print(&listed.iter().map(text_of).collect::<Vec<_>>().join("\n"))
     }
-    Ok(())
 }
 
 fn json_of(listed: &Listed) -> Value {
@@ -74,9 +73,9 @@ fn json_of(listed: &Listed) -> Value {
     json!({"paper": PAPER, "variant": listed.variant.word(), "passes": passes, "targets": targets})
 }
 
-fn print(listed: &Listed) {
+fn text_of(listed: &Listed) -> String {
     let style = outcome::style();
-    println!("{}", style.bold(&format!("{PAPER} {}", listed.variant.word())));
+    let title = style.bold(&format!("{PAPER} {}", listed.variant.word()));
     let mut table = Table::new(&[
         ("", Align::Right),
         ("pass", Align::Left),
@@ -107,9 +106,8 @@ fn print(listed: &Listed) {
             info.depth.unwrap_or("").to_owned(),
         ]);
     }
-    print!("{}", table.render(style));
     let targets: Vec<String> = listed.targets.iter().map(|t| format!("{} ({})", t.name, shape(t))).collect();
-    println!("targets for --dump: {}\n", targets.join(", "));
+    format!("{title}\n{}targets for --dump: {}\n", table.render(style), targets.join(", "))
 }
 
 fn shape(target: &Target) -> String {

@@ -1,62 +1,81 @@
 //! `--processes K`: the same command in fresh processes, their records joined.
 
 use std::ffi::OsString;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::Ordering;
 
 use super::failure::Failure;
+use super::watch::{interrupted, progress_bar};
 use crate::report::{Record, json};
 
 /// Options that the fresh processes do not get, and whether a value follows.
-const OURS: [(&str, bool); 6] = [
-    ("--processes", true),
-    ("--process", true),
-    ("--csv", true),
-    ("--trace", true),
-    ("--image", true),
-    ("--quiet", false),
-];
+const OURS: [(&str, bool); 4] = [("--processes", true), ("--process", true), ("--csv", true), ("--quiet", false)];
+/// Options that only the first process gets: it writes what all of them would write alike.
+const OF_THE_FIRST: [(&str, bool); 2] = [("--trace", true), ("--image", true)];
 
-/// Runs this command `count` times and joins the records, each with its process's number.
+/// Runs this command `count` times and joins the records, each with its process's number. Ctrl-C reaches the process
+/// that runs as well, and keeps what is finished.
 ///
 /// # Errors
-/// The first process that fails, with its own message already on standard error.
-pub fn run(count: u32) -> Result<Record, Failure> {
+/// What the first process that fails says.
+pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
     let failed = |reason: String| Failure::Running(format!("measuring in a fresh process: {reason}"));
     let program = std::env::current_exe().map_err(|e| failed(e.to_string()))?;
-    let arguments = inherited(std::env::args_os().skip(1));
+    let given: Vec<OsString> = std::env::args_os().skip(1).collect();
+    let interrupted = interrupted();
+    let bar = progress_bar(quiet, "processes");
+    bar.set_length(u64::from(count));
     let mut joined: Option<Record> = None;
     for process in 0..count {
+        if joined.is_some() && interrupted.load(Ordering::Relaxed) {
+            break;
+        }
+        let removed = if process == 0 { OURS.to_vec() } else { [&OURS[..], &OF_THE_FIRST[..]].concat() };
         let file = tempfile::NamedTempFile::new().map_err(|e| failed(e.to_string()))?;
-        let status = Command::new(&program)
-            .args(&arguments)
+        let output = Command::new(&program)
+            .args(without(&removed, given.iter().cloned()))
             .args(["--process", &process.to_string(), "--quiet", "--json"])
             .arg(file.path())
             .stdin(Stdio::null())
-            .status()
+            .output()
             .map_err(|e| failed(e.to_string()))?;
-        match status.code() {
-            Some(0) => {}
-            Some(2) => return Err(Failure::Input(format!("fresh process {process} refused its input"))),
-            Some(3) => return Err(Failure::NoDevice(format!("fresh process {process} found no device"))),
-            _ => return Err(failed(format!("process {process} ended with {status}"))),
+        if !output.status.success() {
+            if joined.is_some() && interrupted.load(Ordering::Relaxed) {
+                break;
+            }
+            return Err(failure(process, &output));
         }
         let record = json::read(file.path())?;
         match &mut joined {
             Some(all) => all.runs.extend(record.runs),
             None => joined = Some(Record { command: std::env::args().collect(), ..record }),
         }
+        bar.inc(1);
     }
+    bar.finish_and_clear();
     joined.ok_or_else(|| failed("none was asked for".into()))
 }
 
-/// The arguments without our own options, and without `--json` and its optional value.
-fn inherited(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+/// A process's own message and exit code as ours.
+fn failure(process: u32, output: &Output) -> Failure {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    let message = errors.lines().find_map(|line| line.strip_prefix("error: "));
+    let message = message.map_or_else(|| format!("process {process} ended with {}", output.status), str::to_owned);
+    match output.status.code() {
+        Some(2) => Failure::Input(message),
+        Some(3) => Failure::NoDevice(message),
+        _ => Failure::Running(message),
+    }
+}
+
+/// The arguments without the options `removed`, and without `--json` and its optional value.
+fn without(removed: &[(&str, bool)], arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut kept = Vec::new();
     let mut arguments = arguments.peekable();
     while let Some(argument) = arguments.next() {
         let text = argument.to_string_lossy().into_owned();
         let name = text.split('=').next().unwrap_or_default();
-        if let Some((_, has_value)) = OURS.iter().find(|(ours, _)| *ours == name) {
+        if let Some((_, has_value)) = removed.iter().find(|(removed, _)| *removed == name) {
             if *has_value && !text.contains('=') {
                 arguments.next();
             }
@@ -75,15 +94,16 @@ fn inherited(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
 mod tests {
     use super::*;
 
-    fn kept(arguments: &str) -> String {
-        let kept = inherited(arguments.split(' ').map(OsString::from));
+    fn kept(removed: &[(&str, bool)], arguments: &str) -> String {
+        let kept = without(removed, arguments.split(' ').map(OsString::from));
         kept.iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().join(" ")
     }
 
     #[test]
     fn fresh_processes_get_everything_but_our_own_options() {
-        assert_eq!(kept("bench --processes 5 --planes 9 --json a.json --csv=b -q"), "bench --planes 9");
-        assert_eq!(kept("bench --json --variant all --processes=2"), "bench --variant all");
-        assert_eq!(kept("bench --image p.png --size 8x8 --quiet"), "bench --size 8x8");
+        assert_eq!(kept(&OURS, "bench --processes 5 --planes 9 --json a.json --csv=b -q"), "bench --planes 9");
+        assert_eq!(kept(&OURS, "bench --json --variant all --processes=2"), "bench --variant all");
+        assert_eq!(kept(&OURS, "bench --image p.png --quiet"), "bench --image p.png");
+        assert_eq!(kept(&OF_THE_FIRST, "bench --image p.png --trace=t --size 8x8"), "bench --size 8x8");
     }
 }

@@ -15,7 +15,6 @@ use crate::experiment::picture;
 use crate::image;
 use crate::papers::Paper;
 use crate::papers::caustics::NEEDS;
-use crate::report::output::check_writable;
 
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs {
@@ -100,16 +99,15 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
     };
     for dump in &arguments.dump {
         image::Format::of(&dump.file)?;
-        check_writable(&dump.file)?;
+        outcome::check_file(&dump.file)?;
     }
-    check_writable(&picture_path(frames.first))?;
+    outcome::check_picture(&picture_path(frames.first))?;
+    outcome::check_file(&picture_path(frames.first))?;
 
     let setup = arguments.scene.resolve(0);
     let scene = setup.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
-    if !arguments.quiet {
-        eprintln!("device: {}", machine.description());
-    }
+    outcome::say_device(&output, &machine);
     let mut built = caustics::build(&machine, &setup, &scene, variant)?;
     let targets = built.paper.targets();
     for dump in &arguments.dump {
@@ -121,24 +119,22 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
     }
     let bar = progress_bar(arguments.quiet, PAPER);
     bar.set_length(u64::from(frames.end - frames.first));
+    let mut written = Vec::new();
     for number in frames.first..frames.end {
         if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
             break;
         }
         let rendered = picture::render(&mut machine, &mut built.paper, number)?;
         let path = picture_path(number);
-        // Through the report's writer, which makes the folder.
-        check_writable(&path)?;
         image::write_png(&path, &rendered)?;
         bar.inc(1);
-        if !is_range {
-            outcome::wrote(&output, &path);
-        }
+        written.push(path);
     }
     bar.finish_and_clear();
-    if is_range {
-        outcome::wrote(&output, &picture_path(frames.end - 1));
+    if written.is_empty() {
+        return Err(Failure::Running("interrupted before a picture was written".into()));
     }
+    written.iter().for_each(|path| outcome::wrote(&output, path));
     for dump in &arguments.dump {
         for target in targets.iter().filter(|t| t.name == dump.target) {
             image::write(&dump.file, &picture::read_target(&machine, target)?)?;

@@ -29,8 +29,7 @@ impl ShaderLibrary {
     pub fn new(device: &Arc<Device>, compiler: Compiler, replacements: Option<&Path>) -> Result<Self, Error> {
         let replaced = match replacements {
             None => Vec::new(),
-            Some(dir) => shader_build::compile_dir(dir)
-                .map_err(|e| Error::Shader { name: dir.display().to_string(), problem: e.to_string() })?,
+            Some(dir) => replace(dir).map_err(|problem| Error::Shader { name: dir.display().to_string(), problem })?,
         };
         Ok(ShaderLibrary { device: device.clone(), compiler, replaced })
     }
@@ -66,6 +65,16 @@ impl ShaderLibrary {
         self.device.live().add(Kind::ShaderModule);
         self.device.name(raw, name);
         Ok(Arc::new(ShaderModule { raw, device: self.device.clone(), name: name.to_owned(), interface, compiler }))
+    }
+}
+
+/// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.
+fn replace(dir: &Path) -> Result<Vec<shader_build::CompiledShader>, String> {
+    let shaders = shader_build::compile_dir(dir).map_err(|e| e.to_string())?;
+    if shaders.iter().any(|s| EMBEDDED.iter().any(|built_in| built_in.name == s.name)) {
+        Ok(shaders)
+    } else {
+        Err(format!("none of its {} shaders replaces a built-in one; lay it out as shaders/", shaders.len()))
     }
 }
 

@@ -58,6 +58,7 @@ const COMPUTE_USE: (S, A) =
 
 const COMPUTE_STORES: Access = Access::StorageWrite(Stages::COMPUTE);
 const FRAGMENT_READS: Access = Access::SampledRead(Stages::FRAGMENT);
+const FRAGMENT_STORAGE: Access = Access::StorageRead(Stages::FRAGMENT);
 
 #[test]
 fn a_new_target_comes_from_undefined_and_its_reader_waits_for_the_write() {
@@ -120,8 +121,6 @@ fn a_reader_in_another_stage_waits_for_the_write_too() {
     assert!(second.dst_stages.contains(S::FRAGMENT_SHADER) && second.dst_access.contains(A::SHADER_STORAGE_READ));
     assert_eq!(buffer[3], None, "both readers see the write by now");
 }
-
-const FRAGMENT_STORAGE: Access = Access::StorageRead(Stages::FRAGMENT);
 
 #[test]
 fn a_reader_with_another_access_in_a_known_stage_waits_for_the_write_too() {

@@ -1,7 +1,10 @@
 //! The experiments of the `caustics` paper: what a user set up, its scene, its measured runs.
 
-pub mod table_5_1;
+pub mod slicing;
+pub mod sweep;
+mod thesis;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -54,7 +57,7 @@ impl Setup {
     /// the other.
     ///
     /// # Errors
-    /// [`Error::Parameter`], [`Error::Scene`].
+    /// [`Error::Parameter`], [`Error::Scene`]; [`Error::Input`] for a mesh too small or too large to be scaled.
     pub fn load(&self) -> Result<Scene, Error> {
         self.parameters.validate()?;
         let started = Instant::now();
@@ -64,7 +67,13 @@ impl Setup {
         for source in &self.meshes {
             let mesh = source.load()?;
             let bounds = mesh.bounds();
-            let scale = RECEIVER_SIZE_M / bounds.diagonal().max_element();
+            let longest = bounds.diagonal().max_element();
+            let scale = RECEIVER_SIZE_M / longest;
+            if !scale.is_normal() {
+                return Err(Error::Input(format!(
+                    "placing mesh {source}: a side of {longest:e} cannot be scaled to {RECEIVER_SIZE_M} m; rescale the file"
+                )));
+            }
             let size = bounds.diagonal() * scale;
             let foot = Vec3::new(bounds.min.x, bounds.min.y, bounds.center().z) * scale;
             let place =
@@ -137,6 +146,21 @@ fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
     // Just below the feet, so that no receiver's underside fights with it for the picture's depth.
     let place = Mat4::from_translation(Vec3::new(0.0, floor_m - 1e-3 * RECEIVER_SIZE_M, 0.0));
     ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
+}
+
+/// A mesh's word, or its file's name without folder and ending.
+pub fn mesh_name(mesh: &MeshSource) -> String {
+    match mesh {
+        MeshSource::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// The thesis's meshes that we have, and scanned and sculpted ones from `assets/`, as far as they are there.
+pub fn sample_meshes() -> Vec<MeshSource> {
+    let shipped = ["assets/meshes/bunny.obj", "assets/meshes/wuson.stl"].map(PathBuf::from);
+    let shipped = shipped.into_iter().filter(|path| path.is_file()).map(MeshSource::File);
+    [MeshSource::Teapot, MeshSource::Sphere].into_iter().chain(shipped).collect()
 }
 
 /// A variant with its resources, and what they cost.

@@ -172,6 +172,10 @@ impl Method for LevelMap {
         }
     }
 
+    fn depth_profile(&self) -> Option<&[u32]> {
+        self.smart.as_ref().map(|smart| smart.profile.histogram.as_slice())
+    }
+
     fn create_caustics(
         &self,
         frame: &mut Frame<'_>,

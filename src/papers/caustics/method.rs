@@ -30,6 +30,11 @@ pub trait Method {
         Ok(())
     }
 
+    /// Texels in each depth level, the nearest to the light first, where the method counts them.
+    fn depth_profile(&self) -> Option<&[u32]> {
+        None
+    }
+
     /// The intersection triangles of every plane into the caustics map.
     fn create_caustics(
         &self,

@@ -138,6 +138,11 @@ impl Caustics {
         self.water.grid
     }
 
+    /// Texels in each depth level of the first receiver under the first light, after a frame of smart slicing.
+    pub fn depth_profile(&self) -> Option<&[u32]> {
+        self.lights.first()?.receivers.first()?.method.depth_profile()
+    }
+
     fn time_s(&self, number: u32) -> f64 {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }

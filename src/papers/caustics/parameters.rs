@@ -112,6 +112,11 @@ pub struct ParameterError {
     pub range: String,
 }
 
+/// As they are typed.
+fn components(vector: Vec3) -> String {
+    vector.to_array().map(|c| c.to_string()).join(",")
+}
+
 impl Parameters {
     /// Checks every range.
     ///
@@ -179,16 +184,20 @@ impl Parameters {
             format!("{}x{}", self.width, self.height),
             "has no pixel",
         )?;
+        let Camera { eye, target, .. } = self.camera;
         self.camera.validate().map_err(|e| ParameterError {
             name: "--camera",
-            value: String::new(),
+            value: [eye, target].map(components).join(","),
             range: e.to_string(),
         })
     }
 
     fn validate_light(&self, light: &Light) -> Result<(), ParameterError> {
-        let error =
-            |range: &str| Err(ParameterError { name: "--light", value: format!("{light:?}"), range: range.to_owned() });
+        let (name, value) = match *light {
+            Light::Parallel { direction, .. } => ("--light", components(direction)),
+            Light::Point { position, .. } => ("--point-light", components(position)),
+        };
+        let error = |range: &str| Err(ParameterError { name, value: value.clone(), range: range.to_owned() });
         let intensity = match *light {
             Light::Parallel { direction, intensity } => {
                 if !direction.is_finite() || direction.normalize_or_zero().y > -0.05 {

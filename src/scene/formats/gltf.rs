@@ -58,7 +58,7 @@ fn check_container(bytes: &[u8]) -> Result<(), Fault> {
 }
 
 fn read_document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
-    let foreign = |error| Fault::foreign(Place::Whole, &error);
+    let foreign = |error: ::gltf::Error| Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"));
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(foreign)?;
     let json = document.into_json();
     // The validation that follows looks at the accessor of the positions before it looks whether

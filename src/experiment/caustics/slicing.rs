@@ -1,0 +1,229 @@
+//! What smart slicing does, without times: the planes it needs (table 5-4), what it changes in the picture (table 5-5,
+//! figure 5-13), the depth profiles (figure 5-12), and the memory of the methods (section 5.1).
+
+use serde_json::{Map, Value, json};
+
+use super::thesis::{TABLE_5_2, TABLE_5_4};
+use super::{Scene, Setup, build, mesh_name};
+use crate::experiment::error::Error;
+use crate::experiment::machine::Machine;
+use crate::experiment::picture;
+use crate::gpu::Mode;
+use crate::image::{Difference, Rgba8, Samples, compare};
+use crate::papers::Paper;
+use crate::papers::caustics::{SmartPlacement, Variant};
+use crate::report::table::{Align, Table};
+use crate::scene::MeshSource;
+
+/// A table of an experiment that times nothing: for the console and, row by row, for JSON and CSV.
+pub struct Facts {
+    pub title: &'static str,
+    pub columns: &'static [&'static str],
+    pub rows: Vec<Vec<Value>>,
+}
+
+impl Facts {
+    /// For the console.
+    pub fn table(&self) -> Table {
+        let columns: Vec<(&str, Align)> = self.columns.iter().map(|&c| (c, Align::Right)).collect();
+        let mut table = Table::new(&columns);
+        for row in &self.rows {
+            table.push(row.iter().map(shown).collect());
+        }
+        table
+    }
+
+    /// One object a row.
+    pub fn json(&self) -> Value {
+        let object = |row: &Vec<Value>| -> Map<String, Value> {
+            self.columns.iter().zip(row).map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
+        };
+        json!({"title": self.title, "rows": self.rows.iter().map(object).collect::<Vec<_>>()})
+    }
+
+    /// Comma-separated, with a header; no value holds a comma.
+    pub fn csv(&self) -> String {
+        let line = |cells: Vec<String>| cells.join(",") + "\n";
+        let header = line(self.columns.iter().map(|c| (*c).to_owned()).collect());
+        self.rows.iter().fold(header, |text, row| text + &line(row.iter().map(shown).collect()))
+    }
+}
+
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
+        other => other.to_string(),
+    }
+}
+
+fn for_each_mesh(
+    setup: &Setup,
+    meshes: &[MeshSource],
+    mut visit: impl FnMut(&str, &mut Setup, &Scene) -> Result<(), Error>,
+) -> Result<(), Error> {
+    for mesh in meshes {
+        let mut setup = Setup { meshes: vec![mesh.clone()], ..setup.clone() };
+        let scene = setup.load()?;
+        visit(&mesh_name(mesh), &mut setup, &scene)?;
+    }
+    Ok(())
+}
+
+/// Table 5-2: polygons of the models.
+///
+/// # Errors
+/// [`Error::Scene`].
+pub fn polygon_counts(setup: &Setup, meshes: &[MeshSource]) -> Result<Facts, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, _, scene| {
+        let thesis = TABLE_5_2.iter().find(|(name, _)| *name == mesh).map(|(_, count)| *count);
+        rows.push(vec![json!(mesh), json!(scene.receivers[0].mesh.triangle_count()), json!(thesis)]);
+        Ok(())
+    })?;
+    Ok(Facts { title: "Table 5-2: polygons of the models", columns: &["mesh", "triangles", "thesis"], rows })
+}
+
+/// Table 5-4: planes that smart slicing draws of those specified, in both placements.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`].
+pub fn actual_planes(
+    machine: &mut Machine,
+    setup: &Setup,
+    meshes: &[MeshSource],
+    counts: &[u32],
+) -> Result<Facts, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.validate()?;
+            let mut drawn = |placement| -> Result<usize, Error> {
+                setup.parameters.smart.placement = placement;
+                let mut built = build(machine, setup, scene, Variant::LevelMapSmart)?;
+                machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+                Ok(built.paper.plane_counts().iter().sum())
+            };
+            let fitted = drawn(SmartPlacement::Fitted { epsilon_m: None })?;
+            let kept = drawn(SmartPlacement::Kept)?;
+            let thesis = TABLE_5_4.get(mesh, planes);
+            rows.push(vec![json!(mesh), json!(planes), json!(fitted), json!(kept), json!(thesis.map(|t| t as u64))]);
+        }
+        Ok(())
+    })?;
+    Ok(Facts {
+        title: "Table 5-4: planes that smart slicing draws",
+        columns: &["mesh", "specified", "fitted", "kept", "thesis"],
+        rows,
+    })
+}
+
+/// A frame's picture by normal slicing and by smart slicing, and how far they differ over the object's pixels.
+pub struct PicturePair {
+    pub normal: Rgba8,
+    pub smart: Rgba8,
+    pub difference: Difference,
+}
+
+/// Renders the pair of figure 5-13.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Image`]: when the object is nowhere in the picture.
+pub fn picture_pair(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Result<PicturePair, Error> {
+    let mut render = |variant| -> Result<(Rgba8, Vec<bool>), Error> {
+        let mut built = build(machine, setup, scene, variant)?;
+        let rendered = picture::render(machine, &mut built.paper, 0)?;
+        let targets = built.paper.targets();
+        let depth = targets.iter().find(|t| t.name == "underwater-depth");
+        let mask = match depth.map(|t| picture::read_target(machine, t)).transpose()?.map(|r| r.samples().clone()) {
+            Some(Samples::F32(depth)) => depth.iter().map(|&d| d < 1.0).collect(),
+            _ => Vec::new(),
+        };
+        Ok((rendered, mask))
+    };
+    let (normal, mask) = render(Variant::LevelMap)?;
+    let (smart, _) = render(Variant::LevelMapSmart)?;
+    let difference = compare(&normal, &smart, Some(&mask))?;
+    Ok(PicturePair { normal, smart, difference })
+}
+
+/// Table 5-5: mean Luv difference (eq. 2-9) between normal and smart slicing, in both placements.
+///
+/// # Errors
+/// As [`picture_pair`].
+pub fn intensity_difference(
+    machine: &mut Machine,
+    setup: &Setup,
+    meshes: &[MeshSource],
+    counts: &[u32],
+) -> Result<Facts, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.validate()?;
+            let mut row = vec![json!(mesh), json!(planes)];
+            for placement in [SmartPlacement::Fitted { epsilon_m: None }, SmartPlacement::Kept] {
+                setup.parameters.smart.placement = placement;
+                let Difference { mean, p99, .. } = picture_pair(machine, setup, scene)?.difference;
+                row.extend([json!(mean), json!(p99)]);
+            }
+            let thesis = TABLE_5_4.get(mesh, planes).map(|_| 0);
+            row.push(json!(thesis));
+            rows.push(row);
+        }
+        Ok(())
+    })?;
+    Ok(Facts {
+        title: "Table 5-5: Luv difference between normal and smart slicing, over the object's pixels",
+        columns: &["mesh", "planes", "fitted mean", "fitted p99", "kept mean", "kept p99", "thesis"],
+        rows,
+    })
+}
+
+/// Figure 5-12: texels in each depth level of a mesh.
+///
+/// # Errors
+/// [`Error::Gpu`].
+pub fn depth_profile(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Result<Vec<u32>, Error> {
+    let mut setup = setup.clone();
+    setup.parameters.smart.placement = SmartPlacement::Fitted { epsilon_m: None };
+    let mut built = build(machine, &setup, scene, Variant::LevelMapSmart)?;
+    machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+    Ok(built.paper.depth_profile().unwrap_or_default().to_vec())
+}
+
+/// Section 5.1: device memory of the methods by number of planes; only the volumetric method grows.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`].
+pub fn memory(machine: &mut Machine, setup: &Setup, meshes: &[MeshSource], counts: &[u32]) -> Result<Facts, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.validate()?;
+            for variant in Variant::ALL {
+                let built = build(machine, setup, scene, variant)?;
+                let of = |test: fn(&str) -> bool| {
+                    built.memory.iter().filter(|m| test(&m.name)).map(|m| m.bytes).sum::<u64>()
+                };
+                rows.push(vec![
+                    json!(mesh),
+                    json!(planes),
+                    json!(variant.word()),
+                    json!(of(|name| name.ends_with("-map") || name.ends_with("-depth") && name != "underwater-depth")),
+                    json!(of(|_| true)),
+                ]);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(Facts {
+        title: "Section 5.1: memory by method",
+        columns: &["mesh", "planes", "method", "maps, bytes", "all, bytes"],
+        rows,
+    })
+}

@@ -1,0 +1,268 @@
+//! Tables 5-1 and 5-3 and the appendix's curves: rendering time by number of planes, methods interleaved in one
+//! process.
+
+use std::sync::atomic::Ordering;
+
+use serde_json::json;
+
+use super::thesis::{TABLE_5_1, TABLE_5_3, ThesisTable};
+use super::{Setup, bench, mesh_name};
+use crate::experiment::compare::{Ratio, ratio_within_process};
+use crate::experiment::error::Error;
+use crate::experiment::machine::Machine;
+use crate::experiment::measure::{Schedule, Watch};
+use crate::papers::caustics::Variant;
+use crate::report::plot::{LineChart, Scale, Series};
+use crate::report::record::{ExperimentRow, Limits, Run};
+use crate::report::table::{Align, Style, Table};
+use crate::scene::MeshSource;
+
+/// What a sweep compares.
+#[derive(Debug, Clone, Copy)]
+pub struct Comparison {
+    pub preset: &'static str,
+    pub title: &'static str,
+    /// The method that ratios are taken against.
+    pub base: Variant,
+    pub others: &'static [Variant],
+    thesis: ThesisTable,
+}
+
+/// Table 5-1 and figure 5-10.
+pub const LEVEL_MAP_AGAINST_VOLUMETRIC: Comparison = Comparison {
+    preset: "5-1",
+    title: "Table 5-1: level map against volumetric",
+    base: Variant::LevelMap,
+    others: &[Variant::Volumetric],
+    thesis: TABLE_5_1,
+};
+
+/// Table 5-3 and figure 5-11.
+pub const NORMAL_AGAINST_SMART: Comparison = Comparison {
+    preset: "5-3",
+    title: "Table 5-3: normal against smart slicing",
+    base: Variant::LevelMapSmart,
+    others: &[Variant::LevelMap],
+    thesis: TABLE_5_3,
+};
+
+/// The appendix's graphs.
+pub const ALL_THREE: Comparison = Comparison {
+    preset: "appendix",
+    title: "Appendix: rendering time by number of planes",
+    base: Variant::LevelMap,
+    others: &[Variant::Volumetric, Variant::LevelMapSmart],
+    thesis: TABLE_5_1,
+};
+
+impl Comparison {
+    fn variants(&self) -> Vec<Variant> {
+        std::iter::once(self.base).chain(self.others.iter().copied()).collect()
+    }
+
+    /// The thesis's seconds for a variant.
+    fn thesis(&self, mesh: &str, variant: Variant, planes: u32) -> Option<f64> {
+        self.thesis.get(&format!("{mesh} {}", variant.word()), planes)
+    }
+
+    fn thesis_ratio(&self, mesh: &str, variant: Variant, planes: u32) -> Option<f64> {
+        Some(self.thesis(mesh, variant, planes)? / self.thesis(mesh, self.base, planes)?)
+    }
+}
+
+/// A sweep over meshes and plane counts.
+pub struct Sweep {
+    pub comparison: Comparison,
+    pub setup: Setup,
+    pub meshes: Vec<MeshSource>,
+    pub counts: Vec<u32>,
+    pub schedule: Schedule,
+    pub limits: Option<Limits>,
+}
+
+/// One method at one count.
+struct Row {
+    mesh: String,
+    planes: u32,
+    variant: Variant,
+    /// Planes that were drawn.
+    drawn: u64,
+    frame_ms: f64,
+    device_bytes: u64,
+    /// Time over the base's; absent for the base itself.
+    ratio: Option<Ratio>,
+    thesis: Option<f64>,
+}
+
+/// What the sweep found.
+pub struct Outcome {
+    comparison: Comparison,
+    pub runs: Vec<Run>,
+    rows: Vec<Row>,
+}
+
+impl Sweep {
+    /// Measures every method, interleaved, at every count for every mesh. An interrupted sweep keeps its finished rows.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`]; [`Error::Interrupted`] before the first row.
+    pub fn run(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Outcome, Error> {
+        let mut outcome = Outcome { comparison: self.comparison, runs: Vec::new(), rows: Vec::new() };
+        let variants = self.comparison.variants();
+        for mesh in &self.meshes {
+            let mut setup = self.setup.clone();
+            setup.meshes = vec![mesh.clone()];
+            setup.preset = Some(self.comparison.preset.to_owned());
+            let scene = setup.load()?;
+            for &planes in &self.counts {
+                setup.parameters.planes = planes;
+                setup.parameters.validate()?;
+                let limits = self.limits.as_ref();
+                match bench(machine, &setup, &scene, &variants, self.schedule, limits, watch) {
+                    Ok(runs) => outcome.add(mesh, planes, runs.into_iter().map(|r| r.run).collect()),
+                    Err(Error::Interrupted) if !outcome.rows.is_empty() => return Ok(outcome),
+                    Err(error) => return Err(error),
+                }
+                if watch.interrupted.load(Ordering::Relaxed) {
+                    return Ok(outcome);
+                }
+            }
+        }
+        Ok(outcome)
+    }
+}
+
+fn samples(run: &Run) -> &[f64] {
+    run.frame_ms.as_ref().map_or(&[], |s| &s.samples)
+}
+
+impl Outcome {
+    fn add(&mut self, mesh: &MeshSource, planes: u32, mut runs: Vec<Run>) {
+        let mesh = mesh_name(mesh);
+        let base = runs.first().map(|run| samples(run).to_vec()).unwrap_or_default();
+        for (index, (run, variant)) in runs.iter_mut().zip(self.comparison.variants()).enumerate() {
+            let ratio = (index > 0).then(|| ratio_within_process(&base, samples(run))).flatten();
+            let thesis = self.comparison.thesis_ratio(&mesh, variant, planes).filter(|_| index > 0);
+            if let Some(ratio) = &ratio {
+                run.experiment = Some(ExperimentRow {
+                    row: format!("{mesh}, {planes} planes: {} / {}", variant.word(), self.comparison.base.word()),
+                    paper: thesis,
+                    ours: Some(ratio.ratio),
+                    ratio: thesis.map(|thesis| ratio.ratio / thesis),
+                });
+                run.results.insert("ratio_interval".into(), json!(ratio.interval));
+            }
+            self.rows.push(Row {
+                mesh: mesh.clone(),
+                planes,
+                variant,
+                drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()).unwrap_or(0),
+                frame_ms: run.frame_ms.as_ref().map_or(f64::NAN, |s| s.median),
+                device_bytes: run.memory.device_bytes.unwrap_or(0),
+                ratio,
+                thesis,
+            });
+        }
+        self.runs.append(&mut runs);
+    }
+
+    /// The table, ours beside the thesis's.
+    pub fn render(&self, style: Style) -> String {
+        let mut table = Table::new(&[
+            ("mesh", Align::Left),
+            ("planes", Align::Right),
+            ("method", Align::Left),
+            ("drawn", Align::Right),
+            ("frame ms", Align::Right),
+            ("device MiB", Align::Right),
+            ("ratio", Align::Right),
+            ("95 % interval", Align::Left),
+            ("thesis", Align::Right),
+            ("ours / thesis", Align::Right),
+        ]);
+        for row in &self.rows {
+            let flag = if is_doubtful(row) { "*" } else { "" };
+            let ratio = row.ratio.as_ref();
+            table.push(vec![
+                row.mesh.clone(),
+                row.planes.to_string(),
+                row.variant.word().to_owned(),
+                row.drawn.to_string(),
+                format!("{:.2}", row.frame_ms),
+                format!("{:.1}", row.device_bytes as f64 / f64::from(1 << 20)),
+                ratio.map_or(String::new(), |r| format!("{:.3}", r.ratio)),
+                ratio.map_or(String::new(), |r| format!("{:.3} to {:.3}", r.interval[0], r.interval[1])),
+                row.thesis.map_or(String::new(), |t| format!("{t:.2}{flag}")),
+                ratio.zip(row.thesis).map_or(String::new(), |(r, t)| format!("{:.2}", r.ratio / t)),
+            ]);
+        }
+        let mut text = format!("{}\n{}", style.bold(self.comparison.title), table.render(style));
+        text.push_str(&format!("ratio: frame time over that of {}\n", self.comparison.base.word()));
+        if self.rows.iter().any(is_doubtful) {
+            text.push_str(
+                "* the thesis prints the teapot's volumetric times for the sphere as well, digit for digit; this ratio \
+                 rests on them\n",
+            );
+        }
+        text
+    }
+
+    /// Time against the number of planes; the thesis's curves are drawn dashed, scaled so that its base meets ours at the
+    /// largest count: shapes compare, machines do not.
+    ///
+    /// # Errors
+    /// [`Error::Plot`].
+    pub fn plot(&self) -> Result<String, Error> {
+        let mut series = Vec::new();
+        let mut meshes: Vec<&str> = self.rows.iter().map(|row| row.mesh.as_str()).collect();
+        meshes.dedup();
+        for mesh in &meshes {
+            for variant in self.comparison.variants() {
+                let rows = self.rows.iter().filter(|row| row.mesh == *mesh && row.variant == variant);
+                series.push(Series {
+                    name: format!("{mesh}, {}", variant.word()),
+                    points: rows.map(|row| (f64::from(row.planes), row.frame_ms)).collect(),
+                    reference: false,
+                });
+            }
+        }
+        if let Some(mesh) = meshes.first() {
+            series.extend(self.thesis_series(mesh));
+        }
+        let chart = LineChart {
+            title: self.comparison.title.to_owned(),
+            x_label: "planes".to_owned(),
+            y_label: "frame, ms".to_owned(),
+            x_scale: Scale::Linear,
+            y_scale: Scale::Linear,
+            series,
+        };
+        Ok(chart.to_svg()?)
+    }
+
+    fn thesis_series(&self, mesh: &str) -> Vec<Series> {
+        let base = self.comparison.base;
+        let of_base = self.rows.iter().filter(|row| row.mesh == mesh && row.variant == base);
+        let Some(last) = of_base.max_by_key(|row| row.planes) else { return Vec::new() };
+        let Some(seconds) = self.comparison.thesis(mesh, base, last.planes) else { return Vec::new() };
+        let scale = last.frame_ms / seconds;
+        let curve = |variant: Variant| {
+            let at = |planes| Some((f64::from(planes), scale * self.comparison.thesis(mesh, variant, planes)?));
+            (3..=last.planes).filter_map(at).collect::<Vec<_>>()
+        };
+        self.comparison
+            .variants()
+            .into_iter()
+            .map(|variant| Series {
+                name: format!("thesis, {mesh}, {}, scaled", variant.word()),
+                points: curve(variant),
+                reference: true,
+            })
+            .filter(|series| !series.points.is_empty())
+            .collect()
+    }
+}
+
+fn is_doubtful(row: &Row) -> bool {
+    row.mesh == "sphere" && row.variant == Variant::Volumetric && row.thesis.is_some()
+}
