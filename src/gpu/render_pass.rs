@@ -32,6 +32,8 @@ pub enum Blend {
     Multiply,
     /// source alpha over the destination.
     Over,
+    /// Nothing is written: for the floor of a pass.
+    Masked,
 }
 
 impl Blend {
@@ -41,6 +43,7 @@ impl Blend {
             Blend::Add => "add",
             Blend::Multiply => "multiply",
             Blend::Over => "over",
+            Blend::Masked => "masked",
         }
     }
 
@@ -61,6 +64,7 @@ impl Blend {
             Blend::Replace => {
                 vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA)
             }
+            Blend::Masked => vk::PipelineColorBlendAttachmentState::default(),
             Blend::Add => blended(F::ONE, F::ONE, F::ONE, F::ONE),
             Blend::Multiply => blended(F::DST_COLOR, F::ZERO, F::ZERO, F::ONE),
             Blend::Over => blended(F::SRC_ALPHA, F::ONE_MINUS_SRC_ALPHA, F::ONE, F::ONE_MINUS_SRC_ALPHA),

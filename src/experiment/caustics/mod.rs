@@ -15,6 +15,7 @@ use super::error::Error;
 use super::machine::Machine;
 use super::measure::{Measurement, Schedule, Watch, measure};
 use super::run::{self, Subject, assemble};
+use crate::gpu::Mode;
 use crate::gpu::live::MemoryUse;
 use crate::papers::Paper;
 use crate::papers::caustics::{Caustics, Parameters, ReceiverInput, SmartPlacement, Variant};
@@ -222,10 +223,11 @@ pub fn bench(
     let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
     let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
     machine.device.wait_idle()?;
+    let floors = floors_ms(machine, &built)?;
     let validation = machine.check_validation()?;
     let warnings = machine.warnings();
     let mut runs = Vec::new();
-    for (built, measurement) in built.iter().zip(measurements) {
+    for ((built, measurement), floor_ms) in built.iter().zip(measurements).zip(floors) {
         if measurement.frame_ms.is_empty() {
             return Err(Error::Interrupted);
         }
@@ -242,7 +244,7 @@ pub fn bench(
             build_ms: built.build_ms,
             memory: built.memory.clone(),
             peak_bytes: built.peak_bytes,
-            results: results(&built.paper, &measurement),
+            results: results(&built.paper, &measurement, floor_ms),
             limits: limits.cloned(),
             stamp_floor_ms,
             validation,
@@ -258,14 +260,32 @@ pub fn bench(
     Ok(runs)
 }
 
+/// Median time of each variant's caustics maps with an empty fragment stage, interleaved; `None` without stamps.
+fn floors_ms(machine: &mut Machine, built: &[Built]) -> Result<Vec<Option<f64>>, Error> {
+    const SAMPLES: usize = 5;
+    let mut times = vec![Vec::with_capacity(SAMPLES); built.len()];
+    // The first round compiles the pipelines.
+    for round in 0..=SAMPLES {
+        for (built, times) in built.iter().zip(&mut times) {
+            let sample = machine.recorder.run(Mode::Stamped, |frame| built.paper.record_floor(frame))?;
+            if round > 0 {
+                times.extend(sample.passes.iter().find_map(|p| p.gpu_ms));
+            }
+        }
+    }
+    Ok(times.iter().map(|times| super::statistics::median(times)).collect())
+}
+
 /// The paper's own figures: the intersection triangles of a frame and how fast they are drawn.
-fn results(paper: &Caustics, measurement: &Measurement) -> Map<String, Value> {
+fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -> Map<String, Value> {
     let planes = paper.plane_counts().iter().sum::<usize>() as u64;
     let triangles = planes * u64::from(paper.grid().triangle_count());
     let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
     let time_ms = caustics_map.and_then(|p| super::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);
     let entries = [
         ("planes_drawn", json!(planes)),
+        ("caustics_map_floor_ms", json!(floor_ms)),
+        ("caustics_map_over_floor", json!(time_ms.zip(floor_ms).map(|(time, floor)| time / floor))),
         ("intersection_triangles", json!(triangles)),
         ("intersection_triangles_per_s", json!(time_ms.map(|ms| triangles as f64 / ms * 1e3))),
     ];

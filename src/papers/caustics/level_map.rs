@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::illumination::{IlluminationVolumes, Ray};
 use super::maps::{self, BACKGROUND, BLACK, FAR};
-use super::method::{CombineConstants, Method};
+use super::method::{CombineConstants, Method, draw_floor, floor_pass};
 use super::parameters::{Parameters, SmartParameters};
 use super::planes::{DepthProfile, SmartPlacement};
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
@@ -20,6 +20,8 @@ pub struct LevelMap {
     /// Position and diffuse map in one pass with two targets, or one after the other (figures 5-6 and 5-5).
     maps: Vec<Pass>,
     caustics_map: Pass,
+    /// The caustics map's triangles with an empty fragment stage.
+    floor: Pass,
     combine: Pass,
     position: Arc<ImageView>,
     diffuse: Arc<ImageView>,
@@ -151,7 +153,8 @@ impl LevelMap {
             Slicing::Normal => None,
             Slicing::Smart => Some(SmartSlicing::new(shaders, label, &position, parameters)?),
         };
-        Ok(LevelMap { smart, maps, caustics_map, combine, position, diffuse, caustics, combined })
+        let floor = floor_pass(shaders, &caustics, volumes, water)?;
+        Ok(LevelMap { floor, smart, maps, caustics_map, combine, position, diffuse, caustics, combined })
     }
 }
 
@@ -187,6 +190,10 @@ impl Method for LevelMap {
                 draw.constants(&lit.plane_constants(cell, volumes)).indices(volumes.index_count);
             }
         })
+    }
+
+    fn draw_floor(&self, frame: &mut Frame<'_>, lit: &LitReceiver, volumes: &IlluminationVolumes) -> Result<(), Error> {
+        draw_floor(frame, &self.floor, lit, volumes)
     }
 
     fn combine(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use super::illumination::IlluminationVolumes;
-use super::receiver::LitReceiver;
-use crate::gpu::{Error, Frame, ImageView};
+use super::illumination::{IlluminationVolumes, Ray};
+use super::maps::BLACK;
+use super::receiver::{LitReceiver, PlaneConstants};
+use super::water::Water;
+use crate::gpu::{Blend, Error, Frame, ImageView, Pass, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
@@ -18,6 +20,41 @@ impl CombineConstants {
     pub fn of(lit: &LitReceiver) -> Self {
         CombineConstants { intensity: lit.light_intensity().extend(0.0).to_array() }
     }
+}
+
+/// The caustics-map pass with an empty fragment stage: the same triangles on the same target, nothing shaded.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn floor_pass(
+    shaders: &ShaderLibrary,
+    caustics: &Arc<ImageView>,
+    volumes: &IlluminationVolumes,
+    water: &Water,
+) -> Result<Pass, Error> {
+    Pass::graphics("caustics-map-floor", "4.5", "caustics/caustics-map.vert", "common/empty.frag")
+        .vertices::<Ray>(&volumes.rays)
+        .indices(&water.indices)
+        .constants::<PlaneConstants>()
+        .color(caustics, BLACK, Blend::Masked)
+        .build(shaders)
+}
+
+/// Draws the triangles of every plane with [`floor_pass`].
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn draw_floor(
+    frame: &mut Frame<'_>,
+    pass: &Pass,
+    lit: &LitReceiver,
+    volumes: &IlluminationVolumes,
+) -> Result<(), Error> {
+    frame.graphics(pass, |draw| {
+        for cell in &lit.cells {
+            draw.constants(&lit.plane_constants(cell, volumes)).indices(volumes.index_count);
+        }
+    })
 }
 
 /// One method for one receiver under one light. The stages run in this order.
@@ -42,6 +79,9 @@ pub trait Method {
         lit: &LitReceiver,
         volumes: &IlluminationVolumes,
     ) -> Result<(), Error>;
+
+    /// Draws what [`Method::create_caustics`] draws with an empty fragment stage, after a frame.
+    fn draw_floor(&self, frame: &mut Frame<'_>, lit: &LitReceiver, volumes: &IlluminationVolumes) -> Result<(), Error>;
 
     /// I_c x I_d into the combined map.
     fn combine(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error>;

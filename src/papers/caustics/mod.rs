@@ -138,6 +138,20 @@ impl Caustics {
         self.water.grid
     }
 
+    /// Draws the last frame's caustics maps with an empty fragment stage, as pass `caustics-map-floor`: what their
+    /// vertices and rasterisation cost alone. It spoils the maps.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        for light in &self.lights {
+            for one in &light.receivers {
+                one.method.draw_floor(frame, &one.lit, &light.volumes)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Texels in each depth level of the first receiver under the first light, after a frame of smart slicing.
     pub fn depth_profile(&self) -> Option<&[u32]> {
         self.lights.first()?.receivers.first()?.method.depth_profile()

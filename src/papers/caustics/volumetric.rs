@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::illumination::{IlluminationVolumes, Ray};
 use super::maps::{self, BLACK, FAR};
-use super::method::{CombineConstants, Method};
+use super::method::{CombineConstants, Method, draw_floor, floor_pass};
 use super::parameters::Parameters;
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
 use super::water::Water;
@@ -25,6 +25,8 @@ pub struct Volumetric {
     /// One for every plane: same pass, next layer.
     slice_images: Vec<Pass>,
     caustics_map: Pass,
+    /// The caustics map's triangles with an empty fragment stage.
+    floor: Pass,
     multiply: Vec<Pass>,
     combine_slices: Pass,
     slices: Arc<ImageView>,
@@ -88,7 +90,9 @@ impl Volumetric {
         let each_layer = |pass: &Pass, load: Load| {
             layers.iter().map(|layer| pass.again().color(0, layer, load).build(shaders)).collect::<Result<Vec<_>, _>>()
         };
+        let floor = floor_pass(shaders, &caustics, volumes, water)?;
         Ok(Volumetric {
+            floor,
             slice_images: each_layer(&slice_image, BLACK)?,
             caustics_map,
             multiply: each_layer(&multiply, Load::Keep)?,
@@ -126,6 +130,10 @@ impl Method for Volumetric {
             })?;
         }
         Ok(())
+    }
+
+    fn draw_floor(&self, frame: &mut Frame<'_>, lit: &LitReceiver, volumes: &IlluminationVolumes) -> Result<(), Error> {
+        draw_floor(frame, &self.floor, lit, volumes)
     }
 
     fn combine(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
