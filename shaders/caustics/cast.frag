@@ -24,7 +24,8 @@ void main() {
 
     // A texel belongs to this surface when its height differs by no more than the surface rises over a texel and a half.
     vec3 normal = normalize(world_normal);
-    float cos_light = max(abs(dot(normal, receiver.bounds.v.xyz)), 0.05);
+    float facing = dot(normal, receiver.bounds.v.xyz);
+    float cos_light = max(facing, 0.05);
     float rise = sqrt(1.0 - cos_light * cos_light) / cos_light;
     float texel_m = max(receiver.bounds.extent.x, receiver.bounds.extent.z) / texels;
     float tolerance_m = texel_m * (1.5 * rise + 0.5) + receiver.ambient.w;
@@ -41,6 +42,7 @@ void main() {
         total += weight;
     }
     // Texels of other surfaces say nothing about this one: the rest is spread over those that match.
-    lit = total > 0.0 ? lit / total : vec3(0.0);
+    // Where it faces away I_d is 0, whatever its lit neighbours across the silhouette hold.
+    lit = total > 0.0 && facing > 0.0 ? lit / total : vec3(0.0);
     color = vec4(lit + receiver.albedo.rgb * receiver.ambient.rgb, 1.0);
 }

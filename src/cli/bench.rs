@@ -22,7 +22,7 @@ use crate::report::trace::TraceRun;
 #[derive(Debug, Clone, Args)]
 pub struct BenchArgs {
     /// Variants to measure, comma-separated, or all
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "all")]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "level-map,level-map-smart,volumetric")]
     variant: Vec<VariantWord>,
     #[command(flatten)]
     scene: SceneArgs,

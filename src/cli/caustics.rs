@@ -14,6 +14,7 @@ pub enum VariantWord {
     LevelMap,
     LevelMapSmart,
     Volumetric,
+    Stencil,
     All,
 }
 
@@ -25,6 +26,7 @@ impl VariantWord {
                 VariantWord::LevelMap => *variant == Variant::LevelMap,
                 VariantWord::LevelMapSmart => *variant == Variant::LevelMapSmart,
                 VariantWord::Volumetric => *variant == Variant::Volumetric,
+                VariantWord::Stencil => *variant == Variant::Stencil,
                 VariantWord::All => true,
             })
         };
@@ -107,7 +109,7 @@ pub struct SceneArgs {
     /// Refraction index of water against air, above 1 and at most 4 [default: 1.3333]
     #[arg(long, value_name = "N", value_parser = parse_finite, allow_negative_numbers = true)]
     refraction_index: Option<f32>,
-    /// Absorption K of eq. 4-17 per metre, at least 0 [default: 0.1]
+    /// Absorption K of eq. 4-17 per metre, 0 to 1000000 [default: 0.1]
     #[arg(long, value_name = "K", value_parser = parse_finite, allow_negative_numbers = true)]
     absorption: Option<f32>,
     /// Depth of the pool in metres, above 0 and at most 1000 [default: 3]

@@ -17,7 +17,7 @@ use crate::experiment::caustics::sweep::{
 use crate::experiment::caustics::{self, PAPER, Setup, mesh_name};
 use crate::experiment::machine::Machine;
 use crate::experiment::measure::Watch;
-use crate::experiment::{limits, picture};
+use crate::experiment::{self, limits, picture};
 use crate::image::write_png;
 use crate::papers::caustics::{NEEDS, Parameters, Variant};
 use crate::report::output::check_writable;
@@ -124,12 +124,21 @@ pub fn run(arguments: &ExperimentArgs) -> Result<(), Failure> {
     setup.preset = Some(name.word());
     setup.parameters.validate().map_err(crate::experiment::Error::from)?;
     let meshes = if arguments.scene.names_meshes() { setup.meshes.clone() } else { caustics::sample_meshes() };
+    check_input(&setup, &meshes, &counts)?;
     let machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
     outcome::say_device(&arguments.output, &machine);
     let mut experiment = Experiment { arguments, name, setup, meshes, counts, machine };
     experiment.run()?;
     experiment.machine.check_validation()?;
     Ok(())
+}
+
+/// Looks at every count and every mesh before anything is measured: a sweep takes long to come to the last.
+fn check_input(setup: &Setup, meshes: &[MeshSource], counts: &[u32]) -> Result<(), experiment::Error> {
+    for &planes in counts {
+        Parameters { planes, ..setup.parameters.clone() }.validate()?;
+    }
+    meshes.iter().try_for_each(|mesh| Setup { meshes: vec![mesh.clone()], ..setup.clone() }.load().map(drop))
 }
 
 /// Options that other verbs know and this experiment would not heed.
@@ -220,16 +229,19 @@ impl Experiment<'_> {
         bar.finish_and_clear();
         let record = Record::new(self.machine.environment(), std::env::args().collect(), found.runs.clone());
         let text = outcome::text(&record)?;
-        if output.json_to_stdout() {
-            outcome::print(&text)?;
-        } else if !output.quiet {
-            outcome::print(&found.render(outcome::style()))?;
-        }
+        let shown = if output.json_to_stdout() { text.clone() } else { found.render(outcome::style()) };
         let json = output.json.clone().filter(|_| !output.json_to_stdout()).unwrap_or_else(|| self.file(".json"));
         self.save(&json, text.as_bytes())?;
         let csv_file = output.csv.clone().unwrap_or_else(|| self.file(".csv"));
         self.save(&csv_file, csv::to_string(&record).as_bytes())?;
-        self.save(&self.file(".svg"), found.plot()?.as_bytes())
+        self.save(&self.file(".svg"), found.plot()?.as_bytes())?;
+        self.print(&shown)
+    }
+
+    /// Prints the record or the table, after the files: they are kept even when nothing can be printed.
+    fn print(&self, text: &str) -> Result<(), Failure> {
+        let output = &self.arguments.output;
+        if output.json_to_stdout() || !output.quiet { outcome::print(text) } else { Ok(()) }
     }
 
     /// A table without times: console, JSON and CSV.
@@ -240,14 +252,12 @@ impl Experiment<'_> {
             "command": std::env::args().collect::<Vec<_>>(), "table": facts.json(),
         });
         let text = outcome::text(&document)?;
-        if output.json_to_stdout() {
-            outcome::print(&text)?;
-        } else if !output.quiet {
-            outcome::print(&format!("{}\n{}", facts.title, facts.table().render(outcome::style())))?;
-        }
+        let table = || format!("{}\n{}", facts.title, facts.table().render(outcome::style()));
+        let shown = if output.json_to_stdout() { text.clone() } else { table() };
         let json = output.json.clone().filter(|_| !output.json_to_stdout()).unwrap_or_else(|| self.file(".json"));
         self.save(&json, text.as_bytes())?;
-        self.save(&output.csv.clone().unwrap_or_else(|| self.file(".csv")), facts.csv().as_bytes())
+        self.save(&output.csv.clone().unwrap_or_else(|| self.file(".csv")), facts.csv().as_bytes())?;
+        self.print(&shown)
     }
 
     fn depth_profiles(&mut self) -> Result<(), Failure> {

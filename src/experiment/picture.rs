@@ -40,7 +40,9 @@ pub fn read_target(machine: &Machine, target: &Target) -> Result<Raster, Error> 
             let (width, height, layers) = (view.width(), view.height(), view.layer_count());
             let floats = || bytemuck::pod_collect_to_vec::<u8, f32>(&bytes);
             let raster = match view.image().desc().format {
-                vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT => Raster::image(width, height, 1, layers, floats()),
+                vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT => {
+                    Raster::image(width, height, 1, layers, floats())
+                }
                 vk::Format::R32G32B32A32_SFLOAT => Raster::image(width, height, 4, layers, floats()),
                 vk::Format::R16G16B16A16_SFLOAT => {
                     let halves: Vec<half::f16> = bytemuck::pod_collect_to_vec(&bytes);

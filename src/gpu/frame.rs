@@ -566,6 +566,25 @@ impl Draw<'_> {
         self
     }
 
+    /// Makes the draws to come those of the pass's counting pipeline, or of its own again.
+    pub fn counting(&mut self, counting: bool) -> &mut Self {
+        let pipeline = if counting { &self.inner.counting } else { &self.inner.pipeline };
+        if let Some(pipeline) = pipeline {
+            let point = vk::PipelineBindPoint::GRAPHICS;
+            // SAFETY: inside the pass's render pass; both pipelines were made for it and share one layout.
+            unsafe { self.device.raw.cmd_bind_pipeline(self.commands, point, pipeline.raw) };
+        }
+        self
+    }
+
+    /// Draws `count` vertices from `first` on without indices.
+    pub fn vertices_from(&mut self, first: u32, count: u32) -> &mut Self {
+        self.calls += 1;
+        // SAFETY: as for [`Draw::vertices`].
+        unsafe { self.device.raw.cmd_draw(self.commands, count, 1, first, 0) };
+        self
+    }
+
     /// Draws `count` vertices without indices.
     pub fn vertices(&mut self, count: u32) -> &mut Self {
         self.calls += 1;

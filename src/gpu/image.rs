@@ -143,7 +143,15 @@ impl Image {
     /// [`Error::Vulkan`] when the device refuses.
     pub fn view(self: &Arc<Self>) -> Result<Arc<ImageView>, Error> {
         let kind = if self.desc.array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
-        ImageView::new(self, kind, 0..self.desc.layers)
+        ImageView::new(self, kind, self.aspect(), 0..self.desc.layers)
+    }
+
+    /// A view of the depth alone, which is what a shader may fetch of a depth and stencil image.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] when the device refuses.
+    pub fn depth_view(self: &Arc<Self>) -> Result<Arc<ImageView>, Error> {
+        ImageView::new(self, vk::ImageViewType::TYPE_2D, vk::ImageAspectFlags::DEPTH, 0..1)
     }
 
     /// A two-dimensional view of one layer.
@@ -159,7 +167,7 @@ impl Image {
                 limit: u64::from(self.desc.layers) - 1,
             });
         }
-        ImageView::new(self, vk::ImageViewType::TYPE_2D, layer..layer + 1)
+        ImageView::new(self, vk::ImageViewType::TYPE_2D, self.aspect(), layer..layer + 1)
     }
 
     pub(crate) fn with_states<T>(&self, layers: Range<u32>, visit: impl FnOnce(&mut [State]) -> T) -> T {
@@ -200,12 +208,17 @@ pub struct ImageView {
 }
 
 impl ImageView {
-    fn new(image: &Arc<Image>, kind: vk::ImageViewType, layers: Range<u32>) -> Result<Arc<Self>, Error> {
+    fn new(
+        image: &Arc<Image>,
+        kind: vk::ImageViewType,
+        aspect: vk::ImageAspectFlags,
+        layers: Range<u32>,
+    ) -> Result<Arc<Self>, Error> {
         let info = vk::ImageViewCreateInfo::default()
             .image(image.raw)
             .view_type(kind)
             .format(image.desc.format)
-            .subresource_range(subresource_range(image.aspect(), &layers));
+            .subresource_range(subresource_range(aspect, &layers));
         let device = &image.device;
         // SAFETY: the image is alive, the layers exist, and its usage allows views.
         let raw =

@@ -83,6 +83,8 @@ pub(crate) struct Inner {
     pub info: Arc<PassInfo>,
     /// `None` for a copy.
     pub pipeline: Option<Arc<Pipeline>>,
+    /// The pipeline of the draws that come first in turn, where there are such.
+    pub counting: Option<Arc<Pipeline>>,
     pub bindings: Option<Arc<Bindings>>,
     pub uses: Vec<Use>,
     pub body: Body,
@@ -127,6 +129,7 @@ pub struct PassBuilder {
     sentence: Sentence,
     vertex_layout: Option<LayoutOf>,
     check_constants: Option<CheckConstants>,
+    counting: Option<(String, DepthTest)>,
 }
 
 impl Pass {
@@ -164,6 +167,7 @@ impl Pass {
             inner: Arc::new(Inner {
                 info,
                 pipeline: None,
+                counting: None,
                 bindings: None,
                 uses,
                 body: Body::Copy { from, to: to.clone() },
@@ -186,6 +190,7 @@ impl Pass {
             },
             vertex_layout: None,
             check_constants: None,
+            counting: None,
         }
     }
 
@@ -247,6 +252,13 @@ impl PassBuilder {
         self
     }
 
+    /// A second pipeline for draws that take turns with the pass's own inside its render pass: the same vertices, another
+    /// fragment shader and depth state, colours masked. [`Draw::counting`](super::Draw::counting) chooses it.
+    pub fn counting(mut self, fragment: &str, test: DepthTest) -> Self {
+        self.counting = Some((fragment.to_owned(), test));
+        self
+    }
+
     /// The extent of a pass that has no attachments.
     pub fn extent(mut self, width: u32, height: u32) -> Self {
         self.sentence.targets.extent = Some((width, height));
@@ -260,7 +272,7 @@ impl PassBuilder {
     /// [`Error::Pass`] or [`Error::Shader`] for a sentence that does not fit its shaders; what Vulkan answers.
     pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
         let device = shaders.device();
-        let PassBuilder { sentence, vertex_layout, check_constants } = self;
+        let PassBuilder { sentence, vertex_layout, check_constants, counting } = self;
         let name = sentence.name;
         let modules = sentence.shaders.iter().map(|s| shaders.module(s)).collect::<Result<Vec<_>, _>>()?;
         let program = Program::new(device, name, modules)?;
@@ -277,14 +289,32 @@ impl PassBuilder {
         let is_compute = sentence.shaders.iter().any(|s| s.ends_with(".comp"));
         if is_compute {
             let pipeline = Pipeline::compute(device, name, &program)?;
-            return finish(device, sentence, pipeline, None);
+            return finish(device, sentence, Pipelines { own: pipeline, counting: None }, None);
         }
         let layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
         let render_pass = RenderPass::new(device, name, &sentence.targets)?;
         let targets = &sentence.targets;
-        let pipeline = Pipeline::graphics(device, name, &program, &render_pass, targets, &layout, sentence.topology)?;
-        finish(device, sentence, pipeline, Some(render_pass))
+        let modules = &program.modules;
+        let topology = sentence.topology;
+        let own = Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology)?;
+        let counting = match counting {
+            None => None,
+            Some((fragment, test)) => {
+                let modules = [modules[0].clone(), shaders.module(&fragment)?];
+                let targets = targets.for_counting(test);
+                let made =
+                    Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)?;
+                Some(made)
+            }
+        };
+        finish(device, sentence, Pipelines { own, counting }, Some(render_pass))
     }
+}
+
+/// The pipelines of a pass that draws or dispatches.
+struct Pipelines {
+    own: Arc<Pipeline>,
+    counting: Option<Arc<Pipeline>>,
 }
 
 /// A pass said again: same shaders, state and formats, other resources.
@@ -345,16 +375,18 @@ impl Again {
         let Some(pipeline) = self.pass.inner.pipeline.clone() else {
             return Err(Error::Pass { pass: self.sentence.name.into(), problem: "a copy is not said again".into() });
         };
-        finish(shaders.device(), self.sentence, pipeline, render_pass)
+        let pipelines = Pipelines { own: pipeline, counting: self.pass.inner.counting.clone() };
+        finish(shaders.device(), self.sentence, pipelines, render_pass)
     }
 }
 
 fn finish(
     device: &Arc<Device>,
     sentence: Sentence,
-    pipeline: Arc<Pipeline>,
+    pipelines: Pipelines,
     render_pass: Option<Arc<RenderPass>>,
 ) -> Result<Pass, Error> {
+    let Pipelines { own: pipeline, counting } = pipelines;
     let bindings = Bindings::new(device, sentence.name, &pipeline.program, &sentence.resources)?;
     let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
     let body = match render_pass {
@@ -377,7 +409,7 @@ fn finish(
     };
     check_conflicts(sentence.name, &uses)?;
     let info = Arc::new(describe(&sentence, &pipeline.program, &uses));
-    Ok(Pass { inner: Arc::new(Inner { info, pipeline: Some(pipeline), bindings, uses, body, sentence }) })
+    Ok(Pass { inner: Arc::new(Inner { info, pipeline: Some(pipeline), counting, bindings, uses, body, sentence }) })
 }
 
 fn add_fixed_function_uses(sentence: &Sentence, uses: &mut Vec<Use>) {

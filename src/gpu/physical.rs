@@ -54,12 +54,14 @@ pub enum Feature {
     PreciseOcclusion,
     /// Time stamps on the graphics and compute queue.
     Timestamps,
+    /// The depth and stencil format with 32 bits of depth.
+    DepthStencil32,
     /// `maintenance4` of Vulkan 1.3: a stage may write what the next does not read.
     Maintenance4,
 }
 
 impl Feature {
-    pub const ALL: [Feature; 12] = [
+    pub const ALL: [Feature; 13] = [
         Feature::Synchronization2,
         Feature::HostQueryReset,
         Feature::IndependentBlend,
@@ -71,6 +73,7 @@ impl Feature {
         Feature::PipelineStatistics,
         Feature::PreciseOcclusion,
         Feature::Timestamps,
+        Feature::DepthStencil32,
         Feature::Maintenance4,
     ];
 
@@ -88,6 +91,7 @@ impl Feature {
             Feature::PipelineStatistics => "pipeline-statistics",
             Feature::PreciseOcclusion => "precise-occlusion",
             Feature::Timestamps => "timestamps",
+            Feature::DepthStencil32 => "depth-stencil-d32s8",
             Feature::Maintenance4 => "maintenance4",
         }
     }
@@ -234,6 +238,13 @@ fn supported_features(
         Feature::FragmentStores => core.fragment_stores_and_atomics == vk::TRUE,
         Feature::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
         Feature::PreciseOcclusion => core.occlusion_query_precise == vk::TRUE,
+        Feature::DepthStencil32 => {
+            let format = vk::Format::D32_SFLOAT_S8_UINT;
+            // SAFETY: `raw` comes from this instance.
+            let properties = unsafe { instance.raw.get_physical_device_format_properties(raw, format) };
+            let needed = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT | vk::FormatFeatureFlags::SAMPLED_IMAGE;
+            properties.optimal_tiling_features.contains(needed)
+        }
         Feature::Maintenance4 => v13.maintenance4 == vk::TRUE,
         Feature::Timestamps => queue.is_some_and(|(_, bits)| bits > 0),
     };

@@ -8,8 +8,9 @@ use super::access::Stages;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
-use super::program::Program;
-use super::render_pass::{DepthTest, RenderPass, Targets};
+use super::program::{Program, stage_infos};
+use super::render_pass::{RenderPass, Targets};
+use super::shader::ShaderModule;
 use crate::shader_build::HostBlock;
 use crate::shader_build::{Format, Scalar};
 
@@ -93,16 +94,19 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
+    /// `modules` are those of `program`, or others of a part of its interface.
+    #[expect(clippy::too_many_arguments, reason = "the parts of a pipeline, named once, by the pass builder alone")]
     pub(crate) fn graphics(
         device: &Arc<Device>,
         pass: &str,
         program: &Arc<Program>,
+        modules: &[Arc<ShaderModule>],
         render_pass: &Arc<RenderPass>,
         targets: &Targets,
         vertices: &VertexLayout,
         topology: Topology,
     ) -> Result<Arc<Self>, Error> {
-        let stages = program.stage_infos();
+        let stages = stage_infos(modules);
         let bindings = [vk::VertexInputBindingDescription {
             binding: 0,
             stride: vertices.stride_bytes,
@@ -135,13 +139,7 @@ impl Pipeline {
             .line_width(1.0);
         let multisample =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let depth = match targets.depth.as_ref().map(|d| d.1) {
-            None => vk::PipelineDepthStencilStateCreateInfo::default(),
-            Some(test) => vk::PipelineDepthStencilStateCreateInfo::default()
-                .depth_test_enable(true)
-                .depth_write_enable(test == DepthTest::LessWrite)
-                .depth_compare_op(test.compare()),
-        };
+        let depth = targets.depth.as_ref().map(|(_, test)| test.state()).unwrap_or_default();
         let blends: Vec<_> = targets.colors.iter().map(|(_, blend)| blend.state()).collect();
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
@@ -164,7 +162,7 @@ impl Pipeline {
     }
 
     pub(crate) fn compute(device: &Arc<Device>, pass: &str, program: &Arc<Program>) -> Result<Arc<Self>, Error> {
-        let stages = program.stage_infos();
+        let stages = stage_infos(&program.modules);
         let [stage] = stages[..] else {
             return Err(Error::Pass { pass: pass.to_owned(), problem: "a compute pass has one shader".into() });
         };

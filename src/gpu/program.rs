@@ -117,18 +117,15 @@ impl Program {
     pub fn compiler(&self) -> Compiler {
         if self.modules.iter().all(|m| m.compiler == Compiler::Naga) { Compiler::Naga } else { Compiler::Glslang }
     }
+}
 
-    pub(crate) fn stage_infos(&self) -> Vec<vk::PipelineShaderStageCreateInfo<'_>> {
-        self.modules
-            .iter()
-            .map(|m| {
-                vk::PipelineShaderStageCreateInfo::default()
-                    .stage(m.stage().shader_stages())
-                    .module(m.raw)
-                    .name(c"main")
-            })
-            .collect()
-    }
+pub(crate) fn stage_infos(modules: &[Arc<ShaderModule>]) -> Vec<vk::PipelineShaderStageCreateInfo<'_>> {
+    modules
+        .iter()
+        .map(|m| {
+            vk::PipelineShaderStageCreateInfo::default().stage(m.stage().shader_stages()).module(m.raw).name(c"main")
+        })
+        .collect()
 }
 
 fn merge(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<Vec<Slot>, Error> {

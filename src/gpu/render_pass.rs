@@ -81,6 +81,11 @@ pub enum DepthTest {
     LessReadOnly,
     /// Fragments of the depth that is there pass; nothing is written.
     EqualReadOnly,
+    /// Nothing but the stencil is written: faces behind what is seen count up when they face away and down when they
+    /// face the viewer, wrapping, so that it is not zero where the surface lies inside a closed volume (z-fail).
+    CountVolume,
+    /// Depth is not tested: fragments pass where the stencil is not zero, and make it zero.
+    InsideVolume,
 }
 
 impl DepthTest {
@@ -89,19 +94,43 @@ impl DepthTest {
             DepthTest::LessWrite => "less, write",
             DepthTest::LessReadOnly => "less, read only",
             DepthTest::EqualReadOnly => "equal, read only",
+            DepthTest::CountVolume => "stencil: z-fail, wrapping",
+            DepthTest::InsideVolume => "stencil: not zero, to zero",
         }
     }
 
-    pub(crate) fn compare(self) -> vk::CompareOp {
+    pub(crate) fn state(self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+        use vk::StencilOp as Op;
+        let depth = |compare| {
+            vk::PipelineDepthStencilStateCreateInfo::default().depth_test_enable(true).depth_compare_op(compare)
+        };
+        let stencil = |compare, pass, depth_fail| vk::StencilOpState {
+            fail_op: Op::KEEP,
+            pass_op: pass,
+            depth_fail_op: depth_fail,
+            compare_op: compare,
+            compare_mask: 0xff,
+            write_mask: 0xff,
+            reference: 0,
+        };
         match self {
-            DepthTest::LessWrite | DepthTest::LessReadOnly => vk::CompareOp::LESS,
-            DepthTest::EqualReadOnly => vk::CompareOp::EQUAL,
+            DepthTest::LessWrite => depth(vk::CompareOp::LESS).depth_write_enable(true),
+            DepthTest::LessReadOnly => depth(vk::CompareOp::LESS),
+            DepthTest::EqualReadOnly => depth(vk::CompareOp::EQUAL),
+            DepthTest::CountVolume => depth(vk::CompareOp::LESS)
+                .stencil_test_enable(true)
+                .front(stencil(vk::CompareOp::ALWAYS, Op::KEEP, Op::DECREMENT_AND_WRAP))
+                .back(stencil(vk::CompareOp::ALWAYS, Op::KEEP, Op::INCREMENT_AND_WRAP)),
+            DepthTest::InsideVolume => {
+                let inside = stencil(vk::CompareOp::NOT_EQUAL, Op::ZERO, Op::ZERO);
+                vk::PipelineDepthStencilStateCreateInfo::default().stencil_test_enable(true).front(inside).back(inside)
+            }
         }
     }
 
     pub(crate) fn access(self) -> Access {
         match self {
-            DepthTest::LessWrite => Access::DepthTarget,
+            DepthTest::LessWrite | DepthTest::CountVolume | DepthTest::InsideVolume => Access::DepthTarget,
             DepthTest::LessReadOnly | DepthTest::EqualReadOnly => Access::DepthReadOnly,
         }
     }
@@ -128,6 +157,15 @@ impl Targets {
         let view = self.colors.first().map(|c| &c.0.view).or(self.depth.as_ref().map(|d| &d.0.view));
         let (width, height) = view.map(|v| (v.width(), v.height())).or(self.extent)?;
         Some(vk::Extent2D { width, height })
+    }
+
+    /// The same attachments with masked colours and another depth state.
+    pub(crate) fn for_counting(&self, test: DepthTest) -> Self {
+        Targets {
+            colors: self.colors.iter().map(|(target, _)| (target.clone(), Blend::Masked)).collect(),
+            depth: self.depth.as_ref().map(|(target, _)| (target.clone(), test)),
+            extent: self.extent,
+        }
     }
 
     /// One extent for all, and nothing cleared that is not written.

@@ -78,7 +78,7 @@ pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: 
         }
         Resource::Image(view) => {
             let subresource = vk::ImageSubresourceLayers::default()
-                .aspect_mask(view.image.aspect())
+                .aspect_mask(copied_aspect(view.image.aspect()))
                 .base_array_layer(view.layers.start)
                 .layer_count(view.layers.end - view.layers.start);
             let region = vk::BufferImageCopy::default().image_subresource(subresource).image_extent(vk::Extent3D {
@@ -119,6 +119,11 @@ fn once(
     commands.submit_and_wait()
 }
 
+/// A copy takes one aspect: of depth and stencil, depth.
+fn copied_aspect(aspect: vk::ImageAspectFlags) -> vk::ImageAspectFlags {
+    if aspect.contains(vk::ImageAspectFlags::DEPTH) { vk::ImageAspectFlags::DEPTH } else { aspect }
+}
+
 /// Bytes of one texel of the formats that targets use.
 fn texel_bytes(image: &Image) -> Result<u64, Error> {
     match image.desc().format {
@@ -126,7 +131,8 @@ fn texel_bytes(image: &Image) -> Result<u64, Error> {
         | vk::Format::R8G8B8A8_SRGB
         | vk::Format::R32_SFLOAT
         | vk::Format::R32_UINT
-        | vk::Format::D32_SFLOAT => Ok(4),
+        | vk::Format::D32_SFLOAT
+        | vk::Format::D32_SFLOAT_S8_UINT => Ok(4),
         vk::Format::R16G16B16A16_SFLOAT => Ok(8),
         vk::Format::R32G32B32A32_SFLOAT => Ok(16),
         other => Err(Error::Allocation {

@@ -4,7 +4,15 @@ use std::path::Path;
 
 /// Writes a file whole or not at all: to a temporary name in the same folder, renamed over `path` at the end. On
 /// failure the temporary file is removed and an older file stays as it was.
+///
+/// A device or pipe is written to as it is: a rename would put a file in its place.
 pub(super) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>) -> io::Result<()> {
+    if std::fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir()) {
+        let mut stream = File::options().write(true).open(path)?;
+        let mut buffered = BufWriter::new(&mut stream);
+        write(&mut buffered)?;
+        return buffered.flush();
+    }
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -42,6 +50,13 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         replace(&path, |file| file.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_stays_a_device() {
+        replace(Path::new("/dev/null"), |file| file.write_all(b"gone")).unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
     }
 
     #[test]

@@ -282,6 +282,9 @@ fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -
     let triangles = planes * u64::from(paper.grid().triangle_count());
     let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
     let time_ms = caustics_map.and_then(|p| super::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);
+    if planes == 0 {
+        return Map::new();
+    }
     let entries = [
         ("planes_drawn", json!(planes)),
         ("caustics_map_floor_ms", json!(floor_ms)),

@@ -6,14 +6,12 @@ use ash::vk;
 use glam::{Mat4, Vec3};
 
 use super::maps::{self, FAR};
-use super::method::Method;
+use super::method::{Method, Site};
 use super::parameters::Parameters;
 use super::receiver::{BoxBlock, LitReceiver, Vertex};
 use super::water::LEVEL_M;
 use crate::gpu::transfer::upload;
-use crate::gpu::{
-    Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary,
-};
+use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
 use crate::scene::Camera;
 
@@ -32,7 +30,7 @@ host_block! {
 }
 
 /// What is seen where there is no receiver: light scattered back by deep water, linear RGB.
-const DEEP_WATER: Load = Load::Clear([0.004, 0.030, 0.055, 1.0]);
+pub const DEEP_WATER: Load = Load::Clear([0.004, 0.030, 0.055, 1.0]);
 
 /// What the view from above needs to see beyond the picture's edges, where the waves turn its rays outwards.
 const WIDENING: f32 = 1.4;
@@ -66,26 +64,35 @@ pub struct Underwater {
     /// Linear RGB.
     pub color: Arc<ImageView>,
     pub depth: Arc<ImageView>,
+    /// The depth alone, without a stencil.
+    pub fetched_depth: Arc<ImageView>,
     pub view_projection: Mat4,
     pub eye: Vec3,
-    camera: Arc<Buffer>,
+    pub camera: Arc<Buffer>,
 }
 
 impl Underwater {
     /// # Errors
     /// [`Error::Limit`] for a size that the device does not allow.
-    pub fn new(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        depth_format: vk::Format,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
         let device = shaders.device();
         let image = |name: &str, format, attachment| {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
-            Image::new(device, desc.usage(attachment | vk::ImageUsageFlags::SAMPLED))?.view()
+            Image::new(device, desc.usage(attachment | vk::ImageUsageFlags::SAMPLED))
         };
+        let depth = image("underwater-depth", depth_format, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
         let camera = underwater_camera(parameters);
         let view_projection = camera.projection(parameters.aspect()) * camera.view();
         let block = CameraBlock { view_projection: view_projection.to_cols_array() };
         Ok(Underwater {
-            color: image("underwater-color", maps::LIGHT, vk::ImageUsageFlags::COLOR_ATTACHMENT)?,
-            depth: image("underwater-depth", maps::DEPTH, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+            color: image("underwater-color", maps::LIGHT, vk::ImageUsageFlags::COLOR_ATTACHMENT)?.view()?,
+            depth: depth.view()?,
+            fetched_depth: depth.depth_view()?,
             view_projection,
             eye: camera.eye,
             camera: upload(
@@ -116,15 +123,8 @@ pub struct Place {
 impl Cast {
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        underwater: &Underwater,
-        lit: &LitReceiver,
-        method: &dyn Method,
-        nearest: &Arc<Sampler>,
-        place: Place,
-        parameters: &Parameters,
-    ) -> Result<Self, Error> {
+    pub fn new(site: Site<'_>, underwater: &Underwater, method: &dyn Method, place: Place) -> Result<Self, Error> {
+        let Site { shaders, lit, nearest, parameters, .. } = site;
         let load = |clear| if place == (Place { light: 0, receiver: 0 }) { clear } else { Load::Keep };
         let (blend, test) = if place.light == 0 {
             (Blend::Replace, DepthTest::LessWrite)

@@ -5,14 +5,12 @@ use std::sync::Arc;
 
 use super::illumination::{IlluminationVolumes, Ray};
 use super::maps::{self, BACKGROUND, BLACK, FAR};
-use super::method::{CombineConstants, Method, draw_floor, floor_pass};
+use super::method::{CombineConstants, Method, Site, draw_floor, floor_pass};
 use super::parameters::{Parameters, SmartParameters};
 use super::planes::{DepthProfile, SmartPlacement};
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
-use super::water::Water;
 use crate::gpu::{
-    Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Load, Location, Pass, PassInfo, Sampler,
-    ShaderLibrary,
+    Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Load, Location, Pass, PassInfo, ShaderLibrary,
 };
 
 /// The maps and passes of the method.
@@ -89,16 +87,8 @@ pub enum Slicing {
 impl LevelMap {
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        lit: &LitReceiver,
-        water: &Water,
-        volumes: &IlluminationVolumes,
-        nearest: &Arc<Sampler>,
-        slicing: Slicing,
-        parameters: &Parameters,
-    ) -> Result<Self, Error> {
+    pub fn new(site: Site<'_>, slicing: Slicing) -> Result<Self, Error> {
+        let Site { shaders, label, lit, water, volumes, nearest, parameters } = site;
         let map = |name: &str, format| maps::map(shaders, format!("{label}/{name}"), format, parameters);
         let position = map("position-map", maps::POSITION)?;
         let diffuse = map("diffuse-map", maps::LIGHT)?;
@@ -153,7 +143,7 @@ impl LevelMap {
             Slicing::Normal => None,
             Slicing::Smart => Some(SmartSlicing::new(shaders, label, &position, parameters)?),
         };
-        let floor = floor_pass(shaders, &caustics, volumes, water)?;
+        let floor = floor_pass(site, &caustics)?;
         Ok(LevelMap { floor, smart, maps, caustics_map, combine, position, diffuse, caustics, combined })
     }
 }

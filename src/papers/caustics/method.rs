@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use super::illumination::{IlluminationVolumes, Ray};
 use super::maps::BLACK;
+use super::parameters::Parameters;
 use super::receiver::{LitReceiver, PlaneConstants};
 use super::water::Water;
-use crate::gpu::{Blend, Error, Frame, ImageView, Pass, ShaderLibrary};
+use crate::gpu::{Blend, Error, Frame, ImageView, Pass, Sampler, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
@@ -22,22 +23,30 @@ impl CombineConstants {
     }
 }
 
+/// What a method is made of: one receiver under one light, and what all receivers share.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    pub shaders: &'a ShaderLibrary,
+    /// Goes before the names of resources.
+    pub label: &'a str,
+    pub lit: &'a LitReceiver,
+    pub water: &'a Water,
+    pub volumes: &'a IlluminationVolumes,
+    pub nearest: &'a Arc<Sampler>,
+    pub parameters: &'a Parameters,
+}
+
 /// The caustics-map pass with an empty fragment stage: the same triangles on the same target, nothing shaded.
 ///
 /// # Errors
 /// What the Vulkan layer answers.
-pub fn floor_pass(
-    shaders: &ShaderLibrary,
-    caustics: &Arc<ImageView>,
-    volumes: &IlluminationVolumes,
-    water: &Water,
-) -> Result<Pass, Error> {
+pub fn floor_pass(site: Site<'_>, caustics: &Arc<ImageView>) -> Result<Pass, Error> {
     Pass::graphics("caustics-map-floor", "4.5", "caustics/caustics-map.vert", "common/empty.frag")
-        .vertices::<Ray>(&volumes.rays)
-        .indices(&water.indices)
+        .vertices::<Ray>(&site.volumes.rays)
+        .indices(&site.water.indices)
         .constants::<PlaneConstants>()
         .color(caustics, BLACK, Blend::Masked)
-        .build(shaders)
+        .build(site.shaders)
 }
 
 /// Draws the triangles of every plane with [`floor_pass`].

@@ -16,16 +16,19 @@ pub enum Variant {
     LevelMapSmart,
     /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
     Volumetric,
+    /// Section 3.2, after Iwasaki et al.: illumination volumes counted in the stencil buffer. It knows no occlusion.
+    Stencil,
 }
 
 impl Variant {
-    pub const ALL: [Variant; 3] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric];
+    pub const ALL: [Variant; 4] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric, Variant::Stencil];
 
     pub fn word(self) -> &'static str {
         match self {
             Variant::LevelMap => "level-map",
             Variant::LevelMapSmart => "level-map-smart",
             Variant::Volumetric => "volumetric",
+            Variant::Stencil => "stencil",
         }
     }
 }
@@ -63,7 +66,7 @@ pub struct Parameters {
     pub smart: SmartParameters,
     /// Refraction index of water against air, above 1 and at most 4.
     pub refraction_index: f32,
-    /// Absorption K of eq. 4-17 per metre, at least 0.
+    /// Absorption K of eq. 4-17 per metre, 0 to 1,000,000.
     pub absorption_per_m: f32,
     /// Depth of the pool's floor below the water's level in metres, above 0.
     pub water_depth_m: f32,
@@ -143,7 +146,7 @@ impl Parameters {
         let n = self.refraction_index;
         check(n > 1.0 && n <= 4.0, "--refraction-index", n.to_string(), "must be above 1 and at most 4")?;
         let k = self.absorption_per_m;
-        check(k >= 0.0 && k.is_finite(), "--absorption", k.to_string(), "must be at least 0 per metre")?;
+        check((0.0..=1e6).contains(&k), "--absorption", k.to_string(), "must be 0 to 1000000 per metre")?;
         let depth = self.water_depth_m;
         check(
             depth > 0.0 && depth <= 1000.0,
@@ -212,10 +215,11 @@ impl Parameters {
                 intensity
             }
         };
-        if intensity.is_finite() && intensity.min_element() >= 0.0 {
+        // The maps hold half floats: a focus a thousand times as bright as this still fits.
+        if intensity.is_finite() && intensity.min_element() >= 0.0 && intensity.max_element() <= 64.0 {
             Ok(())
         } else {
-            error("must have an intensity of at least 0")
+            error("must have an intensity of 0 to 64")
         }
     }
 

@@ -83,7 +83,7 @@ impl View {
         let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-above.frag")
             .with("waves", &water.waves)
             .with("underwater_color", &underwater.color)
-            .with("underwater_depth", &underwater.depth)
+            .with("underwater_depth", &underwater.fetched_depth)
             .with("nearest", nearest)
             .with("view", &view)
             .constants::<WaterConstants>()

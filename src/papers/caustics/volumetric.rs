@@ -5,11 +5,9 @@ use std::sync::Arc;
 
 use super::illumination::{IlluminationVolumes, Ray};
 use super::maps::{self, BLACK, FAR};
-use super::method::{CombineConstants, Method, draw_floor, floor_pass};
-use super::parameters::Parameters;
+use super::method::{CombineConstants, Method, Site, draw_floor, floor_pass};
 use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
-use super::water::Water;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageView, Load, Pass, Sampler, ShaderLibrary};
+use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageView, Load, Pass};
 use crate::host_block;
 
 host_block! {
@@ -38,15 +36,8 @@ pub struct Volumetric {
 impl Volumetric {
     /// # Errors
     /// What the Vulkan layer answers; [`Error::Limit`] for more planes than an array has layers.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        lit: &LitReceiver,
-        water: &Water,
-        volumes: &IlluminationVolumes,
-        nearest: &Arc<Sampler>,
-        parameters: &Parameters,
-    ) -> Result<Self, Error> {
+    pub fn new(site: Site<'_>) -> Result<Self, Error> {
+        let Site { shaders, label, lit, water, volumes, nearest, parameters } = site;
         let map = |name: &str, format| maps::map(shaders, format!("{label}/{name}"), format, parameters);
         let desc = maps::map_desc(format!("{label}/illumination-map"), maps::LIGHT, parameters);
         let illumination_map = Image::new(shaders.device(), desc.layers(parameters.planes))?;
@@ -90,7 +81,7 @@ impl Volumetric {
         let each_layer = |pass: &Pass, load: Load| {
             layers.iter().map(|layer| pass.again().color(0, layer, load).build(shaders)).collect::<Result<Vec<_>, _>>()
         };
-        let floor = floor_pass(shaders, &caustics, volumes, water)?;
+        let floor = floor_pass(site, &caustics)?;
         Ok(Volumetric {
             floor,
             slice_images: each_layer(&slice_image, BLACK)?,

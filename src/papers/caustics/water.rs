@@ -212,7 +212,7 @@ impl Water {
         let indices = upload(
             device,
             &name("water-indices"),
-            vk::BufferUsageFlags::INDEX_BUFFER,
+            vk::BufferUsageFlags::INDEX_BUFFER | storage,
             bytemuck::cast_slice(&grid.indices()),
         )?;
         let animate = Pass::compute("water-surface", "5.2", "caustics/water-surface.comp")

@@ -1,0 +1,20 @@
+#version 450
+
+// What the illumination volumes need of the surface that is seen, and its ambient light (eq. 4-19).
+
+layout(location = 0) in vec3 world;
+layout(location = 1) in vec3 world_normal;
+
+#include "caustics/stencil-receivers.glsl"
+
+layout(location = 0) out vec4 color;
+layout(location = 1) out vec4 surface_position;
+layout(location = 2) out vec4 surface_normal;
+layout(location = 3) out vec4 surface_albedo;
+
+void main() {
+    color = vec4(receiver.albedo.rgb * receiver.ambient.rgb, 1.0);
+    surface_position = vec4(world, 1.0);
+    surface_normal = vec4(normalize(world_normal), 0.0);
+    surface_albedo = vec4(receiver.albedo.rgb, 1.0);
+}

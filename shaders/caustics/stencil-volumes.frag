@@ -1,0 +1,66 @@
+#version 450
+
+// Light of one illumination volume on the surface inside it (section 3.2): the intensity of eq. 4-18 with A_d, the area that the
+// volume's three rays span, taken at the height of the fragment's surface. The stencil buffer says that the surface is inside.
+
+#include "caustics/volume.glsl"
+#include "caustics/diffuse.glsl"
+
+layout(location = 0) flat in uint volume;
+
+layout(set = 0, binding = 3) uniform texture2D surface_position;
+layout(set = 0, binding = 4) uniform texture2D surface_normal;
+layout(set = 0, binding = 5) uniform texture2D surface_albedo;
+layout(set = 0, binding = 6) uniform sampler nearest;
+
+layout(location = 0) out vec4 light;
+
+const float SLACK = 0.25; // of a triangle
+
+float cross_2d(vec2 a, vec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+void main() {
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    vec3 world = texelFetch(sampler2D(surface_position, nearest), texel, 0).xyz;
+    vec3 point = vec3(dot(volumes.u.xyz, world) - volumes.u.w, dot(volumes.v.xyz, world) - volumes.v.w,
+        dot(volumes.w.xyz, world) - volumes.w.w);
+
+    Ray a = rays.list[water_vertex(volume, 0u)];
+    Ray b = rays.list[water_vertex(volume, 1u)];
+    Ray c = rays.list[water_vertex(volume, 2u)];
+    vec3 descent = vec3(a.origin.y, b.origin.y, c.origin.y) - point.y;
+    if (min(descent.x, min(descent.y, descent.z)) <= 0.0) {
+        discard;
+    }
+    vec2 at_a = a.origin.xz + a.slope.xy * descent.x;
+    vec2 at_b = b.origin.xz + b.slope.xy * descent.y;
+    vec2 at_c = c.origin.xz + c.slope.xy * descent.z;
+    float twice_area = cross_2d(at_b - at_a, at_c - at_a);
+    if (twice_area == 0.0) {
+        discard;
+    }
+    vec2 from_a = point.xz - at_a;
+    float share_b = cross_2d(from_a, at_c - at_a) / twice_area;
+    float share_c = cross_2d(at_b - at_a, from_a) / twice_area;
+
+    // The sides of a volume are ruled surfaces, cut here into triangles: near a focus, where the volume is thin, a fragment may be
+    // inside the cut prism and far outside the beam, which lights nothing there. Elsewhere the two differ by a fraction.
+    float share_a = 1.0 - share_b - share_c;
+    if (min(share_a, min(share_b, share_c)) < -SLACK) {
+        discard;
+    }
+
+    // Twice A_w along the face normal: against the incident ray it is 2 A_w cos theta_i.
+    vec3 water = cross(b.origin.xyz - a.origin.xyz, c.origin.xyz - a.origin.xyz);
+    float k = volumes.intensity.w;
+    vec3 weights = vec3(dot(water, a.incident.xyz) * a.slope.z * exp(-k * descent.x * a.slope.z),
+        dot(water, b.incident.xyz) * b.slope.z * exp(-k * descent.y * b.slope.z),
+        dot(water, c.incident.xyz) * c.slope.z * exp(-k * descent.z * c.slope.z));
+    float intensity = abs(dot(weights, vec3(share_a, share_b, share_c)) / twice_area);
+
+    vec3 normal = texelFetch(sampler2D(surface_normal, nearest), texel, 0).xyz;
+    vec3 albedo = texelFetch(sampler2D(surface_albedo, nearest), texel, 0).rgb;
+    light = vec4(volumes.intensity.rgb * intensity * diffuse_light(albedo, normal, volumes.v.xyz).rgb, 0.0);
+}

@@ -1,0 +1,13 @@
+//! The paper `caustics` on the device: against its oracle, against closed forms and conservation laws, variant against
+//! variant, and its pictures against goldens.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod drawing;
+mod extremes;
+mod laws;
+mod level_map;
+mod oracle;
+mod pictures;
+mod scene;
+mod variants;

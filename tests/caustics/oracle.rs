@@ -1,0 +1,88 @@
+//! The oracle, fed with what the device is fed with.
+
+use std::f64::consts::TAU;
+
+use fumarole::papers::caustics::reference::{
+    CausticsMap, Cell, IlluminationVolume, Medium, PositionMap, ReceiverBox, ReceiverTriangle, ReferenceLight, Water,
+    WaterVertex, Wave, align_box, caustics_map, illumination_volumes, place_planes, position_map, wave_vertex,
+};
+use fumarole::papers::caustics::water::{Grid, LEVEL_M, waves};
+use fumarole::papers::caustics::{Parameters, ReceiverInput};
+use fumarole::scene::Light;
+use glam::{DVec2, DVec3};
+
+use crate::drawing::FRAME;
+
+pub struct Oracle {
+    pub light: ReferenceLight,
+    pub medium: Medium,
+    pub receiver: ReceiverBox,
+    pub cells: Vec<Cell>,
+    pub water: Vec<WaterVertex>,
+    pub volumes: Vec<IlluminationVolume>,
+    pub positions: PositionMap,
+}
+
+impl Oracle {
+    /// One light and one receiver at the time of the frame that is drawn, under the water of `grid`.
+    pub fn of(parameters: &Parameters, light: &Light, receiver: &ReceiverInput, grid: &Grid) -> Self {
+        let light = match *light {
+            Light::Parallel { direction, .. } => {
+                ReferenceLight::Parallel { direction: direction.as_dvec3().normalize() }
+            }
+            Light::Point { position, .. } => ReferenceLight::Point { position: position.as_dvec3() },
+        };
+        let medium = Medium {
+            refraction_index: f64::from(parameters.refraction_index),
+            absorption_per_m: f64::from(parameters.absorption_per_m),
+        };
+        let mesh = &receiver.mesh;
+        let points: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+        let triangles: Vec<ReceiverTriangle> = mesh
+            .indices
+            .chunks_exact(3)
+            .map(|corners| {
+                let corners = [0, 1, 2].map(|i| corners[i] as usize);
+                let normals = corners.map(|i| mesh.normals[i].as_dvec3());
+                ReceiverTriangle { positions: corners.map(|i| points[i]), normals }
+            })
+            .collect();
+        let center = mesh.bounds().center().as_dvec3();
+        let aligned = align_box(light, &points, center, medium).unwrap();
+        let water = water(parameters, grid);
+        let indices: Vec<[u32; 3]> = grid.indices().chunks_exact(3).map(|i| [i[0], i[1], i[2]]).collect();
+        Oracle {
+            volumes: illumination_volumes(Water { vertices: &water, triangles: &indices }, light, medium),
+            cells: place_planes(aligned.height, parameters.planes as usize),
+            positions: position_map(&aligned, &triangles, parameters.map_size as usize),
+            receiver: aligned,
+            light,
+            medium,
+            water,
+        }
+    }
+
+    pub fn caustics_map(&self) -> CausticsMap {
+        caustics_map(&self.receiver, &self.cells, &self.volumes, self.medium, &self.positions)
+    }
+}
+
+fn water(parameters: &Parameters, grid: &Grid) -> Vec<WaterVertex> {
+    let waves: Vec<Wave> = waves(parameters)
+        .iter()
+        .map(|wave| Wave {
+            amplitude_m: wave.amplitude_m,
+            direction: wave.vector.normalize(),
+            wavelength_m: TAU / wave.vector.length(),
+            angular_frequency_rad_s: wave.angular_frequency,
+            phase_rad: wave.phase_rad,
+        })
+        .collect();
+    let time_s = f64::from(FRAME) * f64::from(parameters.time_step_s);
+    let columns = grid.columns + 1;
+    (0..grid.vertex_count())
+        .map(|i| DVec2::new(f64::from(i % columns), f64::from(i / columns)))
+        .map(|place| grid.corner + grid.cell * place)
+        .map(|place| wave_vertex(&waves, LEVEL_M, place.x, place.y, time_s))
+        .collect()
+}
