@@ -143,7 +143,8 @@ fn draw_pipeline(device: &Arc<Device>, modules: [Arc<ShaderModule>; 2]) -> Resul
     let targets = Targets { colors, ..Targets::default() };
     let program = Program::new(device, &name, modules.into())?;
     let render_pass = RenderPass::new(device, &name, &targets)?;
-    Pipeline::graphics(device, &name, &program, &render_pass, &targets, &layout, Topology::Triangles)
+    let modules = &program.modules;
+    Pipeline::graphics(device, &name, &program, modules, &render_pass, &targets, &layout, Topology::Triangles)
 }
 
 #[test]

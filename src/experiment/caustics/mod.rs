@@ -223,14 +223,14 @@ pub fn bench(
     let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
     let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
     machine.device.wait_idle()?;
+    if measurements.iter().any(|m| m.frame_ms.is_empty()) {
+        return Err(Error::Interrupted);
+    }
     let floors = floors_ms(machine, &built)?;
     let validation = machine.check_validation()?;
     let warnings = machine.warnings();
     let mut runs = Vec::new();
     for ((built, measurement), floor_ms) in built.iter().zip(measurements).zip(floors) {
-        if measurement.frame_ms.is_empty() {
-            return Err(Error::Interrupted);
-        }
         let subject = Subject {
             paper: PAPER,
             variant: built.variant.word().to_owned(),
