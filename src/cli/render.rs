@@ -137,7 +137,7 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
     written.iter().for_each(|path| outcome::wrote(&output, path));
     for dump in &arguments.dump {
         for target in targets.iter().filter(|t| t.name == dump.target) {
-            image::write(&dump.file, &picture::read_target(&machine, target)?)?;
+            image::write(&dump.file, &picture::read_target(&machine.device, target)?)?;
             outcome::wrote(&output, &dump.file);
         }
     }

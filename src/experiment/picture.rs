@@ -1,6 +1,7 @@
 //! Pictures and dumps of a frame, read back after it.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use ash::vk;
 use sha2::{Digest, Sha256};
@@ -8,7 +9,7 @@ use sha2::{Digest, Sha256};
 use super::error::Error;
 use super::machine::Machine;
 use crate::gpu::bindings::Resource;
-use crate::gpu::{Mode, transfer};
+use crate::gpu::{Device, Mode, transfer};
 use crate::image::{self, Raster, Rgba8};
 use crate::papers::{Paper, Target};
 
@@ -27,16 +28,16 @@ pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Resu
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
-pub fn read_target(machine: &Machine, target: &Target) -> Result<Raster, Error> {
+pub fn read_target(device: &Arc<Device>, target: &Target) -> Result<Raster, Error> {
     match &target.resource {
         Resource::Buffer(view) => {
-            let bytes = transfer::read_buffer(&machine.device, view.buffer())?;
+            let bytes = transfer::read_buffer(device, view.buffer())?;
             let values: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
             let columns = (target.columns as usize).max(1);
             Ok(Raster::table(values.len() / columns, columns, values)?)
         }
         Resource::Image(view) => {
-            let bytes = transfer::read_image(&machine.device, view)?;
+            let bytes = transfer::read_image(device, view)?;
             let (width, height, layers) = (view.width(), view.height(), view.layer_count());
             let floats = || bytemuck::pod_collect_to_vec::<u8, f32>(&bytes);
             let raster = match view.image().desc().format {
