@@ -137,10 +137,11 @@ pub fn picture_pair(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Resu
         let rendered = picture::render(machine, &mut built.paper, 0)?;
         let targets = built.paper.targets();
         let depth = targets.iter().find(|t| t.name == "underwater-depth");
-        let mask = match depth.map(|t| picture::read_target(&machine.device, t)).transpose()?.map(|r| r.samples().clone()) {
-            Some(Samples::F32(depth)) => depth.iter().map(|&d| d < 1.0).collect(),
-            _ => Vec::new(),
-        };
+        let mask =
+            match depth.map(|t| picture::read_target(&machine.device, t)).transpose()?.map(|r| r.samples().clone()) {
+                Some(Samples::F32(depth)) => depth.iter().map(|&d| d < 1.0).collect(),
+                _ => Vec::new(),
+            };
         Ok((rendered, mask))
     };
     let (normal, mask) = render(Variant::LevelMap)?;

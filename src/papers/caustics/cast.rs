@@ -16,7 +16,7 @@ use crate::host_block;
 use crate::scene::Camera;
 
 host_block! {
-    struct CameraBlock {
+    pub struct CameraBlock {
         view_projection: [f32; 16],
     }
 }

@@ -11,6 +11,8 @@
 
 mod cast;
 mod illumination;
+#[cfg(test)]
+mod layouts;
 mod level_map;
 mod maps;
 mod method;

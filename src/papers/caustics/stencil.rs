@@ -35,7 +35,7 @@ host_block! {
 }
 
 host_block! {
-    struct VolumesBlock {
+    pub struct VolumesBlock {
         view_projection: [f32; 16],
         u: [f32; 4],
         v: [f32; 4],

@@ -12,7 +12,7 @@ use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, S
 use crate::host_block;
 
 host_block! {
-    struct ViewBlock {
+    pub struct ViewBlock {
         inverse_view_projection: [f32; 16],
         underwater_view_projection: [f32; 16],
         underwater_inverse: [f32; 16],

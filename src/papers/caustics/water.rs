@@ -22,7 +22,7 @@ const MARGIN: f64 = 0.1;
 const GRAVITY_M_S2: f64 = 9.81;
 
 host_block! {
-    struct WaveBlock {
+    pub struct WaveBlock {
         vector: [f32; 4],
         amplitude: [f32; 4],
     }

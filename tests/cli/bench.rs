@@ -1,0 +1,205 @@
+//! `bench`: the record and the files beside it.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use serde_json::Value;
+
+use super::program::{ONCE, assert_schema, caustics, device, folder, read_json, sha256};
+
+const BOTH: &str = "--variant level-map,volumetric";
+
+fn names(runs: &Value, field: &str) -> Vec<String> {
+    runs.as_array().unwrap().iter().map(|run| run[field].as_str().unwrap().to_owned()).collect()
+}
+
+/// Asserts that `summary` holds `count` samples and agrees with them.
+fn assert_summary(summary: &Value, count: usize, what: &str) {
+    let samples: Vec<f64> = summary["samples"].as_array().unwrap().iter().map(|s| s.as_f64().unwrap()).collect();
+    assert_eq!(samples.len(), count, "{what}");
+    let smallest = samples.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = samples.iter().copied().fold(0.0, f64::max);
+    assert_eq!(summary["min"].as_f64(), Some(smallest), "{what}");
+    assert_eq!(summary["max"].as_f64(), Some(largest), "{what}");
+    let median = summary["median"].as_f64().unwrap();
+    assert!(smallest >= 0.0 && (smallest..=largest).contains(&median), "{what}: {summary}");
+    for absent in ["p95", "p99"] {
+        assert!(summary[absent].is_null(), "{what}: {count} samples have no {absent}");
+    }
+}
+
+#[test]
+fn the_record_on_standard_output_is_whole_and_alone() {
+    let options = "--json --frames 3 --repeat 2 --warmup 1 --no-limits --seed 7";
+    let ended = caustics("bench").tiny().args(options).args(BOTH).run().succeeded();
+    let record = ended.json();
+    assert_schema(&record);
+    assert_eq!(ended.stderr.lines().count(), 1, "the device alone: {}", ended.stderr);
+    let name = record["environment"]["device"]["name"].as_str().unwrap();
+    assert!(ended.stderr.starts_with(&format!("device: {name}")), "{}", ended.stderr);
+    assert_eq!(record["command"].as_array().unwrap()[1], "bench");
+    assert_eq!(names(&record["runs"], "variant"), ["level-map", "volumetric"]);
+    for run in record["runs"].as_array().unwrap() {
+        let variant = run["variant"].as_str().unwrap();
+        for (field, value) in [("width", 96), ("height", 64), ("seed", 7), ("frames", 3), ("repeat", 2), ("process", 0)]
+        {
+            assert_eq!(run[field], value, "{variant} {field}");
+        }
+        for (field, value) in [("planes", 5), ("map_size", 64), ("water_triangles", 500)] {
+            assert_eq!(run["config"][field], value, "{variant} {field}");
+        }
+        assert_eq!(run["validation"], "off");
+        assert!(run["limits"].is_null() && run["image"].is_null() && run["experiment"].is_null());
+        assert_summary(&run["frame_ms"], 6, variant);
+        assert_passes(run);
+        assert_memory(run);
+    }
+}
+
+fn assert_passes(run: &Value) {
+    for pass in run["passes"].as_array().unwrap() {
+        let what = format!("{} {}", run["variant"], pass["name"]);
+        if pass["kind"] == "host" {
+            assert!(pass["gpu_ms"].is_null() && pass["submission"].is_null(), "{what}");
+            assert_summary(&pass["host_ms"], 6, &what);
+            continue;
+        }
+        assert!(pass["host_ms"].is_null(), "{what}");
+        assert_summary(&pass["gpu_ms"], 6, &what);
+        assert_eq!(pass["shader_compiler"], "glslang", "{what}");
+        let counted = match pass["kind"].as_str().unwrap() {
+            "compute" => ["compute_invocations", "compute_invocations"],
+            _ => ["vertices", "primitives"],
+        };
+        for counter in counted {
+            assert!(pass["statistics"][counter].as_u64().unwrap() > 0, "{what}: {counter}");
+        }
+    }
+}
+
+fn assert_memory(run: &Value) {
+    let memory = &run["memory"];
+    let resources = memory["by_resource"].as_array().unwrap();
+    let names: BTreeSet<&str> = resources.iter().map(|r| r["name"].as_str().unwrap()).collect();
+    assert!(names.contains("caustics-map") && names.contains("water"), "{names:?}");
+    let sum: u64 = resources.iter().map(|r| r["bytes"].as_u64().unwrap()).sum();
+    let bytes = |field: &str| memory[field].as_u64().unwrap();
+    assert_eq!(bytes("device_bytes") + bytes("host_bytes"), sum);
+    assert!(bytes("peak_bytes") >= sum);
+}
+
+#[test]
+fn every_variant_meets_the_schema() {
+    let ended = caustics("bench --json --variant all").tiny().args(ONCE).run().succeeded();
+    let record = ended.json();
+    assert_schema(&record);
+    let variants = names(&record["runs"], "variant");
+    assert!(["level-map", "volumetric"].iter().all(|v| variants.contains(&(*v).to_owned())), "{variants:?}");
+}
+
+#[test]
+fn the_limits_of_the_device_are_measured_unless_left_out() {
+    let options = "--json --frames 1 --repeat 1 --warmup 1 --variant level-map";
+    let record = caustics("bench").tiny().args(options).run().succeeded().json();
+    for limit in ["copy_gb_s", "fma_gflops", "fill_gpix_s", "blend_gpix_s"] {
+        assert!(record["runs"][0]["limits"][limit].as_f64().unwrap() > 0.0, "{limit}");
+    }
+}
+
+#[test]
+fn every_file_is_written_and_well_formed() {
+    let out = folder();
+    let files = "--json r/a.json --csv r/a.csv --trace r/a.trace --image r/a.png";
+    let options = "--frames 3 --repeat 1 --warmup 1 --no-limits";
+    let ended = caustics("bench").inside(out.path()).tiny().args(options).args(BOTH).args(files).run().succeeded();
+    let written: BTreeSet<&str> = ended.stderr.lines().collect();
+    assert_eq!(written, ["wrote r/a.csv", "wrote r/a.json", "wrote r/a.png", "wrote r/a.trace"].into());
+    let path = |ending: &str| out.path().join(format!("r/a.{ending}"));
+    let record = read_json(&path("json"));
+    assert_schema(&record);
+    let passes: Vec<&Value> =
+        record["runs"].as_array().unwrap().iter().flat_map(|run| run["passes"].as_array().unwrap()).collect();
+    let pass_names: BTreeSet<&str> = passes.iter().map(|pass| pass["name"].as_str().unwrap()).collect();
+    for name in pass_names.iter().chain(&["level-map", "volumetric", device().as_str()]) {
+        assert!(ended.stdout.contains(name), "the table lacks {name}:\n{}", ended.stdout);
+    }
+
+    let csv = fs::read_to_string(path("csv")).unwrap();
+    let rows: Vec<Vec<String>> = csv.lines().map(cells).collect();
+    assert_eq!(rows.len(), 1 + passes.len());
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()));
+    let column = |name: &str| rows[0].iter().position(|cell| cell == name).unwrap();
+    for (row, pass) in rows[1..].iter().zip(&passes) {
+        assert_eq!(row[column("pass")], pass["name"].as_str().unwrap());
+        let median = row[column("gpu_median_ms")].parse::<f64>().ok();
+        assert_eq!(median, pass["gpu_ms"]["median"].as_f64());
+    }
+
+    let trace = read_json(&path("trace"));
+    let events = trace["traceEvents"].as_array().unwrap();
+    let spans: Vec<&Value> = events.iter().filter(|event| event["ph"] == "X").collect();
+    let traced: BTreeSet<&str> = spans.iter().map(|span| span["name"].as_str().unwrap()).collect();
+    assert_eq!(traced, pass_names);
+    assert!(spans.iter().all(|span| span["ts"].as_f64().unwrap() >= 0.0 && span["dur"].as_f64().unwrap() >= 0.0));
+
+    let picture = image::open(path("png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (96, 64));
+    let recorded = &record["runs"][0]["image"];
+    assert_eq!(recorded["path"], "r/a.png");
+    assert_eq!(recorded["sha256"], sha256(&path("png")).as_str());
+    assert!(record["runs"][1]["image"].is_null(), "the first variant's alone");
+    // It is the last frame's, as `render` shows it.
+    caustics("render --quiet --frame 2 --image last.png").inside(out.path()).tiny().run().succeeded();
+    assert_eq!(sha256(&out.path().join("last.png")), sha256(&path("png")));
+}
+
+/// The cells of a line of CSV.
+fn cells(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut is_quoted = false;
+    for character in line.chars() {
+        match character {
+            '"' => is_quoted = !is_quoted,
+            ',' if !is_quoted => cells.push(String::new()),
+            other => cells.last_mut().unwrap().push(other),
+        }
+    }
+    cells
+}
+
+#[test]
+fn fresh_processes_are_numbered_and_the_first_writes_the_picture() {
+    let out = folder();
+    let files = "--json a.json --csv a.csv --trace a.trace --image a.png";
+    let program = caustics("bench --processes 2").inside(out.path()).tiny().args(ONCE).args(BOTH);
+    program.args(files).run().succeeded();
+    let record = read_json(&out.path().join("a.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let found: Vec<(u64, &str)> =
+        runs.iter().map(|run| (run["process"].as_u64().unwrap(), run["variant"].as_str().unwrap())).collect();
+    assert_eq!(found, [(0, "level-map"), (0, "volumetric"), (1, "level-map"), (1, "volumetric")]);
+    assert_eq!(runs[0]["image"]["sha256"], sha256(&out.path().join("a.png")).as_str());
+    assert!(!read_json(&out.path().join("a.trace"))["traceEvents"].as_array().unwrap().is_empty());
+    let count: usize = runs.iter().map(|run| run["passes"].as_array().unwrap().len()).sum();
+    assert_eq!(fs::read_to_string(out.path().join("a.csv")).unwrap().lines().count(), 1 + count);
+    assert!(record["command"].as_array().unwrap().contains(&"--processes".into()));
+}
+
+#[test]
+fn a_fresh_process_that_fails_says_it_once() {
+    caustics("bench --processes 2 --mesh no-such.obj").tiny().args(ONCE).run().refused(2, &["no-such.obj"]);
+}
+
+#[test]
+fn shaders_of_the_other_compiler_are_named_in_the_record() {
+    let ended = caustics("bench --json --shader-compiler naga").tiny().args(ONCE).run().succeeded();
+    let compilers: BTreeSet<String> = ended.json()["runs"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|run| run["passes"].as_array().unwrap().clone())
+        .filter_map(|pass| pass["shader_compiler"].as_str().map(str::to_owned))
+        .collect();
+    assert!(compilers.contains("naga"), "{compilers:?}");
+}

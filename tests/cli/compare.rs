@@ -1,0 +1,167 @@
+//! `fumarole compare`: verdicts and exit codes.
+
+use std::fs;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use serde_json::Value;
+
+use super::program::{Program, caustics, file, folder, fumarole, read_json};
+
+/// One measured record, from which the others are made.
+fn measured() -> &'static Value {
+    static RECORD: OnceLock<Value> = OnceLock::new();
+    RECORD.get_or_init(|| {
+        let options = "--json --quiet --frames 20 --repeat 1 --warmup 1 --no-limits --variant level-map,volumetric";
+        caustics("bench").tiny().args(options).run().succeeded().json()
+    })
+}
+
+/// The record as `processes` processes would have measured it, every time multiplied by `factor`, the processes
+/// differing by a few tenths of a percent.
+fn record_of(processes: u32, factor: f64) -> Value {
+    let mut record = measured().clone();
+    let mut runs = Vec::new();
+    for process in 0..processes {
+        let factor = factor * (1.0 + 0.002 * f64::from(process % 3));
+        for run in measured()["runs"].as_array().unwrap() {
+            let mut run = run.clone();
+            run["process"] = process.into();
+            scale(&mut run["frame_ms"], factor);
+            for pass in run["passes"].as_array_mut().unwrap() {
+                scale(&mut pass["gpu_ms"], factor);
+                scale(&mut pass["host_ms"], factor);
+            }
+            runs.push(run);
+        }
+    }
+    record["runs"] = runs.into();
+    record
+}
+
+fn scale(value: &mut Value, factor: f64) {
+    match value {
+        Value::Number(number) => *value = (number.as_f64().unwrap() * factor).into(),
+        Value::Array(items) => items.iter_mut().for_each(|item| scale(item, factor)),
+        Value::Object(fields) => fields.values_mut().for_each(|field| scale(field, factor)),
+        _ => {}
+    }
+}
+
+fn compare(a: &Path, b: &Path) -> Program {
+    fumarole("compare").arg(a).arg(b)
+}
+
+fn verdicts(comparison: &Value) -> Vec<&str> {
+    comparison["runs"].as_array().unwrap().iter().map(|run| run["verdict"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn a_record_against_itself_is_the_same() {
+    let out = folder();
+    let record = file(&out, "a.json", measured().to_string());
+    let ended = compare(&record, &record).args("--fail-above 1%").run().succeeded();
+    assert_eq!(ended.stdout.matches("SAME:").count(), 2, "{}", ended.stdout);
+    assert_eq!(ended.stderr, "");
+    let json = compare(&record, &record).arg("--json").run().succeeded().json();
+    assert_eq!(json["schema"], "fumarole.compare/1");
+    assert_eq!(verdicts(&json), ["SAME", "SAME"]);
+}
+
+#[test]
+fn a_regression_beyond_the_limit_ends_with_4() {
+    let out = folder();
+    let a = file(&out, "a.json", record_of(5, 1.0).to_string());
+    let slower = file(&out, "slower.json", record_of(5, 1.2).to_string());
+    let report = out.path().join("report.json");
+    let ended = compare(&a, &slower).args("--fail-above 5% --json").arg(&report).run();
+    assert_eq!(ended.status.code(), Some(4), "{}{}", ended.stdout, ended.stderr);
+    assert_eq!(ended.stdout.matches("SLOWER:").count(), 2, "{}", ended.stdout);
+    assert_eq!(ended.stderr, "", "the report says it");
+    let report = read_json(&report);
+    assert_eq!(verdicts(&report), ["SLOWER", "SLOWER"]);
+    assert!((report["runs"][0]["frame"]["ratio"].as_f64().unwrap() - 1.2).abs() < 0.01, "{report}");
+
+    // Neither a higher limit, nor none, nor the other direction is a regression.
+    compare(&a, &slower).args("--fail-above 0.5").run().succeeded();
+    assert!(compare(&a, &slower).run().succeeded().stdout.contains("SLOWER:"));
+    assert!(compare(&slower, &a).args("--fail-above 5%").run().succeeded().stdout.contains("FASTER:"));
+}
+
+#[test]
+fn files_of_one_side_are_joined_by_commas() {
+    let out = folder();
+    let paths = |factor: f64, side: &str| {
+        let write = |process: u32| {
+            let mut record = record_of(1, factor * (1.0 + 0.001 * f64::from(process)));
+            record["runs"].as_array_mut().unwrap().iter_mut().for_each(|run| run["process"] = process.into());
+            file(&out, &format!("{side}{process}.json"), record.to_string()).to_str().unwrap().to_owned()
+        };
+        (0..5).map(write).collect::<Vec<_>>().join(",")
+    };
+    let ended = fumarole("compare --fail-above 5%").arg(paths(1.0, "a")).arg(paths(1.2, "b")).run();
+    assert_eq!(ended.status.code(), Some(4), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stdout.contains("5 processes"), "{}", ended.stdout);
+}
+
+#[test]
+fn one_process_a_side_is_unclear_at_best() {
+    let out = folder();
+    let a = file(&out, "a.json", record_of(1, 1.0).to_string());
+    let b = file(&out, "b.json", record_of(1, 1.2).to_string());
+    let ended = compare(&a, &b).args("--fail-above 5%").run().succeeded();
+    assert_eq!(ended.stdout.matches("UNCLEAR:").count(), 2, "{}", ended.stdout);
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_with_the_field() {
+    let out = folder();
+    let a = file(&out, "a.json", measured().to_string());
+    for (pointer, value, name) in [
+        ("/config/planes", Value::from(9), "planes"),
+        ("/width", Value::from(100), "width"),
+        ("/seed", Value::from(2), "seed"),
+    ] {
+        let mut other = measured().clone();
+        for run in other["runs"].as_array_mut().unwrap() {
+            *run.pointer_mut(pointer).unwrap() = value.clone();
+        }
+        let b = file(&out, "b.json", other.to_string());
+        compare(&a, &b).run().refused(2, &["a.json", "b.json", name, &value.to_string()]);
+    }
+}
+
+#[test]
+fn what_is_no_record_is_refused_with_its_name() {
+    let out = folder();
+    let text = measured().to_string();
+    let a = file(&out, "a.json", &text);
+    let cases: [(&str, &[u8]); 6] = [
+        ("empty.json", b""),
+        ("cut-off.json", &text.as_bytes()[..text.len() / 2]),
+        ("words.json", b"no record"),
+        ("binary.json", &[0xff, 0xfe, 0x00, 0x80]),
+        ("other.json", b"{\"schema\": \"fumarole.bench/999\"}"),
+        ("fields.json", b"{\"schema\": \"fumarole.bench/1\", \"runs\": 3}"),
+    ];
+    for (name, bytes) in cases {
+        let b = file(&out, name, bytes);
+        compare(&a, &b).run().refused(2, &[name]);
+        compare(&b, &a).run().refused(2, &[name]);
+    }
+    compare(&a, &out.path().join("missing.json")).run().refused(2, &["missing.json"]);
+    compare(&a, out.path()).run().refused(2, &[out.path().to_str().unwrap()]);
+    compare(&a, &a).arg("--json").arg(out.path()).run().refused(2, &["directory"]);
+    assert_eq!(fs::read_to_string(&a).unwrap(), text);
+}
+
+#[test]
+fn arguments_are_two_sides_and_a_share() {
+    let program = || fumarole("compare a.json b.json");
+    program().arg("c.json").run().misused(&["c.json"]);
+    fumarole("compare a.json").run().misused(&["B.json"]);
+    fumarole("compare a.json,,b.json c.json").run().misused(&["a.json,,b.json"]);
+    for share in ["much", "nan", "-5%", "inf"] {
+        program().arg(format!("--fail-above={share}")).run().misused(&["--fail-above", share]);
+    }
+}

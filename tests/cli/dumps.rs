@@ -1,0 +1,96 @@
+//! `render --dump`: every target that `passes` lists, in every format.
+
+use std::path::Path;
+
+use exr::prelude::read_all_flat_layers_from_file;
+use npyz::{NpyFile, TypeStr};
+
+use super::program::{caustics, entries, folder};
+
+/// A target's name and what `passes --json` says of its shape.
+fn targets(variant: &str) -> Vec<(String, String)> {
+    let listed = caustics("passes --json --variant").arg(variant).tiny().run().succeeded().json();
+    let targets = listed[0]["targets"].as_array().unwrap().iter();
+    targets.map(|t| (t["name"].as_str().unwrap().to_owned(), t["shape"].as_str().unwrap().to_owned())).collect()
+}
+
+/// The numbers that a shape speaks of, with the type of its elements: `64 x 64 x 5 layers R16G16B16A16_SFLOAT` or
+/// `286 rows of 8 floats`.
+fn dimensions(shape: &str) -> Vec<u64> {
+    shape.split(' ').filter_map(|word| word.parse().ok()).collect()
+}
+
+fn read_npy(path: &Path) -> (Vec<u64>, Vec<f64>) {
+    let bytes = std::fs::read(path).unwrap();
+    let array = NpyFile::new(&bytes[..]).unwrap();
+    let shape = array.shape().to_vec();
+    let npyz::DType::Plain(element) = array.dtype() else { panic!("a plain array: {}", path.display()) };
+    let floats: TypeStr = "<f4".parse().unwrap();
+    let values = if element == floats {
+        array.into_vec::<f32>().unwrap().into_iter().map(f64::from).collect()
+    } else {
+        array.into_vec::<u8>().unwrap().into_iter().map(f64::from).collect()
+    };
+    (shape, values)
+}
+
+#[test]
+fn every_listed_target_is_written_in_every_format() {
+    for variant in ["level-map", "volumetric"] {
+        let out = folder();
+        let targets = targets(variant);
+        assert!(targets.iter().any(|(name, _)| name == "caustics-map"), "{targets:?}");
+        let mut program = caustics("render --quiet --variant").arg(variant).inside(out.path()).tiny();
+        for (name, _) in &targets {
+            for ending in ["npy", "exr", "png"] {
+                program = program.arg("--dump").arg(format!("{name}={name}.{ending}"));
+            }
+        }
+        program.args("--image the-picture.png").run().succeeded();
+        assert_eq!(entries(out.path()).len(), 3 * targets.len() + 1);
+        for (name, shape) in &targets {
+            check(out.path(), name, &dimensions(shape));
+        }
+    }
+}
+
+fn check(folder: &Path, name: &str, dimensions: &[u64]) {
+    let path = |ending: &str| folder.join(format!("{name}.{ending}"));
+    let (shape, values) = read_npy(&path("npy"));
+    match (dimensions, &shape[..]) {
+        ([rows, columns], [npy_rows, npy_columns]) => assert_eq!((rows, columns), (npy_rows, npy_columns), "{name}"),
+        ([width, height, rest @ ..], [layers, npy_height, npy_width, _]) => {
+            let expected = rest.first().copied().unwrap_or(1);
+            assert_eq!((width, height, expected), (npy_width, npy_height, *layers), "{name}");
+        }
+        other => panic!("{name}: {other:?}"),
+    }
+    assert_eq!(values.len() as u64, shape.iter().product::<u64>(), "{name}");
+    assert!(values.iter().all(|value| value.is_finite()), "{name}");
+    assert!(values.iter().any(|value| *value != values[0]), "{name} is one value all over");
+
+    // The EXR holds the same values, whatever its order.
+    let exr = read_all_flat_layers_from_file(path("exr")).unwrap();
+    let mut in_exr: Vec<f64> = exr
+        .layer_data
+        .iter()
+        .flat_map(|layer| &layer.channel_data.list)
+        .flat_map(|channel| channel.sample_data.values_as_f32().map(f64::from).collect::<Vec<_>>())
+        .collect();
+    let mut in_npy = values;
+    in_exr.sort_by(f64::total_cmp);
+    in_npy.sort_by(f64::total_cmp);
+    assert_eq!(in_exr, in_npy, "{name}");
+
+    assert!(image::open(path("png")).unwrap().width() > 0, "{name}");
+}
+
+#[test]
+fn an_unknown_target_is_refused_with_those_that_are_known() {
+    let out = folder();
+    let program = caustics("render --quiet --dump no-such-target=x.npy").inside(out.path()).tiny();
+    program.run().refused(2, &["no-such-target", "water", "position-map", "caustics-map", "picture"]);
+    let program = caustics("render --quiet --variant level-map --dump illumination-map=x.npy").inside(out.path());
+    program.tiny().run().refused(2, &["illumination-map", "diffuse-map"]);
+    assert!(!out.path().join("x.npy").exists());
+}

@@ -1,0 +1,89 @@
+//! `experiment`: its files, its table, and what it refuses.
+
+use std::fs;
+
+use super::program::{ONCE, Program, assert_schema, caustics, entries, folder, read_json};
+
+const SMALL: &str = "--size 96x64 --map-size 64 --water-triangles 500";
+
+fn sweep() -> Program {
+    caustics("experiment 5-1 --quiet").args(SMALL).on_test_device()
+}
+
+#[test]
+fn experiments_are_listed() {
+    let ended = caustics("experiment --list").run().succeeded();
+    let line = ended.stdout.lines().find(|line| line.starts_with("5-1 ")).expect("5-1 is listed");
+    assert!(line.to_lowercase().contains("level map against volumetric"), "{line}");
+    assert_eq!(ended.stderr, "");
+}
+
+#[test]
+fn table_5_1_is_written_and_printed_with_its_ratios() {
+    let out = folder();
+    let program = caustics("experiment 5-1 --counts 3,5 --mesh sphere --out tables").inside(out.path());
+    let ended = program.args(SMALL).args(ONCE).on_test_device().run().succeeded();
+    let tables = out.path().join("tables");
+    assert_eq!(entries(&tables), ["caustics-5-1.csv", "caustics-5-1.json", "caustics-5-1.svg"]);
+
+    let record = read_json(&tables.join("caustics-5-1.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let found: Vec<(u64, &str)> =
+        runs.iter().map(|run| (run["config"]["planes"].as_u64().unwrap(), run["variant"].as_str().unwrap())).collect();
+    assert_eq!(found, [(3, "level-map"), (3, "volumetric"), (5, "level-map"), (5, "volumetric")]);
+    for run in runs {
+        assert_eq!(run["preset"], "5-1");
+    }
+    for (run, thesis) in [(&runs[1], 2.06), (&runs[3], 2.41)] {
+        let row = &run["experiment"];
+        let median = |run: &serde_json::Value| run["frame_ms"]["median"].as_f64().unwrap();
+        let ours = row["ours"].as_f64().unwrap();
+        let paper = row["paper"].as_f64().unwrap();
+        assert!((paper - thesis).abs() < 0.01, "{row}");
+        assert!((row["ratio"].as_f64().unwrap() - ours / paper).abs() < 1e-9, "{row}");
+        assert!(ours > 0.0 && median(run) > 0.0, "{row}");
+        let printed = format!("{ours:.3}");
+        assert!(ended.stdout.contains(&printed), "{printed} is not printed:\n{}", ended.stdout);
+    }
+
+    let csv = fs::read_to_string(tables.join("caustics-5-1.csv")).unwrap();
+    let passes: usize = runs.iter().map(|run| run["passes"].as_array().unwrap().len()).sum();
+    assert_eq!(csv.lines().count(), 1 + passes);
+    let svg = fs::read_to_string(tables.join("caustics-5-1.svg")).unwrap();
+    assert_eq!(roxmltree::Document::parse(&svg).unwrap().root_element().tag_name().name(), "svg");
+}
+
+#[test]
+fn a_table_without_times_is_written_and_printed() {
+    let out = folder();
+    let program = caustics("experiment memory --counts 3,5 --mesh box --out .").inside(out.path());
+    let ended = program.args(SMALL).on_test_device().run().succeeded();
+    assert_eq!(entries(out.path()), ["caustics-memory.csv", "caustics-memory.json"]);
+    let rows = read_json(&out.path().join("caustics-memory.json"))["table"]["rows"].as_array().unwrap().len();
+    let csv = fs::read_to_string(out.path().join("caustics-memory.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + rows);
+    assert!(ended.stdout.contains("box"), "{}", ended.stdout);
+}
+
+/// Each comes after something that would be measured for minutes, and is found before it.
+#[test]
+fn bad_input_is_refused_before_anything_is_measured() {
+    let long = || sweep().inside(std::env::temp_dir().as_path()).args("--frames 100000 --repeat 10000");
+    long().args("--counts 3,0 --mesh sphere").run().refused(2, &["--planes 0"]);
+    long().args("--counts 3,4097 --mesh sphere").run().refused(2, &["--planes 4097"]);
+    long().args("--counts 3 --mesh sphere --mesh no-such.obj").run().refused(2, &["no-such.obj"]);
+    long().args("--counts 3 --mesh sphere --out /dev/null/out").run().refused(2, &["/dev/null/out"]);
+}
+
+#[test]
+fn what_a_sweep_cannot_give_is_refused() {
+    for (option, name) in [("--processes 2", "--processes"), ("--trace t", "--trace"), ("--image p.png", "--image")] {
+        sweep().args(option).run().refused(2, &[name]);
+    }
+    sweep().args("--planes 3").run().refused(2, &["--planes", "--counts"]);
+    caustics("experiment 5-2 --counts 3").run().refused(2, &["--counts", "--planes"]);
+    sweep().args("--counts 3 --step 3").run().misused(&["--counts", "--step"]);
+    caustics("experiment").run().misused(&["NAME"]);
+    caustics("experiment 9-9").run().misused(&["9-9", "5-1"]);
+}

@@ -1,0 +1,113 @@
+//! Ctrl-C keeps what is finished.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::program::{Ended, Program, Running, assert_schema, caustics, entries, folder, read_json};
+
+/// Far above what a frame of the tiny scene takes.
+const SOON: Duration = Duration::from_secs(30);
+
+/// Whether a process handles SIGINT by now; before that, the signal just ends it.
+fn handles_interrupts(process: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).map(str::trim);
+    caught.and_then(|mask| u64::from_str_radix(mask, 16).ok()).is_some_and(|mask| mask & 0b10 != 0)
+}
+
+fn children(process: u32) -> Vec<u32> {
+    let listed = fs::read_to_string(format!("/proc/{process}/task/{process}/children")).unwrap_or_default();
+    listed.split_whitespace().map(|id| id.parse().unwrap()).collect()
+}
+
+/// Waits until `ready` or the end of the program.
+fn wait_until(running: &mut Running, ready: impl Fn(u32) -> bool) {
+    let deadline = Instant::now() + SOON;
+    while !ready(running.id()) && !running.has_ended() {
+        assert!(Instant::now() < deadline, "it never got ready");
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Starts a program, presses Ctrl-C when it is `ready` and a while later, and returns how it ended. The while grows as
+/// long as nothing was finished in it, which a busy machine may need.
+fn interrupt(program: impl Fn() -> Program, ready: impl Fn(u32) -> bool) -> Ended {
+    let mut pause = Duration::from_millis(300);
+    loop {
+        let mut running = program().start();
+        wait_until(&mut running, &ready);
+        thread::sleep(pause);
+        let group = format!("-{}", running.id());
+        let killed = Command::new("kill").args(["-INT", "--", &group]).status().unwrap();
+        assert!(killed.success(), "{:?}", running.end().stderr);
+        let pressed = Instant::now();
+        let ended = running.end();
+        assert!(pressed.elapsed() < SOON, "it took {:?} to end", pressed.elapsed());
+        if !(ended.stderr.contains("interrupted before") && pause < SOON) {
+            return ended;
+        }
+        pause *= 3;
+    }
+}
+
+fn assert_interrupted(record: &Path) {
+    let record = read_json(record);
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    assert!(!runs.is_empty());
+    for run in runs {
+        assert!(!run["frame_ms"]["samples"].as_array().unwrap().is_empty());
+        let warnings = run["warnings"].to_string();
+        assert!(warnings.contains("interrupted"), "{warnings}");
+    }
+}
+
+const LONG: &str = "bench --frames 100000 --repeat 100 --no-limits --variant level-map,volumetric --json a.json";
+
+#[test]
+fn a_bench_keeps_its_finished_frames() {
+    let out = folder();
+    let program = || caustics(LONG).args("--csv a.csv --image a.png").inside(out.path()).tiny();
+    let ended = interrupt(program, handles_interrupts).succeeded();
+    assert!(ended.stdout.contains("interrupted after"), "{}", ended.stdout);
+    assert_eq!(entries(out.path()), ["a.csv", "a.json", "a.png"]);
+    assert_interrupted(&out.path().join("a.json"));
+}
+
+#[test]
+fn fresh_processes_keep_theirs() {
+    let out = folder();
+    let program = || caustics(LONG).args("--processes 3").inside(out.path()).tiny();
+    let ready = |id: u32| handles_interrupts(id) && children(id).iter().any(|&child| handles_interrupts(child));
+    interrupt(program, ready).succeeded();
+    assert_eq!(entries(out.path()), ["a.json"]);
+    assert_interrupted(&out.path().join("a.json"));
+    assert!(read_json(&out.path().join("a.json"))["runs"].as_array().unwrap().iter().all(|run| run["process"] == 0));
+}
+
+#[test]
+fn a_range_of_pictures_keeps_those_that_it_names() {
+    let out = folder();
+    let program = || caustics("render --frame 0..1000000 --out .").inside(out.path()).tiny();
+    let ready = |id: u32| handles_interrupts(id) && !entries(out.path()).is_empty();
+    let ended = interrupt(program, ready).succeeded();
+    let named = ended.stderr.lines().filter_map(|line| line.strip_prefix("wrote ./"));
+    let named: Vec<&str> = named.collect();
+    assert_eq!(named, entries(out.path()));
+    image::open(out.path().join(named[named.len() - 1])).unwrap();
+}
+
+#[test]
+fn a_sweep_keeps_its_finished_rows() {
+    let out = folder();
+    let options = "--step 1 --frames 3 --repeat 1 --mesh sphere --no-limits --out . --size 96x64 --map-size 64";
+    let program = || caustics("experiment 5-1").args(options).inside(out.path()).on_test_device();
+    interrupt(program, handles_interrupts).succeeded();
+    let record = read_json(&out.path().join("caustics-5-1.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    assert!(!runs.is_empty() && runs.len() < 2 * 99, "{} runs", runs.len());
+}

@@ -1,0 +1,19 @@
+//! Tests of the programs themselves: what they print, what they write, and how they end.
+//!
+//! They run on lavapipe (`FUMAROLE_TEST_DEVICE` names another device) and fail where there is none.
+
+mod arguments;
+mod bench;
+mod compare;
+mod devices;
+mod dumps;
+mod experiment;
+mod interruption;
+mod meshes;
+mod outputs;
+mod passes;
+mod program;
+mod render;
+mod shaders;
+mod streams;
+mod vulkan;

@@ -1,0 +1,79 @@
+//! Meshes that cannot be used: exit code 2 and one line that names the file and the place.
+
+use std::fs::{self, File};
+use std::path::Path;
+
+use fumarole::scene::random::Random;
+
+use super::program::{ONCE, caustics, file, folder};
+
+fn refuse(path: &Path, parts: &[&str]) {
+    let name = path.file_name().unwrap().to_str().unwrap();
+    let parts: Vec<&str> = parts.iter().copied().chain([name]).collect();
+    caustics("bench --mesh").arg(path).tiny().args(ONCE).run().refused(2, &parts);
+}
+
+#[test]
+fn an_obj_with_a_fault_is_refused_with_its_line() {
+    let out = folder();
+    for (name, text, parts) in [
+        ("empty.obj", "", &["no faces"][..]),
+        ("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", &["no faces"]),
+        ("truncated.obj", "v 0 0 0\nv 1 0 0\nv 0 1", &["line 3"]),
+        ("cut-face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2", &["no faces"]),
+        ("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", &["line 4", "9"]),
+        ("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", &["line 4"]),
+        ("relative.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -9\n", &["line 4", "-9"]),
+        ("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", &["line 2"]),
+        ("infinite.obj", "v 0 0 0\nv 0 0 inf\nv 0 1 0\nf 1 2 3\n", &["line 2"]),
+        ("words.obj", "v a b c\n", &["line 1"]),
+        ("point.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n", &["area"]),
+        ("tiny.obj", "v 0 0 0\nv 1e-44 0 0\nv 0 1e-44 0\nf 1 2 3\n", &["scaled"]),
+        ("vast.obj", "v -3e38 0 0\nv 3e38 0 0\nv 0 -3e38 0\nf 1 2 3\n", &["scaled"]),
+    ] {
+        refuse(&file(&out, name, text), parts);
+    }
+}
+
+#[test]
+fn random_bytes_under_every_ending_are_refused() {
+    let out = folder();
+    let mut random = Random::new(5);
+    for ending in ["obj", "ply", "stl", "gltf", "glb"] {
+        let noise: Vec<u8> = (0..4096).map(|_| (random.next_u32() >> 24) as u8).collect();
+        refuse(&file(&out, &format!("noise.{ending}"), &noise), &[]);
+        refuse(&file(&out, &format!("nothing.{ending}"), ""), &[]);
+        refuse(&file(&out, &format!("zeros.{ending}"), [0; 1024]), &[]);
+        refuse(&file(&out, &format!("capitals.{}", ending.to_uppercase()), &noise), &[]);
+    }
+}
+
+/// Every header claims far more than its file holds, or than any machine has.
+#[test]
+fn a_mesh_that_is_too_large_is_refused_unread() {
+    let out = folder();
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n\
+               property float z\nelement face 4000000000\nproperty list uchar int vertex_indices\nend_header\n";
+    refuse(&file(&out, "claims.ply", ply), &["4000000000"]);
+    refuse(&file(&out, "claims.stl", [&[0; 80][..], &[0xff; 4]].concat()), &["84 bytes"]);
+    refuse(&file(&out, "claims.glb", [&b"glTF\x02\0\0\0"[..], &[0xff; 4]].concat()), &["12"]);
+    for ending in ["obj", "ply", "stl"] {
+        let path = out.path().join(format!("sparse.{ending}"));
+        File::create(&path).unwrap().set_len(1 << 42).unwrap();
+        refuse(&path, &["4398046511104"]);
+    }
+}
+
+#[test]
+fn what_is_no_mesh_file_is_refused_with_what_is_known() {
+    let out = folder();
+    refuse(&out.path().join("missing.obj"), &["No such file"]);
+    fs::create_dir(out.path().join("folder.obj")).unwrap();
+    refuse(&out.path().join("folder.obj"), &["regular file"]);
+    let endings = [".obj", ".ply", ".stl", ".gltf", ".glb"];
+    refuse(&file(&out, "mesh.xyz", ""), &endings);
+    refuse(&file(&out, "mesh", ""), &endings);
+    caustics("bench --mesh").arg("").tiny().args(ONCE).run().refused(2, &endings);
+    caustics("passes --mesh no-such.obj").tiny().run().refused(2, &["no-such.obj"]);
+    caustics("render --mesh sphere --mesh no-such.obj").tiny().run().refused(2, &["no-such.obj"]);
+}
