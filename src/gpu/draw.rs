@@ -1,0 +1,93 @@
+//! What the body of a pass may issue: draws inside its render pass, or dispatches.
+
+use ash::vk;
+use bytemuck::Pod;
+
+use super::device::Device;
+use super::pass::Inner;
+
+/// The draws of one pass.
+pub struct Draw<'a> {
+    pub(super) device: &'a Device,
+    pub(super) commands: vk::CommandBuffer,
+    pub(super) inner: &'a Inner,
+    pub(super) calls: u32,
+}
+
+impl Draw<'_> {
+    /// Sets the push constants of the draws to come.
+    pub fn constants<T: Pod>(&mut self, constants: &T) -> &mut Self {
+        push(self.device, self.commands, self.inner, bytemuck::bytes_of(constants));
+        self
+    }
+
+    /// Makes the draws to come those of the pass's counting pipeline, or of its own again.
+    pub fn counting(&mut self, counting: bool) -> &mut Self {
+        let pipeline = if counting { &self.inner.counting } else { &self.inner.pipeline };
+        if let Some(pipeline) = pipeline {
+            let point = vk::PipelineBindPoint::GRAPHICS;
+            // SAFETY: inside the pass's render pass; both pipelines were made for it and share one layout.
+            unsafe { self.device.raw.cmd_bind_pipeline(self.commands, point, pipeline.raw) };
+        }
+        self
+    }
+
+    /// Draws `count` vertices from `first` on without indices.
+    pub fn vertices_from(&mut self, first: u32, count: u32) -> &mut Self {
+        self.calls += 1;
+        // SAFETY: as for [`Draw::vertices`].
+        unsafe { self.device.raw.cmd_draw(self.commands, count, 1, first, 0) };
+        self
+    }
+
+    /// Draws `count` vertices without indices.
+    pub fn vertices(&mut self, count: u32) -> &mut Self {
+        self.calls += 1;
+        // SAFETY: inside the pass's render pass, with its pipeline and buffers bound.
+        unsafe { self.device.raw.cmd_draw(self.commands, count, 1, 0, 0) };
+        self
+    }
+
+    /// Draws `count` indices.
+    pub fn indices(&mut self, count: u32) -> &mut Self {
+        self.calls += 1;
+        // SAFETY: as above; the index buffer was checked when it was filled.
+        unsafe { self.device.raw.cmd_draw_indexed(self.commands, count, 1, 0, 0, 0) };
+        self
+    }
+}
+
+/// The dispatches of one pass.
+pub struct Dispatch<'a> {
+    pub(super) device: &'a Device,
+    pub(super) commands: vk::CommandBuffer,
+    pub(super) inner: &'a Inner,
+    pub(super) local_size: [u32; 3],
+    pub(super) calls: u32,
+}
+
+impl Dispatch<'_> {
+    /// Sets the push constants of the dispatches to come.
+    pub fn constants<T: Pod>(&mut self, constants: &T) -> &mut Self {
+        push(self.device, self.commands, self.inner, bytemuck::bytes_of(constants));
+        self
+    }
+
+    /// Dispatches at least `x` x `y` x `z` threads, in whole workgroups.
+    pub fn threads(&mut self, x: u32, y: u32, z: u32) -> &mut Self {
+        self.calls += 1;
+        let [a, b, c] = self.local_size;
+        // SAFETY: recording outside a render pass with the pass's pipeline bound.
+        unsafe { self.device.raw.cmd_dispatch(self.commands, x.div_ceil(a), y.div_ceil(b), z.div_ceil(c)) };
+        self
+    }
+}
+
+fn push(device: &Device, commands: vk::CommandBuffer, inner: &Inner, bytes: &[u8]) {
+    let Some(pipeline) = &inner.pipeline else { return };
+    let program = &pipeline.program;
+    // The host struct may carry its alignment's tail; the block's own size is what the layout declares.
+    let bytes = &bytes[..bytes.len().min(program.push_bytes as usize)];
+    // SAFETY: the build of the pass checked the struct against the block; the range was declared in the layout.
+    unsafe { device.raw.cmd_push_constants(commands, program.layout, program.push_stages, 0, bytes) };
+}

@@ -1,0 +1,272 @@
+//! The recorder: command buffer, query pools and lists that frames reuse, and what is read from the queries after them.
+
+use std::ffi::CString;
+use std::sync::Arc;
+use std::time::Instant;
+
+use ash::vk;
+
+use super::barrier::{self, Barriers};
+use super::commands::Commands;
+use super::device::Device;
+use super::error::Error;
+use super::frame::Frame;
+use super::pass::{Body, Inner, Pass, PassInfo};
+use super::physical::Feature;
+use super::query::{Counter, QueryPool};
+use super::sample::{Counts, FrameSample, Mode, Span};
+
+/// Queries of one frame; a pass beyond them is reported as not measured.
+const STAMPS: u32 = 32_768;
+const COUNTERS: u32 = 16_384;
+
+/// Records and runs frames, one in flight. Buffers, pools and lists are reused from frame to frame.
+pub struct Recorder {
+    pub(super) commands: Commands,
+    pub(super) stamps: Option<QueryPool>,
+    pub(super) samples_passed: Option<QueryPool>,
+    pub(super) graphics_counts: Option<QueryPool>,
+    pub(super) compute_counts: Option<QueryPool>,
+    pub(super) stamp_mask: u64,
+    pub(super) period_ns: f64,
+    pub(super) barriers: Barriers,
+    pub(super) keep: Vec<Pass>,
+    /// The pass, as an index into `sample.passes`, of each stamped interval and of each counter.
+    pub(super) intervals: Vec<usize>,
+    pub(super) counted: Vec<Counted>,
+    pub(super) labels: Vec<(&'static str, CString)>,
+    pub(super) sample: FrameSample,
+}
+
+pub(super) struct Counted {
+    pass: usize,
+    samples: Option<u32>,
+    graphics: Option<u32>,
+    compute: Option<u32>,
+}
+
+impl Recorder {
+    /// Makes the command buffer, and the query pools that the device can fill.
+    ///
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn new(device: &Arc<Device>) -> Result<Self, Error> {
+        let physical = device.physical();
+        let pool = |feature, counter, capacity| {
+            physical.has(feature).then(|| QueryPool::new(device, counter, capacity)).transpose()
+        };
+        let bits = physical.queue.map_or(0, |q| q.1);
+        Ok(Recorder {
+            commands: Commands::new(device, "frame")?,
+            stamps: pool(Feature::Timestamps, Counter::Timestamps, STAMPS)?,
+            samples_passed: pool(Feature::PreciseOcclusion, Counter::Samples, COUNTERS)?,
+            graphics_counts: pool(Feature::PipelineStatistics, Counter::Graphics, COUNTERS)?,
+            compute_counts: pool(Feature::PipelineStatistics, Counter::Compute, COUNTERS)?,
+            stamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
+            period_ns: f64::from(physical.limits.timestamp_period),
+            barriers: Barriers::default(),
+            keep: Vec::new(),
+            intervals: Vec::new(),
+            counted: Vec::new(),
+            labels: Vec::new(),
+            sample: FrameSample::default(),
+        })
+    }
+
+    /// Records a frame with `record`, submits it and waits for it.
+    ///
+    /// # Errors
+    /// The first error of `record` or of Vulkan; what the resources hold is then unknown.
+    pub fn run<E: From<Error>>(
+        &mut self,
+        mode: Mode,
+        record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
+    ) -> Result<&FrameSample, E> {
+        self.sample.passes.clear();
+        self.sample.spans.clear();
+        self.sample.bracket_ms = None;
+        let started = Instant::now();
+        let mut frame = Frame { recorder: self, mode, submission: 0, started };
+        frame.begin()?;
+        record(&mut frame)?;
+        frame.finish()?;
+        Ok(&self.sample)
+    }
+
+    /// Time in milliseconds that two neighbouring stamps of the scheme show with nothing between them: the median of
+    /// 101, or `None` without stamps.
+    ///
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn stamp_floor_ms(&mut self) -> Result<Option<f64>, Error> {
+        let info = PassInfo::host("empty", "", &[], &[]);
+        let mut floors = Vec::new();
+        self.run(Mode::Stamped, |frame| {
+            for _ in 0..101 {
+                let at = frame.sample_of(&info);
+                frame.recorder.stamp(at);
+            }
+            Ok::<(), Error>(())
+        })?;
+        if let Some(pool) = &mut self.stamps {
+            let stamps = pool.read()?;
+            floors.extend(
+                stamps.windows(2).map(|w| (w[1].wrapping_sub(w[0]) & self.stamp_mask) as f64 * self.period_ns * 1e-6),
+            );
+        }
+        floors.sort_by(f64::total_cmp);
+        Ok(floors.get(floors.len() / 2).copied())
+    }
+
+    /// `full, stamp, full` after a pass.
+    pub(super) fn stamp(&mut self, pass: usize) {
+        if let Some(query) = self.stamps.as_mut().and_then(QueryPool::take) {
+            self.write_stamp(query);
+            self.intervals.push(pass);
+        }
+    }
+
+    pub(super) fn write_stamp(&self, query: u32) {
+        let Some(pool) = &self.stamps else { return };
+        let device = &self.commands.device;
+        barrier::full(device, self.commands.buffer);
+        // SAFETY: recording outside a render pass; the query was reset and is used once.
+        unsafe {
+            device.raw.cmd_write_timestamp2(
+                self.commands.buffer,
+                vk::PipelineStageFlags2::ALL_COMMANDS,
+                pool.raw,
+                query,
+            );
+        }
+        barrier::full(device, self.commands.buffer);
+    }
+
+    pub(super) fn read_stamps(&mut self, mode: Mode, submitted_ms: f64) -> Result<(), Error> {
+        let Some(pool) = &mut self.stamps else { return Ok(()) };
+        let (mask, period_ns) = (self.stamp_mask, self.period_ns);
+        let difference_ms = |w: &[u64]| (w[1].wrapping_sub(w[0]) & mask) as f64 * period_ns * 1e-6;
+        let stamps = pool.read()?;
+        if mode == Mode::Bracketed {
+            if let [first, last] = stamps {
+                *self.sample.bracket_ms.get_or_insert(0.0) += difference_ms(&[*first, *last]);
+            }
+            return Ok(());
+        }
+        let mut start_ms = submitted_ms;
+        for (window, &pass) in stamps.windows(2).zip(&self.intervals) {
+            let duration_ms = difference_ms(window);
+            *self.sample.passes[pass].gpu_ms.get_or_insert(0.0) += duration_ms;
+            self.sample.spans.push(Span { pass, start_ms, duration_ms, on_gpu: true });
+            start_ms += duration_ms;
+        }
+        Ok(())
+    }
+
+    pub(super) fn read_counts(&mut self) -> Result<(), Error> {
+        let read = |pool: &mut Option<QueryPool>| -> Result<Vec<u64>, Error> {
+            pool.as_mut().map_or(Ok(Vec::new()), |p| p.read().map(<[u64]>::to_vec))
+        };
+        let samples = read(&mut self.samples_passed)?;
+        let graphics = read(&mut self.graphics_counts)?;
+        let compute = read(&mut self.compute_counts)?;
+        for one in &self.counted {
+            let counts = self.sample.passes[one.pass].counts.get_or_insert_with(Counts::default);
+            let add = |total: &mut Option<u64>, value: Option<&u64>| {
+                if let Some(value) = value {
+                    *total.get_or_insert(0) += value;
+                }
+            };
+            if let Some(query) = one.graphics {
+                // Vulkan writes the counters in the order of their bits: primitives, vertices, fragments.
+                let at = query as usize * 3;
+                add(&mut counts.primitives, graphics.get(at));
+                add(&mut counts.vertices, graphics.get(at + 1));
+                add(&mut counts.fragments, graphics.get(at + 2));
+            }
+            add(&mut counts.compute_invocations, one.compute.and_then(|q| compute.get(q as usize)));
+            add(&mut counts.samples_passed, one.samples.and_then(|q| samples.get(q as usize)));
+        }
+        Ok(())
+    }
+
+    pub(super) fn bind(&self, inner: &Inner) {
+        let point = match inner.body {
+            Body::Graphics { .. } => vk::PipelineBindPoint::GRAPHICS,
+            Body::Compute | Body::Copy { .. } => vk::PipelineBindPoint::COMPUTE,
+        };
+        let Some(pipeline) = &inner.pipeline else { return };
+        let raw = &self.commands.device.raw;
+        // SAFETY: recording; pipeline, layout and set belong together and are kept by the frame.
+        unsafe {
+            raw.cmd_bind_pipeline(self.commands.buffer, point, pipeline.raw);
+            if let Some(bindings) = &inner.bindings {
+                let layout = pipeline.program.layout;
+                raw.cmd_bind_descriptor_sets(self.commands.buffer, point, layout, 0, &[bindings.set], &[]);
+            }
+        }
+    }
+
+    pub(super) fn begin_counters(&mut self, inner: &Inner, pass: usize) -> Counted {
+        let is_graphics = matches!(inner.body, Body::Graphics { .. });
+        let take =
+            |pool: &mut Option<QueryPool>, wanted: bool| pool.as_mut().filter(|_| wanted).and_then(QueryPool::take);
+        let counted = Counted {
+            pass,
+            samples: take(&mut self.samples_passed, is_graphics),
+            graphics: take(&mut self.graphics_counts, is_graphics),
+            compute: take(&mut self.compute_counts, matches!(inner.body, Body::Compute)),
+        };
+        self.each_counter(&counted, |raw, commands, pool, query| {
+            let flags = if pool.1 { vk::QueryControlFlags::PRECISE } else { vk::QueryControlFlags::empty() };
+            // SAFETY: recording outside a render pass; the query was reset and is begun once.
+            unsafe { raw.cmd_begin_query(commands, pool.0, query, flags) };
+        });
+        counted
+    }
+
+    pub(super) fn end_counters(&mut self, counted: Counted) {
+        self.each_counter(&counted, |raw, commands, pool, query| {
+            // SAFETY: recording outside a render pass; the query was begun in this command buffer.
+            unsafe { raw.cmd_end_query(commands, pool.0, query) };
+        });
+        self.counted.push(counted);
+    }
+
+    /// Visits the queries of one pass with their pool and whether they count precisely.
+    pub(super) fn each_counter(
+        &self,
+        counted: &Counted,
+        mut visit: impl FnMut(&ash::Device, vk::CommandBuffer, (vk::QueryPool, bool), u32),
+    ) {
+        let pools = [
+            (&self.samples_passed, counted.samples, true),
+            (&self.graphics_counts, counted.graphics, false),
+            (&self.compute_counts, counted.compute, false),
+        ];
+        for (pool, query, precise) in pools {
+            if let (Some(pool), Some(query)) = (pool, query) {
+                visit(&self.commands.device.raw, self.commands.buffer, (pool.raw, precise), query);
+            }
+        }
+    }
+
+    pub(super) fn open_label(&mut self, name: &'static str) {
+        let Some(debug) = &self.commands.device.debug else { return };
+        let at = self.labels.iter().position(|(n, _)| *n == name).or_else(|| {
+            self.labels.push((name, CString::new(name).ok()?));
+            Some(self.labels.len() - 1)
+        });
+        let Some(at) = at else { return };
+        let label = vk::DebugUtilsLabelEXT::default().label_name(&self.labels[at].1);
+        // SAFETY: recording; the label's text lives in `labels`.
+        unsafe { debug.cmd_begin_debug_utils_label(self.commands.buffer, &label) };
+    }
+
+    pub(super) fn close_label(&self) {
+        if let Some(debug) = &self.commands.device.debug {
+            // SAFETY: closes the label that `open_label` opened.
+            unsafe { debug.cmd_end_debug_utils_label(self.commands.buffer) };
+        }
+    }
+}
