@@ -64,7 +64,7 @@ fn json_of(listed: &Listed) -> Value {
             json!({
                 "order": order + 1, "name": info.name, "kind": info.kind.word(), "section": info.section,
                 "calls": calls, "shaders": info.shaders, "reads": info.reads, "writes": info.writes,
-                "blend": info.blend, "depth": info.depth, "stencil": Value::Null,
+                "blend": info.blend, "depth": info.depth, "counting": info.counting,
                 "shader_compiler": info.compiler.map(|c| c.to_string()),
             })
         })
@@ -86,7 +86,7 @@ fn text_of(listed: &Listed) -> String {
         ("reads", Align::Left),
         ("writes", Align::Left),
         ("blend", Align::Left),
-        ("depth", Align::Left),
+        ("depth and stencil", Align::Left),
     ]);
     let own = |names: &[String]| {
         let prefix = format!("{}/", listed.variant.word());
@@ -103,7 +103,7 @@ fn text_of(listed: &Listed) -> String {
             own(&info.reads),
             own(&info.writes),
             info.blend.join(" "),
-            info.depth.unwrap_or("").to_owned(),
+            info.counting.into_iter().chain(info.depth).collect::<Vec<_>>().join("; "),
         ]);
     }
     let targets: Vec<String> = listed.targets.iter().map(|t| format!("{} ({})", t.name, shape(t))).collect();

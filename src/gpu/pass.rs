@@ -51,6 +51,8 @@ pub struct PassInfo {
     /// Blend state of each colour target.
     pub blend: Vec<&'static str>,
     pub depth: Option<&'static str>,
+    /// Depth and stencil state of the draws that take turns with the pass's own.
+    pub counting: Option<&'static str>,
     /// `None` where no shader runs.
     pub compiler: Option<Compiler>,
 }
@@ -68,6 +70,7 @@ impl PassInfo {
             writes: owned(writes),
             blend: Vec::new(),
             depth: None,
+            counting: None,
             compiler: None,
         })
     }
@@ -118,6 +121,7 @@ struct Sentence {
     vertices: Option<BufferView>,
     indices: Option<BufferView>,
     topology: Topology,
+    counting: Option<(String, DepthTest)>,
 }
 
 type LayoutOf = fn(&str, &Program) -> Result<VertexLayout, Error>;
@@ -129,7 +133,6 @@ pub struct PassBuilder {
     sentence: Sentence,
     vertex_layout: Option<LayoutOf>,
     check_constants: Option<CheckConstants>,
-    counting: Option<(String, DepthTest)>,
 }
 
 impl Pass {
@@ -160,6 +163,7 @@ impl Pass {
             writes: vec![to.name().to_owned()],
             blend: Vec::new(),
             depth: None,
+            counting: None,
             compiler: None,
         });
         let sentence = Self::builder(name, section, Vec::new()).sentence;
@@ -187,10 +191,10 @@ impl Pass {
                 vertices: None,
                 indices: None,
                 topology: Topology::default(),
+                counting: None,
             },
             vertex_layout: None,
             check_constants: None,
-            counting: None,
         }
     }
 
@@ -255,7 +259,7 @@ impl PassBuilder {
     /// A second pipeline for draws that take turns with the pass's own inside its render pass: the same vertices, another
     /// fragment shader and depth state, colours masked. [`Draw::counting`](super::Draw::counting) chooses it.
     pub fn counting(mut self, fragment: &str, test: DepthTest) -> Self {
-        self.counting = Some((fragment.to_owned(), test));
+        self.sentence.counting = Some((fragment.to_owned(), test));
         self
     }
 
@@ -272,7 +276,7 @@ impl PassBuilder {
     /// [`Error::Pass`] or [`Error::Shader`] for a sentence that does not fit its shaders; what Vulkan answers.
     pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
         let device = shaders.device();
-        let PassBuilder { sentence, vertex_layout, check_constants, counting } = self;
+        let PassBuilder { sentence, vertex_layout, check_constants } = self;
         let name = sentence.name;
         let modules = sentence.shaders.iter().map(|s| shaders.module(s)).collect::<Result<Vec<_>, _>>()?;
         let program = Program::new(device, name, modules)?;
@@ -297,11 +301,11 @@ impl PassBuilder {
         let modules = &program.modules;
         let topology = sentence.topology;
         let own = Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology)?;
-        let counting = match counting {
+        let counting = match &sentence.counting {
             None => None,
             Some((fragment, test)) => {
-                let modules = [modules[0].clone(), shaders.module(&fragment)?];
-                let targets = targets.for_counting(test);
+                let modules = [modules[0].clone(), shaders.module(fragment)?];
+                let targets = targets.for_counting(*test);
                 let made =
                     Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)?;
                 Some(made)
@@ -463,11 +467,12 @@ fn describe(sentence: &Sentence, program: &Program, uses: &[Use]) -> PassInfo {
         } else {
             PassKind::Graphics
         },
-        shaders: sentence.shaders.clone(),
+        shaders: sentence.shaders.iter().chain(sentence.counting.iter().map(|(shader, _)| shader)).cloned().collect(),
         reads: names(false),
         writes: names(true),
         blend: sentence.targets.colors.iter().map(|(_, blend)| blend.word()).collect(),
         depth: sentence.targets.depth.as_ref().map(|(_, test)| test.word()),
+        counting: sentence.counting.as_ref().map(|(_, test)| test.word()),
         compiler: Some(program.compiler()),
     }
 }

@@ -128,7 +128,8 @@ fn push_row(text: &mut String, cells: [String; COLUMNS.len()]) {
     text.push_str("\r\n");
 }
 
-fn quote(cell: &str) -> String {
+/// A cell, quoted where it holds a comma, a quote or a line break.
+pub fn quote(cell: &str) -> String {
     if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
 }
 

@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use ash::vk;
-use fumarole::gpu::bindings::Resource;
-use fumarole::gpu::transfer::{read_buffer, read_image};
-use fumarole::gpu::{Compiler, Device, Error, Mode, PassSample, Recorder, ShaderLibrary};
-use fumarole::image::Rgba8;
-use fumarole::papers::Paper;
+use fumarole::experiment::picture::read_target;
+use fumarole::gpu::transfer::read_image;
+use fumarole::gpu::{Compiler, Device, Mode, PassSample, Recorder, ShaderLibrary};
+use fumarole::image::{Rgba8, Samples};
 use fumarole::papers::caustics::water::Grid;
 use fumarole::papers::caustics::{Caustics, Parameters, ReceiverInput, Variant};
-use half::f16;
+use fumarole::papers::{Paper, Target};
 
 /// The frame that is drawn: not the first, so that the water has moved.
 pub const FRAME: u32 = 3;
@@ -19,6 +17,10 @@ pub struct Drawing {
     pub grid: Grid,
     pub picture: Rgba8,
     pub passes: Vec<PassSample>,
+    /// Of each receiver under each light.
+    pub plane_counts: Vec<usize>,
+    /// Of the first receiver under the first light, by smart slicing alone.
+    pub depth_profile: Option<Vec<u32>>,
     targets: Vec<(String, Vec<f32>)>,
 }
 
@@ -47,7 +49,9 @@ impl Drawing {
             grid: paper.grid(),
             picture: Rgba8::new(picture.width(), picture.height(), pixels).unwrap(),
             passes,
-            targets: targets.map(|target| (target.name, read(device, &target.resource).unwrap())).collect(),
+            plane_counts: paper.plane_counts(),
+            depth_profile: paper.depth_profile().map(<[u32]>::to_vec),
+            targets: targets.map(|target| (target.name.clone(), read(device, &target))).collect(),
         }
     }
 
@@ -67,19 +71,11 @@ impl Drawing {
     }
 }
 
-fn read(device: &Arc<Device>, target: &Resource) -> Result<Vec<f32>, Error> {
-    match target {
-        Resource::Buffer(view) => Ok(bytemuck::pod_collect_to_vec(&read_buffer(device, view.buffer())?)),
-        Resource::Image(view) => {
-            let texels = read_image(device, view)?;
-            Ok(match view.image().desc().format {
-                vk::Format::R16G16B16A16_SFLOAT => {
-                    bytemuck::pod_collect_to_vec::<u8, f16>(&texels).into_iter().map(f16::to_f32).collect()
-                }
-                vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT => bytemuck::pod_collect_to_vec(&texels),
-                other => panic!("{}: {other:?} is no format of a map", target.name()),
-            })
-        }
-        Resource::Sampler(_) => panic!("a sampler is no target"),
+/// The values of a target, those of 8-bit ones as shares of 1.
+fn read(device: &Arc<Device>, target: &Target) -> Vec<f32> {
+    match read_target(device, target).unwrap().samples() {
+        Samples::F32(values) => values.clone(),
+        Samples::U8(values) => values.iter().map(|&value| f32::from(value) / 255.0).collect(),
+        _ => panic!("{} holds neither floats nor bytes", target.name),
     }
 }

@@ -15,8 +15,11 @@ use crate::scene::{OBLIQUE, OVERHEAD, POINT, bowl, parameters, sphere, teapot};
 const GRAZING: Light = Light::Parallel { direction: Vec3::new(1.0, -0.06, 0.1), intensity: Vec3::ONE };
 const LIGHTS: [Light; 4] = [OVERHEAD, OBLIQUE, POINT, GRAZING];
 
-/// Absorption that leaves no light after a tenth of a millimetre.
+/// The highest absorption that is taken, which leaves no light after a tenth of a millimetre.
 const INK_PER_M: f32 = 1e6;
+
+/// The highest intensity that is taken.
+const BRIGHTEST: f32 = 64.0;
 
 /// Waves as steep as they may be.
 const STORM: WaveParameters = WaveParameters { count: 64, amplitude_m: 0.6, wavelength_m: 1.0 };
@@ -75,9 +78,23 @@ fn a_receiver_out_of_the_water_is_dark() {
         for (variant, light) in Variant::ALL.into_iter().flat_map(|v| LIGHTS.map(|light| (v, light))) {
             let drawing = Drawing::of(device, variant, &parameters(light), &[lifted(&sphere(), 3.2)]);
             drawing.assert_finite();
-            assert!(drawing.target("combined-map").chunks_exact(4).all(|texel| texel[..3] == [0.0; 3]));
+            assert_dark(&drawing, variant);
         }
     });
+}
+
+/// Nothing but ambient light.
+fn assert_dark(drawing: &Drawing, variant: Variant) {
+    if variant != Variant::Stencil {
+        return assert!(drawing.target("combined-map").chunks_exact(4).all(|texel| texel[..3] == [0.0; 3]));
+    }
+    let pixels =
+        drawing.target("underwater-color").chunks_exact(4).zip(drawing.target("surface-albedo").chunks_exact(4));
+    let ambient = Parameters::default().ambient;
+    for (color, albedo) in pixels.filter(|(_, albedo)| albedo[3] == 1.0) {
+        let expected = ambient * Vec3::from_slice(albedo);
+        assert!(Vec3::from_slice(color).abs_diff_eq(expected, 1e-4), "{color:?} instead of {expected}");
+    }
 }
 
 #[test]
@@ -97,7 +114,7 @@ fn storms_and_water_like_ink_stay_finite() {
             let ink = Parameters { absorption_per_m: INK_PER_M, water_triangles: 2, ..parameters(light) };
             let drawing = Drawing::of(device, variant, &ink, &[sphere()]);
             drawing.assert_finite();
-            assert!(drawing.target("combined-map").chunks_exact(4).all(|texel| texel[..3] == [0.0; 3]));
+            assert_dark(&drawing, variant);
         }
     });
 }
@@ -120,7 +137,7 @@ fn odd_meshes_and_bright_lights_stay_finite() {
             // Edge-on to light from overhead.
             of_triangles(&[(a, Vec3::Z), (a + Vec3::X, Vec3::Z), (a + Vec3::Y, Vec3::Z)], &[0, 1, 2]),
         ];
-        let bright = Light::Parallel { direction: Vec3::new(0.3, -1.0, 0.1), intensity: Vec3::splat(1e3) };
+        let bright = Light::Parallel { direction: Vec3::new(0.3, -1.0, 0.1), intensity: Vec3::splat(BRIGHTEST) };
         for (variant, light) in
             Variant::ALL.into_iter().flat_map(|v| [OVERHEAD, OBLIQUE, bright].map(|light| (v, light)))
         {
@@ -130,4 +147,20 @@ fn odd_meshes_and_bright_lights_stay_finite() {
             }
         }
     });
+}
+
+#[test]
+fn what_goes_beyond_the_edge_is_refused() {
+    let lit_by = |intensity| parameters(Light::Parallel { direction: Vec3::NEG_Y, intensity });
+    assert_eq!(lit_by(Vec3::new(0.0, BRIGHTEST, 1.0)).validate(), Ok(()));
+    for intensity in [BRIGHTEST.next_up(), -f32::MIN_POSITIVE, f32::INFINITY, f32::NAN] {
+        let error = lit_by(Vec3::new(1.0, 1.0, intensity)).validate().unwrap_err();
+        assert_eq!(error.to_string(), "--light 0,-1,0: must have an intensity of 0 to 64");
+    }
+    let ink = |absorption_per_m| Parameters { absorption_per_m, ..parameters(OVERHEAD) };
+    assert_eq!(ink(INK_PER_M).validate(), Ok(()));
+    for absorption_per_m in [INK_PER_M.next_up(), -f32::MIN_POSITIVE, f32::NAN] {
+        let error = ink(absorption_per_m).validate().unwrap_err();
+        assert!(error.to_string().ends_with("must be 0 to 1000000 per metre"), "{error}");
+    }
 }

@@ -20,15 +20,15 @@ fn the_pictures_are_the_golden_ones() {
     gpu_test(|device| {
         let below = parameters(OBLIQUE);
         let above = Parameters { camera: Parameters::camera_above(below.water_depth_m), ..below.clone() };
-        for variant in [Variant::LevelMap, Variant::Volumetric] {
-            for (name, parameters) in [("above", &above), ("below", &below)] {
-                let drawing = Drawing::of(device, variant, parameters, &[teapot(), floor()]);
-                let file = format!("tests/golden/caustics-{name}-{}.png", variant.word());
-                let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
-                let output_dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
-                if let Err(error) = golden::check(&drawing.picture, &golden, TOLERANCE, output_dir) {
-                    panic!("{error}");
-                }
+        let views = Variant::ALL.map(|variant| ("below", &below, variant));
+        let through_water = [Variant::LevelMap, Variant::Volumetric].map(|variant| ("above", &above, variant));
+        for (view, parameters, variant) in views.into_iter().chain(through_water) {
+            let drawing = Drawing::of(device, variant, parameters, &[teapot(), floor()]);
+            let file = format!("tests/golden/caustics-{view}-{}.png", variant.word());
+            let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+            let output_dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
+            if let Err(error) = golden::check(&drawing.picture, &golden, TOLERANCE, output_dir) {
+                panic!("{error}");
             }
         }
     });

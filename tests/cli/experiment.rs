@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::program::{ONCE, Program, assert_schema, caustics, entries, folder, read_json};
+use super::program::{ONCE, Program, assert_schema, caustics, entries, file, folder, read_json};
 
 const SMALL: &str = "--size 96x64 --map-size 64 --water-triangles 500";
 
@@ -86,4 +86,14 @@ fn what_a_sweep_cannot_give_is_refused() {
     sweep().args("--counts 3 --step 3").run().misused(&["--counts", "--step"]);
     caustics("experiment").run().misused(&["NAME"]);
     caustics("experiment 9-9").run().misused(&["9-9", "5-1"]);
+}
+
+#[test]
+fn a_meshs_name_may_hold_a_comma() {
+    let out = folder();
+    let mesh = file(&out, "a,b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let program = caustics("experiment 5-2 --quiet --out tables --mesh").arg(mesh).inside(out.path());
+    program.args(SMALL).on_test_device().run().succeeded();
+    let csv = fs::read_to_string(out.path().join("tables/caustics-5-2.csv")).unwrap();
+    assert_eq!(csv.lines().nth(1), Some("\"a,b\",1,"), "{csv}");
 }

@@ -12,6 +12,7 @@ use crate::gpu::Mode;
 use crate::image::{Difference, Rgba8, Samples, compare};
 use crate::papers::Paper;
 use crate::papers::caustics::{SmartPlacement, Variant};
+use crate::report::csv::quote;
 use crate::report::table::{Align, Table};
 use crate::scene::MeshSource;
 
@@ -41,9 +42,9 @@ impl Facts {
         json!({"title": self.title, "rows": self.rows.iter().map(object).collect::<Vec<_>>()})
     }
 
-    /// Comma-separated, with a header; no value holds a comma.
+    /// Comma-separated, with a header; quoted where a mesh's name needs it.
     pub fn csv(&self) -> String {
-        let line = |cells: Vec<String>| cells.join(",") + "\n";
+        let line = |cells: Vec<String>| cells.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(",") + "\n";
         let header = line(self.columns.iter().map(|c| (*c).to_owned()).collect());
         self.rows.iter().fold(header, |text, row| text + &line(row.iter().map(shown).collect()))
     }

@@ -88,10 +88,20 @@ struct Row {
     /// Planes that were drawn.
     drawn: u64,
     frame_ms: f64,
+    samples: usize,
     device_bytes: u64,
     /// Time over the base's; absent for the base itself.
     ratio: Option<Ratio>,
     thesis: Option<f64>,
+}
+
+/// Fewer samples a method say nothing of their noise.
+const LEAST_SAMPLES: usize = 5;
+
+impl Row {
+    fn interval(&self) -> Option<[f64; 2]> {
+        self.ratio.as_ref().filter(|_| self.samples >= LEAST_SAMPLES).map(|r| r.interval)
+    }
 }
 
 /// What the sweep found.
@@ -150,7 +160,8 @@ impl Outcome {
                     ours: Some(ratio.ratio),
                     ratio: thesis.map(|thesis| ratio.ratio / thesis),
                 });
-                run.results.insert("ratio_interval".into(), json!(ratio.interval));
+                let interval = Some(ratio.interval).filter(|_| samples(run).len() >= LEAST_SAMPLES);
+                run.results.insert("ratio_interval".into(), json!(interval));
             }
             self.rows.push(Row {
                 mesh: mesh.clone(),
@@ -158,6 +169,7 @@ impl Outcome {
                 variant,
                 drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()).unwrap_or(0),
                 frame_ms: run.frame_ms.as_ref().map_or(f64::NAN, |s| s.median),
+                samples: samples(run).len(),
                 device_bytes: run.memory.device_bytes.unwrap_or(0),
                 ratio,
                 thesis,
@@ -191,7 +203,7 @@ impl Outcome {
                 format!("{:.2}", row.frame_ms),
                 format!("{:.1}", row.device_bytes as f64 / f64::from(1 << 20)),
                 ratio.map_or(String::new(), |r| format!("{:.3}", r.ratio)),
-                ratio.map_or(String::new(), |r| format!("{:.3} to {:.3}", r.interval[0], r.interval[1])),
+                row.interval().map_or(String::new(), |i| format!("{:.3} to {:.3}", i[0], i[1])),
                 row.thesis.map_or(String::new(), |t| format!("{t:.2}{flag}")),
                 ratio.zip(row.thesis).map_or(String::new(), |(r, t)| format!("{:.2}", r.ratio / t)),
             ]);

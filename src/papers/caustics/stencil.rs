@@ -80,7 +80,7 @@ impl Stencil {
         let surface = Surface {
             position: image("surface-position", vk::Format::R32G32B32A32_SFLOAT)?,
             normal: image("surface-normal", maps::LIGHT)?,
-            albedo: image("surface-albedo", vk::Format::R8G8B8A8_UNORM)?,
+            albedo: image("surface-albedo", maps::LIGHT)?,
         };
         let mut receivers: Vec<(Pass, Arc<Receiver>)> = Vec::new();
         for receiver in shared.receivers {
