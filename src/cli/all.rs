@@ -49,7 +49,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let limits = limits::measure(&mut machine)?;
     let setup = Setup {
         parameters: Parameters::default(),
-        meshes: vec![MeshSource::Teapot],
+        meshes: vec![MeshSource::Bunny],
         floor: true,
         preset: None,
         process: 0,

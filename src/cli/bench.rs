@@ -47,7 +47,7 @@ pub fn run(arguments: &BenchArgs) -> Result<(), Failure> {
         output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
-    let setup = arguments.scene.resolve(arguments.measure.process);
+    let setup = arguments.scene.resolve(arguments.measure.process)?;
     let variants = VariantWord::resolve(&arguments.variant);
     let schedule = arguments.measure.schedule(FRAMES, REPEAT);
     let (record, traces) = measure(arguments, &setup, &variants, schedule)?;

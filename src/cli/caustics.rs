@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 
+use super::failure::Failure;
 use super::options::{Size, parse_finite, parse_numbers, parse_size};
 use crate::experiment::caustics::Setup;
 use crate::papers::caustics::{Parameters, SmartPlacement, Variant};
@@ -79,7 +80,7 @@ pub struct SceneArgs {
     /// Take the numbers of a table or figure; options given beside it win
     #[arg(long, value_enum)]
     preset: Option<Preset>,
-    /// Receiver: teapot, sphere, box, plane, or an OBJ, PLY, STL, glTF or GLB file; repeatable
+    /// Receiver: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; repeatable
     #[arg(long, value_name = "SHAPE|FILE")]
     mesh: Vec<MeshSource>,
     /// The pool's floor receives caustics as well
@@ -147,7 +148,10 @@ pub struct SceneArgs {
 
 impl SceneArgs {
     /// What was typed, over the preset's numbers, over the defaults.
-    pub fn resolve(&self, process: u32) -> Setup {
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for options of which one would not be heeded.
+    pub fn resolve(&self, process: u32) -> Result<Setup, Failure> {
         let mut p = Parameters::default();
         match self.preset {
             None => {}
@@ -164,6 +168,10 @@ impl SceneArgs {
         set(&mut p.smart.levels, self.levels);
         p.smart.placement = match self.smart_placement {
             PlacementWord::Fitted => SmartPlacement::Fitted { epsilon_m: self.epsilon },
+            PlacementWord::Kept if self.epsilon.is_some() => {
+                let message = "--epsilon: --smart-placement kept keeps the uniform planes; leave one of them out";
+                return Err(Failure::Input(message.to_owned()));
+            }
             PlacementWord::Kept => SmartPlacement::Kept,
         };
         set(&mut p.refraction_index, self.refraction_index);
@@ -194,7 +202,13 @@ impl SceneArgs {
             p.lights = lights;
         }
         let meshes = if self.mesh.is_empty() { vec![MeshSource::Teapot] } else { self.mesh.clone() };
-        Setup { parameters: p, meshes, floor: self.floor, preset: self.preset.map(|p| p.word().to_owned()), process }
+        Ok(Setup {
+            parameters: p,
+            meshes,
+            floor: self.floor,
+            preset: self.preset.map(|p| p.word().to_owned()),
+            process,
+        })
     }
 
     /// Whether a number of planes was named.

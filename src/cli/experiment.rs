@@ -120,7 +120,7 @@ pub fn run(arguments: &ExperimentArgs) -> Result<(), Failure> {
         None if arguments.counts.is_empty() => vec![3, 11, 31, 101],
         None => arguments.counts.clone(),
     };
-    let mut setup = arguments.scene.resolve(arguments.measure.process);
+    let mut setup = arguments.scene.resolve(arguments.measure.process)?;
     setup.preset = Some(name.word());
     setup.parameters.validate().map_err(crate::experiment::Error::from)?;
     let meshes = if arguments.scene.names_meshes() { setup.meshes.clone() } else { caustics::sample_meshes() };

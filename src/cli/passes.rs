@@ -36,7 +36,7 @@ struct Listed {
 }
 
 pub fn run(arguments: &PassesArgs) -> Result<(), Failure> {
-    let setup = arguments.scene.resolve(0);
+    let setup = arguments.scene.resolve(0)?;
     let scene = setup.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
     let mut listed = Vec::new();

@@ -104,7 +104,7 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
     outcome::check_picture(&picture_path(frames.first))?;
     outcome::check_file(&picture_path(frames.first))?;
 
-    let setup = arguments.scene.resolve(0);
+    let setup = arguments.scene.resolve(0)?;
     let scene = setup.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
     outcome::say_device(&output, &machine);

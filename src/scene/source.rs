@@ -5,9 +5,9 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Where a mesh comes from: one of the built-in shapes or a file.
+/// Where a mesh comes from: one of the built-in ones or a file.
 ///
-/// As text: `teapot`, `sphere`, `box` or `plane`; anything else is a path, so that a file named
+/// As text: `teapot`, `sphere`, `box`, `bunny` or `plane`; anything else is a path, so that a file named
 /// `box` is `./box`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum MeshSource {
@@ -17,6 +17,8 @@ pub enum MeshSource {
     Sphere,
     /// [`shapes::cuboid`].
     Box,
+    /// The Stanford bunny, scanned: 3,674 triangles, built in from `assets/meshes/bunny.obj`.
+    Bunny,
     /// [`shapes::plane`], 2 m x 2 m in 32 x 32 cells.
     Plane,
     /// An OBJ, PLY, STL, glTF or GLB file, told apart by the file's ending.
@@ -34,6 +36,7 @@ impl MeshSource {
             Self::Teapot => Ok(shapes::teapot()),
             Self::Sphere => Ok(shapes::sphere(32, 32)),
             Self::Box => Ok(shapes::cuboid()),
+            Self::Bunny => formats::bunny(),
             Self::Plane => Ok(shapes::plane(Vec2::splat(2.0), UVec2::splat(32))),
             Self::File(path) => formats::load(path),
         }
@@ -48,6 +51,7 @@ impl FromStr for MeshSource {
             "teapot" => Self::Teapot,
             "sphere" => Self::Sphere,
             "box" => Self::Box,
+            "bunny" => Self::Bunny,
             "plane" => Self::Plane,
             path => Self::File(path.into()),
         })
@@ -60,6 +64,7 @@ impl fmt::Display for MeshSource {
             Self::Teapot => formatter.write_str("teapot"),
             Self::Sphere => formatter.write_str("sphere"),
             Self::Box => formatter.write_str("box"),
+            Self::Bunny => formatter.write_str("bunny"),
             Self::Plane => formatter.write_str("plane"),
             Self::File(path) => path.display().fmt(formatter),
         }
@@ -72,17 +77,18 @@ mod tests {
 
     #[test]
     fn text_round_trips() {
-        for text in ["teapot", "sphere", "box", "plane", "meshes/a.obj", "./box", ""] {
+        for text in ["teapot", "sphere", "box", "bunny", "plane", "meshes/a.obj", "./box", ""] {
             let Ok(source) = text.parse::<MeshSource>();
             assert_eq!(source.to_string(), text);
             let is_file = matches!(source, MeshSource::File(_));
-            assert_eq!(is_file, !["teapot", "sphere", "box", "plane"].contains(&text));
+            assert_eq!(is_file, !["teapot", "sphere", "box", "bunny", "plane"].contains(&text));
         }
     }
 
     #[test]
     fn shapes_load_valid_with_their_counts() {
-        for (text, triangles) in [("teapot", 6_320), ("sphere", 1_984), ("box", 12), ("plane", 2_048)] {
+        for (text, triangles) in [("teapot", 6_320), ("sphere", 1_984), ("box", 12), ("bunny", 3_674), ("plane", 2_048)]
+        {
             let Ok(source) = text.parse::<MeshSource>();
             let mesh = source.load().unwrap();
             mesh.validate().unwrap();

@@ -157,11 +157,11 @@ pub fn mesh_name(mesh: &MeshSource) -> String {
     }
 }
 
-/// The thesis's meshes that we have, and scanned and sculpted ones from `assets/`, as far as they are there.
+/// The thesis's meshes that we have, a scanned one, and a modelled one from `assets/` where that folder is.
 pub fn sample_meshes() -> Vec<MeshSource> {
-    let shipped = ["assets/meshes/bunny.obj", "assets/meshes/wuson.stl"].map(PathBuf::from);
-    let shipped = shipped.into_iter().filter(|path| path.is_file()).map(MeshSource::File);
-    [MeshSource::Teapot, MeshSource::Sphere].into_iter().chain(shipped).collect()
+    let wuson = Some(PathBuf::from("assets/meshes/wuson.stl")).filter(|path| path.is_file());
+    let built_in = [MeshSource::Teapot, MeshSource::Sphere, MeshSource::Bunny];
+    built_in.into_iter().chain(wuson.map(MeshSource::File)).collect()
 }
 
 /// A variant with its resources, and what they cost.

@@ -47,6 +47,13 @@ pub(super) fn load(path: &Path) -> Result<Mesh, Error> {
     Ok(Mesh { name: name.into_owned(), ..mesh })
 }
 
+/// The scanned mesh that the program carries.
+pub(super) fn bunny() -> Result<Mesh, Error> {
+    let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/meshes/bunny.obj"));
+    let mesh = obj::parse(bytes).map_err(|fault| Error::Malformed { path: "bunny.obj".into(), fault })?;
+    Ok(Mesh { name: "bunny".to_owned(), ..mesh })
+}
+
 /// The bytes of a regular file, which rules out devices and pipes that never end.
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let failed = |source| Error::Read { path: path.to_owned(), source };

@@ -2,7 +2,6 @@ use super::*;
 use crate::scene::normals::double_area_vector;
 use crate::scene::random::Random;
 use std::path::PathBuf;
-use std::sync::Mutex;
 
 fn asset(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(name)
@@ -269,23 +268,28 @@ fn a_concave_polygon_keeps_its_area() {
     assert!((covered.iter().map(|x| x.abs()).sum::<f64>() - area.abs()).abs() < 1e-5);
 }
 
-/// Prints to the terminal past the test harness, which keeps the output of tests that pass to
-/// itself.
-fn skip(path: &Path) {
-    static TERMINAL: Mutex<()> = Mutex::new(());
+/// Fetches the meshes that are not shipped, once, and says loudly what could not be fetched: past the test harness, which
+/// keeps the output of tests that pass to itself.
+fn fetch_assets() {
     use std::io::Write;
-    let _guard = TERMINAL.lock();
-    let _ = writeln!(std::io::stderr(), "SKIPPED: {} is absent; run assets/fetch.sh", path.display());
+    let script = asset("fetch.sh");
+    let output = std::process::Command::new("sh").arg(&script).stdin(std::process::Stdio::null()).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    if let Some(line) = said.lines().find(|line| line.starts_with("SKIPPED")) {
+        let _unheard = writeln!(std::io::stderr(), "{line}");
+    }
 }
 
 #[test]
 fn fetched_dragons_have_their_documented_counts() {
+    fetch_assets();
     for (name, vertices, triangles) in
         [("fetched/dragon_vrip.ply", 437_645, 871_414), ("fetched/dragon_vrip_res3.ply", 22_998, 47_794)]
     {
         let path = asset(name);
+        // Said above.
         if !path.exists() {
-            skip(&path);
             continue;
         }
         let mesh = load(&path).unwrap();
