@@ -22,6 +22,8 @@ float cross_2d(vec2 a, vec2 b) {
 }
 
 void main() {
+    // No fragment is discarded: it would leave its volume's count in the stencil buffer for the next volume to find.
+    light = vec4(0.0);
     ivec2 texel = ivec2(gl_FragCoord.xy);
     vec3 world = texelFetch(sampler2D(surface_position, nearest), texel, 0).xyz;
     vec3 point = vec3(dot(volumes.u.xyz, world) - volumes.u.w, dot(volumes.v.xyz, world) - volumes.v.w,
@@ -32,14 +34,14 @@ void main() {
     Ray c = rays.list[water_vertex(volume, 2u)];
     vec3 descent = vec3(a.origin.y, b.origin.y, c.origin.y) - point.y;
     if (min(descent.x, min(descent.y, descent.z)) <= 0.0) {
-        discard;
+        return;
     }
     vec2 at_a = a.origin.xz + a.slope.xy * descent.x;
     vec2 at_b = b.origin.xz + b.slope.xy * descent.y;
     vec2 at_c = c.origin.xz + c.slope.xy * descent.z;
     float twice_area = cross_2d(at_b - at_a, at_c - at_a);
     if (twice_area == 0.0) {
-        discard;
+        return;
     }
     vec2 from_a = point.xz - at_a;
     float share_b = cross_2d(from_a, at_c - at_a) / twice_area;
@@ -49,7 +51,7 @@ void main() {
     // inside the cut prism and far outside the beam, which lights nothing there. Elsewhere the two differ by a fraction.
     float share_a = 1.0 - share_b - share_c;
     if (min(share_a, min(share_b, share_c)) < -SLACK) {
-        discard;
+        return;
     }
 
     // Twice A_w along the face normal: against the incident ray it is 2 A_w cos theta_i.

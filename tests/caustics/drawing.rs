@@ -61,6 +61,14 @@ impl Drawing {
         values
     }
 
+    /// A map of one receiver under one light.
+    pub fn map(&self, name: &str, light: usize, receiver: usize) -> &[f32] {
+        match (light, receiver) {
+            (0, 0) => self.target(name),
+            _ => self.target(&format!("{name}.{light}.{receiver}")),
+        }
+    }
+
     /// # Panics
     /// When a target holds NaN or infinity.
     pub fn assert_finite(&self) {
@@ -69,6 +77,14 @@ impl Drawing {
             assert_eq!(bad, 0, "{name}: values that are not finite");
         }
     }
+}
+
+/// The planes that smart slicing draws for each receiver under each light.
+pub fn planes_drawn(device: &Arc<Device>, parameters: &Parameters, receivers: &[ReceiverInput]) -> Vec<usize> {
+    let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+    let mut paper = Caustics::new(&shaders, "test", Variant::LevelMapSmart, parameters, receivers).unwrap();
+    Recorder::new(device).unwrap().run(Mode::Plain, |frame| paper.record(frame, FRAME)).unwrap();
+    paper.plane_counts()
 }
 
 /// The values of a target, those of 8-bit ones as shares of 1.

@@ -1,6 +1,7 @@
 //! The oracle, fed with what the device is fed with.
 
 use std::f64::consts::TAU;
+use std::slice::from_ref;
 
 use fumarole::papers::caustics::reference::{
     CausticsMap, Cell, IlluminationVolume, Medium, PositionMap, ReceiverBox, ReceiverTriangle, ReferenceLight, Water,
@@ -8,7 +9,7 @@ use fumarole::papers::caustics::reference::{
 };
 use fumarole::papers::caustics::water::{Grid, LEVEL_M, waves};
 use fumarole::papers::caustics::{Parameters, ReceiverInput};
-use fumarole::scene::Light;
+use fumarole::scene::{Bounds, Light};
 use glam::{DVec2, DVec3};
 
 use crate::drawing::FRAME;
@@ -17,6 +18,8 @@ pub struct Oracle {
     pub light: ReferenceLight,
     pub medium: Medium,
     pub receiver: ReceiverBox,
+    /// Lowest point of the receiver in box space.
+    pub lowest_m: f64,
     pub cells: Vec<Cell>,
     pub water: Vec<WaterVertex>,
     pub volumes: Vec<IlluminationVolume>,
@@ -26,6 +29,17 @@ pub struct Oracle {
 impl Oracle {
     /// One light and one receiver at the time of the frame that is drawn, under the water of `grid`.
     pub fn of(parameters: &Parameters, light: &Light, receiver: &ReceiverInput, grid: &Grid) -> Self {
+        Self::among(parameters, light, receiver, from_ref(receiver), grid)
+    }
+
+    /// One light and one of `receivers`, at whose common centre point lights are aimed.
+    pub fn among(
+        parameters: &Parameters,
+        light: &Light,
+        receiver: &ReceiverInput,
+        receivers: &[ReceiverInput],
+        grid: &Grid,
+    ) -> Self {
         let light = match *light {
             Light::Parallel { direction, .. } => {
                 ReferenceLight::Parallel { direction: direction.as_dvec3().normalize() }
@@ -47,11 +61,13 @@ impl Oracle {
                 ReceiverTriangle { positions: corners.map(|i| points[i]), normals }
             })
             .collect();
-        let center = mesh.bounds().center().as_dvec3();
+        let everything = receivers.iter().flat_map(|r| r.mesh.positions.iter().copied());
+        let center = Bounds::of_points(everything).center().as_dvec3();
         let aligned = align_box(light, &points, center, medium).unwrap();
         let water = water(parameters, grid);
         let indices: Vec<[u32; 3]> = grid.indices().chunks_exact(3).map(|i| [i[0], i[1], i[2]]).collect();
         Oracle {
+            lowest_m: points.iter().map(|&p| aligned.to_box(p).y).fold(f64::INFINITY, f64::min),
             volumes: illumination_volumes(Water { vertices: &water, triangles: &indices }, light, medium),
             cells: place_planes(aligned.height, parameters.planes as usize),
             positions: position_map(&aligned, &triangles, parameters.map_size as usize),
@@ -64,6 +80,12 @@ impl Oracle {
 
     pub fn caustics_map(&self) -> CausticsMap {
         caustics_map(&self.receiver, &self.cells, &self.volumes, self.medium, &self.positions)
+    }
+
+    /// The oracle's position map with the heights that the device found.
+    pub fn with_heights(&self, found: &[f32]) -> PositionMap {
+        let y = found.iter().map(|&height| (height > -1e29).then_some(f64::from(height))).collect();
+        PositionMap { y, ..self.positions.clone() }
     }
 }
 

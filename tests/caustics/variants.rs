@@ -4,7 +4,7 @@ use std::slice::from_ref;
 
 use fumarole::gpu::Compiler;
 use fumarole::image::compare;
-use fumarole::papers::caustics::{Parameters, SmartPlacement, Variant};
+use fumarole::papers::caustics::{Parameters, Variant};
 use glam::Vec3;
 
 use crate::common::gpu_test;
@@ -57,21 +57,6 @@ fn a_tilted_plane_is_in_one_slice_everywhere() {
     });
 }
 
-/// Dropping the planes whose cells hold no texel changes no bit.
-#[test]
-fn kept_planes_light_exactly_what_all_planes_light() {
-    gpu_test(|device| {
-        let mut parameters = parameters(OBLIQUE);
-        parameters.smart.placement = SmartPlacement::Kept;
-        let receiver = [teapot()];
-        let [all, kept] = [Variant::LevelMap, Variant::LevelMapSmart]
-            .map(|variant| Drawing::of(device, variant, &parameters, &receiver));
-        for target in ["caustics-map", "combined-map"] {
-            assert_eq!(all.target(target), kept.target(target), "{target}");
-        }
-    });
-}
-
 #[test]
 fn the_passes_are_those_of_the_thesis() {
     gpu_test(|device| {
@@ -97,6 +82,17 @@ fn the_passes_are_those_of_the_thesis() {
             passes(Variant::Volumetric, true),
             with_water(&[("sample-planes", 1), ("slice-images", 9)], &volumetric)
         );
+        // Overhead, so that the light sees the sphere's upper half: with eight gaps of epsilon between nine planes, four.
+        let parameters = parameters(OVERHEAD);
+        let smart = Drawing::of(device, Variant::LevelMapSmart, &parameters, &[sphere()]);
+        let smart: Vec<_> = smart.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();
+        let profiled = [("bounding-box", 1), ("position-diffuse-map", 1), ("read-positions", 1), ("depth-profile", 1)];
+        let four = [("caustics-map", 4), ("combine", 1), ("cast", 1), ("view", 1)];
+        assert_eq!(smart, with_water(&profiled, &four));
+        let stencil = Drawing::of(device, Variant::Stencil, &parameters, &[sphere()]);
+        let two_draws = 2 * stencil.grid.triangle_count();
+        let stencil: Vec<_> = stencil.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();
+        assert_eq!(stencil, with_water(&[("receivers", 1)], &[("stencil-volumes", two_draws), ("view", 1)]));
     });
 }
 

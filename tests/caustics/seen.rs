@@ -1,0 +1,63 @@
+//! What a camera's rays hit first, in double precision.
+
+use fumarole::papers::caustics::{Parameters, ReceiverInput};
+use glam::{DMat4, DVec3, Vec3};
+
+/// A point of a receiver that a pixel shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Surface {
+    pub position: DVec3,
+    pub normal: DVec3,
+    pub albedo: DVec3,
+}
+
+impl Surface {
+    /// I_d of eq. 4-19 for unit light against `v`.
+    pub fn diffuse(&self, v: DVec3) -> DVec3 {
+        self.albedo * self.normal.normalize().dot(v).max(0.0)
+    }
+}
+
+/// Row by row; `None` where no receiver is seen. The camera is under water, so that its rays are straight.
+pub fn first_hits(parameters: &Parameters, receivers: &[ReceiverInput]) -> Vec<Option<Surface>> {
+    let camera = &parameters.camera;
+    let matrix: DMat4 = (camera.projection(parameters.aspect()) * camera.view()).as_dmat4();
+    let inverse = matrix.inverse();
+    let (width, height) = (parameters.width, parameters.height);
+    (0..width * height)
+        .map(|pixel| {
+            let share = |i: u32, of: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(of) - 1.0;
+            let (x, y) = (share(pixel % width, width), share(pixel / width, height));
+            let eye = camera.eye.as_dvec3();
+            let ray = (inverse.project_point3(DVec3::new(x, y, 0.5)) - eye).normalize();
+            let hits = receivers.iter().filter_map(|receiver| hit(receiver, eye, ray));
+            hits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, surface)| surface)
+        })
+        .collect()
+}
+
+/// The nearest hit on one receiver and its distance, by Möller and Trumbore.
+fn hit(receiver: &ReceiverInput, eye: DVec3, ray: DVec3) -> Option<(f64, Surface)> {
+    let mesh = &receiver.mesh;
+    let at = |list: &[Vec3], i: u32| list[i as usize].as_dvec3();
+    let triangle = |corners: &[u32]| {
+        let [a, b, c] = [0, 1, 2].map(|i| at(&mesh.positions, corners[i]));
+        let (ab, ac, from_a) = (b - a, c - a, eye - a);
+        let normal = ray.cross(ac);
+        let determinant = ab.dot(normal);
+        let share_b = from_a.dot(normal) / determinant;
+        let share_c = ray.dot(from_a.cross(ab)) / determinant;
+        let distance = ac.dot(from_a.cross(ab)) / determinant;
+        let shares = [1.0 - share_b - share_c, share_b, share_c];
+        (distance > 0.0 && shares.iter().all(|&share| share >= 0.0)).then(|| {
+            let normal: DVec3 = (0..3).map(|i| at(&mesh.normals, corners[i]) * shares[i]).sum();
+            let surface = Surface {
+                position: eye + ray * distance,
+                normal: normal.normalize(),
+                albedo: receiver.albedo.as_dvec3(),
+            };
+            (distance, surface)
+        })
+    };
+    mesh.indices.chunks_exact(3).filter_map(triangle).min_by(|a, b| a.0.total_cmp(&b.0))
+}
