@@ -1,7 +1,8 @@
 #version 450
 
 // Light of one illumination volume on the surface inside it (section 3.2): the intensity of eq. 4-18 with A_d, the area that the
-// volume's three rays span, taken at the height of the fragment's surface. The stencil buffer says that the surface is inside.
+// volume's three rays span, taken at the height of the fragment's surface. The stencil buffer says that the surface is inside
+// the prism around the volume.
 
 #include "caustics/volume.glsl"
 #include "caustics/diffuse.glsl"
@@ -15,10 +16,16 @@ layout(set = 0, binding = 6) uniform sampler nearest;
 
 layout(location = 0) out vec4 light;
 
-const float SLACK = 0.25; // of a triangle
-
 float cross_2d(vec2 a, vec2 b) {
     return a.x * b.y - a.y * b.x;
+}
+
+// Whether a point lies to the left of the way from a to b. The order of the water's vertices decides where the way starts, so that
+// the two volumes along a side agree to the bit and a point on the side belongs to one of them.
+bool is_left(vec2 a, vec2 b, bool in_order, vec2 point) {
+    vec2 start = in_order ? a : b;
+    vec2 end = in_order ? b : a;
+    return (cross_2d(end - start, point - start) >= 0.0) == in_order;
 }
 
 void main() {
@@ -29,9 +36,10 @@ void main() {
     vec3 point = vec3(dot(volumes.u.xyz, world) - volumes.u.w, dot(volumes.v.xyz, world) - volumes.v.w,
         dot(volumes.w.xyz, world) - volumes.w.w);
 
-    Ray a = rays.list[water_vertex(volume, 0u)];
-    Ray b = rays.list[water_vertex(volume, 1u)];
-    Ray c = rays.list[water_vertex(volume, 2u)];
+    uvec3 vertices = uvec3(water_vertex(volume, 0u), water_vertex(volume, 1u), water_vertex(volume, 2u));
+    Ray a = rays.list[vertices.x];
+    Ray b = rays.list[vertices.y];
+    Ray c = rays.list[vertices.z];
     vec3 descent = vec3(a.origin.y, b.origin.y, c.origin.y) - point.y;
     if (min(descent.x, min(descent.y, descent.z)) <= 0.0) {
         return;
@@ -43,16 +51,17 @@ void main() {
     if (twice_area == 0.0) {
         return;
     }
+    // Beyond its focus a beam is turned over.
+    bool is_left_of_sides = twice_area > 0.0;
+    if (is_left(at_a, at_b, vertices.x < vertices.y, point.xz) != is_left_of_sides
+        || is_left(at_b, at_c, vertices.y < vertices.z, point.xz) != is_left_of_sides
+        || is_left(at_c, at_a, vertices.z < vertices.x, point.xz) != is_left_of_sides) {
+        return;
+    }
     vec2 from_a = point.xz - at_a;
     float share_b = cross_2d(from_a, at_c - at_a) / twice_area;
     float share_c = cross_2d(at_b - at_a, from_a) / twice_area;
-
-    // The sides of a volume are ruled surfaces, cut here into triangles: near a focus, where the volume is thin, a fragment may be
-    // inside the cut prism and far outside the beam, which lights nothing there. Elsewhere the two differ by a fraction.
     float share_a = 1.0 - share_b - share_c;
-    if (min(share_a, min(share_b, share_c)) < -SLACK) {
-        return;
-    }
 
     // Twice A_w along the face normal: against the incident ray it is 2 A_w cos theta_i.
     vec3 water = cross(b.origin.xyz - a.origin.xyz, c.origin.xyz - a.origin.xyz);

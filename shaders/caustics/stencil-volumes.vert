@@ -1,11 +1,24 @@
 #version 450
 
-// One illumination volume as a closed prism (section 3.2): the water triangle, its three sides along the refracted rays, and a bottom
-// below every receiver. 24 vertices a volume, eight triangles, all facing outwards.
+// One illumination volume as a closed prism (section 3.2): a top where its rays leave the water, a bottom below every receiver, and
+// three sides. The volume's own sides are ruled surfaces, and beyond a focus it is turned over; the prism's are planes along the
+// water triangle's sides that touch the volume at the top and at the bottom, and so hold all of it between. 24 vertices a
+// volume, eight triangles; the fragment stage leaves out what is in the prism alone.
 
 #include "caustics/volume.glsl"
 
 layout(location = 0) flat out uint volume;
+
+// How far beyond the volume the sides lie, so that rounding does not decide what is inside: a share of the water triangle.
+const float SLACK = 0.02;
+
+vec2 place_at(Ray ray, float height) {
+    return ray.origin.xz + ray.slope.xy * (ray.origin.y - height);
+}
+
+float cross_2d(vec2 a, vec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
 
 void main() {
     volume = uint(gl_VertexIndex) / 24u;
@@ -16,32 +29,36 @@ void main() {
         corner = (6u - vertex) % 3u;
         is_bottom = true;
     } else if (vertex >= 6u) {
-        uint a = (vertex - 6u) / 6u;
-        uint b = (a + 1u) % 3u;
+        uint from = (vertex - 6u) / 6u;
+        uint to = (from + 1u) % 3u;
         uint place = (vertex - 6u) % 6u;
-        // A side is no plane; neighbours must cut it along the same diagonal, so the order of the water's vertices decides.
-        bool from_a = water_vertex(volume, a) < water_vertex(volume, b);
-        // Corners of the two triangles: b a b' and a a' b', or b a a' and b a' b', where ' is the bottom.
-        if (from_a) {
-            corner = place == 1u || place == 3u || place == 4u ? a : b;
-            is_bottom = place == 2u || place >= 4u;
-        } else {
-            corner = place == 1u || place == 2u || place == 4u ? a : b;
-            is_bottom = place == 2u || place >= 4u;
-        }
+        // Corners of a side's two triangles: to from to' and from from' to', where ' is the bottom.
+        corner = place == 1u || place == 3u || place == 4u ? from : to;
+        is_bottom = place == 2u || place >= 4u;
     }
-    bool is_lit = rays.list[water_vertex(volume, 0u)].origin.w > 0.0 && rays.list[water_vertex(volume, 1u)].origin.w > 0.0
-        && rays.list[water_vertex(volume, 2u)].origin.w > 0.0;
-    if (!is_lit) {
-        // No area, no fragments.
-        corner = 0u;
-        is_bottom = false;
-    }
-    Ray ray = rays.list[water_vertex(volume, corner)];
-    vec3 point = ray.origin.xyz;
-    if (is_bottom) {
-        float descent = point.y - volumes.bottom;
-        point = vec3(point.x + ray.slope.x * descent, volumes.bottom, point.z + ray.slope.y * descent);
+
+    // The corner lies where two sides meet: from `here` to `next`, and from `last` to `here`.
+    Ray here = rays.list[water_vertex(volume, corner)];
+    Ray next = rays.list[water_vertex(volume, (corner + 1u) % 3u)];
+    Ray last = rays.list[water_vertex(volume, (corner + 2u) % 3u)];
+    float height = is_bottom ? volumes.bottom : max(here.origin.y, max(next.origin.y, last.origin.y));
+    vec2 towards = next.origin.xz - here.origin.xz;
+    vec2 back = here.origin.xz - last.origin.xz;
+    float twice_area = cross_2d(back, towards);
+    // Normals that point outwards, as long as the sides.
+    vec2 outwards_a = sign(twice_area) * vec2(towards.y, -towards.x);
+    vec2 outwards_b = sign(twice_area) * vec2(back.y, -back.x);
+    vec2 base = place_at(here, height);
+    vec2 to_next = place_at(next, height) - base;
+    vec2 to_last = place_at(last, height) - base;
+    float reach_a = max(0.0, max(dot(outwards_a, to_next), dot(outwards_a, to_last))) + SLACK * abs(twice_area);
+    float reach_b = max(0.0, max(dot(outwards_b, to_next), dot(outwards_b, to_last))) + SLACK * abs(twice_area);
+
+    // Without light all corners are one, and the prism has no fragments.
+    vec3 point = vec3(0.0);
+    if (twice_area != 0.0 && min(here.origin.w, min(next.origin.w, last.origin.w)) > 0.0) {
+        vec2 meet = (reach_a * back - reach_b * towards) / abs(twice_area);
+        point = vec3(base.x + meet.x, height, base.y + meet.y);
     }
     vec3 along = point + vec3(volumes.u.w, volumes.v.w, volumes.w.w);
     vec3 world = volumes.u.xyz * along.x + volumes.v.xyz * along.y + volumes.w.xyz * along.z;

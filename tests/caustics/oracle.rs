@@ -18,8 +18,6 @@ pub struct Oracle {
     pub light: ReferenceLight,
     pub medium: Medium,
     pub receiver: ReceiverBox,
-    /// Lowest point of the receiver in box space.
-    pub lowest_m: f64,
     pub cells: Vec<Cell>,
     pub water: Vec<WaterVertex>,
     pub volumes: Vec<IlluminationVolume>,
@@ -67,7 +65,6 @@ impl Oracle {
         let water = water(parameters, grid);
         let indices: Vec<[u32; 3]> = grid.indices().chunks_exact(3).map(|i| [i[0], i[1], i[2]]).collect();
         Oracle {
-            lowest_m: points.iter().map(|&p| aligned.to_box(p).y).fold(f64::INFINITY, f64::min),
             volumes: illumination_volumes(Water { vertices: &water, triangles: &indices }, light, medium),
             cells: place_planes(aligned.height, parameters.planes as usize),
             positions: position_map(&aligned, &triangles, parameters.map_size as usize),

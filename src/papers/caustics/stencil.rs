@@ -1,5 +1,5 @@
-//! The stencil method (section 3.2, Iwasaki et al.; the thesis has one sentence on it): each illumination volume is a
-//! closed prism, counted in the stencil buffer against the depth of what is seen, then drawn where the count is not zero,
+//! The stencil method (section 3.2, Iwasaki et al.; the thesis has one sentence on it): each illumination volume is held by
+//! a closed prism, counted in the stencil buffer against the depth of what is seen, then drawn where the count is not zero,
 //! adding its light. It knows no occlusion: a surface in the shadow of another is lit as if nothing stood before it.
 
 use std::sync::Arc;
