@@ -20,6 +20,8 @@ pub enum Error {
     Malformed { path: PathBuf, fault: Fault },
     #[error("cannot use the camera: {reason}")]
     Camera { reason: String },
+    #[error("cannot use the height map: {reason}")]
+    HeightMap { reason: String },
 }
 
 /// What is wrong with the contents of a mesh, and where.
