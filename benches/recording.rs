@@ -2,11 +2,13 @@
 //! water coarse, so that the device has next to nothing to do.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fumarole::experiment::caustics::{Setup, build};
+use fumarole::experiment::bench::build;
+use fumarole::experiment::caustics::Setup;
 use fumarole::experiment::machine::{Machine, MachineOptions};
+use fumarole::experiment::study::Study;
 use fumarole::gpu::Mode;
-use fumarole::papers::Paper;
 use fumarole::papers::caustics::{NEEDS, Parameters, Variant};
+use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::MeshSource;
 
 fn recording(criterion: &mut Criterion) {

@@ -1,19 +1,24 @@
-//! `all`: every paper's quick benchmark, a record and a picture each.
+//! `all`: every paper's quick benchmark, one record and a picture of each.
+
+use std::sync::atomic::Ordering;
 
 use clap::{Args, Parser};
 
 use super::bench;
+use super::caustics::CausticsArgs;
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
-use super::watch::{interrupted, progress_bar};
-use crate::experiment::caustics::{self, PAPER, Setup};
+use super::paper::{PaperArgs, benched};
+use super::watch::{interrupted, watched};
+use crate::experiment::bench::{Bench, load};
 use crate::experiment::limits;
 use crate::experiment::machine::Machine;
-use crate::experiment::measure::{Schedule, Watch};
-use crate::papers::caustics::{NEEDS, Parameters, Variant};
+use crate::experiment::measure::Schedule;
+use crate::experiment::study::Study;
 use crate::report::Record;
-use crate::scene::MeshSource;
+use crate::report::record::{Limits, Run};
+use crate::report::trace::TraceRun;
 
 #[derive(Debug, Clone, Args)]
 pub struct AllArgs {
@@ -37,41 +42,60 @@ impl AllArgs {
 
 const SCHEDULE: Schedule = Schedule { warmup: 3, frames: 10, repeat: 3, min_time_s: 0.0 };
 
+/// What was measured so far.
+#[derive(Default)]
+struct Measured {
+    /// The device's own, measured once.
+    limits: Option<Limits>,
+    runs: Vec<Run>,
+    traces: Vec<TraceRun>,
+}
+
 pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
-    let output = &arguments.output;
-    let json = output.json.clone().unwrap_or_else(|| output.out.join("fumarole.json"));
-    let picture = output.image.clone().unwrap_or_else(|| output.out.join(format!("{PAPER}.png")));
-    let output = OutputArgs { json: Some(json), image: Some(picture.clone()), ..output.clone() };
+    if arguments.output.image.is_some() {
+        let message = "--image: every paper has a picture; they go into --out, and render writes one by name";
+        return Err(Failure::Input(message.into()));
+    }
+    let json = arguments.output.json.clone().unwrap_or_else(|| arguments.output.out.join("fumarole.json"));
+    let output = OutputArgs { json: Some(json), ..arguments.output.clone() };
     outcome::check(&output)?;
 
-    let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+    // Every paper runs on one device, so that their figures compare.
+    let mut machine = Machine::open(&arguments.machine.resolve(), &[])?;
     outcome::say_device(&output, &machine);
-    let limits = limits::measure(&mut machine)?;
-    let setup = Setup {
-        parameters: Parameters::default(),
-        meshes: vec![MeshSource::Bunny],
-        floor: true,
-        preset: None,
-        process: 0,
-    };
-    let scene = setup.load()?;
-    let bar = progress_bar(output.quiet, PAPER);
-    let mut watch = Watch {
-        interrupted: interrupted(),
-        progress: &mut |done, expected| {
-            bar.set_length(expected);
-            bar.set_position(done);
-        },
-    };
-    // The stencil method takes seconds a frame without a GPU; `bench --variant stencil` measures it.
-    let variants = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric];
-    let measured = caustics::bench(&mut machine, &setup, &scene, &variants, SCHEDULE, Some(&limits), &mut watch)?;
-    bar.finish_and_clear();
-    let (mut runs, traces): (Vec<_>, Vec<_>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
-    if let (Some(&variant), Some(run)) = (variants.first(), runs.first_mut()) {
-        run.image = Some(bench::write_picture(&mut machine, &setup, &scene, variant, 0, &picture)?);
-        outcome::wrote(&output, &picture);
+    let mut measured = Measured::default();
+    measure::<CausticsArgs>(&mut machine, &output, &mut measured)?;
+    let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
+    outcome::publish(&output, &record, &measured.traces)
+}
+
+fn measure<P: PaperArgs>(machine: &mut Machine, output: &OutputArgs, measured: &mut Measured) -> Result<(), Failure> {
+    if interrupted().load(Ordering::Relaxed) && !measured.runs.is_empty() {
+        return Ok(());
     }
-    let record = Record::new(machine.environment(), std::env::args().collect(), runs);
-    outcome::publish(&output, &record, &traces)
+    let paper = P::Study::PAPER;
+    let lacks = machine.device.physical().lacks(P::Study::NEEDS);
+    if !lacks.is_empty() {
+        outcome::say(&format!("{paper}: left out, the device lacks {}", lacks.join(", ")));
+        return Ok(());
+    }
+    if measured.limits.is_none() {
+        measured.limits = Some(limits::measure(machine)?);
+    }
+    let picture = output.out.join(format!("{paper}.png"));
+    outcome::check_file(&picture)?;
+    let study = P::quick();
+    let loaded = load(&study)?;
+    let variants = benched::<P>();
+    let limits = measured.limits.as_ref();
+    let bench = Bench { study: &study, loaded: &loaded, variants: &variants, schedule: SCHEDULE, limits };
+    let found = watched(output.quiet, paper, |watch| bench.measure(machine, watch))?;
+    let (mut runs, traces): (Vec<_>, Vec<_>) = found.into_iter().map(|m| (m.run, m.trace)).unzip();
+    if let (Some(&variant), Some(run)) = (variants.first(), runs.first_mut()) {
+        run.image = Some(bench::write_picture(machine, &study, &loaded, variant, 0, &picture)?);
+        outcome::wrote(output, &picture);
+    }
+    measured.runs.extend(runs);
+    measured.traces.extend(traces);
+    Ok(())
 }

@@ -5,9 +5,10 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::outcome;
+use crate::experiment::caustics;
+use crate::experiment::study::Study;
 use crate::gpu::physical::BASELINE;
 use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
-use crate::papers::caustics;
 
 #[derive(Debug, Clone, Args)]
 pub struct DevicesArgs {
@@ -17,7 +18,7 @@ pub struct DevicesArgs {
 }
 
 /// What each paper needs beyond the baseline.
-const PAPERS: [(&str, &[Feature]); 1] = [("caustics", &caustics::NEEDS)];
+const PAPERS: [(&str, &[Feature]); 1] = [(caustics::Setup::PAPER, caustics::Setup::NEEDS)];
 
 pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
     let instance = Instance::new(false)?;

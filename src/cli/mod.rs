@@ -9,6 +9,7 @@ mod experiment;
 mod failure;
 mod options;
 mod outcome;
+mod paper;
 mod passes;
 mod processes;
 mod render;
@@ -16,9 +17,11 @@ mod watch;
 
 use std::process::ExitCode;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 
+use self::caustics::CausticsArgs;
 use self::failure::Failure;
+use self::paper::PaperCommand;
 
 /// Rendering papers on Vulkan, pass by pass, every pass measured.
 #[derive(Debug, Parser)]
@@ -37,44 +40,7 @@ enum Command {
     /// Compare records: is B faster or slower than A?
     Compare(compare::CompareArgs),
     /// Refractive water caustics with level maps (Tipprasert)
-    Caustics(CausticsArgs),
-}
-
-#[derive(Debug, Args)]
-struct CausticsArgs {
-    #[command(subcommand)]
-    verb: Verb,
-}
-
-#[derive(Debug, Parser)]
-#[command(name = "caustics", version, propagate_version = true)]
-/// Refractive water caustics with level maps (Tipprasert), pass by pass
-struct CausticsBinary {
-    #[command(subcommand)]
-    verb: Verb,
-}
-
-#[derive(Debug, Subcommand)]
-enum Verb {
-    /// List the passes in the paper's order
-    Passes(Box<passes::PassesArgs>),
-    /// Time one configuration in one or more variants, interleaved
-    Bench(Box<bench::BenchArgs>),
-    /// Reproduce one table or figure, ours beside the paper's
-    Experiment(Box<experiment::ExperimentArgs>),
-    /// Write pictures and intermediate targets
-    Render(Box<render::RenderArgs>),
-}
-
-impl Verb {
-    fn run(&self) -> Result<(), Failure> {
-        match self {
-            Verb::Passes(arguments) => passes::run(arguments),
-            Verb::Bench(arguments) => bench::run(arguments),
-            Verb::Experiment(arguments) => experiment::run(arguments),
-            Verb::Render(arguments) => render::run(arguments),
-        }
-    }
+    Caustics(PaperCommand<CausticsArgs>),
 }
 
 /// Runs `fumarole`.
@@ -85,13 +51,13 @@ pub fn umbrella() -> ExitCode {
         Some(Command::All(arguments)) => all::run(arguments),
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
-        Some(Command::Caustics(arguments)) => arguments.verb.run(),
+        Some(Command::Caustics(arguments)) => arguments.run(),
     })
 }
 
 /// Runs the paper's own binary `caustics`.
 pub fn caustics() -> ExitCode {
-    end(CausticsBinary::parse().verb.run())
+    end(paper::binary::<CausticsArgs>())
 }
 
 fn end(result: Result<(), Failure>) -> ExitCode {

@@ -3,48 +3,50 @@
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::caustics::{SceneArgs, VariantWord};
 use super::failure::Failure;
 use super::options::MachineArgs;
 use super::outcome;
-use crate::experiment::caustics::{self, PAPER};
+use super::paper::{PaperArgs, VariantOf, VariantWord, resolve, variant_words};
+use crate::experiment::bench::build;
 use crate::experiment::machine::Machine;
+use crate::experiment::study::Study;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Mode, PassInfo};
-use crate::papers::caustics::{NEEDS, Variant};
-use crate::papers::{Paper, Target};
+use crate::papers::{Paper, Target, Variant};
 use crate::report::table::{Align, Table};
 
 #[derive(Debug, Clone, Args)]
-pub struct PassesArgs {
+pub struct PassesArgs<P: PaperArgs> {
     /// Variants to list, comma-separated, or all
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "all")]
-    variant: Vec<VariantWord>,
+    #[arg(long, value_delimiter = ',', default_value = "all", value_parser = variant_words::<VariantOf<P>>())]
+    variant: Vec<VariantWord<VariantOf<P>>>,
     /// Print JSON
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    scene: SceneArgs,
+    scene: P,
     #[command(flatten)]
     machine: MachineArgs,
 }
 
 struct Listed {
-    variant: Variant,
+    paper: &'static str,
+    variant: &'static str,
     passes: Vec<(std::sync::Arc<PassInfo>, u32)>,
     targets: Vec<Target>,
 }
 
-pub fn run(arguments: &PassesArgs) -> Result<(), Failure> {
-    let setup = arguments.scene.resolve(0)?;
-    let scene = setup.load()?;
-    let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+pub fn run<P: PaperArgs>(arguments: &PassesArgs<P>) -> Result<(), Failure> {
+    let study = arguments.scene.resolve(0)?;
+    let scene = study.load()?;
+    let mut machine = Machine::open(&arguments.machine.resolve(), P::Study::NEEDS)?;
     let mut listed = Vec::new();
-    for variant in VariantWord::resolve(&arguments.variant) {
-        let mut built = caustics::build(&machine, &setup, &scene, variant)?;
+    for variant in resolve(&arguments.variant) {
+        let mut built = build(&machine, &study, &scene, variant)?;
         let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
         let passes = sample.passes.iter().map(|p| (p.info.clone(), p.calls)).collect();
-        listed.push(Listed { variant, passes, targets: built.paper.targets() });
+        let targets = built.paper.targets();
+        listed.push(Listed { paper: P::Study::PAPER, variant: variant.word(), passes, targets });
     }
     machine.check_validation()?;
     if arguments.json {
@@ -70,12 +72,12 @@ fn json_of(listed: &Listed) -> Value {
         })
         .collect();
     let targets: Vec<Value> = listed.targets.iter().map(|t| json!({"name": t.name, "shape": shape(t)})).collect();
-    json!({"paper": PAPER, "variant": listed.variant.word(), "passes": passes, "targets": targets})
+    json!({"paper": listed.paper, "variant": listed.variant, "passes": passes, "targets": targets})
 }
 
 fn text_of(listed: &Listed) -> String {
     let style = outcome::style();
-    let title = style.bold(&format!("{PAPER} {}", listed.variant.word()));
+    let title = style.bold(&format!("{} {}", listed.paper, listed.variant));
     let mut table = Table::new(&[
         ("", Align::Right),
         ("pass", Align::Left),
@@ -89,7 +91,7 @@ fn text_of(listed: &Listed) -> String {
         ("depth and stencil", Align::Left),
     ]);
     let own = |names: &[String]| {
-        let prefix = format!("{}/", listed.variant.word());
+        let prefix = format!("{}/", listed.variant);
         names.iter().map(|n| n.strip_prefix(&prefix).unwrap_or(n)).collect::<Vec<_>>().join(" ")
     };
     for (order, (info, calls)) in listed.passes.iter().enumerate() {

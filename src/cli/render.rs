@@ -4,23 +4,23 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::caustics::{SceneArgs, VariantWord};
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
+use super::paper::{PaperArgs, VariantOf, variant_word};
 use super::watch::{interrupted, progress_bar};
-use crate::experiment::caustics::{self, PAPER};
+use crate::experiment::bench::build;
 use crate::experiment::machine::Machine;
 use crate::experiment::picture;
+use crate::experiment::study::Study;
 use crate::image;
-use crate::papers::Paper;
-use crate::papers::caustics::NEEDS;
+use crate::papers::{Paper, Variant};
 
 #[derive(Debug, Clone, Args)]
-pub struct RenderArgs {
+pub struct RenderArgs<P: PaperArgs> {
     /// Variant to render
-    #[arg(long, value_enum, default_value = "level-map")]
-    variant: VariantWord,
+    #[arg(long, default_value = P::RENDERED, value_parser = variant_word::<VariantOf<P>>())]
+    variant: VariantOf<P>,
     /// Frame N, or the frames A..B from A up to but not including B
     #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]
     frame: Frames,
@@ -28,7 +28,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "TARGET=FILE", value_parser = parse_dump)]
     dump: Vec<Dump>,
     #[command(flatten)]
-    scene: SceneArgs,
+    scene: P,
     #[command(flatten)]
     machine: MachineArgs,
     /// File of the picture; of several frames, the number goes before its ending [default: in --out]
@@ -75,7 +75,7 @@ fn parse_dump(text: &str) -> Result<Dump, String> {
     }
 }
 
-pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
+pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     let output = OutputArgs {
         out: arguments.out.clone(),
         json: None,
@@ -84,9 +84,7 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
         image: None,
         quiet: arguments.quiet,
     };
-    let &[variant] = &VariantWord::resolve(&[arguments.variant])[..] else {
-        return Err(Failure::Input("rendering: --variant all: a picture shows one variant; name it".into()));
-    };
+    let variant = arguments.variant;
     let frames = arguments.frame;
     let is_range = frames.end - frames.first > 1;
     if is_range && !arguments.dump.is_empty() {
@@ -95,7 +93,7 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
     let picture_path = |number: u32| match &arguments.image {
         Some(path) if is_range => numbered(path, number),
         Some(path) => path.clone(),
-        None => arguments.out.join(format!("{PAPER}-{}-{number:04}.png", variant.word())),
+        None => arguments.out.join(format!("{}-{}-{number:04}.png", P::Study::PAPER, variant.word())),
     };
     for dump in &arguments.dump {
         image::Format::of(&dump.file)?;
@@ -104,11 +102,11 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
     outcome::check_picture(&picture_path(frames.first))?;
     outcome::check_file(&picture_path(frames.first))?;
 
-    let setup = arguments.scene.resolve(0)?;
-    let scene = setup.load()?;
-    let mut machine = Machine::open(&arguments.machine.resolve(), &NEEDS)?;
+    let study = arguments.scene.resolve(0)?;
+    let scene = study.load()?;
+    let mut machine = Machine::open(&arguments.machine.resolve(), P::Study::NEEDS)?;
     outcome::say_device(&output, &machine);
-    let mut built = caustics::build(&machine, &setup, &scene, variant)?;
+    let mut built = build(&machine, &study, &scene, variant)?;
     let targets = built.paper.targets();
     for dump in &arguments.dump {
         if !targets.iter().any(|t| t.name == dump.target) {
@@ -117,14 +115,18 @@ pub fn run(arguments: &RenderArgs) -> Result<(), Failure> {
             return Err(Failure::Input(message));
         }
     }
-    let bar = progress_bar(arguments.quiet, PAPER);
+    let bar = progress_bar(arguments.quiet, P::Study::PAPER);
     bar.set_length(u64::from(frames.end - frames.first));
     let mut written = Vec::new();
     for number in frames.first..frames.end {
         if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
             break;
         }
-        let rendered = picture::render(&mut machine, &mut built.paper, number)?;
+        let rendered = if number == frames.first {
+            picture::render(&mut machine, &mut built.paper, number)?
+        } else {
+            picture::render_next(&mut machine, &mut built.paper, number)?
+        };
         let path = picture_path(number);
         image::write_png(&path, &rendered)?;
         bar.inc(1);

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::experiment::measure::Watch;
+
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// The flag that Ctrl-C sets; the second Ctrl-C ends the program at once.
@@ -33,4 +35,18 @@ pub fn progress_bar(quiet: bool, what: &str) -> ProgressBar {
     }
     bar.set_message(what.to_owned());
     bar
+}
+
+/// Runs measured work under a progress bar.
+pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> T) -> T {
+    let bar = progress_bar(quiet, what);
+    let result = work(&mut Watch {
+        interrupted: interrupted(),
+        progress: &mut |done, expected| {
+            bar.set_length(expected);
+            bar.set_position(done);
+        },
+    });
+    bar.finish_and_clear();
+    result
 }

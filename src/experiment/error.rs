@@ -12,7 +12,7 @@ pub enum Error {
     #[error(transparent)]
     Scene(#[from] scene::Error),
     #[error(transparent)]
-    Parameter(#[from] papers::caustics::ParameterError),
+    Parameter(#[from] papers::ParameterError),
     #[error(transparent)]
     Image(#[from] image::Error),
     #[error(transparent)]

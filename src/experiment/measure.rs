@@ -80,6 +80,7 @@ pub fn measure(
     };
     let stopped = || watch.interrupted.load(Ordering::Relaxed);
 
+    restart(subjects)?;
     for number in 0..schedule.warmup.max(1) {
         for (paper, result) in subjects.iter_mut().zip(&mut results) {
             if stopped() {
@@ -101,6 +102,7 @@ pub fn measure(
             expected += a_repetition;
         }
         for mode in MODES {
+            restart(subjects)?;
             for number in 0..schedule.frames {
                 for (paper, result) in subjects.iter_mut().zip(&mut results) {
                     if stopped() {
@@ -116,6 +118,7 @@ pub fn measure(
         results.iter_mut().for_each(|r| r.repeat = repetition);
     }
 
+    restart(subjects)?;
     for (paper, result) in subjects.iter_mut().zip(&mut results) {
         let sample = recorder.run(Mode::Counted, |frame| paper.record(frame, 0))?;
         for pass in &sample.passes {
@@ -124,6 +127,11 @@ pub fn measure(
         tick(expected);
     }
     Ok(results)
+}
+
+/// Every repetition replays the same frames.
+fn restart(subjects: &mut [&mut dyn Paper]) -> Result<(), Error> {
+    subjects.iter_mut().try_for_each(|paper| paper.restart())
 }
 
 fn is_short(results: &[Measurement], min_time_s: f64) -> bool {

@@ -1,13 +1,16 @@
 //! Experiments: presets named after the papers' tables and figures, the measured loop, statistics.
 
+pub mod bench;
 pub mod caustics;
 pub mod compare;
 mod error;
+pub mod facts;
 pub mod limits;
 pub mod machine;
 pub mod measure;
 pub mod picture;
 pub mod run;
 pub mod statistics;
+pub mod study;
 
 pub use error::Error;

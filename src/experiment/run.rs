@@ -4,6 +4,7 @@ use serde_json::{Map, Value};
 
 use super::measure::{MeasuredPass, Measurement, Schedule};
 use super::statistics::{median, repetition_noise, summarize};
+use super::study::Identity;
 use crate::gpu::PassKind;
 use crate::gpu::live::MemoryUse;
 use crate::report::record::{self, Limits, Memory, Pass, ResourceMemory, Run, Statistics, Validation};
@@ -16,12 +17,8 @@ const NOISY: f64 = 0.05;
 pub struct Subject {
     pub paper: &'static str,
     pub variant: String,
-    pub preset: Option<String>,
+    pub identity: Identity,
     pub config: Map<String, Value>,
-    pub width: u32,
-    pub height: u32,
-    pub seed: u64,
-    pub process: u32,
     pub load_ms: f64,
     pub build_ms: f64,
     pub memory: Vec<MemoryUse>,
@@ -52,15 +49,15 @@ pub fn assemble(subject: Subject, measurement: &Measurement, schedule: Schedule)
     Run {
         paper: subject.paper.to_owned(),
         variant: subject.variant,
-        preset: subject.preset,
+        preset: subject.identity.preset,
         config: subject.config,
-        width: subject.width,
-        height: subject.height,
-        seed: subject.seed,
+        width: subject.identity.width,
+        height: subject.identity.height,
+        seed: subject.identity.seed,
         warmup: schedule.warmup.max(1),
         frames: schedule.frames,
         repeat: measurement.repeat.max(1),
-        process: subject.process,
+        process: subject.identity.process,
         overlap_ms: median(&measurement.bracket_ms).filter(|_| is_stamped).map(|bracket| gpu_ms - bracket),
         unaccounted_ms: frame_ms.as_ref().filter(|_| is_stamped).map(|frame| frame.median - gpu_ms - host_ms),
         stamp_floor_ms: subject.stamp_floor_ms,

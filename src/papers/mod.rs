@@ -7,8 +7,55 @@ use std::sync::Arc;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Buffer, Error, Frame, ImageView};
 
+/// The methods that a paper compares.
+pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
+    /// In the paper's order.
+    const ALL: &'static [Self];
+
+    /// The word that the command line and the record know it by.
+    fn word(self) -> &'static str;
+}
+
+/// A parameter outside its range.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{name} {value}: {range}")]
+pub struct ParameterError {
+    /// The option that sets it.
+    pub name: &'static str,
+    /// As it was typed.
+    pub value: String,
+    /// What it must be.
+    pub range: String,
+}
+
+impl ParameterError {
+    /// Passes when `is_good`.
+    ///
+    /// # Errors
+    /// When it is not.
+    pub fn check(is_good: bool, name: &'static str, value: impl ToString, range: &str) -> Result<(), Self> {
+        if is_good {
+            return Ok(());
+        }
+        Err(ParameterError { name, value: value.to_string(), range: range.to_owned() })
+    }
+}
+
 /// A paper's method with its resources, ready to record frames.
 pub trait Paper {
+    /// Whether a frame depends on the frames before it. They are then recorded in order, from 0 after [`Paper::restart`].
+    fn has_state(&self) -> bool {
+        false
+    }
+
+    /// Returns to the state before frame 0; no measured frame contains this.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    fn restart(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Records frame `number`; the simulated time is that many fixed time steps.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use std::slice::from_ref;
 
+use fumarole::papers::Variant as _;
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaveParameters};
 use fumarole::scene::{Light, Mesh};
 use glam::{DVec3, Mat4, Vec3};
@@ -75,7 +76,7 @@ fn a_receiver_that_sticks_out_of_the_water_is_lit_below_it_alone() {
 #[test]
 fn a_receiver_out_of_the_water_is_dark() {
     gpu_test(|device| {
-        for (variant, light) in Variant::ALL.into_iter().flat_map(|v| LIGHTS.map(|light| (v, light))) {
+        for (variant, light) in Variant::ALL.iter().copied().flat_map(|v| LIGHTS.map(|light| (v, light))) {
             let drawing = Drawing::of(device, variant, &parameters(light), &[lifted(&sphere(), 3.2)]);
             drawing.assert_finite();
             assert_dark(&drawing, variant);
@@ -100,7 +101,7 @@ fn assert_dark(drawing: &Drawing, variant: Variant) {
 #[test]
 fn storms_and_water_like_ink_stay_finite() {
     gpu_test(|device| {
-        for (variant, light) in Variant::ALL.into_iter().flat_map(|v| LIGHTS.map(|light| (v, light))) {
+        for (variant, light) in Variant::ALL.iter().copied().flat_map(|v| LIGHTS.map(|light| (v, light))) {
             for (absorption_per_m, refraction_index, map_size) in
                 [(0.0, 4.0, 128), (0.0, 1.0001, 1), (INK_PER_M, 1.33, 65)]
             {
@@ -139,7 +140,7 @@ fn odd_meshes_and_bright_lights_stay_finite() {
         ];
         let bright = Light::Parallel { direction: Vec3::new(0.3, -1.0, 0.1), intensity: Vec3::splat(BRIGHTEST) };
         for (variant, light) in
-            Variant::ALL.into_iter().flat_map(|v| [OVERHEAD, OBLIQUE, bright].map(|light| (v, light)))
+            Variant::ALL.iter().copied().flat_map(|v| [OVERHEAD, OBLIQUE, bright].map(|light| (v, light)))
         {
             for receiver in &receivers {
                 let parameters = Parameters { map_size: 65, ..parameters(light) };

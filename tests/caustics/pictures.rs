@@ -4,6 +4,7 @@ use std::path::Path;
 
 use fumarole::image::golden::{self, Tolerance};
 use fumarole::image::srgb;
+use fumarole::papers::Variant as _;
 use fumarole::papers::caustics::{Parameters, Variant};
 use fumarole::scene::{Camera, Light};
 use glam::Vec3;
@@ -20,7 +21,7 @@ fn the_pictures_are_the_golden_ones() {
     gpu_test(|device| {
         let below = parameters(OBLIQUE);
         let above = Parameters { camera: Parameters::camera_above(below.water_depth_m), ..below.clone() };
-        let views = Variant::ALL.map(|variant| ("below", &below, variant));
+        let views = Variant::ALL.iter().map(|&variant| ("below", &below, variant));
         let through_water = [Variant::LevelMap, Variant::Volumetric].map(|variant| ("above", &above, variant));
         for (view, parameters, variant) in views.into_iter().chain(through_water) {
             let drawing = Drawing::of(device, variant, parameters, &[teapot(), floor()]);
@@ -54,7 +55,7 @@ fn the_cast_adds_the_lights_and_the_ambient_light_once() {
     gpu_test(|device| {
         let overhead = |intensity| Light::Parallel { direction: Vec3::NEG_Y, intensity };
         let (warm, cool, ambient) = (Vec3::new(0.4, 0.2, 0.1), Vec3::new(0.1, 0.2, 0.5), Vec3::new(0.05, 0.1, 0.2));
-        for variant in Variant::ALL {
+        for &variant in Variant::ALL {
             let parameters = Parameters {
                 waves: FLAT,
                 absorption_per_m: 0.0,

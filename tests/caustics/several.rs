@@ -1,5 +1,6 @@
 //! Several receivers, concave ones too, under several lights.
 
+use fumarole::papers::Variant as _;
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant};
 use fumarole::scene::{Camera, Light};
 use glam::{Mat4, Vec3};
@@ -44,7 +45,7 @@ fn lights_add_up_over_ambient_light_that_counts_once() {
             vertical_fov_rad: 0.9,
             ..parameters(OVERHEAD).camera
         };
-        for variant in Variant::ALL {
+        for &variant in Variant::ALL {
             let draw = |warm: Vec3, cool: Vec3| {
                 let lights = vec![shining(OBLIQUE, warm), shining(POINT, cool)];
                 let parameters = Parameters { lights, ambient: AMBIENT, camera, ..parameters(OVERHEAD) };

@@ -4,6 +4,7 @@ use std::slice::from_ref;
 
 use fumarole::gpu::Compiler;
 use fumarole::image::compare;
+use fumarole::papers::Variant as _;
 use fumarole::papers::caustics::{Parameters, Variant};
 use glam::Vec3;
 
@@ -99,7 +100,7 @@ fn the_passes_are_those_of_the_thesis() {
 #[test]
 fn one_seed_gives_one_picture_and_another_seed_another() {
     gpu_test(|device| {
-        for variant in Variant::ALL {
+        for &variant in Variant::ALL {
             let [first, again, other] = [1, 1, 2].map(|seed| {
                 let parameters = Parameters { seed, ..parameters(OBLIQUE) };
                 Drawing::of(device, variant, &parameters, &[teapot()]).picture
@@ -115,7 +116,7 @@ fn both_shader_compilers_draw_one_picture() {
     gpu_test(|device| {
         let mut parameters = parameters(OBLIQUE);
         parameters.camera = Parameters::camera_above(parameters.water_depth_m);
-        for variant in Variant::ALL {
+        for &variant in Variant::ALL {
             let [glslang, naga] = [Compiler::Glslang, Compiler::Naga].map(|compiler| {
                 let drawing = Drawing::compiled_by(compiler, device, variant, &parameters, &[teapot()]);
                 let mut compilers = drawing.passes.iter().filter_map(|pass| pass.info.compiler);

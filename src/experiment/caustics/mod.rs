@@ -5,25 +5,18 @@ pub mod sweep;
 mod thesis;
 
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::time::Instant;
 
 use glam::{Mat4, UVec2, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
+use super::bench::Built;
 use super::error::Error;
 use super::machine::Machine;
-use super::measure::{Measurement, Schedule, Watch, measure};
-use super::run::{self, Subject, assemble};
-use crate::gpu::Mode;
-use crate::gpu::live::MemoryUse;
-use crate::papers::Paper;
-use crate::papers::caustics::{Caustics, Parameters, ReceiverInput, SmartPlacement, Variant};
-use crate::report::record::{Limits, Run};
-use crate::report::trace::TraceRun;
+use super::measure::Measurement;
+use super::study::{Findings, Identity, Study};
+use crate::gpu::{self, Feature, Mode, ShaderLibrary};
+use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant};
 use crate::scene::{Bounds, Light, MeshSource, shapes};
-
-pub const PAPER: &str = "caustics";
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
 /// over it.
@@ -50,18 +43,20 @@ pub struct Setup {
 /// A setup with its meshes loaded and placed.
 pub struct Scene {
     pub receivers: Vec<ReceiverInput>,
-    pub load_ms: f64,
 }
 
-impl Setup {
+impl Study for Setup {
+    const PAPER: &'static str = "caustics";
+    const NEEDS: &'static [Feature] = &NEEDS;
+
+    type Variant = Variant;
+    type Scene = Scene;
+    type Paper = Caustics;
+
     /// Checks the parameters, loads the meshes, scales each to two metres and stands it on the pool's floor, one beside
-    /// the other.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`], [`Error::Scene`]; [`Error::Input`] for a mesh too small or too large to be scaled.
-    pub fn load(&self) -> Result<Scene, Error> {
+    /// the other. A mesh too small or too large to be scaled is an [`Error::Input`].
+    fn load(&self) -> Result<Scene, Error> {
         self.parameters.validate()?;
-        let started = Instant::now();
         let floor_m = -self.parameters.water_depth_m;
         let mut receivers = Vec::new();
         let mut next_x = 0.0;
@@ -90,11 +85,47 @@ impl Setup {
         if self.floor {
             receivers.push(floor(&receivers, floor_m));
         }
-        Ok(Scene { receivers, load_ms: started.elapsed().as_secs_f64() * 1e3 })
+        Ok(Scene { receivers })
     }
 
-    /// Every parameter, under the names of the options.
-    pub fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Value> {
+    fn make(
+        &self,
+        shaders: &ShaderLibrary,
+        label: &str,
+        scene: &Scene,
+        variant: Variant,
+    ) -> Result<Caustics, gpu::Error> {
+        Caustics::new(shaders, label, variant, &self.parameters, &scene.receivers)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity {
+            preset: self.preset.clone(),
+            width: self.parameters.width,
+            height: self.parameters.height,
+            seed: self.parameters.seed,
+            process: self.process,
+        }
+    }
+
+    fn summary(&self) -> String {
+        format!("{} planes", self.parameters.planes)
+    }
+
+    fn findings(
+        &self,
+        machine: &mut Machine,
+        measured: &mut [(Built<Self>, Measurement)],
+    ) -> Result<Vec<Findings>, Error> {
+        let floors = floors_ms(machine, measured)?;
+        let findings = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Findings {
+            results: results(&built.paper, measurement, floor_ms),
+            warnings: Vec::new(),
+        });
+        Ok(findings.collect())
+    }
+
+    fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Value> {
         let p = &self.parameters;
         let meshes: Vec<String> = self.meshes.iter().map(MeshSource::to_string).collect();
         let triangles: usize = scene.receivers.iter().map(|r| r.mesh.triangle_count()).sum();
@@ -164,109 +195,13 @@ pub fn sample_meshes() -> Vec<MeshSource> {
     built_in.into_iter().chain(wuson.map(MeshSource::File)).collect()
 }
 
-/// A variant with its resources, and what they cost.
-pub struct Built {
-    pub variant: Variant,
-    pub paper: Caustics,
-    pub build_ms: f64,
-    pub memory: Vec<MemoryUse>,
-    pub peak_bytes: u64,
-}
-
-/// Makes the resources of a variant.
-///
-/// # Errors
-/// [`Error::Gpu`].
-pub fn build(machine: &Machine, setup: &Setup, scene: &Scene, variant: Variant) -> Result<Built, Error> {
-    let live = Arc::clone(machine.device.live());
-    let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
-    live.reset_peak();
-    let started = Instant::now();
-    let paper = Caustics::new(&machine.shaders, variant.word(), variant, &setup.parameters, &scene.receivers)?;
-    let build_ms = started.elapsed().as_secs_f64() * 1e3;
-    let prefix = format!("{}/", variant.word());
-    let memory = live
-        .memory()
-        .into_iter()
-        .filter_map(|mut m| {
-            m.name = m.name.strip_prefix(&prefix)?.to_owned();
-            Some(m)
-        })
-        .collect();
-    Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before })
-}
-
-/// One variant's run with what the plots and the trace need of it.
-pub struct VariantRun {
-    pub run: Run,
-    pub measurement: Measurement,
-    pub trace: TraceRun,
-}
-
-/// Measures `variants` of one configuration, interleaved.
-///
-/// # Errors
-/// [`Error::Gpu`]; [`Error::Interrupted`] when not one frame was measured.
-pub fn bench(
-    machine: &mut Machine,
-    setup: &Setup,
-    scene: &Scene,
-    variants: &[Variant],
-    schedule: Schedule,
-    limits: Option<&Limits>,
-    watch: &mut Watch<'_>,
-) -> Result<Vec<VariantRun>, Error> {
-    let mut built =
-        variants.iter().map(|&variant| build(machine, setup, scene, variant)).collect::<Result<Vec<_>, _>>()?;
-    machine.device.wait_idle()?;
-    let stamp_floor_ms = machine.recorder.stamp_floor_ms()?;
-    let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
-    let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
-    machine.device.wait_idle()?;
-    if measurements.iter().any(|m| m.frame_ms.is_empty()) {
-        return Err(Error::Interrupted);
-    }
-    let floors = floors_ms(machine, &built)?;
-    let validation = machine.check_validation()?;
-    let warnings = machine.warnings();
-    let mut runs = Vec::new();
-    for ((built, measurement), floor_ms) in built.iter().zip(measurements).zip(floors) {
-        let subject = Subject {
-            paper: PAPER,
-            variant: built.variant.word().to_owned(),
-            preset: setup.preset.clone(),
-            config: setup.config(scene, &built.paper),
-            width: setup.parameters.width,
-            height: setup.parameters.height,
-            seed: setup.parameters.seed,
-            process: setup.process,
-            load_ms: scene.load_ms,
-            build_ms: built.build_ms,
-            memory: built.memory.clone(),
-            peak_bytes: built.peak_bytes,
-            results: results(&built.paper, &measurement, floor_ms),
-            limits: limits.cloned(),
-            stamp_floor_ms,
-            validation,
-            warnings: warnings.clone(),
-        };
-        let name = format!("{PAPER} {} {} planes", built.variant.word(), setup.parameters.planes);
-        runs.push(VariantRun {
-            run: assemble(subject, &measurement, schedule),
-            trace: run::trace(name, &measurement),
-            measurement,
-        });
-    }
-    Ok(runs)
-}
-
 /// Median time of each variant's caustics maps with an empty fragment stage, interleaved; `None` without stamps.
-fn floors_ms(machine: &mut Machine, built: &[Built]) -> Result<Vec<Option<f64>>, Error> {
+fn floors_ms(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) -> Result<Vec<Option<f64>>, Error> {
     const SAMPLES: usize = 5;
-    let mut times = vec![Vec::with_capacity(SAMPLES); built.len()];
+    let mut times = vec![Vec::with_capacity(SAMPLES); measured.len()];
     // The first round compiles the pipelines.
     for round in 0..=SAMPLES {
-        for (built, times) in built.iter().zip(&mut times) {
+        for ((built, _), times) in measured.iter().zip(&mut times) {
             let sample = machine.recorder.run(Mode::Stamped, |frame| built.paper.record_floor(frame))?;
             if round > 0 {
                 times.extend(sample.passes.iter().find_map(|p| p.gpu_ms));

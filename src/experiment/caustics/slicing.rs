@@ -1,63 +1,21 @@
 //! What smart slicing does, without times: the planes it needs (table 5-4), what it changes in the picture (table 5-5,
 //! figure 5-13), the depth profiles (figure 5-12), and the memory of the methods (section 5.1).
 
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
 use super::thesis::{TABLE_5_2, TABLE_5_4};
-use super::{Scene, Setup, build, mesh_name};
+use super::{Scene, Setup, mesh_name};
+use crate::experiment::bench::build;
 use crate::experiment::error::Error;
+use crate::experiment::facts::Facts;
 use crate::experiment::machine::Machine;
 use crate::experiment::picture;
+use crate::experiment::study::Study;
 use crate::gpu::Mode;
 use crate::image::{Difference, Rgba8, Samples, compare};
-use crate::papers::Paper;
 use crate::papers::caustics::{SmartPlacement, Variant};
-use crate::report::csv::quote;
-use crate::report::table::{Align, Table};
+use crate::papers::{Paper, Variant as _};
 use crate::scene::MeshSource;
-
-/// A table of an experiment that times nothing: for the console and, row by row, for JSON and CSV.
-pub struct Facts {
-    pub title: &'static str,
-    pub columns: &'static [&'static str],
-    pub rows: Vec<Vec<Value>>,
-}
-
-impl Facts {
-    /// For the console.
-    pub fn table(&self) -> Table {
-        let columns: Vec<(&str, Align)> = self.columns.iter().map(|&c| (c, Align::Right)).collect();
-        let mut table = Table::new(&columns);
-        for row in &self.rows {
-            table.push(row.iter().map(shown).collect());
-        }
-        table
-    }
-
-    /// One object a row.
-    pub fn json(&self) -> Value {
-        let object = |row: &Vec<Value>| -> Map<String, Value> {
-            self.columns.iter().zip(row).map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
-        };
-        json!({"title": self.title, "rows": self.rows.iter().map(object).collect::<Vec<_>>()})
-    }
-
-    /// Comma-separated, with a header; quoted where a mesh's name needs it.
-    pub fn csv(&self) -> String {
-        let line = |cells: Vec<String>| cells.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(",") + "\n";
-        let header = line(self.columns.iter().map(|c| (*c).to_owned()).collect());
-        self.rows.iter().fold(header, |text, row| text + &line(row.iter().map(shown).collect()))
-    }
-}
-
-fn shown(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        Value::Number(number) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
-        other => other.to_string(),
-    }
-}
 
 fn for_each_mesh(
     setup: &Setup,
@@ -207,7 +165,7 @@ pub fn memory(machine: &mut Machine, setup: &Setup, meshes: &[MeshSource], count
         for &planes in counts {
             setup.parameters.planes = planes;
             setup.parameters.validate()?;
-            for variant in Variant::ALL {
+            for &variant in Variant::ALL {
                 let built = build(machine, setup, scene, variant)?;
                 let of = |test: fn(&str) -> bool| {
                     built.memory.iter().filter(|m| test(&m.name)).map(|m| m.bytes).sum::<u64>()

@@ -6,11 +6,13 @@ use std::sync::atomic::Ordering;
 use serde_json::json;
 
 use super::thesis::{TABLE_5_1, TABLE_5_3, ThesisTable};
-use super::{Setup, bench, mesh_name};
+use super::{Setup, mesh_name};
+use crate::experiment::bench::{Bench, load};
 use crate::experiment::compare::{Ratio, ratio_within_process};
 use crate::experiment::error::Error;
 use crate::experiment::machine::Machine;
 use crate::experiment::measure::{Schedule, Watch};
+use crate::papers::Variant as _;
 use crate::papers::caustics::Variant;
 use crate::report::plot::{LineChart, Scale, Series};
 use crate::report::record::{ExperimentRow, Limits, Run};
@@ -123,12 +125,18 @@ impl Sweep {
             let mut setup = self.setup.clone();
             setup.meshes = vec![mesh.clone()];
             setup.preset = Some(self.comparison.preset.to_owned());
-            let scene = setup.load()?;
+            let loaded = load(&setup)?;
             for &planes in &self.counts {
                 setup.parameters.planes = planes;
                 setup.parameters.validate()?;
-                let limits = self.limits.as_ref();
-                match bench(machine, &setup, &scene, &variants, self.schedule, limits, watch) {
+                let bench = Bench {
+                    study: &setup,
+                    loaded: &loaded,
+                    variants: &variants,
+                    schedule: self.schedule,
+                    limits: self.limits.as_ref(),
+                };
+                match bench.measure(machine, watch) {
                     Ok(runs) => outcome.add(mesh, planes, runs.into_iter().map(|r| r.run).collect()),
                     Err(Error::Interrupted) if !outcome.rows.is_empty() => return Ok(outcome),
                     Err(error) => return Err(error),

@@ -42,7 +42,7 @@ use self::water::{Grid, Water};
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 
-pub use self::parameters::{ParameterError, Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
+pub use self::parameters::{Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.

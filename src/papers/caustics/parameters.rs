@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 pub use super::planes::SmartPlacement;
+use crate::papers::ParameterError;
 use crate::scene::{Camera, Light};
 
 /// The methods that the thesis compares.
@@ -20,10 +21,10 @@ pub enum Variant {
     Stencil,
 }
 
-impl Variant {
-    pub const ALL: [Variant; 4] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric, Variant::Stencil];
+impl crate::papers::Variant for Variant {
+    const ALL: &'static [Variant] = &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric, Variant::Stencil];
 
-    pub fn word(self) -> &'static str {
+    fn word(self) -> &'static str {
         match self {
             Variant::LevelMap => "level-map",
             Variant::LevelMapSmart => "level-map-smart",
@@ -106,15 +107,6 @@ impl Default for Parameters {
     }
 }
 
-/// A parameter outside its range.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{name} {value}: {range}")]
-pub struct ParameterError {
-    pub name: &'static str,
-    pub value: String,
-    pub range: String,
-}
-
 /// As they are typed.
 fn components(vector: Vec3) -> String {
     vector.to_array().map(|c| c.to_string()).join(",")
@@ -126,62 +118,59 @@ impl Parameters {
     /// # Errors
     /// The first parameter outside its range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        let check = |good: bool, name: &'static str, value: String, range: &str| {
-            if good { Ok(()) } else { Err(ParameterError { name, value, range: range.to_owned() }) }
-        };
-        check((1..=4096).contains(&self.planes), "--planes", self.planes.to_string(), "must be 1 to 4096")?;
-        check(self.map_size >= 1, "--map-size", self.map_size.to_string(), "must be at least 1 texel")?;
-        check(
+        ParameterError::check((1..=4096).contains(&self.planes), "--planes", self.planes, "must be 1 to 4096")?;
+        ParameterError::check(self.map_size >= 1, "--map-size", self.map_size, "must be at least 1 texel")?;
+        ParameterError::check(
             (2..=20_000_000).contains(&self.water_triangles),
             "--water-triangles",
-            self.water_triangles.to_string(),
+            self.water_triangles,
             "must be 2 to 20000000",
         )?;
         let levels = self.smart.levels;
-        check((1..=65_536).contains(&levels), "--levels", levels.to_string(), "must be 1 to 65536")?;
+        ParameterError::check((1..=65_536).contains(&levels), "--levels", levels, "must be 1 to 65536")?;
         if let SmartPlacement::Fitted { epsilon_m: Some(epsilon) } = self.smart.placement {
             let good = epsilon > 0.0 && epsilon.is_finite();
-            check(good, "--epsilon", epsilon.to_string(), "must be above 0 metres")?;
+            ParameterError::check(good, "--epsilon", epsilon, "must be above 0 metres")?;
         }
         let n = self.refraction_index;
-        check(n > 1.0 && n <= 4.0, "--refraction-index", n.to_string(), "must be above 1 and at most 4")?;
+        ParameterError::check(n > 1.0 && n <= 4.0, "--refraction-index", n, "must be above 1 and at most 4")?;
         let k = self.absorption_per_m;
-        check((0.0..=1e6).contains(&k), "--absorption", k.to_string(), "must be 0 to 1000000 per metre")?;
+        ParameterError::check((0.0..=1e6).contains(&k), "--absorption", k, "must be 0 to 1000000 per metre")?;
         let depth = self.water_depth_m;
-        check(
+        ParameterError::check(
             depth > 0.0 && depth <= 1000.0,
             "--water-depth",
-            depth.to_string(),
+            depth,
             "must be above 0 and at most 1000 metres",
         )?;
         let waves = self.waves;
-        check(waves.count <= 64, "--waves", waves.count.to_string(), "must be 0 to 64")?;
-        check(
+        ParameterError::check(waves.count <= 64, "--waves", waves.count, "must be 0 to 64")?;
+        ParameterError::check(
             (0.0..=10.0).contains(&waves.amplitude_m),
             "--amplitude",
-            waves.amplitude_m.to_string(),
+            waves.amplitude_m,
             "must be 0 to 10 metres",
         )?;
-        check(
+        ParameterError::check(
             waves.wavelength_m > 0.0 && waves.wavelength_m <= 1000.0,
             "--wavelength",
-            waves.wavelength_m.to_string(),
+            waves.wavelength_m,
             "must be above 0 and at most 1000 metres",
         )?;
         let steepness = self.steepest_slope();
-        check(
+        ParameterError::check(
             steepness <= 10.0,
             "--amplitude",
-            waves.amplitude_m.to_string(),
+            waves.amplitude_m,
             "with this --wavelength the waves are steeper than 10; lower one or raise the other",
         )?;
-        check(!self.lights.is_empty(), "--light", "none".into(), "at least one light is needed")?;
+        ParameterError::check(!self.lights.is_empty(), "--light", "none", "at least one light is needed")?;
         for light in &self.lights {
             self.validate_light(light)?;
         }
         let step = self.time_step_s;
-        check(step >= 0.0 && step.is_finite(), "--time-step", step.to_string(), "must be at least 0 seconds")?;
-        check(
+        ParameterError::check(step >= 0.0 && step.is_finite(), "--time-step", step, "must be at least 0 seconds")?;
+        ParameterError::check(
             self.width >= 1 && self.height >= 1,
             "--size",
             format!("{}x{}", self.width, self.height),

@@ -1,39 +1,17 @@
 //! The options of the `caustics` paper under the thesis's own words, resolved into a setup.
 
+mod experiment;
+
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 
+use self::experiment::Experiments;
 use super::failure::Failure;
 use super::options::{Size, parse_finite, parse_numbers, parse_size};
+use super::paper::PaperArgs;
 use crate::experiment::caustics::Setup;
-use crate::papers::caustics::{Parameters, SmartPlacement, Variant};
+use crate::papers::caustics::{Parameters, SmartPlacement};
 use crate::scene::{Camera, Light, MeshSource};
-
-/// The methods as words of the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum VariantWord {
-    LevelMap,
-    LevelMapSmart,
-    Volumetric,
-    Stencil,
-    All,
-}
-
-impl VariantWord {
-    /// The variants that a list of words means, in the order of the thesis, each once.
-    pub fn resolve(words: &[VariantWord]) -> Vec<Variant> {
-        let wanted = |variant: &Variant| {
-            words.iter().any(|word| match word {
-                VariantWord::LevelMap => *variant == Variant::LevelMap,
-                VariantWord::LevelMapSmart => *variant == Variant::LevelMapSmart,
-                VariantWord::Volumetric => *variant == Variant::Volumetric,
-                VariantWord::Stencil => *variant == Variant::Stencil,
-                VariantWord::All => true,
-            })
-        };
-        Variant::ALL.into_iter().filter(wanted).collect()
-    }
-}
 
 /// How smart slicing places its planes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -76,7 +54,7 @@ impl Preset {
 
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Scene")]
-pub struct SceneArgs {
+pub struct CausticsArgs {
     /// Take the numbers of a table or figure; options given beside it win
     #[arg(long, value_enum)]
     preset: Option<Preset>,
@@ -146,12 +124,26 @@ pub struct SceneArgs {
     time_step: Option<f32>,
 }
 
-impl SceneArgs {
-    /// What was typed, over the preset's numbers, over the defaults.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] for options of which one would not be heeded.
-    pub fn resolve(&self, process: u32) -> Result<Setup, Failure> {
+impl PaperArgs for CausticsArgs {
+    type Study = Setup;
+    type Experiment = Experiments;
+
+    const ABOUT: &'static str = "Refractive water caustics with level maps (Tipprasert), pass by pass";
+    // The stencil method takes seconds a frame without a GPU.
+    const BENCHED: &'static str = "level-map,level-map-smart,volumetric";
+    const RENDERED: &'static str = "level-map";
+
+    fn quick() -> Setup {
+        Setup {
+            parameters: Parameters::default(),
+            meshes: vec![MeshSource::Bunny],
+            floor: true,
+            preset: None,
+            process: 0,
+        }
+    }
+
+    fn resolve(&self, process: u32) -> Result<Setup, Failure> {
         let mut p = Parameters::default();
         match self.preset {
             None => {}
@@ -210,7 +202,9 @@ impl SceneArgs {
             process,
         })
     }
+}
 
+impl CausticsArgs {
     /// Whether a number of planes was named.
     pub fn names_planes(&self) -> bool {
         self.planes.is_some()

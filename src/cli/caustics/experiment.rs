@@ -1,0 +1,268 @@
+//! `experiment NAME`: one table or figure of the paper, ours beside the paper's.
+
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::CausticsArgs;
+use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::failure::Failure;
+use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::outcome;
+use crate::cli::paper::{ExperimentArgs, PaperArgs};
+use crate::cli::watch::watched;
+use crate::experiment::bench::build;
+use crate::experiment::caustics::slicing;
+use crate::experiment::caustics::sweep::{
+    ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Sweep,
+};
+use crate::experiment::caustics::{self, Setup, mesh_name};
+use crate::experiment::facts::Facts;
+use crate::experiment::machine::Machine;
+use crate::experiment::study::Study;
+use crate::experiment::{self, limits, picture};
+use crate::papers::Variant as _;
+use crate::papers::caustics::{NEEDS, Parameters, Variant};
+use crate::report::plot::{BarChart, BarSeries};
+use crate::scene::MeshSource;
+
+/// The tables and figures that are reproduced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Name {
+    /// Table 5-1 and figure 5-10: level map against volumetric by number of planes
+    #[value(name = "5-1")]
+    Table51,
+    /// Table 5-2: polygons of the models
+    #[value(name = "5-2")]
+    Table52,
+    /// Table 5-3 and figure 5-11: normal against smart slicing by number of planes
+    #[value(name = "5-3")]
+    Table53,
+    /// Table 5-4: planes that smart slicing draws of those specified
+    #[value(name = "5-4")]
+    Table54,
+    /// Table 5-5: Luv difference (eq. 2-9) between normal and smart slicing
+    #[value(name = "5-5")]
+    Table55,
+    /// Section 5.1: memory of the methods by number of planes
+    Memory,
+    /// Figure 5-12 and the appendix's histograms: texels in each depth level
+    DepthProfile,
+    /// Figure 5-13: the picture by normal and by smart slicing
+    #[value(name = "5-13")]
+    Figure513,
+    /// The appendix: three pictures, the curves and the histogram of every mesh given
+    Appendix,
+}
+
+impl Name {
+    /// Whether it goes through plane counts.
+    fn sweeps(self) -> bool {
+        !matches!(self, Name::Table52 | Name::DepthProfile | Name::Figure513)
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct Experiments {
+    /// Table or figure of the paper
+    #[arg(value_enum, required_unless_present = "list")]
+    name: Option<Name>,
+    /// List the experiments
+    #[arg(long)]
+    list: bool,
+    /// Plane counts of a sweep, comma-separated [default: 3,11,31,101]
+    #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
+    counts: Vec<u32>,
+    /// Sweep 3 to 101 planes by this step instead: 1 is the thesis's full table
+    #[arg(long, value_name = "N", conflicts_with = "counts", value_parser = clap::value_parser!(u32).range(1..=98))]
+    step: Option<u32>,
+    #[command(flatten)]
+    scene: CausticsArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    #[command(flatten)]
+    measure: MeasureArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Frames and repetitions at each point of a sweep that names none.
+const FRAMES: u32 = 3;
+const REPEAT: u32 = 3;
+
+/// An experiment with its input resolved and its machine open.
+struct Experiment<'a> {
+    arguments: &'a Experiments,
+    name: Name,
+    publication: Publication<'a>,
+    setup: Setup,
+    meshes: Vec<MeshSource>,
+    counts: Vec<u32>,
+    machine: Machine,
+}
+
+impl ExperimentArgs for Experiments {
+    fn run(&self) -> Result<(), Failure> {
+        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
+        self.refuse_unsuited(name)?;
+        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
+        publication.check()?;
+        let counts = match self.step {
+            Some(step) => (3..=101).step_by(step as usize).collect(),
+            None if self.counts.is_empty() => vec![3, 11, 31, 101],
+            None => self.counts.clone(),
+        };
+        let mut setup = self.scene.resolve(self.measure.process)?;
+        setup.preset = Some(publication.name.clone());
+        setup.parameters.validate().map_err(experiment::Error::from)?;
+        let meshes = if self.scene.names_meshes() { setup.meshes.clone() } else { caustics::sample_meshes() };
+        check_input(&setup, &meshes, &counts)?;
+        let machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
+        outcome::say_device(&self.output, &machine);
+        let mut experiment = Experiment { arguments: self, name, publication, setup, meshes, counts, machine };
+        experiment.run()?;
+        experiment.machine.check_validation()?;
+        Ok(())
+    }
+}
+
+impl Experiments {
+    /// Options that other verbs know and this experiment would not heed.
+    fn refuse_unsuited(&self, name: Name) -> Result<(), Failure> {
+        let names_counts = !self.counts.is_empty() || self.step.is_some();
+        let unsuited = [
+            (name.sweeps() && self.scene.names_planes(), "--planes: this experiment sweeps them; give --counts"),
+            (!name.sweeps() && names_counts, "--counts, --step: this experiment has no sweep; give --planes"),
+        ];
+        refuse(&self.measure, &self.output, &unsuited)
+    }
+}
+
+/// Looks at every count and every mesh before anything is measured: a sweep takes long to come to the last.
+fn check_input(setup: &Setup, meshes: &[MeshSource], counts: &[u32]) -> Result<(), experiment::Error> {
+    for &planes in counts {
+        Parameters { planes, ..setup.parameters.clone() }.validate()?;
+    }
+    meshes.iter().try_for_each(|mesh| Setup { meshes: vec![mesh.clone()], ..setup.clone() }.load().map(drop))
+}
+
+impl Experiment<'_> {
+    fn run(&mut self) -> Result<(), Failure> {
+        let Experiment { setup, meshes, counts, machine, .. } = self;
+        match self.name {
+            Name::Table51 => self.sweep(LEVEL_MAP_AGAINST_VOLUMETRIC),
+            Name::Table53 => self.sweep(NORMAL_AGAINST_SMART),
+            Name::Table52 => {
+                let facts = slicing::polygon_counts(setup, meshes)?;
+                self.publication.facts(&self.machine, &facts)
+            }
+            Name::Table54 => {
+                let facts = slicing::actual_planes(machine, setup, meshes, counts)?;
+                self.publication.facts(&self.machine, &facts)
+            }
+            Name::Table55 => {
+                self.look_plainly();
+                let Experiment { setup, meshes, counts, machine, .. } = self;
+                let facts = slicing::intensity_difference(machine, setup, meshes, counts)?;
+                self.publication.facts(&self.machine, &facts)
+            }
+            Name::Memory => {
+                let facts = slicing::memory(machine, setup, meshes, counts)?;
+                self.publication.facts(&self.machine, &facts)
+            }
+            Name::DepthProfile => self.depth_profiles(),
+            Name::Figure513 => self.picture_pairs(),
+            Name::Appendix => {
+                self.sweep(ALL_THREE)?;
+                self.depth_profiles()?;
+                self.pictures()
+            }
+        }
+    }
+
+    /// Pictures that are compared show the receiver itself, not the water's surface above it.
+    fn look_plainly(&mut self) {
+        if !self.arguments.scene.names_camera() {
+            self.setup.parameters.camera = Parameters::camera_below(self.setup.parameters.water_depth_m);
+        }
+    }
+
+    fn sweep(&mut self, comparison: Comparison) -> Result<(), Failure> {
+        let Experiments { output, measure, .. } = self.arguments;
+        let limits = if measure.no_limits { None } else { Some(limits::measure(&mut self.machine)?) };
+        let sweep = Sweep {
+            comparison,
+            setup: self.setup.clone(),
+            meshes: self.meshes.clone(),
+            counts: self.counts.clone(),
+            schedule: measure.schedule(FRAMES, REPEAT),
+            limits,
+        };
+        let what = format!("{} {}", Setup::PAPER, self.publication.name);
+        let found = watched(output.quiet, &what, |watch| sweep.run(&mut self.machine, watch))?;
+        let table = found.render(outcome::style());
+        let plot = found.plot()?;
+        self.publication.runs(&self.machine, found.runs, table, &plot)
+    }
+
+    fn depth_profiles(&mut self) -> Result<(), Failure> {
+        let mut rows = Vec::new();
+        for mesh in self.meshes.clone() {
+            let setup = Setup { meshes: vec![mesh.clone()], ..self.setup.clone() };
+            let scene = setup.load()?;
+            let histogram = slicing::depth_profile(&mut self.machine, &setup, &scene)?;
+            let name = mesh_name(&mesh);
+            let levels = histogram.iter().enumerate();
+            rows.extend(levels.map(|(level, texels)| vec![json!(name), json!(level + 1), json!(texels)]));
+            let chart = BarChart {
+                title: format!("Figure 5-12: depth profile of {name}"),
+                y_label: "texels".to_owned(),
+                groups: (1..=histogram.len()).map(|level| level.to_string()).collect(),
+                series: vec![BarSeries {
+                    name: "texels".to_owned(),
+                    values: histogram.iter().map(|&texels| Some(f64::from(texels))).collect(),
+                }],
+            };
+            let svg = chart.to_svg().map_err(experiment::Error::from)?;
+            self.publication.save(&self.publication.file(&format!("-{name}-profile.svg")), svg.as_bytes())?;
+        }
+        if self.name == Name::DepthProfile {
+            let columns = &["mesh", "level", "texels"];
+            self.publication
+                .facts(&self.machine, &Facts { title: "Figure 5-12: texels in each depth level", columns, rows })?;
+        }
+        Ok(())
+    }
+
+    fn picture_pairs(&mut self) -> Result<(), Failure> {
+        self.look_plainly();
+        let mut rows = Vec::new();
+        for mesh in self.meshes.clone() {
+            let setup = Setup { meshes: vec![mesh.clone()], ..self.setup.clone() };
+            let scene = setup.load()?;
+            let pair = slicing::picture_pair(&mut self.machine, &setup, &scene)?;
+            let name = mesh_name(&mesh);
+            for (word, picture) in [("normal", &pair.normal), ("smart", &pair.smart)] {
+                self.publication.picture(&format!("-{name}-{word}.png"), picture)?;
+            }
+            let d = pair.difference;
+            rows.push(vec![json!(name), json!(d.mean), json!(d.p99), json!(d.max), json!(d.pixels)]);
+        }
+        let columns = &["mesh", "mean", "p99", "max", "pixels"];
+        self.publication
+            .facts(&self.machine, &Facts { title: "Figure 5-13: Luv difference of the picture pair", columns, rows })
+    }
+
+    fn pictures(&mut self) -> Result<(), Failure> {
+        self.look_plainly();
+        for mesh in self.meshes.clone() {
+            let setup = Setup { meshes: vec![mesh.clone()], ..self.setup.clone() };
+            let scene = setup.load()?;
+            for variant in [Variant::Volumetric, Variant::LevelMap, Variant::LevelMapSmart] {
+                let mut built = build(&self.machine, &setup, &scene, variant)?;
+                let rendered = picture::render(&mut self.machine, &mut built.paper, 0)?;
+                self.publication.picture(&format!("-{}-{}.png", mesh_name(&mesh), variant.word()), &rendered)?;
+            }
+        }
+        Ok(())
+    }
+}

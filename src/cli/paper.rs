@@ -1,0 +1,123 @@
+//! What the verbs need of a paper's command line; the verbs themselves are the same for all papers.
+
+use std::fmt::Debug;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use super::bench::{self, BenchArgs};
+use super::failure::Failure;
+use super::passes::{self, PassesArgs};
+use super::render::{self, RenderArgs};
+use crate::experiment::study::Study;
+use crate::papers::Variant;
+
+/// A paper's scene options.
+pub trait PaperArgs: Args + Clone + Debug + 'static {
+    type Study: Study;
+    /// The options of its verb `experiment`.
+    type Experiment: ExperimentArgs;
+
+    /// One line on the paper.
+    const ABOUT: &'static str;
+    /// Variants of a bench that names none, comma-separated.
+    const BENCHED: &'static str;
+    /// The variant of a picture that names none.
+    const RENDERED: &'static str;
+
+    /// What was typed, over the preset's numbers, over the defaults. `process` is which of several fresh processes this is.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for options of which one would not be heeded.
+    fn resolve(&self, process: u32) -> Result<Self::Study, Failure>;
+
+    /// What the main job measures, in the variants of [`PaperArgs::BENCHED`].
+    fn quick() -> Self::Study;
+}
+
+/// The options of a verb `experiment`.
+pub trait ExperimentArgs: Args + Debug + 'static {
+    fn run(&self) -> Result<(), Failure>;
+}
+
+pub type VariantOf<P> = <<P as PaperArgs>::Study as Study>::Variant;
+
+/// One word after `--variant`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VariantWord<V> {
+    One(V),
+    All,
+}
+
+fn find<V: Variant>(word: &str) -> Option<V> {
+    V::ALL.iter().copied().find(|v| v.word() == word)
+}
+
+/// The words of a list of variants: each variant's, and `all`.
+pub fn variant_words<V: Variant>() -> impl TypedValueParser<Value = VariantWord<V>> {
+    PossibleValuesParser::new(V::ALL.iter().map(|v| v.word()).chain(["all"]))
+        .map(|word| find(&word).map_or(VariantWord::All, VariantWord::One))
+}
+
+/// The word of one variant.
+pub fn variant_word<V: Variant>() -> impl TypedValueParser<Value = V> {
+    // The parser has let through no other word than a variant's.
+    PossibleValuesParser::new(V::ALL.iter().map(|v| v.word())).map(|word| find(&word).unwrap_or(V::ALL[0]))
+}
+
+/// The variants that a list of words means, in the paper's order, each once.
+pub fn resolve<V: Variant>(words: &[VariantWord<V>]) -> Vec<V> {
+    let wanted = |v: &V| words.contains(&VariantWord::All) || words.contains(&VariantWord::One(*v));
+    V::ALL.iter().copied().filter(wanted).collect()
+}
+
+/// The variants of a bench that names none.
+pub fn benched<P: PaperArgs>() -> Vec<VariantOf<P>> {
+    let words = P::BENCHED.split(',').filter_map(find).map(VariantWord::One);
+    resolve(&words.collect::<Vec<_>>())
+}
+
+/// What a paper does.
+#[derive(Debug, Subcommand)]
+pub enum Verb<P: PaperArgs> {
+    /// List the passes in the paper's order
+    Passes(Box<PassesArgs<P>>),
+    /// Time one configuration in one or more variants, interleaved
+    Bench(Box<BenchArgs<P>>),
+    /// Reproduce one table or figure, ours beside the paper's
+    Experiment(Box<P::Experiment>),
+    /// Write pictures and intermediate targets
+    Render(Box<RenderArgs<P>>),
+}
+
+/// A paper as a subcommand of `fumarole`.
+#[derive(Debug, Args)]
+pub struct PaperCommand<P: PaperArgs> {
+    #[command(subcommand)]
+    verb: Verb<P>,
+}
+
+impl<P: PaperArgs> PaperCommand<P> {
+    pub fn run(&self) -> Result<(), Failure> {
+        match &self.verb {
+            Verb::Passes(arguments) => passes::run(arguments),
+            Verb::Bench(arguments) => bench::run(arguments),
+            Verb::Experiment(arguments) => arguments.run(),
+            Verb::Render(arguments) => render::run(arguments),
+        }
+    }
+}
+
+#[derive(Debug, Parser)]
+#[command(version, propagate_version = true)]
+struct Binary<P: PaperArgs> {
+    #[command(flatten)]
+    command: PaperCommand<P>,
+}
+
+/// Runs a paper's own binary.
+pub fn binary<P: PaperArgs>() -> Result<(), Failure> {
+    let command = Binary::<P>::command().name(P::Study::PAPER).bin_name(P::Study::PAPER).about(P::ABOUT);
+    let parsed = Binary::<P>::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
+    parsed.command.run()
+}
