@@ -90,7 +90,7 @@ fn every_receiver_and_light_is_drawn() {
 #[test]
 fn contradictions_are_refused() {
     let out = folder();
-    render(out.path()).args("--variant all").run().refused(2, &["--variant all"]);
+    render(out.path()).args("--variant all").run().misused(&["--variant", "level-map-smart"]);
     render(out.path()).args("--frame 0..2 --dump picture=p.exr").run().refused(2, &["--dump", "--frame"]);
     render(out.path()).args("--image p.jpg").run().refused(2, &["p.jpg", "PNG"]);
     render(out.path()).args("--dump picture=p.tiff").run().refused(2, &["p.tiff", ".exr"]);
