@@ -193,6 +193,14 @@ impl Buffer {
                 visit(state);
             }
         }
+        // Ranges that are written anew each frame, at other lengths, would cut the list ever finer.
+        states.dedup_by(|next, piece| {
+            let same = piece.1 == next.1;
+            if same {
+                piece.0.end = next.0.end;
+            }
+            same
+        });
     }
 }
 

@@ -38,6 +38,7 @@ impl Device {
         let core = vk::PhysicalDeviceFeatures::default()
             .independent_blend(on(Feature::IndependentBlend))
             .geometry_shader(on(Feature::GeometryShader))
+            .large_points(on(Feature::LargePoints))
             .fragment_stores_and_atomics(on(Feature::FragmentStores))
             .pipeline_statistics_query(on(Feature::PipelineStatistics))
             .occlusion_query_precise(on(Feature::PreciseOcclusion));

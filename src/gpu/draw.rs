@@ -48,6 +48,14 @@ impl Draw<'_> {
         self
     }
 
+    /// Draws `count` instances of `vertices` vertices each, without indices.
+    pub fn instances(&mut self, vertices: u32, count: u32) -> &mut Self {
+        self.calls += 1;
+        // SAFETY: as for [`Draw::vertices`].
+        unsafe { self.device.raw.cmd_draw(self.commands, vertices, count, 0, 0) };
+        self
+    }
+
     /// Draws `count` indices.
     pub fn indices(&mut self, count: u32) -> &mut Self {
         self.calls += 1;

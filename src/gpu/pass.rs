@@ -11,70 +11,13 @@ use super::buffer::{Buffer, BufferView};
 use super::device::Device;
 use super::error::Error;
 use super::image::ImageView;
+use super::pass_info::{PassInfo, PassKind};
+use super::physical::Feature;
 use super::pipeline::{Pipeline, Topology, VertexLayout, check_constants};
 use super::program::Program;
 use super::render_pass::{Blend, DepthTest, Framebuffer, Load, RenderPass, Target, Targets};
 use super::shader::{Compiler, ShaderLibrary};
 use crate::shader_build::HostBlock;
-
-/// What a pass keeps busy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PassKind {
-    Graphics,
-    Compute,
-    Transfer,
-    Host,
-}
-
-impl PassKind {
-    pub fn word(self) -> &'static str {
-        match self {
-            PassKind::Graphics => "graphics",
-            PassKind::Compute => "compute",
-            PassKind::Transfer => "transfer",
-            PassKind::Host => "host",
-        }
-    }
-}
-
-/// What the pass table says of a pass.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PassInfo {
-    /// The paper's name for it, in kebab case; also the debug label, the timing tag and the report's column.
-    pub name: &'static str,
-    /// Section of the paper.
-    pub section: &'static str,
-    pub kind: PassKind,
-    pub shaders: Vec<String>,
-    pub reads: Vec<String>,
-    pub writes: Vec<String>,
-    /// Blend state of each colour target.
-    pub blend: Vec<&'static str>,
-    pub depth: Option<&'static str>,
-    /// Depth and stencil state of the draws that take turns with the pass's own.
-    pub counting: Option<&'static str>,
-    /// `None` where no shader runs.
-    pub compiler: Option<Compiler>,
-}
-
-impl PassInfo {
-    /// A pass of host work.
-    pub fn host(name: &'static str, section: &'static str, reads: &[&str], writes: &[&str]) -> Arc<Self> {
-        let owned = |words: &[&str]| words.iter().map(|&w| w.to_owned()).collect();
-        Arc::new(PassInfo {
-            name,
-            section,
-            kind: PassKind::Host,
-            shaders: Vec::new(),
-            reads: owned(reads),
-            writes: owned(writes),
-            blend: Vec::new(),
-            depth: None,
-            counting: None,
-            compiler: None,
-        })
-    }
-}
 
 /// A built pass of the device. Cloning shares it.
 #[derive(Clone)]
@@ -119,6 +62,7 @@ struct Sentence {
     resources: Vec<(&'static str, Resource)>,
     targets: Targets,
     vertices: Option<BufferView>,
+    vertex_rate: vk::VertexInputRate,
     indices: Option<BufferView>,
     topology: Topology,
     counting: Option<(String, DepthTest)>,
@@ -136,7 +80,8 @@ pub struct PassBuilder {
 }
 
 impl Pass {
-    /// Begins the sentence of a pass that draws with a vertex and a fragment shader.
+    /// Begins the sentence of a pass that draws with a vertex and a fragment shader, and perhaps a
+    /// [geometry](PassBuilder::geometry) shader between them.
     pub fn graphics(name: &'static str, section: &'static str, vertex: &str, fragment: &str) -> PassBuilder {
         Self::builder(name, section, vec![vertex.to_owned(), fragment.to_owned()])
     }
@@ -189,6 +134,7 @@ impl Pass {
                 resources: Vec::new(),
                 targets: Targets::default(),
                 vertices: None,
+                vertex_rate: vk::VertexInputRate::VERTEX,
                 indices: None,
                 topology: Topology::default(),
                 counting: None,
@@ -215,6 +161,13 @@ impl Pass {
 }
 
 impl PassBuilder {
+    /// A geometry shader between the vertex and the fragment shader. naga has no such stage, so glslang compiles all
+    /// stages of the pass.
+    pub fn geometry(mut self, geometry: &str) -> Self {
+        self.sentence.shaders.insert(1, geometry.to_owned());
+        self
+    }
+
     /// A resource that the shaders read or write, by the name they give it. Their binaries say how it is accessed.
     pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
         self.sentence.resources.push((name, resource.into()));
@@ -232,6 +185,12 @@ impl PassBuilder {
         self.sentence.vertices = Some(buffer.view());
         self.vertex_layout = Some(VertexLayout::of::<T>);
         self
+    }
+
+    /// As [`PassBuilder::vertices`], with one `T` for each instance.
+    pub fn instances<T: HostBlock>(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.sentence.vertex_rate = vk::VertexInputRate::INSTANCE;
+        self.vertices::<T>(buffer)
     }
 
     /// The index buffer, of 32-bit indices.
@@ -273,12 +232,21 @@ impl PassBuilder {
     /// shaders.
     ///
     /// # Errors
-    /// [`Error::Pass`] or [`Error::Shader`] for a sentence that does not fit its shaders; what Vulkan answers.
+    /// [`Error::Pass`] or [`Error::Shader`] for a sentence that does not fit its shaders; [`Error::MissingFeature`] for a
+    /// geometry stage on a device without; what Vulkan answers.
     pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
         let device = shaders.device();
         let PassBuilder { sentence, vertex_layout, check_constants } = self;
         let name = sentence.name;
-        let modules = sentence.shaders.iter().map(|s| shaders.module(s)).collect::<Result<Vec<_>, _>>()?;
+        let has_geometry = sentence.shaders.iter().any(|s| s.ends_with(".geom"));
+        if has_geometry && !device.physical().has(Feature::GeometryShader) {
+            let missing = Feature::GeometryShader.word().to_owned();
+            return Err(Error::MissingFeature { device: device.physical().name.clone(), missing });
+        }
+        let load = |shader: &str| {
+            if has_geometry { shaders.module_by(shader, Compiler::Glslang) } else { shaders.module(shader) }
+        };
+        let modules = sentence.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
         let program = Program::new(device, name, modules)?;
         match check_constants {
             Some(check) => check(name, &program)?,
@@ -295,7 +263,8 @@ impl PassBuilder {
             let pipeline = Pipeline::compute(device, name, &program)?;
             return finish(device, sentence, Pipelines { own: pipeline, counting: None }, None);
         }
-        let layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
+        let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
+        layout.rate = sentence.vertex_rate;
         let render_pass = RenderPass::new(device, name, &sentence.targets)?;
         let targets = &sentence.targets;
         let modules = &program.modules;
@@ -304,7 +273,9 @@ impl PassBuilder {
         let counting = match &sentence.counting {
             None => None,
             Some((fragment, test)) => {
-                let modules = [modules[0].clone(), shaders.module(fragment)?];
+                let mut modules = modules.clone();
+                modules.pop();
+                modules.push(load(fragment)?);
                 let targets = targets.for_counting(*test);
                 let made =
                     Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)?;

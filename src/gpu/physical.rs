@@ -46,6 +46,8 @@ pub enum Feature {
     BlendRgba32Float,
     /// Geometry stages.
     GeometryShader,
+    /// Points larger than one pixel.
+    LargePoints,
     /// Storage writes in fragment stages.
     FragmentStores,
     /// Counting vertices, primitives and invocations.
@@ -61,7 +63,7 @@ pub enum Feature {
 }
 
 impl Feature {
-    pub const ALL: [Feature; 13] = [
+    pub const ALL: [Feature; 14] = [
         Feature::Synchronization2,
         Feature::HostQueryReset,
         Feature::IndependentBlend,
@@ -69,6 +71,7 @@ impl Feature {
         Feature::BlendRgba16Float,
         Feature::BlendRgba32Float,
         Feature::GeometryShader,
+        Feature::LargePoints,
         Feature::FragmentStores,
         Feature::PipelineStatistics,
         Feature::PreciseOcclusion,
@@ -87,6 +90,7 @@ impl Feature {
             Feature::BlendRgba16Float => "blend-rgba16f",
             Feature::BlendRgba32Float => "blend-rgba32f",
             Feature::GeometryShader => "geometry-shader",
+            Feature::LargePoints => "large-points",
             Feature::FragmentStores => "fragment-stores",
             Feature::PipelineStatistics => "pipeline-statistics",
             Feature::PreciseOcclusion => "precise-occlusion",
@@ -235,6 +239,7 @@ fn supported_features(
         Feature::BlendRgba16Float => blends(vk::Format::R16G16B16A16_SFLOAT),
         Feature::BlendRgba32Float => blends(vk::Format::R32G32B32A32_SFLOAT),
         Feature::GeometryShader => core.geometry_shader == vk::TRUE,
+        Feature::LargePoints => core.large_points == vk::TRUE,
         Feature::FragmentStores => core.fragment_stores_and_atomics == vk::TRUE,
         Feature::PipelineStatistics => core.pipeline_statistics_query == vk::TRUE,
         Feature::PreciseOcclusion => core.occlusion_query_precise == vk::TRUE,

@@ -26,6 +26,8 @@ pub struct Attribute {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct VertexLayout {
     pub stride_bytes: u32,
+    /// Whether the buffer goes on with each vertex or with each instance.
+    pub rate: vk::VertexInputRate,
     pub attributes: Vec<Attribute>,
 }
 
@@ -64,7 +66,11 @@ impl VertexLayout {
             };
             attributes.push(Attribute { location: input.location, format, offset_bytes: offset as u32 });
         }
-        Ok(VertexLayout { stride_bytes: std::mem::size_of::<T>() as u32, attributes })
+        Ok(VertexLayout {
+            stride_bytes: std::mem::size_of::<T>() as u32,
+            rate: vk::VertexInputRate::VERTEX,
+            attributes,
+        })
     }
 }
 
@@ -83,6 +89,7 @@ fn vertex_format(format: Format) -> vk::Format {
 pub enum Topology {
     #[default]
     Triangles,
+    TriangleStrip,
     Points,
 }
 
@@ -110,7 +117,7 @@ impl Pipeline {
         let bindings = [vk::VertexInputBindingDescription {
             binding: 0,
             stride: vertices.stride_bytes,
-            input_rate: vk::VertexInputRate::VERTEX,
+            input_rate: vertices.rate,
         }];
         let attributes: Vec<_> = vertices
             .attributes
@@ -129,6 +136,7 @@ impl Pipeline {
         }
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(match topology {
             Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
+            Topology::TriangleStrip => vk::PrimitiveTopology::TRIANGLE_STRIP,
             Topology::Points => vk::PrimitiveTopology::POINT_LIST,
         });
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::pass::PassInfo;
+use super::pass_info::PassInfo;
 
 /// How a frame is observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

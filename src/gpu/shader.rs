@@ -43,6 +43,11 @@ impl ShaderLibrary {
     /// # Errors
     /// [`Error::Shader`] for a name that is not there.
     pub fn module(&self, name: &str) -> Result<Arc<ShaderModule>, Error> {
+        self.module_by(name, self.compiler)
+    }
+
+    /// Loads one shader as `compiler` made it, or glslang where naga makes none.
+    pub(crate) fn module_by(&self, name: &str, compiler: Compiler) -> Result<Arc<ShaderModule>, Error> {
         let problem = |problem: String| Error::Shader { name: name.to_owned(), problem };
         let (glslang, naga): (Cow<'_, [u32]>, Option<Cow<'_, [u32]>>) =
             if let Some(shader) = self.replaced.iter().find(|s| s.name == name) {
@@ -54,7 +59,7 @@ impl ShaderLibrary {
             };
         // The interface is glslang's for both: naga's names are gone, and the build has checked the two alike.
         let interface = Interface::reflect(&glslang).map_err(|e| problem(e.to_string()))?;
-        let (words, compiler) = match (self.compiler, naga) {
+        let (words, compiler) = match (compiler, naga) {
             (Compiler::Naga, Some(words)) => (words, Compiler::Naga),
             _ => (glslang, Compiler::Glslang),
         };

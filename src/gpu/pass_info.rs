@@ -1,0 +1,64 @@
+//! What is said of a pass in tables and records.
+
+use std::sync::Arc;
+
+use super::shader::Compiler;
+
+/// What a pass keeps busy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PassKind {
+    Graphics,
+    Compute,
+    Transfer,
+    Host,
+}
+
+impl PassKind {
+    pub fn word(self) -> &'static str {
+        match self {
+            PassKind::Graphics => "graphics",
+            PassKind::Compute => "compute",
+            PassKind::Transfer => "transfer",
+            PassKind::Host => "host",
+        }
+    }
+}
+
+/// What the pass table says of a pass.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PassInfo {
+    /// The paper's name for it, in kebab case; also the debug label, the timing tag and the report's column.
+    pub name: &'static str,
+    /// Section of the paper.
+    pub section: &'static str,
+    pub kind: PassKind,
+    pub shaders: Vec<String>,
+    pub reads: Vec<String>,
+    pub writes: Vec<String>,
+    /// Blend state of each colour target.
+    pub blend: Vec<&'static str>,
+    pub depth: Option<&'static str>,
+    /// Depth and stencil state of the draws that take turns with the pass's own.
+    pub counting: Option<&'static str>,
+    /// `None` where no shader runs.
+    pub compiler: Option<Compiler>,
+}
+
+impl PassInfo {
+    /// A pass of host work.
+    pub fn host(name: &'static str, section: &'static str, reads: &[&str], writes: &[&str]) -> Arc<Self> {
+        let owned = |words: &[&str]| words.iter().map(|&w| w.to_owned()).collect();
+        Arc::new(PassInfo {
+            name,
+            section,
+            kind: PassKind::Host,
+            shaders: Vec::new(),
+            reads: owned(reads),
+            writes: owned(writes),
+            blend: Vec::new(),
+            depth: None,
+            counting: None,
+            compiler: None,
+        })
+    }
+}
