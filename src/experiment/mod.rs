@@ -12,5 +12,6 @@ pub mod picture;
 pub mod run;
 pub mod statistics;
 pub mod study;
+pub mod sweep;
 
 pub use error::Error;
