@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::program::{ONCE, Program, caustics, entries, file, folder};
+use super::program::{ONCE, Program, caustics, entries, file, folder, fumarole};
 
 /// Would measure for hours, were its destination not checked first.
 fn long(folder: &Path) -> Program {
@@ -35,6 +35,13 @@ fn a_destination_that_cannot_be_written_is_refused_before_the_work() {
     picture.run().refused(2, &["folder.png"]);
     let dump = caustics("render --dump picture=folder.png").inside(out.path()).tiny();
     dump.run().refused(2, &["folder.png"]);
+}
+
+#[test]
+fn the_main_job_names_its_pictures_itself() {
+    let out = folder();
+    fumarole("all --image a.png").inside(out.path()).run().refused(2, &["--image", "--out"]);
+    assert!(entries(out.path()).is_empty());
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod fixtures;
 mod memory_model;
 mod pictures;
 mod refusals;
+mod replay;
 mod resources;
 mod sentences;
 mod sequences;
