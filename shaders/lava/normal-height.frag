@@ -1,0 +1,44 @@
+#version 450
+
+// Eq. 6.3's quotient and the normals from finite differences of the heights (section 6.4). Near the borders the height
+// sinks to 0 and the normal turns upwards. Where nothing was accepted the height is 0.
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(set = 0, binding = 0) uniform texture2D accumulated_depths;
+
+layout(push_constant, std430) uniform Grid {
+    vec2 space_m; // along x and z
+    vec2 columns; // grid points along x and z
+    float border_m;
+} grid;
+
+layout(location = 0) out vec4 normal_height;
+
+float height_at(ivec2 column) {
+    vec4 sums = texelFetch(accumulated_depths, column, 0);
+    return sums.a > 0.0 ? sums.r / sums.a : 0.0;
+}
+
+// Height difference per metre along one axis: central, at the sides one-sided.
+float slope(ivec2 column, ivec2 axis, float spacing_m) {
+    ivec2 last = ivec2(grid.columns) - 1;
+    ivec2 before = max(column - axis, ivec2(0));
+    ivec2 after = min(column + axis, last);
+    ivec2 steps = after - before;
+    int count = steps.x + steps.y;
+    return count > 0 ? (height_at(after) - height_at(before)) / (float(count) * spacing_m) : 0.0;
+}
+
+void main() {
+    ivec2 column = ivec2(gl_FragCoord.xy);
+    vec2 spacing_m = grid.space_m / grid.columns;
+    vec2 place_m = gl_FragCoord.xy * spacing_m;
+    vec2 to_border_m = min(place_m, grid.space_m - place_m);
+    float nearest_m = min(to_border_m.x, to_border_m.y);
+    float t = grid.border_m > 0.0 ? clamp(nearest_m / grid.border_m, 0.0, 1.0) : 1.0;
+
+    vec2 slopes = vec2(slope(column, ivec2(1, 0), spacing_m.x), slope(column, ivec2(0, 1), spacing_m.y));
+    vec3 normal = normalize(vec3(-slopes.x, 1.0, -slopes.y));
+    normal_height = vec4(normalize(mix(vec3(0.0, 1.0, 0.0), normal, t)), height_at(column) * t);
+}

@@ -1,0 +1,14 @@
+#version 450
+
+// Eq. 7.2's quotient (section 7.3); black where no splat was drawn.
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(set = 0, binding = 0) uniform texture2D accumulated_colors;
+
+layout(location = 0) out vec4 color;
+
+void main() {
+    vec4 sums = texelFetch(accumulated_colors, ivec2(gl_FragCoord.xy), 0);
+    color = vec4(sums.a > 0.0 ? sums.rgb / sums.a : vec3(0.0), 1.0);
+}

@@ -1,0 +1,11 @@
+#version 450
+
+// A splat's place on its way to the geometry stage (section 7.1).
+
+layout(location = 0) in vec2 place;
+
+layout(location = 0) out vec2 place_m;
+
+void main() {
+    place_m = place;
+}

@@ -1,0 +1,36 @@
+// The surface at a splat (section 7.1): normal and height by bilinear interpolation, written out, since filters of
+// devices differ in precision; tangent and binormal from the normal.
+
+layout(set = 0, binding = 1) uniform texture2D normal_height;
+
+struct Splat {
+    vec3 center_m;
+    vec3 tangent;
+    vec3 binormal;
+};
+
+vec4 texel_at(vec2 column) {
+    return texelFetch(normal_height, ivec2(clamp(column, vec2(0.0), scene.columns - 1.0)), 0);
+}
+
+Splat splat_at(vec2 place_m) {
+    vec2 column = place_m / scene.space_m.xz * scene.columns - 0.5;
+    vec2 base = floor(column);
+    vec2 share = column - base;
+    vec4 near_row = mix(texel_at(base), texel_at(base + vec2(1.0, 0.0)), share.x);
+    vec4 far_row = mix(texel_at(base + vec2(0.0, 1.0)), texel_at(base + vec2(1.0, 1.0)), share.x);
+    vec4 surface = mix(near_row, far_row, share.y);
+    vec3 normal = normalize(surface.xyz);
+
+    Splat splat;
+    splat.center_m = vec3(place_m.x, surface.w, place_m.y);
+    // The normal points upwards, so it is never along z.
+    splat.tangent = normalize(vec3(normal.y, -normal.x, 0.0));
+    splat.binormal = cross(normal, splat.tangent);
+    return splat;
+}
+
+// A corner of the splat's square, -1 or 1 along tangent and binormal.
+vec3 corner_of(Splat splat, vec2 corner) {
+    return splat.center_m + scene.splat_radius_m * (corner.x * splat.tangent + corner.y * splat.binormal);
+}

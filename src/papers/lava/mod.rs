@@ -1,0 +1,166 @@
+//! `lava`: E. O. Unnthorsson's lava surfaces from particles, chapters 4 to 8.
+//!
+//! ```text
+//! animate ─► read-positions ─► cluster ─┐                                         (stage one, chapter 5)
+//!   ┌───────────────────────────────────┘
+//!   └─► for each cluster: density ─► read-density ─► extract ─┐                   (stage two, chapter 6)
+//!         ┌───────────────────────────────────────────────────┘
+//!         └─► accumulate-depths ─► normal-height ─┐
+//!   ┌─────────────────────────────────────────────┘
+//!   └─► visibility ─► blending ─► normalisation                                   (stage three, chapter 7)
+//! ```
+
+mod animation;
+mod clusters;
+mod isosurface;
+pub mod parameters;
+mod particles;
+mod pattern;
+mod rock;
+mod splatting;
+mod targets;
+
+use std::sync::Arc;
+
+use super::{Paper, Target};
+use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+
+pub use self::animation::Animation;
+pub use self::clusters::{Clusters, Point};
+pub use self::isosurface::Isosurface;
+pub use self::parameters::{CAMERAS, ParameterError, Parameters, Preset, Shading};
+pub use self::particles::Particles;
+pub use self::rock::Rock;
+pub use self::splatting::{Splatting, depth_range_m};
+
+/// What a device must have for this paper, beyond the baseline of the Vulkan layer. Without a geometry stage the splats
+/// are instanced quads, and [`Lava::warnings`] says so.
+pub const NEEDS: [Feature; 2] = [Feature::BlendRgba32Float, Feature::LargePoints];
+
+/// The paper with its resources.
+pub struct Lava {
+    parameters: Parameters,
+    animation: Animation,
+    isosurface: Isosurface,
+    splatting: Splatting,
+    lacks_geometry_stage: bool,
+}
+
+impl Lava {
+    /// Makes every resource and pass; `label` goes before the names of the resources.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers. The caller has validated `parameters` and `rock`; there is at least one particle.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        particles: &Particles,
+        rock: &Rock,
+    ) -> Result<Self, Error> {
+        let has_geometry_stage = shaders.device().physical().has(Feature::GeometryShader);
+        let instanced = !(parameters.geometry_stage && has_geometry_stage);
+        let animation = Animation::new(shaders, label, parameters, particles)?;
+        let isosurface = Isosurface::new(shaders, label, parameters, animation.vertices(), instanced)?;
+        let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
+        let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
+        Ok(Lava { parameters: parameters.clone(), animation, isosurface, splatting, lacks_geometry_stage })
+    }
+
+    /// Back to the state before frame 0.
+    ///
+    /// # Errors
+    /// None today: nothing is moved.
+    pub fn restart(&mut self) -> Result<(), Error> {
+        self.animation.restart();
+        Ok(())
+    }
+
+    /// What a user should know of the device and of the last frame.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.lacks_geometry_stage {
+            warnings.push(
+                "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \
+                 `visibility` and `blending` are not the thesis's method's"
+                    .to_owned(),
+            );
+        }
+        if self.animation.steps() > 0 && self.isosurface.accepted().is_empty() {
+            let [lowest, highest] = self.isosurface.density_range();
+            warnings.push(format!(
+                "no grid point was accepted, so the surface is flat: --rho is {} and the densities are {lowest} to \
+                 {highest}",
+                self.parameters.rho()
+            ));
+        }
+        warnings
+    }
+
+    /// Stage one.
+    pub fn animation(&self) -> &Animation {
+        &self.animation
+    }
+
+    /// Stage two.
+    pub fn isosurface(&self) -> &Isosurface {
+        &self.isosurface
+    }
+
+    /// Stage three.
+    pub fn splatting(&self) -> &Splatting {
+        &self.splatting
+    }
+
+    /// How far the rock has drifted in frame `number`: as far as the mean particle.
+    fn drift_m(&self, number: u32) -> f32 {
+        let time_s = f64::from(number) * f64::from(self.parameters.time_step_s);
+        let drift_m = time_s * f64::from(self.parameters.speed_m_s);
+        // Whole tiles change nothing and would cost precision.
+        (drift_m % f64::from(self.parameters.rock_tile_m)) as f32
+    }
+}
+
+impl Paper for Lava {
+    /// Frame `number` shows the particles after `number` + 1 steps. Steps that were not recorded are caught up, so that
+    /// the picture depends on the number alone.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers; [`Error::Pass`] for a frame before the last without a restart between them.
+    fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
+        let steps = self.animation.steps();
+        if number < steps {
+            let problem = format!("frame {number} comes before frame {steps}, the next; restart the paper first");
+            return Err(Error::Pass { pass: "animate".into(), problem });
+        }
+        for _ in steps..number {
+            self.animation.animate(frame)?;
+        }
+        self.animation.record(frame)?;
+        self.isosurface.record(frame, self.animation.clusters())?;
+        self.splatting.record(frame, self.drift_m(number))
+    }
+
+    /// The thesis's last pass is the picture.
+    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
+        self.record(frame, number)
+    }
+
+    fn picture(&self) -> &Arc<ImageView> {
+        self.splatting.picture()
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        let (positions, velocities) = self.animation.state();
+        vec![
+            Target::image("positions", positions),
+            Target::image("velocities", velocities),
+            Target::image("density", self.isosurface.density()),
+            Target::image("accumulated-depths", self.isosurface.accumulated_depths()),
+            Target::image("normal-height", self.isosurface.normal_height()),
+            Target::image("visibility", self.splatting.visibility()),
+            Target::image("accumulated-colors", self.splatting.accumulated_colors()),
+            Target::image("picture", self.splatting.picture()),
+        ]
+    }
+}

@@ -1,0 +1,130 @@
+//! The built-in rock: plates of crust with cracks between them, made from seeded noise that repeats at the edges.
+
+use std::sync::OnceLock;
+
+use super::rock::Rock;
+use crate::scene::random::Random;
+
+/// Texels a side.
+const SIZE: u32 = 512;
+/// Values of the table that lattice points choose from; a power of two.
+const TABLE: usize = 4096;
+/// Plates along each side.
+const PLATES: u32 = 9;
+
+impl Rock {
+    /// The built-in rock, 512 x 512 texels. It is made once.
+    pub fn built_in() -> &'static Rock {
+        static ROCK: OnceLock<Rock> = OnceLock::new();
+        ROCK.get_or_init(|| {
+            let noise = Noise::new();
+            let texels = (0..SIZE * SIZE).map(|i| noise.texel(i % SIZE, i / SIZE)).collect();
+            Rock { width: SIZE, height: SIZE, texels }
+        })
+    }
+}
+
+/// Random values on lattices that repeat after the whole texture.
+struct Noise {
+    values: Vec<f32>,
+    order: Vec<u16>,
+}
+
+impl Noise {
+    fn new() -> Self {
+        let mut random = Random::new(7);
+        let values = (0..TABLE).map(|_| random.unit()).collect();
+        let mut order: Vec<u16> = (0..TABLE as u16).collect();
+        for i in (1..TABLE).rev() {
+            order.swap(i, random.next_u32() as usize % (i + 1));
+        }
+        Noise { values, order }
+    }
+
+    /// The value of a lattice point, uniform in [0, 1); `period` points make a side.
+    fn lattice(&self, x: i32, y: i32, period: u32, layer: u32) -> f32 {
+        let mix = |seed: usize, with: usize| usize::from(self.order[(seed + with) % TABLE]);
+        let wrapped = |c: i32| c.rem_euclid(period as i32) as usize;
+        self.values[mix(mix(mix(layer as usize, period as usize), wrapped(x)), wrapped(y))]
+    }
+
+    /// Smooth noise in [0, 1) at a place in [0, 1) of the texture.
+    fn smooth(&self, [x, y]: [f32; 2], period: u32, layer: u32) -> f32 {
+        let (x, y) = (x * period as f32, y * period as f32);
+        let ease = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+        let (tx, ty) = (ease(x - x.floor()), ease(y - y.floor()));
+        let (i, j) = (x.floor() as i32, y.floor() as i32);
+        let at = |dx, dy| self.lattice(i + dx, j + dy, period, layer);
+        let blend = |a: f32, b: f32, t: f32| a + (b - a) * t;
+        blend(blend(at(0, 0), at(1, 0), tx), blend(at(0, 1), at(1, 1), tx), ty)
+    }
+
+    /// Octaves of smooth noise, each twice as fine and half as strong, in [0, 1).
+    fn octaves(&self, place: [f32; 2], period: u32, count: u32, layer: u32) -> f32 {
+        let weight = |octave: u32| 0.5f32.powi(octave as i32);
+        let sum: f32 = (0..count).map(|o| weight(o) * self.smooth(place, period << o, layer + o)).sum();
+        sum / (0..count).map(weight).sum::<f32>()
+    }
+
+    /// How much farther the second nearest seed point is than the nearest, in lattice cells: 0 on the border of a plate.
+    fn border(&self, [x, y]: [f32; 2], period: u32, layer: u32) -> f32 {
+        let (x, y) = (x * period as f32, y * period as f32);
+        let (i, j) = (x.floor() as i32, y.floor() as i32);
+        let mut nearest = [f32::INFINITY; 2];
+        for (dx, dy) in (-2..=2).flat_map(|dy| (-2..=2).map(move |dx| (dx, dy))) {
+            let (cx, cy) = (i + dx, j + dy);
+            let px = cx as f32 + self.lattice(cx, cy, period, layer) - x;
+            let py = cy as f32 + self.lattice(cx, cy, period, layer + 1) - y;
+            let distance = (px * px + py * py).sqrt();
+            if distance < nearest[0] {
+                nearest = [distance, nearest[0]];
+            } else {
+                nearest[1] = nearest[1].min(distance);
+            }
+        }
+        nearest[1] - nearest[0]
+    }
+
+    fn texel(&self, column: u32, row: u32) -> [u8; 4] {
+        let place = [column, row].map(|c| (c as f32 + 0.5) / SIZE as f32);
+        // Plates do not break along straight lines.
+        let bend = |layer| 0.09 * (self.octaves(place, 5, 4, layer) - 0.5);
+        let bent = [place[0] + bend(10), place[1] + bend(20)];
+        let crack = |width: f32, period, layer| {
+            let t = (1.0 - self.border(bent, period, layer) / width).max(0.0);
+            t * t
+        };
+        let cracks = crack(0.16, PLATES, 30).max(0.5 * crack(0.12, 3 * PLATES, 40));
+        let grain = self.octaves(place, 6, 6, 50);
+        let pits = self.smooth(place, 96, 60);
+        // Lighter and darker plates, grain and pits; in cracks the rock is fresh and bright.
+        let crust = (0.10 + 0.55 * grain * grain) * (0.75 + 0.25 * pits);
+        let value = crust + (1.0 - crust) * cracks;
+        let linear = [value, value * 0.96, value * 0.9];
+        let [r, g, b] = linear.map(|v| (encode(v) * 255.0 + 0.5) as u8);
+        [r, g, b, 255]
+    }
+}
+
+/// Linear light, 0 to 1, as sRGB.
+fn encode(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_built_in_rock_repeats_without_a_seam() {
+        let rock = Rock::built_in();
+        assert_eq!(rock.validate(), Ok(()));
+        let at = |x: u32, y: u32| i32::from(rock.texels[(y % SIZE * SIZE + x % SIZE) as usize][0]);
+        let step = |x: u32, y: u32| (at(x + 1, y) - at(x, y)).abs() + (at(y, x + 1) - at(y, x)).abs();
+        let mean = |x: u32| (0..SIZE).map(|y| step(x, y)).sum::<i32>() as f32 / SIZE as f32;
+        let inside = (0..SIZE - 1).map(mean).fold(0.0, f32::max);
+        assert!(mean(SIZE - 1) <= inside, "{} {inside}", mean(SIZE - 1));
+        let dark = rock.texels.iter().filter(|t| t[0] < 128).count();
+        assert!(dark > rock.texels.len() / 3 && dark < rock.texels.len(), "{dark}");
+    }
+}
