@@ -7,6 +7,7 @@ use clap::{Args, Parser};
 use super::bench;
 use super::caustics::CausticsArgs;
 use super::failure::Failure;
+use super::lava::LavaArgs;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, benched};
@@ -64,6 +65,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let mut machine = Machine::open(&arguments.machine.resolve(), &[])?;
     outcome::say_device(&output, &machine);
     let mut measured = Measured::default();
+    measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     measure::<CausticsArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)

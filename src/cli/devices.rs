@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::outcome;
-use crate::experiment::caustics;
 use crate::experiment::study::Study;
+use crate::experiment::{caustics, lava};
 use crate::gpu::physical::BASELINE;
 use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
 
@@ -18,7 +18,8 @@ pub struct DevicesArgs {
 }
 
 /// What each paper needs beyond the baseline.
-const PAPERS: [(&str, &[Feature]); 1] = [(caustics::Setup::PAPER, caustics::Setup::NEEDS)];
+const PAPERS: [(&str, &[Feature]); 2] =
+    [(lava::Setup::PAPER, lava::Setup::NEEDS), (caustics::Setup::PAPER, caustics::Setup::NEEDS)];
 
 pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
     let instance = Instance::new(false)?;

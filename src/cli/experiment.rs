@@ -10,7 +10,7 @@ use super::options::{MeasureArgs, OutputArgs};
 use super::outcome;
 use crate::experiment::facts::Facts;
 use crate::experiment::machine::Machine;
-use crate::image::{Rgba8, write_png};
+use crate::image::{self, Raster, Rgba8, write_png};
 use crate::report::output::check_writable;
 use crate::report::record::Run;
 use crate::report::{Record, csv};
@@ -74,13 +74,30 @@ impl Publication<'_> {
         Ok(())
     }
 
-    /// A measured table: the record, its rows and the plot as files, and `table` or the record on standard output.
-    pub fn runs(&self, machine: &Machine, runs: Vec<Run>, table: String, plot: &str) -> Result<(), Failure> {
+    /// A target as a drawing to look at.
+    pub fn drawing(&self, suffix: &str, raster: &Raster) -> Result<(), Failure> {
+        let path = self.file(suffix);
+        image::write(&path, raster)?;
+        outcome::wrote(self.output, &path);
+        Ok(())
+    }
+
+    /// A measured table: the record, its rows and the plots, each with its file's suffix, as files, and `table` or the
+    /// record on standard output.
+    pub fn runs(
+        &self,
+        machine: &Machine,
+        runs: Vec<Run>,
+        table: String,
+        plots: &[(String, String)],
+    ) -> Result<(), Failure> {
         let record = Record::new(machine.environment(), std::env::args().collect(), runs);
         let text = outcome::text(&record)?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), csv::to_string(&record).as_bytes())?;
-        self.save(&self.file(".svg"), plot.as_bytes())?;
+        for (suffix, svg) in plots {
+            self.save(&self.file(suffix), svg.as_bytes())?;
+        }
         self.print(if self.output.json_to_stdout() { text } else { table })
     }
 
@@ -93,8 +110,7 @@ impl Publication<'_> {
         let text = outcome::text(&document)?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), facts.csv().as_bytes())?;
-        let table = || format!("{}\n{}", facts.title, facts.table().render(outcome::style()));
-        self.print(if self.output.json_to_stdout() { text } else { table() })
+        self.print(if self.output.json_to_stdout() { text } else { facts.render(outcome::style()) })
     }
 
     fn json_file(&self) -> PathBuf {

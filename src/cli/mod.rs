@@ -7,6 +7,7 @@ mod compare;
 mod devices;
 mod experiment;
 mod failure;
+mod lava;
 mod options;
 mod outcome;
 mod paper;
@@ -21,6 +22,7 @@ use clap::{Parser, Subcommand};
 
 use self::caustics::CausticsArgs;
 use self::failure::Failure;
+use self::lava::LavaArgs;
 use self::paper::PaperCommand;
 
 /// Rendering papers on Vulkan, pass by pass, every pass measured.
@@ -39,6 +41,8 @@ enum Command {
     All(all::AllArgs),
     /// Compare records: is B faster or slower than A?
     Compare(compare::CompareArgs),
+    /// Lava: particles to density to isosurface to splats (Unnthorsson)
+    Lava(PaperCommand<LavaArgs>),
     /// Refractive water caustics with level maps (Tipprasert)
     Caustics(PaperCommand<CausticsArgs>),
 }
@@ -51,8 +55,14 @@ pub fn umbrella() -> ExitCode {
         Some(Command::All(arguments)) => all::run(arguments),
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
+        Some(Command::Lava(arguments)) => arguments.run(),
         Some(Command::Caustics(arguments)) => arguments.run(),
     })
+}
+
+/// Runs the paper's own binary `lava`.
+pub fn lava() -> ExitCode {
+    end(paper::binary::<LavaArgs>())
 }
 
 /// Runs the paper's own binary `caustics`.

@@ -1,6 +1,7 @@
 //! Options that every paper has, as they were typed.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
@@ -16,9 +17,8 @@ pub struct Size {
 }
 
 pub fn parse_size(text: &str) -> Result<Size, String> {
-    let parts = text.split_once(['x', 'X']).ok_or("give a width and a height, as 800x600")?;
-    let number = |part: &str| part.parse::<u32>().map_err(|_| format!("{part:?} is not a number of pixels"));
-    Ok(Size { width: number(parts.0)?, height: number(parts.1)? })
+    let [width, height] = parse_extents(text).map_err(|e| format!("{e}; give a width and a height, as 800x600"))?;
+    Ok(Size { width, height })
 }
 
 /// A number that is neither NaN nor infinite.
@@ -34,6 +34,14 @@ pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
     let values = text.split(',').map(|part| parse_finite(part.trim())).collect::<Result<Vec<_>, _>>()?;
     let count = values.len();
     values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
+}
+
+/// `100x24x24` and its like: exactly `N` numbers.
+pub fn parse_extents<T: FromStr, const N: usize>(text: &str) -> Result<[T; N], String> {
+    let number = |part: &str| part.trim().parse::<T>().map_err(|_| format!("{part:?} is not such a number"));
+    let values = text.split(['x', 'X']).map(number).collect::<Result<Vec<_>, _>>()?;
+    let count = values.len();
+    values.try_into().map_err(|_| format!("{N} numbers with an x between them are needed, {count} are given"))
 }
 
 /// `5%` or `0.05`, as a share.

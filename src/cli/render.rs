@@ -122,11 +122,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
         if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
             break;
         }
-        let rendered = if number == frames.first {
-            picture::render(&mut machine, &mut built.paper, number)?
-        } else {
-            picture::render_next(&mut machine, &mut built.paper, number)?
-        };
+        let rendered = picture::render(&mut machine, &mut built.paper, number)?;
         let path = picture_path(number);
         image::write_png(&path, &rendered)?;
         bar.inc(1);
@@ -137,6 +133,8 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
         return Err(Failure::Running("interrupted before a picture was written".into()));
     }
     written.iter().for_each(|path| outcome::wrote(&output, path));
+    // Asked again: a paper may write its targets by turns.
+    let targets = built.paper.targets();
     for dump in &arguments.dump {
         for target in targets.iter().filter(|t| t.name == dump.target) {
             image::write(&dump.file, &picture::read_target(&machine.device, target)?)?;

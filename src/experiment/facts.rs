@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::report::csv::quote;
-use crate::report::table::{Align, Table};
+use crate::report::table::{Align, Style, Table};
 
 /// A table of an experiment that times nothing: for the console and, row by row, for JSON and CSV.
 pub struct Facts {
@@ -14,7 +14,11 @@ pub struct Facts {
 
 impl Facts {
     /// For the console.
-    pub fn table(&self) -> Table {
+    pub fn render(&self, style: Style) -> String {
+        format!("{}\n{}", self.title, self.table().render(style))
+    }
+
+    fn table(&self) -> Table {
         let columns: Vec<(&str, Align)> = self.columns.iter().map(|&c| (c, Align::Right)).collect();
         let mut table = Table::new(&columns);
         for row in &self.rows {

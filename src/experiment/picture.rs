@@ -13,25 +13,11 @@ use crate::gpu::{Device, Mode, transfer};
 use crate::image::{self, Raster, Rgba8};
 use crate::papers::{Paper, Target};
 
-/// Records frame `number` and reads its picture. A paper with state is restarted and goes through the frames before it.
+/// Records frame `number` and reads its picture; numbers rise, unless the paper is restarted.
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
 pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
-    paper.restart()?;
-    if paper.has_state() {
-        for before in 0..number {
-            machine.recorder.run(Mode::Plain, |frame| paper.record(frame, before))?;
-        }
-    }
-    render_next(machine, paper, number)
-}
-
-/// Records frame `number`, the frames before it having been recorded if the paper has state, and reads its picture.
-///
-/// # Errors
-/// [`Error::Gpu`], [`Error::Image`].
-pub fn render_next(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
     machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
     let view = paper.picture();
     let texels = transfer::read_image(&machine.device, view)?;

@@ -23,6 +23,13 @@ pub struct Point<S: Study> {
     pub left_out: Vec<(S::Variant, String)>,
 }
 
+impl<S: Study> Point<S> {
+    /// A sweep of one point, in all variants.
+    pub fn single(label: &str, study: S) -> Self {
+        Point { label: label.to_owned(), x: 0.0, study, variants: S::Variant::ALL.to_vec(), left_out: Vec::new() }
+    }
+}
+
 /// One variant at one point.
 pub struct Row {
     pub label: String,

@@ -44,12 +44,7 @@ impl ParameterError {
 
 /// A paper's method with its resources, ready to record frames.
 pub trait Paper {
-    /// Whether a frame depends on the frames before it. They are then recorded in order, from 0 after [`Paper::restart`].
-    fn has_state(&self) -> bool {
-        false
-    }
-
-    /// Returns to the state before frame 0; no measured frame contains this.
+    /// Returns to the state before frame 0, where there is state; no measured frame contains this.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
@@ -57,7 +52,8 @@ pub trait Paper {
         Ok(())
     }
 
-    /// Records frame `number`; the simulated time is that many fixed time steps.
+    /// Records frame `number`; the simulated time is that many fixed time steps. Numbers rise after a restart. A paper whose
+    /// state advances catches up with frames that were left out, so that the picture depends on the number alone.
     ///
     /// # Errors
     /// What the Vulkan layer answers.

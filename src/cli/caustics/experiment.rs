@@ -200,8 +200,8 @@ impl Experiment<'_> {
         let what = format!("{} {}", Setup::PAPER, self.publication.name);
         let found = watched(output.quiet, &what, |watch| sweep.run(&mut self.machine, watch))?;
         let table = found.render(outcome::style());
-        let plot = found.plot()?;
-        self.publication.runs(&self.machine, found.runs, table, &plot)
+        let plots = [(".svg".to_owned(), found.plot()?)];
+        self.publication.runs(&self.machine, found.runs, table, &plots)
     }
 
     fn depth_profiles(&mut self) -> Result<(), Failure> {

@@ -28,7 +28,7 @@ use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 pub use self::animation::Animation;
 pub use self::clusters::{Clusters, Point};
 pub use self::isosurface::Isosurface;
-pub use self::parameters::{CAMERAS, ParameterError, Parameters, Preset, Shading};
+pub use self::parameters::{CAMERAS, Parameters, Preset, Shading, Variant};
 pub use self::particles::Particles;
 pub use self::rock::Rock;
 pub use self::splatting::{Splatting, depth_range_m};
@@ -65,15 +65,6 @@ impl Lava {
         let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
         let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
         Ok(Lava { parameters: parameters.clone(), animation, isosurface, splatting, lacks_geometry_stage })
-    }
-
-    /// Back to the state before frame 0.
-    ///
-    /// # Errors
-    /// None today: nothing is moved.
-    pub fn restart(&mut self) -> Result<(), Error> {
-        self.animation.restart();
-        Ok(())
     }
 
     /// What a user should know of the device and of the last frame.
@@ -122,6 +113,11 @@ impl Lava {
 }
 
 impl Paper for Lava {
+    fn restart(&mut self) -> Result<(), Error> {
+        self.animation.restart();
+        Ok(())
+    }
+
     /// Frame `number` shows the particles after `number` + 1 steps. Steps that were not recorded are caught up, so that
     /// the picture depends on the number alone.
     ///

@@ -2,7 +2,23 @@
 
 use glam::Vec3;
 
+use crate::papers::ParameterError;
 use crate::scene::Camera;
+
+/// The methods that are compared: the thesis has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variant {
+    /// Chapters 4 to 8.
+    Paper,
+}
+
+impl crate::papers::Variant for Variant {
+    const ALL: &'static [Variant] = &[Variant::Paper];
+
+    fn word(self) -> &'static str {
+        "paper"
+    }
+}
 
 /// A configuration that the thesis names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -151,15 +167,6 @@ const fn camera(eye: Vec3, target: Vec3) -> Camera {
     Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.75, near_m: 0.05, far_m: 20.0 }
 }
 
-/// A parameter outside its range.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{name} {value}: {range}")]
-pub struct ParameterError {
-    pub name: &'static str,
-    pub value: String,
-    pub range: String,
-}
-
 /// As they are typed.
 fn components(vector: Vec3) -> String {
     vector.to_array().map(|c| c.to_string()).join(",")
@@ -168,10 +175,6 @@ fn components(vector: Vec3) -> String {
 /// Above 0 and at most `highest`; not for NaN.
 fn is_positive(value: f32, highest: f32) -> bool {
     value > 0.0 && value <= highest
-}
-
-fn check(good: bool, name: &'static str, value: impl ToString, range: &str) -> Result<(), ParameterError> {
-    if good { Ok(()) } else { Err(ParameterError { name, value: value.to_string(), range: range.to_owned() }) }
 }
 
 impl Parameters {
@@ -183,15 +186,15 @@ impl Parameters {
         let space = self.space_m;
         let good = space.to_array().into_iter().all(|side| is_positive(side, 1000.0));
         let sides = space.to_array().map(|c| c.to_string()).join("x");
-        check(good, "--space", sides, "each side must be above 0 and at most 1000 metres")?;
+        ParameterError::check(good, "--space", sides, "each side must be above 0 and at most 1000 metres")?;
         let shortest = space.min_element();
         let within = format!("must be above 0 and at most {shortest} metres, the shortest side of the space");
 
         let good = (1..=16_777_216).contains(&self.particles);
-        check(good, "--particles", self.particles, "must be 1 to 16777216")?;
-        check(is_positive(self.radius_m, shortest), "--radius", self.radius_m, &within)?;
+        ParameterError::check(good, "--particles", self.particles, "must be 1 to 16777216")?;
+        ParameterError::check(is_positive(self.radius_m, shortest), "--radius", self.radius_m, &within)?;
         let points = self.density.map(u64::from).into_iter().try_fold(1u64, u64::checked_mul);
-        check(
+        ParameterError::check(
             points.is_some_and(|points| (1..=67_108_864).contains(&points)),
             "--density",
             self.density.map(|n| n.to_string()).join("x"),
@@ -199,27 +202,42 @@ impl Parameters {
         )?;
         let rho = self.rho();
         let range = "must be above 0; the default is the mean density of the particles";
-        check(is_positive(rho, f32::MAX), "--rho", rho, range)?;
+        ParameterError::check(is_positive(rho, f32::MAX), "--rho", rho, range)?;
         let splats = u64::from(self.splats[0]) * u64::from(self.splats[1]);
-        check(
+        ParameterError::check(
             (1..=16_777_216).contains(&splats),
             "--splats",
             self.splats.map(|n| n.to_string()).join("x"),
             "needs at least 1 splat along x and z and at most 16777216 in all",
         )?;
-        check(is_positive(self.splat_radius_m, shortest), "--splat-radius", self.splat_radius_m, &within)?;
+        ParameterError::check(
+            is_positive(self.splat_radius_m, shortest),
+            "--splat-radius",
+            self.splat_radius_m,
+            &within,
+        )?;
         let metres = "must be above 0 and at most 1000 metres";
-        check(is_positive(self.epsilon_m, 1000.0), "--epsilon", self.epsilon_m, metres)?;
-        check((0.0..=1000.0).contains(&self.border_m), "--border", self.border_m, "must be 0 to 1000 metres")?;
+        ParameterError::check(is_positive(self.epsilon_m, 1000.0), "--epsilon", self.epsilon_m, metres)?;
+        ParameterError::check(
+            (0.0..=1000.0).contains(&self.border_m),
+            "--border",
+            self.border_m,
+            "must be 0 to 1000 metres",
+        )?;
         let good = (0.0..=1000.0).contains(&self.speed_m_s);
-        check(good, "--speed", self.speed_m_s, "must be 0 to 1000 metres per second")?;
+        ParameterError::check(good, "--speed", self.speed_m_s, "must be 0 to 1000 metres per second")?;
         let good = self.color.to_array().into_iter().all(|c| (0.0..=1000.0).contains(&c));
-        check(good, "--color", components(self.color), "each of red, green and blue must be 0 to 1000")?;
-        check(is_positive(self.rock_tile_m, 1000.0), "--rock-tile", self.rock_tile_m, metres)?;
+        ParameterError::check(
+            good,
+            "--color",
+            components(self.color),
+            "each of red, green and blue must be 0 to 1000",
+        )?;
+        ParameterError::check(is_positive(self.rock_tile_m, 1000.0), "--rock-tile", self.rock_tile_m, metres)?;
         let good = (0.0..=1000.0).contains(&self.time_step_s);
-        check(good, "--time-step", self.time_step_s, "must be 0 to 1000 seconds")?;
+        ParameterError::check(good, "--time-step", self.time_step_s, "must be 0 to 1000 seconds")?;
         let size = format!("{}x{}", self.width, self.height);
-        check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
+        ParameterError::check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
         let Camera { eye, target, .. } = self.camera;
         self.camera.validate().map_err(|e| ParameterError {
             name: "--camera",

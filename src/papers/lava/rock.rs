@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::parameters::ParameterError;
 use super::targets::desc;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Error, Image, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary};
 use crate::host_block;
+use crate::papers::ParameterError;
 
 host_block! {
     struct LoadConstants {

@@ -1,0 +1,5 @@
+//! `lava`: the paper's own benchmark binary.
+
+fn main() -> std::process::ExitCode {
+    fumarole::cli::lava()
+}

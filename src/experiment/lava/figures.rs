@@ -1,0 +1,138 @@
+//! The thesis's figures: textures of one frame, and pictures of it by other colours, cameras and splats.
+
+use super::Setup;
+use crate::experiment::bench::build;
+use crate::experiment::error::Error;
+use crate::experiment::machine::Machine;
+use crate::experiment::picture;
+use crate::experiment::study::Study;
+use crate::image::{Raster, Rgba8};
+use crate::papers::Paper;
+use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading, Variant};
+
+/// A part of a figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Part {
+    /// A texture of the frame, by its target's name.
+    Texture(&'static str),
+    /// The picture, coloured by one thing.
+    Shaded(Shading),
+    /// The picture with splats of this radius in metres.
+    Splats(f32),
+}
+
+/// A figure of the thesis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figure {
+    pub name: &'static str,
+    preset: Preset,
+    /// Each with what its file is called after the figure; nothing for a figure of one part.
+    parts: &'static [(&'static str, Part)],
+}
+
+const fn figure(name: &'static str, preset: Preset, parts: &'static [(&'static str, Part)]) -> Figure {
+    Figure { name, preset, parts }
+}
+
+/// In the thesis's order.
+pub const FIGURES: [Figure; 15] = {
+    use Part::{Shaded, Splats, Texture};
+    use Preset::{Fig62, Results};
+    const PICTURE: &[(&str, Part)] = &[("", Shaded(Shading::Lava))];
+    [
+        figure("fig-4.1", Results, &[("-position", Texture("positions")), ("-velocity", Texture("velocities"))]),
+        figure(
+            "fig-4.2",
+            Results,
+            &[
+                ("a-density", Texture("density")),
+                ("b-normal-height", Texture("normal-height")),
+                ("c-heights", Shaded(Shading::Heights)),
+            ],
+        ),
+        figure(
+            "fig-4.3",
+            Results,
+            &[
+                ("a-depth", Texture("visibility")),
+                ("b-color", Shaded(Shading::Color)),
+                ("b-rock", Shaded(Shading::Rock)),
+                ("c-lava", Shaded(Shading::Lava)),
+            ],
+        ),
+        figure("fig-5.1", Fig62, &[("", Texture("positions"))]),
+        figure("fig-6.2", Fig62, &[("", Texture("density"))]),
+        figure("fig-6.3", Results, &[("", Texture("normal-height"))]),
+        figure("fig-6.4", Results, &[("-normals", Shaded(Shading::Normals)), ("-heights", Shaded(Shading::Heights))]),
+        figure("fig-7.1", Results, &[("", Texture("visibility"))]),
+        figure("fig-7.2", Results, &[("", Shaded(Shading::Rock))]),
+        figure("fig-7.3", Results, &[("-color", Shaded(Shading::Color)), ("-lava", Shaded(Shading::Lava))]),
+        figure("fig-8.1", Results, PICTURE),
+        figure("fig-8.2", Results, PICTURE),
+        figure("fig-8.3", Results, PICTURE),
+        figure("fig-8.4", Results, PICTURE),
+        figure(
+            "fig-8.5",
+            Preset::Fig85,
+            &[
+                ("-0.001875", Splats(0.001875)),
+                ("-0.004375", Splats(0.004375)),
+                ("-0.008125", Splats(0.008125)),
+                ("-0.020625", Splats(0.020625)),
+            ],
+        ),
+    ]
+};
+
+/// What a part looks like.
+pub enum Drawn {
+    Picture(Rgba8),
+    /// A texture at full precision.
+    Texture(Raster),
+}
+
+impl Figure {
+    /// The figure of that name.
+    pub fn named(name: &str) -> Option<Figure> {
+        FIGURES.into_iter().find(|figure| figure.name == name)
+    }
+
+    /// The numbers that the figure is made with; its own camera for the figures of chapter 8.
+    pub fn parameters(&self) -> Parameters {
+        let mut parameters = self.preset.configurations().swap_remove(0);
+        if let Some((_, camera)) = CAMERAS.iter().find(|(name, _)| *name == self.name) {
+            parameters.camera = *camera;
+        }
+        parameters
+    }
+
+    /// Draws the parts from frame `number` of `setup`, each with what its file is called.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`], [`Error::Image`], [`Error::Parameter`], [`Error::Input`].
+    pub fn draw(&self, machine: &mut Machine, setup: &Setup, number: u32) -> Result<Vec<(&'static str, Drawn)>, Error> {
+        let scene = setup.load()?;
+        let mut drawn = Vec::new();
+        for &(suffix, part) in self.parts {
+            let mut setup = setup.clone();
+            match part {
+                Part::Texture(_) => {}
+                Part::Shaded(shading) => setup.parameters.shading = shading,
+                Part::Splats(radius_m) => setup.parameters.splat_radius_m = radius_m,
+            }
+            setup.parameters.validate()?;
+            let mut built = build(machine, &setup, &scene, Variant::Paper)?;
+            let picture = picture::render(machine, &mut built.paper, number)?;
+            let targets = built.paper.targets();
+            let texture = match part {
+                Part::Texture(name) => targets.iter().find(|t| t.name == name),
+                _ => None,
+            };
+            drawn.push(match texture {
+                Some(target) => (suffix, Drawn::Texture(picture::read_target(&machine.device, target)?)),
+                None => (suffix, Drawn::Picture(picture)),
+            });
+        }
+        Ok(drawn)
+    }
+}
