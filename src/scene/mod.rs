@@ -20,7 +20,7 @@ mod source;
 pub use bounds::Bounds;
 pub use camera::Camera;
 pub use error::{Error, Fault, Place};
-pub use height_map::{Geographic, HeightMap, Samples};
+pub use height_map::{Geographic, HeightMap, Samples, volcano};
 pub use light::Light;
 pub use mesh::Mesh;
 pub use source::MeshSource;

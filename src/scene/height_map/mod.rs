@@ -2,6 +2,8 @@
 
 mod geographic;
 mod map;
+mod volcano;
 
 pub use geographic::Geographic;
 pub use map::{HeightMap, Samples};
+pub use volcano::volcano;

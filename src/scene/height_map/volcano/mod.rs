@@ -1,0 +1,191 @@
+//! A synthetic stratovolcano: one continuous surface, sampled at any size.
+
+mod erosion;
+mod noise;
+mod relief;
+
+use super::map::check_size;
+use super::{HeightMap, Samples};
+use crate::scene::Error;
+use glam::{DVec2, Vec2};
+use noise::Noise;
+use rayon::prelude::*;
+use relief::{Bare, Relief};
+
+/// Length of a side of the land.
+const EXTENT_M: f32 = 12_000.0;
+/// Knots of the surface along a side: the shortest wave is two of their spacings, 1/512 of the side.
+const KNOTS: usize = 1_024;
+/// Control values along a side: a cubic spline reaches one knot beyond each end.
+const CONTROLS: usize = KNOTS + 3;
+
+/// A stratovolcano whose north flank collapsed into a horseshoe, as Bandai's did in 1888, on a plain of 12 km x 12 km:
+/// `side` x `side` samples in 16-bit steps.
+///
+/// All sizes sample one smooth surface of the seed, from edge to edge, in the same steps of about 2 cm.
+///
+/// # Errors
+/// A side outside [`HeightMap::SIDE`].
+pub fn volcano(side: u32, seed: u64) -> Result<HeightMap, Error> {
+    check_size(side.into(), side.into()).map_err(|reason| Error::HeightMap { reason })?;
+    let spacing_m = f64::from(EXTENT_M) / f64::from(side - 1);
+    HeightMap::new(side, side, Land::new(seed).steps(side as usize))?.with_spacing_m(DVec2::splat(spacing_m))
+}
+
+/// The land: a uniform cubic B-spline surface, so smooth that its slope has no kink.
+struct Land {
+    /// CONTROLS x CONTROLS heights in metres, from the north-west.
+    controls_m: Vec<f32>,
+}
+
+impl Land {
+    fn new(seed: u64) -> Self {
+        let relief = Relief::new(seed);
+        let gullies = Noise::new(seed, 0);
+        // One control more on each side, for the slopes.
+        let side = CONTROLS + 2;
+        let place = |column: usize, row: usize| {
+            let knots = Vec2::new(column as f32 - 2.0, 2.0 - row as f32);
+            knots * (EXTENT_M / KNOTS as f32) + Vec2::new(-0.5, 0.5) * EXTENT_M
+        };
+        let bare = (0..side * side).into_par_iter().map(|index| relief.at(place(index % side, index / side)));
+        let bare: Vec<Bare> = bare.collect();
+        let knot_m = EXTENT_M / KNOTS as f32;
+        let controls_m = (0..CONTROLS * CONTROLS).into_par_iter().map(|index| {
+            let (column, row) = (index % CONTROLS + 1, index / CONTROLS + 1);
+            let here = bare[row * side + column];
+            let height_m = |column: usize, row: usize| bare[row * side + column].height_m;
+            let (west_m, east_m) = (height_m(column - 1, row), height_m(column + 1, row));
+            let (north_m, south_m) = (height_m(column, row - 1), height_m(column, row + 1));
+            let slope = Vec2::new(east_m - west_m, north_m - south_m) / (2.0 * knot_m);
+            here.height_m + here.erodibility * erosion::eroded_m(gullies, place(column, row), slope)
+        });
+        Self { controls_m: controls_m.collect() }
+    }
+
+    /// Bounds of the surface: a B-spline stays within its control values.
+    fn range_m(&self) -> (f32, f32) {
+        self.controls_m.iter().fold((f32::MAX, f32::MIN), |(low, high), &h| (low.min(h), high.max(h)))
+    }
+
+    /// The surface at `side` x `side` places, at least two a side.
+    fn steps(&self, side: usize) -> Samples {
+        let (low_m, high_m) = self.range_m();
+        let step_m = (high_m - low_m) / f32::from(u16::MAX);
+        let mut values = vec![0; side * side];
+        values.par_chunks_mut(side).enumerate().for_each_init(
+            || vec![0.0_f32; CONTROLS],
+            |line, (row, values)| {
+                let (first, weights) = taps(row, side);
+                for (column, height) in line.iter_mut().enumerate() {
+                    *height = (0..4).map(|tap| weights[tap] * self.controls_m[(first + tap) * CONTROLS + column]).sum();
+                }
+                for (column, value) in values.iter_mut().enumerate() {
+                    let (first, weights) = taps(column, side);
+                    let height_m: f32 = (0..4).map(|tap| weights[tap] * line[first + tap]).sum();
+                    *value = ((height_m - low_m) / step_m).round() as u16;
+                }
+            },
+        );
+        Samples::Steps { values, origin_m: low_m, step_m }
+    }
+}
+
+/// The first of the four control values that a sample of a side of `side` samples depends on, and their weights.
+fn taps(sample: usize, side: usize) -> (usize, [f32; 4]) {
+    // Exact: both factors are below 2^24.
+    let place = sample as f64 * KNOTS as f64 / (side - 1) as f64;
+    let first = (place as usize).min(KNOTS - 1);
+    let t = (place - first as f64) as f32;
+    let (s, t2, t3) = (1.0 - t, t * t, t * t * t);
+    let weights = [s * s * s, 3.0 * t3 - 6.0 * t2 + 4.0, -3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0, t3];
+    (first, weights.map(|weight| weight / 6.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_size_samples_the_same_land() {
+        let [coarse, fine] = [65, 513].map(|side| volcano(side, 7).unwrap());
+        for (column, row) in (0..65).flat_map(|row| (0..65).map(move |column| (column, row))) {
+            assert_eq!(coarse.height_m(column, row), fine.height_m(column * 8, row * 8), "{column}, {row}");
+        }
+        for map in [coarse, fine] {
+            assert_eq!(map.spacing_m() * f64::from(map.width() - 1), DVec2::splat(12_000.0));
+        }
+    }
+
+    #[test]
+    fn seeds_make_different_lands_and_one_seed_the_same() {
+        let [one, again, two] = [1, 1, 2].map(|seed| volcano(128, seed).unwrap());
+        assert_eq!(one, again);
+        assert_ne!(one, two);
+    }
+
+    #[test]
+    fn a_horseshoe_open_to_the_north_crowns_a_concave_cone_on_a_plain() {
+        for seed in [1, 2] {
+            let map = volcano(601, seed).unwrap();
+            // Metres east and north of the summit; 20 m a sample.
+            let height_m =
+                |east_m: i32, north_m: i32| map.height_m((300 + east_m / 20) as u32, (300 - north_m / 20) as u32);
+            // Mean height of an arc around the summit, degrees east of north.
+            let ring_m = |radius_m: f64, from_deg: i32, to_deg: i32| {
+                let heights = (from_deg..to_deg).map(|angle_deg| {
+                    let (east, north) = f64::from(angle_deg).to_radians().sin_cos();
+                    height_m((radius_m * east) as i32, (radius_m * north) as i32)
+                });
+                let heights: Vec<f32> = heights.collect();
+                heights.iter().sum::<f32>() / heights.len() as f32
+            };
+            let (low_m, high_m) = map.range_m();
+            assert!((400.0..600.0).contains(&low_m) && (1_500.0..1_900.0).contains(&high_m), "{low_m} to {high_m}");
+            // The breach: the floor north of the summit lies far below the rim on the other sides.
+            let breach_m = height_m(0, 800);
+            let rim_m = ring_m(800.0, 100, 260);
+            assert!(breach_m + 250.0 < rim_m, "seed {seed}: floor {breach_m}, rim {rim_m}");
+            // Concave flanks on the sides that stand: each kilometre falls less than the one before.
+            let flank_m = [1_000.0, 2_000.0, 3_000.0, 4_000.0].map(|radius_m| ring_m(radius_m, 100, 260));
+            let falls: Vec<f32> = flank_m.windows(2).map(|pair| pair[0] - pair[1]).collect();
+            assert!(falls.is_sorted_by(|a, b| a > b) && falls[2] > 0.0, "seed {seed}: {falls:?}");
+            // The plain is nearly level.
+            let plain_m = ring_m(5_800.0, 100, 260);
+            assert!((plain_m - 560.0).abs() < 40.0, "seed {seed}: {plain_m}");
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_rock_and_have_no_step() {
+        let map = volcano(2_049, 1).unwrap();
+        let spacing_m = map.spacing_m().x as f32;
+        let mut steepest = 0.0_f32;
+        for (column, row) in (0..2_048).flat_map(|row| (0..2_048).map(move |column| (column, row))) {
+            let here = map.height_m(column, row);
+            let rise_m = (map.height_m(column + 1, row) - here).hypot(map.height_m(column, row + 1) - here);
+            steepest = steepest.max(rise_m / spacing_m);
+        }
+        assert!((1.0..4.0).contains(&steepest), "{steepest}");
+    }
+
+    #[test]
+    fn sides_out_of_range_are_refused() {
+        for side in [0, 1, 16_385, u32::MAX] {
+            let message = volcano(side, 1).unwrap_err().to_string();
+            assert!(message.contains("2 to 16384 a side"), "{message}");
+        }
+        assert_eq!(volcano(2, 1).unwrap().samples().len(), 4);
+    }
+
+    #[test]
+    fn samples_lie_between_control_values_and_weights_add_up() {
+        for side in [2, 3, 1_000, 1_025, 16_384] {
+            for sample in [0, 1, side / 2, side - 2, side - 1] {
+                let (first, weights) = taps(sample, side);
+                assert!(first + 4 <= CONTROLS);
+                assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-6 && weights.iter().all(|w| *w >= 0.0));
+            }
+        }
+    }
+}
