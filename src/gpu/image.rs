@@ -159,6 +159,18 @@ impl Image {
     /// # Errors
     /// [`Error::Limit`] for a layer that is not there.
     pub fn layer(self: &Arc<Self>, layer: u32) -> Result<Arc<ImageView>, Error> {
+        self.layer_as(layer, vk::ImageViewType::TYPE_2D)
+    }
+
+    /// A view of one layer as an array of one.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a layer that is not there.
+    pub fn layer_array(self: &Arc<Self>, layer: u32) -> Result<Arc<ImageView>, Error> {
+        self.layer_as(layer, vk::ImageViewType::TYPE_2D_ARRAY)
+    }
+
+    fn layer_as(self: &Arc<Self>, layer: u32, kind: vk::ImageViewType) -> Result<Arc<ImageView>, Error> {
         if layer >= self.desc.layers {
             return Err(Error::Limit {
                 object: self.desc.name.clone(),
@@ -167,7 +179,7 @@ impl Image {
                 limit: u64::from(self.desc.layers) - 1,
             });
         }
-        ImageView::new(self, vk::ImageViewType::TYPE_2D, self.aspect(), layer..layer + 1)
+        ImageView::new(self, kind, self.aspect(), layer..layer + 1)
     }
 
     pub(crate) fn with_states<T>(&self, layers: Range<u32>, visit: impl FnOnce(&mut [State]) -> T) -> T {

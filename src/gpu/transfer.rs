@@ -38,6 +38,101 @@ pub fn upload(
     Ok(buffer)
 }
 
+/// Bytes of the staging buffer that images are uploaded through, and of one row at least.
+const STRIP_BYTES: u64 = 8 << 20;
+
+/// Fills the upper left `width` x `height` texels of a view of one layer, through a small staging buffer, strip by strip.
+/// `fill` writes rows, tightly packed, from the given one on into the bytes it is handed.
+///
+/// # Errors
+/// [`Error::Limit`] when the rectangle is larger than the view; what Vulkan answers.
+pub fn upload_rows(
+    device: &Arc<Device>,
+    view: &Arc<ImageView>,
+    (width, height): (u32, u32),
+    mut fill: impl FnMut(u32, &mut [u8]),
+) -> Result<(), Error> {
+    check_rectangle(view, width, height)?;
+    let row_bytes = u64::from(width) * texel_bytes(view.image())?;
+    let strip_rows = ((STRIP_BYTES / row_bytes).max(1) as u32).min(height);
+    let name = format!("{} staging", view.image().name());
+    let desc = BufferDesc::new(name, row_bytes * u64::from(strip_rows)).location(Location::Upload);
+    let staging = Buffer::new(device, desc)?;
+    let mut bytes = vec![0; (row_bytes * u64::from(strip_rows)) as usize];
+    for first_row in (0..height).step_by(strip_rows as usize) {
+        let rows = strip_rows.min(height - first_row);
+        let strip = &mut bytes[..(row_bytes * u64::from(rows)) as usize];
+        fill(first_row, strip);
+        staging.write(0, strip)?;
+        let uses = [
+            Use { resource: (&staging).into(), access: Access::CopySource, discard: false },
+            Use { resource: view.into(), access: Access::CopyDestination, discard: first_row == 0 },
+        ];
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(subresource(view))
+            .image_offset(vk::Offset3D { x: 0, y: first_row as i32, z: 0 })
+            .image_extent(vk::Extent3D { width, height: rows, depth: 1 });
+        let layout = Access::CopyDestination.words().layout;
+        once(device, "upload", &uses, |raw, commands| {
+            // SAFETY: recording; the rows lie inside the view, which is in that layout by its barrier, and the staging
+            // buffer holds them; both outlive the submission.
+            unsafe { raw.cmd_copy_buffer_to_image(commands, staging.raw, view.image.raw, layout, &[region]) };
+        })?;
+    }
+    Ok(())
+}
+
+/// Copies the upper left `width` x `height` texels of `from` to column `column` and row `row` of `to`, views of one layer of
+/// one format. The rest of `to` keeps what it holds.
+///
+/// # Errors
+/// [`Error::Limit`] when the rectangle is larger than a view; what Vulkan answers.
+pub fn copy_rectangle(
+    device: &Arc<Device>,
+    from: &Arc<ImageView>,
+    to: &Arc<ImageView>,
+    (column, row): (u32, u32),
+    (width, height): (u32, u32),
+) -> Result<(), Error> {
+    check_rectangle(from, width, height)?;
+    check_rectangle(to, column.saturating_add(width), row.saturating_add(height))?;
+    let uses = [
+        Use { resource: from.into(), access: Access::CopySource, discard: false },
+        Use { resource: to.into(), access: Access::CopyDestination, discard: false },
+    ];
+    let region = vk::ImageCopy::default()
+        .src_subresource(subresource(from))
+        .dst_subresource(subresource(to))
+        .dst_offset(vk::Offset3D { x: column as i32, y: row as i32, z: 0 })
+        .extent(vk::Extent3D { width, height, depth: 1 });
+    let [source, destination] = uses.each_ref().map(|u| u.access.words().layout);
+    once(device, "copy", &uses, |raw, commands| {
+        // SAFETY: recording; the rectangle lies inside both views, which are in these layouts by their barriers and
+        // outlive the submission.
+        unsafe { raw.cmd_copy_image(commands, from.image.raw, source, to.image.raw, destination, &[region]) };
+    })
+}
+
+fn check_rectangle(view: &Arc<ImageView>, right: u32, bottom: u32) -> Result<(), Error> {
+    let sides = [("column of a copy", right, view.width()), ("row of a copy", bottom, view.height())];
+    match sides.into_iter().find(|&(_, wanted, limit)| wanted > limit) {
+        None => Ok(()),
+        Some((what, wanted, limit)) => Err(Error::Limit {
+            object: view.image().name().to_owned(),
+            what,
+            wanted: wanted.into(),
+            limit: limit.into(),
+        }),
+    }
+}
+
+fn subresource(view: &ImageView) -> vk::ImageSubresourceLayers {
+    vk::ImageSubresourceLayers::default()
+        .aspect_mask(copied_aspect(view.image.aspect()))
+        .base_array_layer(view.layers.start)
+        .layer_count(view.layers.end - view.layers.start)
+}
+
 /// Reads a buffer back.
 ///
 /// # Errors
@@ -77,15 +172,9 @@ pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: 
             unsafe { raw.cmd_copy_buffer(commands, view.buffer.raw, to.raw, &[region]) };
         }
         Resource::Image(view) => {
-            let subresource = vk::ImageSubresourceLayers::default()
-                .aspect_mask(copied_aspect(view.image.aspect()))
-                .base_array_layer(view.layers.start)
-                .layer_count(view.layers.end - view.layers.start);
-            let region = vk::BufferImageCopy::default().image_subresource(subresource).image_extent(vk::Extent3D {
-                width: view.width(),
-                height: view.height(),
-                depth: 1,
-            });
+            let region = vk::BufferImageCopy::default()
+                .image_subresource(subresource(view))
+                .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
             let layout = Access::CopySource.words().layout;
             // SAFETY: recording; the image is in that layout by its barrier, and whoever made `to` sized it for the
             // view's texels; both outlive the submission.
@@ -127,6 +216,7 @@ fn copied_aspect(aspect: vk::ImageAspectFlags) -> vk::ImageAspectFlags {
 /// Bytes of one texel of the formats that targets use.
 fn texel_bytes(image: &Image) -> Result<u64, Error> {
     match image.desc().format {
+        vk::Format::R16_UINT => Ok(2),
         vk::Format::R8G8B8A8_UNORM
         | vk::Format::R8G8B8A8_SRGB
         | vk::Format::R32_SFLOAT

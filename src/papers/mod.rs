@@ -2,6 +2,7 @@
 
 pub mod caustics;
 pub mod lava;
+pub mod terrain;
 
 use std::sync::Arc;
 

@@ -1,0 +1,18 @@
+#version 450
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#define COUNT_STEP
+#define DEEPEST 23
+
+#include "terrain/land.glsl"
+#include "terrain/traversal-types.glsl"
+#include "terrain/leaf-pixel.glsl"
+#include "terrain/traversal.glsl"
+#include "terrain/depth.glsl"
+
+layout(location = 0) out vec4 depth;
+
+void main() {
+    depth = find(ivec2(gl_FragCoord.xy));
+}

@@ -1,0 +1,17 @@
+#version 450
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/illumination.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 3, rgba8) uniform writeonly image2D illumination;
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= imageSize(illumination).x || pixel.y >= imageSize(illumination).y) {
+        return;
+    }
+    imageStore(illumination, pixel, color_of(pixel));
+}

@@ -1,0 +1,63 @@
+//! What a pixel's ray met, as the passes hand it on.
+
+/// Depth of a ray that meets nothing, metres.
+pub const NO_DEPTH: f32 = 1.0e30;
+
+/// The surfaces that a ray may meet; numbered as `shaders/terrain/land.glsl` does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Surface {
+    Sky,
+    Base,
+    Terrain,
+    WallWest,
+    WallEast,
+    WallNorth,
+    WallSouth,
+    /// The camera stands in the ground.
+    Inside,
+}
+
+impl Surface {
+    const ALL: [Surface; 8] = [
+        Surface::Sky,
+        Surface::Base,
+        Surface::Terrain,
+        Surface::WallWest,
+        Surface::WallEast,
+        Surface::WallNorth,
+        Surface::WallSouth,
+        Surface::Inside,
+    ];
+}
+
+/// A texel of the target `depth`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Along the view's axis, metres; [`NO_DEPTH`] for the sky.
+    pub depth_m: f32,
+    /// u and v in nodes of the map.
+    pub place: [f32; 2],
+    pub surface: Surface,
+    /// The level that the surface was taken from, counted from the data.
+    pub shift: u32,
+    /// Which of the maps.
+    pub map: u32,
+}
+
+impl Hit {
+    pub fn from_texel(texel: [f32; 4]) -> Self {
+        let code = texel[3] as u32;
+        Hit {
+            depth_m: texel[0],
+            place: [texel[1], texel[2]],
+            surface: Surface::ALL[(code & 7) as usize],
+            shift: code >> 3 & 31,
+            map: code >> 8,
+        }
+    }
+
+    pub fn to_texel(self) -> [f32; 4] {
+        let code = self.surface as u32 + 8 * self.shift + 256 * self.map;
+        [self.depth_m, self.place[0], self.place[1], code as f32]
+    }
+}

@@ -1,0 +1,106 @@
+//! A map on the device: its data and its pyramid in the layers of one image.
+//!
+//! Texels are unsigned integers: R16_UINT for 16-bit steps, R32_UINT with the bits of floats. Vulkan promises sampling and
+//! rendering for both; for R16_UNORM it promises neither.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::pyramid::{Bound, Shape};
+use crate::gpu::transfer::{copy_rectangle, upload_rows};
+use crate::gpu::{Blend, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary};
+use crate::host_block;
+use crate::scene::{HeightMap, Samples};
+
+host_block! {
+    struct Level {
+        origin: [i32; 2],
+        last: [i32; 2],
+        is_float: i32,
+        is_lowest: i32,
+    }
+}
+
+/// Layers of the image: the data, the highest values, the lowest.
+const DATA: u32 = 0;
+
+/// A map's levels on the device.
+pub struct Levels {
+    /// All layers.
+    pub view: Arc<ImageView>,
+    pub shape: Shape,
+    /// Whether texels are the bits of floats.
+    pub is_float: bool,
+}
+
+impl Levels {
+    /// Uploads the data in strips and builds the coarser levels of each of `bounds`, which take the layers from 1 on.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a map larger than the device's images, [`Error::OutOfMemory`], what Vulkan answers.
+    pub fn new(shaders: &ShaderLibrary, label: &str, map: &HeightMap, bounds: &[Bound]) -> Result<Self, Error> {
+        let device = shaders.device();
+        let shape = Shape::new(map.width(), map.height());
+        let is_float = matches!(map.samples(), Samples::Float(_));
+        let format = if is_float { vk::Format::R32_UINT } else { vk::Format::R16_UINT };
+        let (width, height) = shape.extent();
+        let usage = vk::ImageUsageFlags::SAMPLED;
+        let desc = ImageDesc::new_2d(format!("{label}/levels"), format, width, height)
+            .layers(1 + bounds.len() as u32)
+            .usage(usage);
+        let image = Image::new(device, desc)?;
+        let stride = shape.width as usize;
+        let data = image.layer(DATA)?;
+        upload_rows(device, &data, (shape.width, shape.height), |first_row, strip| {
+            let first = first_row as usize * stride;
+            match map.samples() {
+                Samples::Steps { values, .. } => copy_samples(&values[first..], strip),
+                Samples::Float(values) => copy_samples(&values[first..], strip),
+            }
+        })?;
+        let levels = Levels { view: image.view()?, shape, is_float };
+        for (layer, &bound) in (1..).zip(bounds) {
+            levels.build(shaders, &image, layer, bound)?;
+        }
+        Ok(levels)
+    }
+
+    /// One pass a level: drawn from the level below it, then copied to its place.
+    fn build(&self, shaders: &ShaderLibrary, image: &Arc<Image>, layer: u32, bound: Bound) -> Result<(), Error> {
+        let device = shaders.device();
+        let target = image.layer(layer)?;
+        let mut recorder = Recorder::new(device)?;
+        for shift in 1..=self.shape.top {
+            let (from, source) = if shift == 1 { (DATA, (0, 0)) } else { (layer, self.shape.origin(shift - 1)) };
+            let (columns, rows) = self.shape.level(shift - 1);
+            let finer = image.layer_array(from)?;
+            let (width, height) = self.shape.level(shift);
+            let desc = ImageDesc::new_2d(target.image().name(), target.image().desc().format, width, height);
+            let level = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
+            let pass = Pass::graphics("pyramid", "3", "common/fullscreen.vert", "terrain/pyramid.frag")
+                .with("finer", &finer)
+                .constants::<Level>()
+                .color(&level, Load::Discard, Blend::Replace)
+                .build(shaders)?;
+            let constants = Level {
+                origin: [source.0 as i32, source.1 as i32],
+                last: [columns as i32 - 1, rows as i32 - 1],
+                is_float: self.is_float.into(),
+                is_lowest: (bound == Bound::Lowest).into(),
+            };
+            recorder.run(Mode::Plain, |frame| {
+                frame.graphics(&pass, |draw| {
+                    draw.constants(&constants).vertices(3);
+                })
+            })?;
+            copy_rectangle(device, &level, &target, self.shape.origin(shift), (width, height))?;
+        }
+        Ok(())
+    }
+}
+
+fn copy_samples<T: bytemuck::Pod>(samples: &[T], strip: &mut [u8]) {
+    let bytes: &[u8] = bytemuck::cast_slice(samples);
+    strip.copy_from_slice(&bytes[..strip.len()]);
+}

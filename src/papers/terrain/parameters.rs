@@ -1,0 +1,188 @@
+//! What a user can set.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec3};
+
+use super::placement::Extent;
+use crate::papers::{self, ParameterError};
+use crate::scene::Camera;
+
+/// The applications of section 4, and what a user would do without them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variant {
+    /// Section 4, first application: everything on the processor, on all cores.
+    Cpu,
+    /// Section 4, second application: depth, normal and illumination by compute stages.
+    GpuCompute,
+    /// The same three as full-screen fragment passes.
+    GpuFragment,
+    /// The map as an indexed triangle grid, rasterised.
+    Mesh,
+}
+
+impl papers::Variant for Variant {
+    const ALL: &'static [Variant] = &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh];
+
+    fn word(self) -> &'static str {
+        match self {
+            Variant::Cpu => "cpu",
+            Variant::GpuCompute => "gpu-compute",
+            Variant::GpuFragment => "gpu-fragment",
+            Variant::Mesh => "mesh",
+        }
+    }
+}
+
+/// How far a ray is followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Lod {
+    /// To the interpolated surface of the data.
+    Exact,
+    /// To the footprint of a pixel, with heights from the level of that size.
+    Pixel,
+}
+
+/// The surface between the samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Interpolation {
+    /// Eq. 7.
+    Bilinear,
+}
+
+/// The base surface P that heights are added to along its normal (eq. 5, 6).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Base {
+    Plane,
+}
+
+/// Where the sun stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sun {
+    /// Clockwise from north, -2 pi to 2 pi.
+    pub azimuth_rad: f32,
+    /// Above the horizon, 0 to pi/2.
+    pub elevation_rad: f32,
+}
+
+impl Sun {
+    /// The unit direction to it; north is -z and east +x.
+    pub fn direction(self) -> Vec3 {
+        let (east, north) = self.azimuth_rad.sin_cos();
+        let (up, along) = self.elevation_rad.sin_cos();
+        Vec3::new(east * along, up, -north * along)
+    }
+}
+
+/// Where the picture is seen from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// From the south and a little above, as figure 2.
+    Side,
+    /// From straight above, north up, as figure 1.
+    Top,
+    /// In the maps' frame: x east, y up from the base, z south, from the middle of the first map.
+    Camera(Camera),
+}
+
+/// Every number of a configuration. [`Parameters::validate`] checks the ranges given here.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameters {
+    pub lod: Lod,
+    pub interpolation: Interpolation,
+    pub base: Base,
+    /// The height in the maps' own frame at which the base lies, metres; the lowest sample without one.
+    pub base_level_m: Option<f32>,
+    pub view: View,
+    pub sun: Sun,
+    /// Extinction by haze per kilometre, 0 to 1000.
+    pub haze_per_km: f32,
+    /// Size of the picture in pixels.
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Parameters {
+            lod: Lod::Pixel,
+            interpolation: Interpolation::Bilinear,
+            base: Base::Plane,
+            base_level_m: None,
+            view: View::Side,
+            sun: Sun { azimuth_rad: 300.0_f32.to_radians(), elevation_rad: 35.0_f32.to_radians() },
+            haze_per_km: 0.02,
+            width: 800,
+            height: 600,
+        }
+    }
+}
+
+impl Parameters {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// The first parameter outside its range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        if let Some(level) = self.base_level_m {
+            ParameterError::check(level.abs() <= 1.0e6, "--base-level", level, "must be -1000000 to 1000000 metres")?;
+        }
+        let Sun { azimuth_rad, elevation_rad } = self.sun;
+        let (azimuth, elevation) = (azimuth_rad.to_degrees(), elevation_rad.to_degrees());
+        let sun = format!("{azimuth},{elevation}");
+        ParameterError::check(azimuth.abs() <= 360.01, "--sun", &sun, "its azimuth must be -360 to 360 degrees")?;
+        ParameterError::check(
+            (0.0..=90.01).contains(&elevation),
+            "--sun",
+            &sun,
+            "its elevation must be 0 to 90 degrees",
+        )?;
+        let haze = self.haze_per_km;
+        ParameterError::check((0.0..=1000.0).contains(&haze), "--haze", haze, "must be 0 to 1000 per kilometre")?;
+        let size = format!("{}x{}", self.width, self.height);
+        ParameterError::check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
+        let View::Camera(camera) = self.view else { return Ok(()) };
+        let place = [camera.eye, camera.target].map(|p| p.to_array().map(|c| c.to_string()).join(",")).join(",");
+        ParameterError::check(
+            camera.eye.abs().max_element() <= 1.0e8,
+            "--camera",
+            &place,
+            "must lie within 100000 km",
+        )?;
+        camera.validate().map_err(|e| ParameterError { name: "--camera", value: place, range: e.to_string() })
+    }
+
+    /// Width over height of the picture.
+    pub fn aspect(&self) -> f64 {
+        f64::from(self.width) / f64::from(self.height)
+    }
+
+    /// The camera of [`Parameters::view`] for maps of this extent.
+    pub fn camera(&self, extent: &Extent) -> Camera {
+        let size = extent.high - extent.low;
+        let center = (extent.high + extent.low) / 2.0;
+        let reach = size.x.max(size.z);
+        let fov_rad = PI / 4.0;
+        let (eye, target, up) = match self.view {
+            View::Camera(camera) => return camera,
+            View::Side => {
+                let eye = DVec3::new(center.x, extent.high.y + 0.12 * reach, extent.high.z + 0.28 * reach);
+                let target = DVec3::new(center.x, center.y - 0.4 * size.y, center.z);
+                (eye, target, Vec3::Y)
+            }
+            View::Top => {
+                let needed = size.z.max(size.x / self.aspect());
+                let eye = DVec3::new(center.x, extent.high.y + 0.53 * needed / (fov_rad / 2.0).tan(), center.z);
+                (eye, DVec3::new(center.x, extent.low.y, center.z), Vec3::NEG_Z)
+            }
+        };
+        Camera {
+            eye: eye.as_vec3(),
+            target: target.as_vec3(),
+            up,
+            vertical_fov_rad: fov_rad as f32,
+            near_m: (reach * 1e-3).max(1e-3) as f32,
+            far_m: (reach * 1e3).max(1.0) as f32,
+        }
+    }
+}

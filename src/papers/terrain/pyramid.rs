@@ -1,0 +1,158 @@
+//! The multilevel altitude map (section 3): its shape, and its levels on the CPU.
+
+use rayon::prelude::*;
+
+/// Sizes of the levels of a map. The paper counts levels from the coarsest, 0, to the data, n; a shift counts from the data,
+/// 0, to the single texel, `top`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    pub width: u32,
+    pub height: u32,
+    /// The shift of the level of one texel: n.
+    pub top: u32,
+}
+
+impl Shape {
+    /// Of a map of `width` x `height` samples, at least 1 each.
+    pub fn new(width: u32, height: u32) -> Self {
+        Shape { width, height, top: width.max(height).next_power_of_two().trailing_zeros() }
+    }
+
+    /// The samples a side that a map of 2^n x 2^n has: the smallest that holds this one.
+    pub fn side(self) -> u32 {
+        1 << self.top
+    }
+
+    /// Columns and rows of a level.
+    pub fn level(self, shift: u32) -> (u32, u32) {
+        let half = |samples: u32| ((samples - 1) >> shift) + 1;
+        (half(self.width), half(self.height))
+    }
+
+    /// The axis along which the coarser levels lie one after another in their layer: that of the longer side.
+    pub fn axis(self) -> (u32, u32) {
+        if self.width >= self.height { (1, 0) } else { (0, 1) }
+    }
+
+    /// Where a coarser level, `shift` at least 1, begins in its layer: at its own padded width, so that none overlap and
+    /// a shader finds it by shifting.
+    pub fn origin(self, shift: u32) -> (u32, u32) {
+        let (x, y) = self.axis();
+        let offset = self.side() >> shift;
+        (x * offset, y * offset)
+    }
+
+    /// Columns and rows that the data and the layer of coarser levels need.
+    pub fn extent(self) -> (u32, u32) {
+        (1..=self.top).fold((self.width, self.height), |(width, height), shift| {
+            let ((x, y), (columns, rows)) = (self.origin(shift), self.level(shift));
+            (width.max(x + columns), height.max(y + rows))
+        })
+    }
+}
+
+/// Which of four texels a coarser one takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Bound {
+    Highest,
+    Lowest,
+}
+
+/// A number that a texel holds.
+pub trait Texel: Copy + PartialOrd + Send + Sync {
+    fn to_f32(self) -> f32;
+}
+
+impl Texel for u16 {
+    fn to_f32(self) -> f32 {
+        f32::from(self)
+    }
+}
+
+impl Texel for f32 {
+    fn to_f32(self) -> f32 {
+        self
+    }
+}
+
+/// The levels above the data, by shift from 1 on, row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pyramid<T> {
+    pub shape: Shape,
+    coarser: Vec<Vec<T>>,
+}
+
+impl<T: Texel> Pyramid<T> {
+    /// Builds every level from `data`, which has the samples of `shape`.
+    pub fn build(shape: Shape, data: &[T], bound: Bound) -> Self {
+        let mut coarser: Vec<Vec<T>> = Vec::new();
+        for shift in 1..=shape.top {
+            let finer = coarser.last().map_or(data, |level| level);
+            let level = coarsen(finer, shape.level(shift - 1), shape.level(shift), bound);
+            coarser.push(level);
+        }
+        Pyramid { shape, coarser }
+    }
+
+    /// The texels of a level above the data.
+    pub fn level(&self, shift: u32) -> Option<&[T]> {
+        self.coarser.get((shift as usize).checked_sub(1)?).map(Vec::as_slice)
+    }
+}
+
+fn coarsen<T: Texel>(finer: &[T], (columns, rows): (u32, u32), (width, height): (u32, u32), bound: Bound) -> Vec<T> {
+    let choose = |a: T, b: T| if (a < b) == (bound == Bound::Lowest) { a } else { b };
+    let row_of = |row: u32| &finer[(row.min(rows - 1) * columns) as usize..][..columns as usize];
+    let coarse_row = |row: u32| {
+        let (north, south) = (row_of(2 * row), row_of(2 * row + 1));
+        (0..width).map(move |column| {
+            let west = (2 * column) as usize;
+            let east = (west + 1).min(columns as usize - 1);
+            choose(choose(north[west], north[east]), choose(south[west], south[east]))
+        })
+    };
+    (0..height).into_par_iter().flat_map_iter(coarse_row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_lie_apart_inside_the_extent() {
+        for (width, height) in [(1, 1), (2, 1), (1, 9), (5, 3), (17, 200), (200, 200), (257, 256), (16_384, 16_384)] {
+            let shape = Shape::new(width, height);
+            assert_eq!(shape.level(shape.top), (1, 1));
+            let extent = shape.extent();
+            let places: Vec<_> = (1..=shape.top).map(|s| (shape.origin(s), shape.level(s))).collect();
+            for (i, ((x, y), (columns, rows))) in places.iter().enumerate() {
+                assert!(x + columns <= extent.0 && y + rows <= extent.1);
+                for ((a, b), (c, d)) in &places[..i] {
+                    assert!(x + columns <= *a || a + c <= *x || y + rows <= *b || b + d <= *y, "{width} x {height}");
+                }
+            }
+        }
+        assert_eq!(Shape::new(16_384, 16_384).extent(), (16_384, 16_384));
+    }
+
+    #[test]
+    fn a_texel_bounds_all_samples_below_it() {
+        let shape = Shape::new(13, 7);
+        let data: Vec<u16> = (0..91u32).map(|i| (i * 7919 % 1009) as u16).collect();
+        for bound in [Bound::Highest, Bound::Lowest] {
+            let pyramid = Pyramid::build(shape, &data, bound);
+            for shift in 1..=shape.top {
+                let (columns, rows) = shape.level(shift);
+                let level = pyramid.level(shift).expect("the level exists");
+                assert_eq!(level.len(), (columns * rows) as usize);
+                for (i, &texel) in level.iter().enumerate() {
+                    let (column, row) = (i as u32 % columns, i as u32 / columns);
+                    let below = (0..91u32).filter(|s| ((s % 13) >> shift, (s / 13) >> shift) == (column, row));
+                    let values = below.map(|s| data[s as usize]);
+                    let expected = if bound == Bound::Highest { values.max() } else { values.min() };
+                    assert_eq!(Some(texel), expected);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Small maps.
+
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+use fumarole::papers::terrain::{MapInput, Placement};
+use fumarole::scene::{HeightMap, Samples};
+use glam::DVec2;
+
+/// Metres of the volcano from side to side.
+const EXTENT_M: f64 = 12_000.0;
+
+/// A cone with a crater, gullies and some roughness, the same land at every number of samples a side.
+pub fn volcano(side: u32) -> HeightMap {
+    let height = |column: u32, row: u32| {
+        let at = |i: u32| (i as f32 / (side - 1) as f32 - 0.5) * 2.0;
+        let (x, z) = (at(column), at(row));
+        let distance = x.hypot(z);
+        let angle = z.atan2(x);
+        let cone = 1800.0 * (-4.0 * distance).exp();
+        let crater = -900.0 * (-(distance / 0.09).powi(2)).exp();
+        let gully = 90.0 * (angle * 17.0 + 5.0 * (3.0 * distance).sin()).sin() * distance * (1.0 - distance).max(0.0);
+        let rough = 12.0 * (TAU * 9.0 * x).sin() * (TAU * 7.0 * z).cos() * distance;
+        400.0 + cone + crater + gully + rough
+    };
+    let heights = (0..side).flat_map(|row| (0..side).map(move |column| height(column, row)));
+    let values = heights.map(|h| (h * 8.0).round() as u16).collect();
+    map(side, side, Samples::Steps { values, origin_m: 0.0, step_m: 0.125 }, EXTENT_M / f64::from(side - 1))
+}
+
+pub fn map(width: u32, height: u32, samples: Samples, spacing_m: f64) -> HeightMap {
+    HeightMap::new(width, height, samples).unwrap().with_spacing_m(DVec2::splat(spacing_m)).unwrap()
+}
+
+/// One map in the middle of the world.
+pub fn alone(map: HeightMap) -> Vec<MapInput> {
+    vec![MapInput { map: Arc::new(map), placement: Placement::default() }]
+}
