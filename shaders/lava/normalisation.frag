@@ -1,6 +1,7 @@
 #version 450
 
-// Eq. 7.2's quotient (section 7.3); black where no splat was drawn.
+// Eq. 7.2's quotient (section 7.3); black where no splat was drawn. Colours are those of the display from the rock's
+// texels to here, as in the thesis's OpenGL: nothing is decoded or encoded.
 
 #extension GL_EXT_samplerless_texture_functions : require
 

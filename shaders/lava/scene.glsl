@@ -2,7 +2,7 @@
 
 layout(set = 0, binding = 0, std140) uniform Scene {
     mat4 view_projection;
-    vec4 glow; // the constant orange of section 7.2, linear RGB
+    vec4 glow; // the constant orange of section 7.2
     vec3 space_m;
     float splat_radius_m;
     vec2 columns; // texels of the normal and height texture along x and z

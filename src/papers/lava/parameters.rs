@@ -113,7 +113,7 @@ pub struct Parameters {
     pub border_m: f32,
     /// Mean speed of the flow along x in metres per second, 0 to 1000.
     pub speed_m_s: f32,
-    /// The constant orange of section 7.2, linear RGB, each 0 to 1000.
+    /// The constant orange of section 7.2 in the display's RGB, each 0 to 1000.
     pub color: Vec3,
     /// Side of the square that the rock texture covers once in metres, above 0 and at most 1000.
     pub rock_tile_m: f32,
@@ -142,7 +142,7 @@ impl Default for Parameters {
             epsilon_m: 0.05,
             border_m: 0.2,
             speed_m_s: 0.2,
-            color: Vec3::new(2.6, 0.75, 0.09),
+            color: Vec3::new(2.4, 0.95, 0.16),
             rock_tile_m: 2.0,
             shading: Shading::Lava,
             geometry_stage: true,
@@ -157,10 +157,10 @@ impl Default for Parameters {
 
 /// Our cameras for the four views of chapter 8; the thesis prints no positions.
 pub const CAMERAS: [(&str, Camera); 4] = [
-    ("fig-8.1", camera(Vec3::new(2.0, 2.3, 3.6), Vec3::new(2.0, 0.2, 0.5))),
-    ("fig-8.2", camera(Vec3::new(-0.9, 1.4, 2.3), Vec3::new(1.7, 0.25, 0.4))),
-    ("fig-8.3", camera(Vec3::new(5.1, 0.9, 0.5), Vec3::new(2.0, 0.25, 0.5))),
-    ("fig-8.4", camera(Vec3::new(1.6, 1.15, 1.45), Vec3::new(2.1, 0.3, 0.45))),
+    ("fig-8.1", camera(Vec3::new(0.1, 2.6, 2.3), Vec3::new(1.75, 0.3, 0.45))),
+    ("fig-8.2", camera(Vec3::new(2.0, 3.2, 3.0), Vec3::new(2.0, 0.3, 0.5))),
+    ("fig-8.3", camera(Vec3::new(4.4, 2.0, 0.5), Vec3::new(2.6, 0.3, 0.5))),
+    ("fig-8.4", camera(Vec3::new(1.5, 1.6, 1.5), Vec3::new(2.0, 0.35, 0.5))),
 ];
 
 const fn camera(eye: Vec3, target: Vec3) -> Camera {

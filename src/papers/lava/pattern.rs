@@ -88,27 +88,21 @@ impl Noise {
     fn texel(&self, column: u32, row: u32) -> [u8; 4] {
         let place = [column, row].map(|c| (c as f32 + 0.5) / SIZE as f32);
         // Plates do not break along straight lines.
-        let bend = |layer| 0.09 * (self.octaves(place, 5, 4, layer) - 0.5);
+        let bend = |layer| 0.12 * (self.octaves(place, 4, 5, layer) - 0.5);
         let bent = [place[0] + bend(10), place[1] + bend(20)];
         let crack = |width: f32, period, layer| {
             let t = (1.0 - self.border(bent, period, layer) / width).max(0.0);
             t * t
         };
-        let cracks = crack(0.16, PLATES, 30).max(0.5 * crack(0.12, 3 * PLATES, 40));
-        let grain = self.octaves(place, 6, 6, 50);
-        let pits = self.smooth(place, 96, 60);
-        // Lighter and darker plates, grain and pits; in cracks the rock is fresh and bright.
-        let crust = (0.10 + 0.55 * grain * grain) * (0.75 + 0.25 * pits);
-        let value = crust + (1.0 - crust) * cracks;
-        let linear = [value, value * 0.96, value * 0.9];
-        let [r, g, b] = linear.map(|v| (encode(v) * 255.0 + 0.5) as u8);
+        let cracks = crack(0.22, PLATES, 30).max(0.35 * crack(0.2, 3 * PLATES, 40));
+        // Lighter and darker crust, grain and pits; where it is torn the rock is fresh and bright.
+        let crust = self.octaves(place, 3, 7, 50);
+        let grain = self.octaves(place, 24, 4, 60);
+        let crust = (0.9 * crust * crust + 0.25 * crust) * (0.45 + 0.75 * grain);
+        let value = (crust + (1.0 - crust) * 0.9 * cracks * (0.4 + 0.6 * grain)).min(1.0);
+        let [r, g, b] = [value, value * 0.97, value * 0.93].map(|v| (v * 255.0 + 0.5) as u8);
         [r, g, b, 255]
     }
-}
-
-/// Linear light, 0 to 1, as sRGB.
-fn encode(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

@@ -43,14 +43,14 @@ impl Rock {
         })
     }
 
-    /// The rock on the device in linear light, with a border of one texel that repeats the opposite side.
+    /// The rock on the device, with a border of one texel that repeats the opposite side.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
     pub(super) fn load(&self, shaders: &ShaderLibrary, label: &str) -> Result<Arc<ImageView>, Error> {
         let device = shaders.device();
         let name = format!("{label}/rock");
-        let desc = desc(name.clone(), vk::Format::R8G8B8A8_SRGB, self.width + 2, self.height + 2);
+        let desc = desc(name.clone(), vk::Format::R8G8B8A8_UNORM, self.width + 2, self.height + 2);
         let image = Image::new(device, desc)?.view()?;
         let texels = upload(
             device,

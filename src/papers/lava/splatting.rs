@@ -74,7 +74,8 @@ impl Splatting {
         let (width, height) = (parameters.width, parameters.height);
         let visibility = target(shaders, name("visibility"), DEPTH, width, height)?;
         let accumulated = target(shaders, name("accumulated-colors"), FLOATS, width, height)?;
-        let format = vk::Format::R8G8B8A8_SRGB;
+        // The values are those of the display already.
+        let format = vk::Format::R8G8B8A8_UNORM;
         let picture = ImageDesc::new_2d(name("picture"), format, width, height);
         let picture = Image::new(device, picture.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
 
@@ -158,12 +159,12 @@ impl Splatting {
         &self.visibility
     }
 
-    /// Weighted colours in linear RGB, sum of weights in alpha.
+    /// Weighted colours, sum of weights in alpha.
     pub fn accumulated_colors(&self) -> &Arc<ImageView> {
         &self.accumulated
     }
 
-    /// 8-bit sRGB.
+    /// 8-bit sRGB, though its format does not say so.
     pub fn picture(&self) -> &Arc<ImageView> {
         &self.picture
     }
