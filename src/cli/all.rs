@@ -11,6 +11,7 @@ use super::lava::LavaArgs;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, benched};
+use super::terrain::TerrainArgs;
 use super::watch::{interrupted, watched};
 use crate::experiment::bench::{Bench, load};
 use crate::experiment::limits;
@@ -67,6 +68,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let mut measured = Measured::default();
     measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     measure::<CausticsArgs>(&mut machine, &output, &mut measured)?;
+    measure::<TerrainArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)
 }

@@ -14,6 +14,7 @@ mod paper;
 mod passes;
 mod processes;
 mod render;
+mod terrain;
 mod watch;
 
 use std::process::ExitCode;
@@ -24,6 +25,7 @@ use self::caustics::CausticsArgs;
 use self::failure::Failure;
 use self::lava::LavaArgs;
 use self::paper::PaperCommand;
+use self::terrain::TerrainArgs;
 
 /// Rendering papers on Vulkan, pass by pass, every pass measured.
 #[derive(Debug, Parser)]
@@ -45,6 +47,8 @@ enum Command {
     Lava(PaperCommand<LavaArgs>),
     /// Refractive water caustics with level maps (Tipprasert)
     Caustics(PaperCommand<CausticsArgs>),
+    /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
+    Terrain(PaperCommand<TerrainArgs>),
 }
 
 /// Runs `fumarole`.
@@ -57,6 +61,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Lava(arguments)) => arguments.run(),
         Some(Command::Caustics(arguments)) => arguments.run(),
+        Some(Command::Terrain(arguments)) => arguments.run(),
     })
 }
 
@@ -68,6 +73,11 @@ pub fn lava() -> ExitCode {
 /// Runs the paper's own binary `caustics`.
 pub fn caustics() -> ExitCode {
     end(paper::binary::<CausticsArgs>())
+}
+
+/// Runs the paper's own binary `terrain`.
+pub fn terrain() -> ExitCode {
+    end(paper::binary::<TerrainArgs>())
 }
 
 fn end(result: Result<(), Failure>) -> ExitCode {

@@ -14,5 +14,6 @@ pub mod run;
 pub mod statistics;
 pub mod study;
 pub mod sweep;
+pub mod terrain;
 
 pub use error::Error;

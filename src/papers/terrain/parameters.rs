@@ -43,6 +43,17 @@ pub enum Lod {
     Pixel,
 }
 
+impl Lod {
+    pub const ALL: [Lod; 2] = [Lod::Exact, Lod::Pixel];
+
+    pub fn word(self) -> &'static str {
+        match self {
+            Lod::Exact => "exact",
+            Lod::Pixel => "pixel",
+        }
+    }
+}
+
 /// The surface between the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Interpolation {
@@ -50,10 +61,28 @@ pub enum Interpolation {
     Bilinear,
 }
 
+impl Interpolation {
+    pub const ALL: [Interpolation; 1] = [Interpolation::Bilinear];
+
+    pub fn word(self) -> &'static str {
+        match self {
+            Interpolation::Bilinear => "bilinear",
+        }
+    }
+}
+
 /// The base surface P that heights are added to along its normal (eq. 5, 6).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Base {
     Plane,
+}
+
+impl Base {
+    pub fn word(self) -> &'static str {
+        match self {
+            Base::Plane => "plane",
+        }
+    }
 }
 
 /// Where the sun stands.

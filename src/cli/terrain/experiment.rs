@@ -1,0 +1,184 @@
+//! `experiment NAME`: the paper's table, its figures, and what its conclusion claims.
+
+use clap::{Args, ValueEnum};
+
+use super::TerrainArgs;
+use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::failure::Failure;
+use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::outcome;
+use crate::cli::paper::{ExperimentArgs, PaperArgs, VariantWord, resolve, variant_words};
+use crate::cli::watch::watched;
+use crate::experiment::limits;
+use crate::experiment::machine::Machine;
+use crate::experiment::study::Study;
+use crate::experiment::sweep::{Plan, Point};
+use crate::experiment::terrain::table::{self, Axis, Outcome};
+use crate::experiment::terrain::{Setup, figures};
+use crate::papers::terrain::{NEEDS, Variant, View};
+
+/// The figures and tables that are reproduced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Name {
+    /// Table 1: time by samples a side of the map, all variants
+    #[value(name = "1")]
+    Table1,
+    /// Figure 1: the volcano from above
+    #[value(name = "figure-1")]
+    Figure1,
+    /// Figure 2: the volcano from the side
+    #[value(name = "figure-2")]
+    Figure2,
+    /// Section 5's claim: time by the screen's size
+    Screen,
+    /// Bilinear and bicubic interpolation at both levels of detail: time, and the pictures
+    Interpolation,
+}
+
+impl Name {
+    /// What it sweeps; nothing for a figure.
+    fn axis(self) -> Option<Axis> {
+        match self {
+            Name::Table1 => Some(Axis::Map),
+            Name::Screen => Some(Axis::Screen),
+            Name::Interpolation => Some(Axis::Interpolation),
+            Name::Figure1 | Name::Figure2 => None,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct Experiments {
+    /// Table or figure of the paper
+    #[arg(value_enum, required_unless_present = "list")]
+    name: Option<Name>,
+    /// List the experiments
+    #[arg(long)]
+    list: bool,
+    /// Samples a side in table 1, or widths of the screen in pixels, comma-separated
+    /// [default: 128,256,512,1024,2048,4096,8192,16384, or 200,400,800,1200,1600]
+    #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
+    counts: Vec<u32>,
+    /// Variants of a sweep, comma-separated, or all; a figure shows the first
+    #[arg(long, value_delimiter = ',', default_value = "all", value_parser = variant_words::<Variant>())]
+    variant: Vec<VariantWord<Variant>>,
+    #[command(flatten)]
+    scene: TerrainArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    #[command(flatten)]
+    measure: MeasureArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Frames and repetitions at each point that names none.
+const FRAMES: u32 = 3;
+const REPEAT: u32 = 3;
+
+impl ExperimentArgs for Experiments {
+    fn run(&self) -> Result<(), Failure> {
+        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
+        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
+        self.refuse_unsuited(name)?;
+        publication.check()?;
+        let mut setup = self.scene.resolve(self.measure.process)?;
+        setup.preset = Some(publication.name.clone());
+        let variants = resolve(&self.variant);
+        match name.axis() {
+            None => self.draw(&publication, name, setup, &variants),
+            Some(axis) => self.sweep(&publication, axis, &setup, &variants),
+        }
+    }
+}
+
+impl Experiments {
+    /// Options that other verbs know and this experiment would not heed.
+    fn refuse_unsuited(&self, name: Name) -> Result<(), Failure> {
+        let axis = name.axis();
+        let has_counts = matches!(axis, Some(Axis::Map | Axis::Screen));
+        let is_table = axis == Some(Axis::Map);
+        let scene = &self.scene;
+        let unsuited = [
+            (!has_counts && !self.counts.is_empty(), "--counts: this experiment has none"),
+            (is_table && scene.names_maps(), "--map: table 1 takes the synthetic volcano, which has any size"),
+            (is_table && scene.names_resolution(), "--resolution: table 1 sweeps it; give --counts"),
+            (axis == Some(Axis::Screen) && scene.names_size(), "--size: this experiment sweeps it; give --counts"),
+            (axis.is_none() && self.output.json.is_some(), "--json: a figure is a picture; `1` has a record"),
+            (axis.is_none() && self.output.csv.is_some(), "--csv: a figure is a picture; `1` has rows"),
+        ];
+        refuse(&self.measure, &self.output, &unsuited)
+    }
+
+    fn machine(&self) -> Result<Machine, Failure> {
+        let machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
+        outcome::say_device(&self.output, &machine);
+        Ok(machine)
+    }
+
+    fn draw(
+        &self,
+        publication: &Publication<'_>,
+        name: Name,
+        mut setup: Setup,
+        variants: &[Variant],
+    ) -> Result<(), Failure> {
+        if !self.scene.names_resolution() {
+            setup.resolution = figures::SIDE;
+        }
+        if !self.scene.names_camera() {
+            setup.parameters.view = if name == Name::Figure1 { View::Top } else { View::Side };
+        }
+        // All variants show one surface; of all, the paper's second application stands for them.
+        let variant = match variants {
+            [only] => *only,
+            _ => Variant::GpuCompute,
+        };
+        setup.load()?;
+        let mut machine = self.machine()?;
+        let picture = figures::draw(&mut machine, &setup, variant)?;
+        machine.check_validation()?;
+        publication.picture(".png", &picture)
+    }
+
+    fn sweep(
+        &self,
+        publication: &Publication<'_>,
+        axis: Axis,
+        setup: &Setup,
+        variants: &[Variant],
+    ) -> Result<(), Failure> {
+        let counts = |default: &[u32]| if self.counts.is_empty() { default.to_vec() } else { self.counts.clone() };
+        let points = match axis {
+            Axis::Map => table::by_map(setup, &counts(&table::SIDES), variants),
+            Axis::Screen => table::by_screen(setup, &counts(&table::WIDTHS), variants),
+            Axis::Interpolation => table::by_interpolation(setup, variants),
+        };
+        check(&points)?;
+        let mut machine = self.machine()?;
+        let limits = if self.measure.no_limits { None } else { Some(limits::measure(&mut machine)?) };
+        let plan = Plan { schedule: self.measure.schedule(FRAMES, REPEAT), limits: limits.as_ref() };
+        let what = format!("{} {}", Setup::PAPER, publication.name);
+        let swept = watched(self.output.quiet, &what, |watch| plan.measure(&points, &mut machine, watch))?;
+        let outcome = Outcome::new(axis, swept.rows);
+        let (table, plots) = (outcome.render(outcome::style()), [(".svg".to_owned(), outcome.plot()?)]);
+        publication.runs(&machine, outcome.into_runs(), table, &plots)?;
+        if axis == Axis::Interpolation {
+            for point in &points {
+                let picture = figures::draw(&mut machine, &point.study, Variant::GpuCompute)?;
+                publication.picture(&format!("-{}.png", point.label.replace(' ', "-")), &picture)?;
+            }
+        }
+        machine.check_validation()?;
+        swept.stopped.map_or(Ok(()), |error| Err(error.into()))
+    }
+}
+
+/// Checks what can be checked of every point before the first is measured; a map that is larger than the others is made
+/// when its turn comes.
+fn check(points: &[Point<Setup>]) -> Result<(), Failure> {
+    for point in points {
+        point.study.check().map_err(Failure::from)?;
+    }
+    Ok(())
+}

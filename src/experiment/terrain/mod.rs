@@ -1,0 +1,190 @@
+//! The experiments of the `terrain` paper: what a user set up, what a run says of itself, the table and the figures.
+
+pub mod figures;
+pub mod table;
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use serde_json::{Map, Value, json};
+
+use super::bench::Built;
+use super::error::Error;
+use super::machine::Machine;
+use super::measure::Measurement;
+use super::statistics::median;
+use super::study::{Findings, Identity, Study};
+use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::papers::ParameterError;
+use crate::papers::terrain::{MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
+use crate::scene::{HeightMap, HeightMapSource, volcano};
+
+/// What a user set up.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    pub parameters: Parameters,
+    /// At least one.
+    pub maps: Vec<PlacedMap>,
+    /// Samples a side of the synthetic volcano.
+    pub resolution: u32,
+    /// Metres between samples, in place of what a map says of itself.
+    pub spacing_m: Option<f64>,
+    /// What heights are multiplied by.
+    pub exaggeration: f32,
+    /// Of the synthetic volcano.
+    pub seed: u64,
+    pub preset: Option<String>,
+    /// Which of several fresh processes this is.
+    pub process: u32,
+}
+
+/// A map and where it lies.
+#[derive(Debug, Clone)]
+pub struct PlacedMap {
+    pub source: HeightMapSource,
+    pub placement: Placement,
+}
+
+impl Default for Setup {
+    /// The synthetic volcano at 1024 x 1024 samples.
+    fn default() -> Self {
+        Setup {
+            parameters: Parameters::default(),
+            maps: vec![PlacedMap { source: HeightMapSource::Volcano, placement: Placement::default() }],
+            resolution: HeightMapSource::VOLCANO_SIDE,
+            spacing_m: None,
+            exaggeration: 1.0,
+            seed: 1,
+            preset: None,
+            process: 0,
+        }
+    }
+}
+
+/// A setup with its maps loaded.
+pub struct Scene {
+    pub maps: Vec<MapInput>,
+}
+
+impl Setup {
+    /// Checks what needs no map.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`].
+    pub fn check(&self) -> Result<(), Error> {
+        self.parameters.validate()?;
+        let check = |good, name, value: f64, range| ParameterError::check(good, name, value, range);
+        let sides = HeightMap::SIDE;
+        let range = format!("must be {} to {} samples a side", sides.start(), sides.end());
+        check(sides.contains(&self.resolution), "--resolution", self.resolution.into(), &range)?;
+        let spacing_m = self.spacing_m.unwrap_or(1.0);
+        check((1e-6..=1e6).contains(&spacing_m), "--spacing", spacing_m, "must be 0.000001 to 1000000 metres")?;
+        let exaggeration = self.exaggeration.into();
+        check((1e-3..=1e3).contains(&exaggeration), "--exaggeration", exaggeration, "must be 0.001 to 1000")?;
+        Ok(())
+    }
+
+    fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
+        let mut map = match source {
+            HeightMapSource::Volcano => volcano(self.resolution, self.seed)?,
+            other => other.load()?,
+        };
+        if let Some(spacing_m) = self.spacing_m {
+            map = map.with_spacing_m(DVec2::splat(spacing_m))?;
+        }
+        if self.exaggeration != 1.0 {
+            map = map.with_exaggeration(self.exaggeration)?;
+        }
+        Ok(map)
+    }
+}
+
+impl Study for Setup {
+    const PAPER: &'static str = "terrain";
+    const NEEDS: &'static [Feature] = &NEEDS;
+
+    type Variant = Variant;
+    type Scene = Scene;
+    type Paper = Terrain;
+
+    /// Checks the parameters and loads the maps.
+    fn load(&self) -> Result<Scene, Error> {
+        self.check()?;
+        let input = |placed: &PlacedMap| -> Result<MapInput, Error> {
+            Ok(MapInput { map: Arc::new(self.load_map(&placed.source)?), placement: placed.placement })
+        };
+        Ok(Scene { maps: self.maps.iter().map(input).collect::<Result<_, _>>()? })
+    }
+
+    fn make(
+        &self,
+        shaders: &ShaderLibrary,
+        label: &str,
+        scene: &Scene,
+        variant: Variant,
+    ) -> Result<Terrain, gpu::Error> {
+        Terrain::new(shaders, label, variant, &self.parameters, &scene.maps)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity {
+            preset: self.preset.clone(),
+            width: self.parameters.width,
+            height: self.parameters.height,
+            seed: self.seed,
+            process: self.process,
+        }
+    }
+
+    fn config(&self, scene: &Scene, _: &Terrain) -> Map<String, Value> {
+        let p = &self.parameters;
+        let maps: Vec<Value> = self
+            .maps
+            .iter()
+            .zip(&scene.maps)
+            .map(|(placed, input)| {
+                let Placement { center_m, turn_rad } = placed.placement;
+                json!({
+                    "source": placed.source.to_string(), "samples": [input.map.width(), input.map.height()],
+                    "spacing": input.map.spacing_m().to_array(), "voids_filled": input.map.voids_filled(),
+                    "place": [center_m.x, center_m.y, turn_rad.to_degrees()],
+                })
+            })
+            .collect();
+        let first = scene.maps.first().map(|input| input.map.width().max(input.map.height()));
+        let view = match p.view {
+            View::Side => json!("side"),
+            View::Top => json!("top"),
+            View::Camera(camera) => json!([camera.eye.to_array(), camera.target.to_array()]),
+        };
+        let entries = [
+            ("resolution", json!(first)),
+            ("maps", json!(maps)),
+            ("exaggeration", json!(self.exaggeration)),
+            ("lod", json!(p.lod.word())),
+            ("interpolation", json!(p.interpolation.word())),
+            ("base", json!(p.base.word())),
+            ("base_level", json!(p.base_level_m)),
+            ("camera", view),
+            ("sun", json!([p.sun.azimuth_rad.to_degrees(), p.sun.elevation_rad.to_degrees()])),
+            ("haze", json!(p.haze_per_km)),
+        ];
+        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    fn summary(&self) -> String {
+        let maps: Vec<String> = self.maps.iter().map(|placed| placed.source.to_string()).collect();
+        format!("{}, {} samples a side", maps.join(" + "), self.resolution)
+    }
+
+    fn findings(&self, _: &mut Machine, measured: &mut [(Built<Self>, Measurement)]) -> Result<Vec<Findings>, Error> {
+        let rays = f64::from(self.parameters.width) * f64::from(self.parameters.height);
+        let findings = measured.iter().map(|(_, measurement)| {
+            let frame_ms = median(&measurement.frame_ms).filter(|&ms| ms > 0.0);
+            let entries = [("mrays_per_s", json!(frame_ms.map(|ms| rays / ms / 1e3)))];
+            let results = entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+            Findings { results, warnings: Vec::new() }
+        });
+        Ok(findings.collect())
+    }
+}
