@@ -2,29 +2,36 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// Why a mesh or a camera cannot be used. Every message is one line.
+/// Why a mesh, a height map or a camera cannot be used. Every message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("cannot read {}: {source}; check the path and its permissions", path.display())]
     Read { path: PathBuf, source: io::Error },
-    #[error("cannot read {}: it is not a regular file; name a mesh file", path.display())]
-    NotAFile { path: PathBuf },
-    #[error("cannot load mesh {}: unknown file ending {ending:?}; known endings are {known}", path.display())]
-    UnknownEnding { path: PathBuf, ending: String, known: String },
+    #[error("cannot read {}: it is not a regular file; name a {asset} file", path.display())]
+    NotAFile { path: PathBuf, asset: Asset },
+    #[error("cannot load {asset} {}: unknown file ending {ending:?}; known endings are {known}", path.display())]
+    UnknownEnding { path: PathBuf, asset: Asset, ending: String, known: String },
     #[error(
         "cannot read {}: its {size_bytes} bytes exceed the limit of {limit_bytes}; split or simplify the mesh",
         path.display()
     )]
     TooLarge { path: PathBuf, size_bytes: u64, limit_bytes: u64 },
-    #[error("cannot load mesh {}: {fault}", path.display())]
-    Malformed { path: PathBuf, fault: Fault },
+    #[error("cannot load {asset} {}: {fault}", path.display())]
+    Malformed { path: PathBuf, asset: Asset, fault: Fault },
     #[error("cannot use the camera: {reason}")]
     Camera { reason: String },
     #[error("cannot use the height map: {reason}")]
     HeightMap { reason: String },
 }
 
-/// What is wrong with the contents of a mesh, and where.
+/// What a file is read as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asset {
+    Mesh,
+    HeightMap,
+}
+
+/// What is wrong with the contents of a mesh or a height map, and where.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{reason}")]
 pub struct Fault {
@@ -32,7 +39,7 @@ pub struct Fault {
     pub reason: String,
 }
 
-/// A place in a mesh file or a mesh.
+/// A place in a file or a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     Whole,
@@ -44,7 +51,7 @@ pub enum Place {
     Vertex(usize),
     /// Face number, from 0.
     Face(usize),
-    /// A named part, such as a buffer of a glTF file.
+    /// A named part, such as a buffer of a glTF file or a sample of a map.
     Part(String),
 }
 
@@ -69,6 +76,15 @@ impl Fault {
             reason.push_str("...");
         }
         Self { place, reason }
+    }
+}
+
+impl fmt::Display for Asset {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Mesh => "mesh",
+            Self::HeightMap => "height map",
+        })
     }
 }
 

@@ -1,12 +1,13 @@
-//! What is rendered, on the CPU only: meshes, cameras, lights and seeded random numbers.
+//! What is rendered, on the CPU only: meshes, height maps, cameras, lights and seeded random numbers.
 //!
 //! The world is right handed with +Y up. A [`MeshSource`] is what a user types (a built-in shape or
 //! a file); [`MeshSource::load`] turns it into a checked [`Mesh`] or an [`Error`] that names the
-//! file and the place in it.
+//! file and the place in it. So does a [`HeightMapSource`] with a [`HeightMap`].
 
 mod bounds;
 mod camera;
 mod error;
+mod file;
 mod formats;
 mod height_map;
 mod light;
@@ -19,8 +20,8 @@ mod source;
 
 pub use bounds::Bounds;
 pub use camera::Camera;
-pub use error::{Error, Fault, Place};
-pub use height_map::{Geographic, HeightMap, Samples, volcano};
+pub use error::{Asset, Error, Fault, Place};
+pub use height_map::{Geographic, HeightMap, HeightMapSource, Samples, volcano};
 pub use light::Light;
 pub use mesh::Mesh;
 pub use source::MeshSource;

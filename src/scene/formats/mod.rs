@@ -8,9 +8,8 @@ mod obj;
 mod ply;
 mod stl;
 
-use crate::scene::error::Fault;
-use crate::scene::{Error, Mesh};
-use std::fs::{self, File};
+use crate::scene::error::{Asset, Fault};
+use crate::scene::{Error, Mesh, file};
 use std::io::Read;
 use std::path::Path;
 
@@ -36,13 +35,14 @@ pub(super) fn load(path: &Path) -> Result<Mesh, Error> {
     let Some((_, parse)) = FORMATS.iter().find(|(known, _)| ending.eq_ignore_ascii_case(known)) else {
         return Err(Error::UnknownEnding {
             path: path.to_owned(),
+            asset: Asset::Mesh,
             ending: ending.into_owned(),
             known: FORMATS.map(|(known, _)| format!(".{known}")).join(", "),
         });
     };
     let bytes = read(path)?;
     let directory = path.parent().unwrap_or(Path::new(""));
-    let mesh = parse(bytes, directory).map_err(|fault| Error::Malformed { path: path.to_owned(), fault })?;
+    let mesh = parse(bytes, directory).map_err(|fault| malformed(path, fault))?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     Ok(Mesh { name: name.into_owned(), ..mesh })
 }
@@ -50,24 +50,25 @@ pub(super) fn load(path: &Path) -> Result<Mesh, Error> {
 /// The scanned mesh that the program carries.
 pub(super) fn bunny() -> Result<Mesh, Error> {
     let bytes = include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/meshes/bunny.obj"));
-    let mesh = obj::parse(bytes).map_err(|fault| Error::Malformed { path: "bunny.obj".into(), fault })?;
+    let mesh = obj::parse(bytes).map_err(|fault| malformed(Path::new("bunny.obj"), fault))?;
     Ok(Mesh { name: "bunny".to_owned(), ..mesh })
 }
 
-/// The bytes of a regular file, which rules out devices and pipes that never end.
+fn malformed(path: &Path, fault: Fault) -> Error {
+    Error::Malformed { path: path.to_owned(), asset: Asset::Mesh, fault }
+}
+
+/// The bytes of a regular file.
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
-    let metadata = fs::metadata(path).map_err(failed)?;
-    if !metadata.is_file() {
-        return Err(Error::NotAFile { path: path.to_owned() });
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(Error::TooLarge { path: path.to_owned(), size_bytes: metadata.len(), limit_bytes: MAX_FILE_BYTES });
+    let (file, size_bytes) = file::open(path, Asset::Mesh)?;
+    if size_bytes > MAX_FILE_BYTES {
+        return Err(Error::TooLarge { path: path.to_owned(), size_bytes, limit_bytes: MAX_FILE_BYTES });
     }
     let mut bytes = Vec::new();
-    bytes.try_reserve_exact(metadata.len() as usize).map_err(|error| failed(error.into()))?;
+    bytes.try_reserve_exact(size_bytes as usize).map_err(|error| failed(error.into()))?;
     // A file that grows meanwhile is cut, and its reader says so.
-    File::open(path).and_then(|file| file.take(MAX_FILE_BYTES).read_to_end(&mut bytes)).map_err(failed)?;
+    file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(failed)?;
     Ok(bytes)
 }
 

@@ -129,8 +129,8 @@ impl HeightMap {
         Ok(Self { samples, range_m, ..self })
     }
 
-    pub(super) fn with_geographic(self, geographic: Option<Geographic>) -> Self {
-        Self { geographic, ..self }
+    pub(super) fn with_geographic(self, geographic: Geographic) -> Self {
+        Self { geographic: Some(geographic), ..self }
     }
 
     pub(super) fn with_voids_filled(self, voids_filled: u64) -> Self {

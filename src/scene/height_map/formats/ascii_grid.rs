@@ -1,0 +1,248 @@
+use super::binary::allocate;
+use super::placement::{MapCoordinates, Unit};
+use crate::scene::HeightMap;
+use crate::scene::error::{Fault, Place};
+use crate::scene::height_map::grid::{Grid, Placement};
+use crate::scene::height_map::map::check_size;
+use glam::DVec2;
+use std::io::BufRead;
+
+/// The longest number that a program would write is some 30 characters.
+const LONGEST_WORD: usize = 64;
+
+/// Reads an Esri ASCII grid: lines of a word and a number, then the heights, row by row from the north.
+pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) -> Result<HeightMap, Fault> {
+    let mut words = Words { input, line: 1 };
+    let mut header = Header::default();
+    let first = loop {
+        let Some(word) = words.next()? else {
+            return Err(
+                words.fault("the file ends before its first height; it is cut off or something else".to_owned())
+            );
+        };
+        // "nan" can be a height.
+        if word.starts_with(|first: char| first.is_ascii_alphabetic()) && !word.eq_ignore_ascii_case("nan") {
+            header.set(&word, &mut words)?;
+        } else {
+            break word;
+        }
+    };
+    let (width, height) = header.size(size_bytes)?;
+    let count = width as usize * height as usize;
+    let mut values = allocate::<f32>(count)?;
+    let no_data = header.no_data;
+    let mut integral = true;
+    let mut word = Some(first);
+    for index in 0..count {
+        let Some(text) = word else {
+            let reason =
+                format!("{index} heights for ncols x nrows = {width} x {height}, which makes {count}; it is cut off");
+            return Err(words.fault(reason));
+        };
+        let value = words.number(&text, "height")?;
+        integral &= value.fract() == 0.0 || no_data == Some(value);
+        values[index] = value as f32;
+        word = words.next()?;
+    }
+    if word.is_some() {
+        return Err(words.fault(format!("more than the {count} heights that ncols x nrows = {width} x {height} makes")));
+    }
+    let placement = header.placement(width, height, unit);
+    Grid { width, height, values, integral, no_data, placement }.into_map()
+}
+
+/// The numbers above the heights, as far as the file gives them.
+#[derive(Default)]
+struct Header {
+    columns: Option<f64>,
+    rows: Option<f64>,
+    /// Coordinate of the west edge and of the first column's centre.
+    west: [Option<f64>; 2],
+    /// Coordinate of the south edge and of the last row's centre.
+    south: [Option<f64>; 2],
+    step: [Option<f64>; 2],
+    no_data: Option<f64>,
+}
+
+impl Header {
+    fn set(&mut self, key: &str, words: &mut Words<impl BufRead>) -> Result<(), Fault> {
+        let key = key.to_ascii_lowercase();
+        let Some(value) = words.next()? else { return Err(words.fault(format!("the file ends after {key:?}"))) };
+        let value = words.number(&value, &key)?;
+        let field = match key.as_str() {
+            "ncols" => &mut self.columns,
+            "nrows" => &mut self.rows,
+            "xllcorner" => &mut self.west[0],
+            "xllcenter" => &mut self.west[1],
+            "yllcorner" => &mut self.south[0],
+            "yllcenter" => &mut self.south[1],
+            "cellsize" | "dx" => &mut self.step[0],
+            "dy" => &mut self.step[1],
+            "nodata_value" => &mut self.no_data,
+            _ => {
+                let known = "ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, nodata_value";
+                return Err(words.fault(format!("the word {key:?} is none of {known}")));
+            }
+        };
+        if field.replace(value).is_some() {
+            return Err(words.fault(format!("{key} is given twice")));
+        }
+        if matches!(key.as_str(), "cellsize" | "dx" | "dy") && !(value.is_finite() && value > 0.0) {
+            return Err(words.fault(format!("{key} is {value}; it has to be positive")));
+        }
+        Ok(())
+    }
+
+    /// Columns and rows, which the file is large enough for.
+    fn size(&self, size_bytes: u64) -> Result<(u32, u32), Fault> {
+        let whole = |reason: String| Fault::new(Place::Whole, reason);
+        let side = |value: Option<f64>, key: &str| match value {
+            Some(side) if side.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&side) => Ok(side as u32),
+            Some(side) => Err(whole(format!("{key} is {side}; it has to be a whole number of samples"))),
+            None => Err(whole(format!("the header has no {key}"))),
+        };
+        let (width, height) = (side(self.columns, "ncols")?, side(self.rows, "nrows")?);
+        check_size(width.into(), height.into())
+            .map_err(|reason| whole(format!("by ncols and nrows of its header, {reason}")))?;
+        // A digit and a blank each.
+        let least_bytes = 2 * u64::from(width) * u64::from(height) - 1;
+        if size_bytes < least_bytes {
+            return Err(whole(format!(
+                "its size is {size_bytes} bytes, but the heights of ncols x nrows = {width} x {height} take at least \
+                 {least_bytes}; it is cut off"
+            )));
+        }
+        Ok((width, height))
+    }
+
+    fn placement(&self, width: u32, height: u32, unit: Option<Unit>) -> Placement {
+        let Some(x) = self.step[0].or(self.step[1]) else { return Placement::Unknown };
+        let step = DVec2::new(x, self.step[1].unwrap_or(x));
+        let west = self.west[1].or(self.west[0].map(|edge| edge + step.x / 2.0));
+        let south = self.south[1].or(self.south[0].map(|edge| edge + step.y / 2.0));
+        let north_west = west.zip(south).map(|(west, south)| DVec2::new(west, south + step.y * f64::from(height - 1)));
+        MapCoordinates { north_west, step, width, height }.placed(unit)
+    }
+}
+
+/// The words of a text, which is never held as a whole.
+struct Words<R> {
+    input: R,
+    /// Line of the word read last, from 1.
+    line: usize,
+}
+
+impl<R: BufRead> Words<R> {
+    fn next(&mut self) -> Result<Option<String>, Fault> {
+        let mut word = Vec::new();
+        loop {
+            let place = Place::Line(self.line);
+            let buffer = self.input.fill_buf().map_err(|error| Fault::foreign(place, &error))?;
+            if buffer.is_empty() {
+                break;
+            }
+            let skipped =
+                if word.is_empty() { buffer.iter().take_while(|b| b.is_ascii_whitespace()).count() } else { 0 };
+            let (blank, rest) = buffer.split_at(skipped);
+            self.line += blank.iter().filter(|byte| **byte == b'\n').count();
+            let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
+            word.extend(&rest[..length.min(LONGEST_WORD + 1)]);
+            let is_complete = length < rest.len() && !word.is_empty();
+            self.input.consume(skipped + length);
+            if word.len() > LONGEST_WORD {
+                return Err(self.fault(format!("a word of more than {LONGEST_WORD} bytes; this is no ASCII grid")));
+            }
+            if is_complete {
+                break;
+            }
+        }
+        if word.is_empty() {
+            return Ok(None);
+        }
+        let word = String::from_utf8(word).map_err(|_| self.fault("bytes that are no text".to_owned()))?;
+        Ok(Some(word))
+    }
+
+    fn number(&self, word: &str, what: &str) -> Result<f64, Fault> {
+        word.parse().map_err(|_| self.fault(format!("{what} is {word:?}, not a number")))
+    }
+
+    fn fault(&self, reason: String) -> Fault {
+        Fault::new(Place::Line(self.line), reason)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Samples;
+
+    fn read(text: &str) -> Result<HeightMap, Fault> {
+        // A small buffer, so that words are cut by its end.
+        parse(text.len() as u64, std::io::BufReader::with_capacity(5, text.as_bytes()), None)
+    }
+
+    #[test]
+    fn whole_heights_become_steps_and_lines_may_break_anywhere() {
+        let map = read(
+            "NCOLS 3\r\nnrows 2\nxllcorner 100\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n1 -2\n30000 4 -9999\n\n6",
+        )
+        .unwrap();
+        let Samples::Steps { values, origin_m, step_m } = map.samples() else { panic!("{map:?}") };
+        assert_eq!((values.as_slice(), *origin_m, *step_m), ([3, 0, 30_002, 6, 5, 8].as_slice(), -2.0, 1.0));
+        assert_eq!((map.voids_filled(), map.spacing_m(), map.geographic()), (1, DVec2::splat(10.0), None));
+    }
+
+    #[test]
+    fn fractions_and_wide_ranges_stay_float() {
+        for heights in ["0.5 1 2 3", "0 1 2 65536"] {
+            let map = read(&format!("ncols 2\nnrows 2\ncellsize 1\n{heights}\n")).unwrap();
+            assert!(matches!(map.samples(), Samples::Float(_)), "{heights}");
+        }
+    }
+
+    #[test]
+    fn degrees_are_placed_by_centre_or_corner() {
+        for (x, y) in [("xllcorner 140", "yllcorner 37"), ("xllcenter 140.05", "yllcenter 37.05")] {
+            let step = "cellsize 0.1\n";
+            let map = read(&format!("ncols 2\nnrows 3\n{x}\n{y}\n{step}1 2 3 4 5 6"));
+            // 0.1 degrees could be metres.
+            assert_eq!(map.unwrap().spacing_m(), DVec2::splat(0.1));
+            let (x, y) = (x.replace("140.05", "140.025"), y.replace("37.05", "37.02"));
+            let place = read(&format!("ncols 2\nnrows 3\n{x}\n{y}\ndx 0.05\ndy 0.04\n1 2 3 4 5 6"))
+                .unwrap()
+                .geographic()
+                .unwrap();
+            assert!((place.west_deg - 140.025).abs() < 1e-12 && (place.north_deg - 37.1).abs() < 1e-12, "{place:?}");
+            assert_eq!(place.step_deg, DVec2::new(0.05, 0.04));
+        }
+    }
+
+    #[test]
+    fn faults_name_line_and_field() {
+        let head = "ncols 2\nnrows 2\n";
+        for (text, message) in [
+            ("", "line 1: the file ends before its first height"),
+            ("ncols", "line 1: the file ends after \"ncols\""),
+            ("ncols two\n", "line 1: ncols is \"two\", not a number"),
+            ("ncols 2\nncols 2\n", "line 2: ncols is given twice"),
+            ("rows 2\n", "line 1: the word \"rows\" is none of ncols, nrows"),
+            ("ncols 2\n1 2 3 4", "the header has no nrows"),
+            ("ncols 0\nnrows 5\n1", "by ncols and nrows of its header, it has 0 x 5 samples"),
+            ("ncols 16385\nnrows 5\n1", "16385 x 5 samples; a map has 2 to 16384 a side"),
+            ("ncols 2.5\nnrows 5\n1", "ncols is 2.5; it has to be a whole number"),
+            ("ncols 900\nnrows 900\n1 2", "heights of ncols x nrows = 900 x 900 take at least 1619999"),
+            (&format!("{head}cellsize -1\n1 2 3 4"), "line 3: cellsize is -1; it has to be positive"),
+            (&format!("{head}1 2\n3"), "line 4: 3 heights for ncols x nrows = 2 x 2, which makes 4"),
+            (&format!("{head}1 2\n3 4\n5"), "line 5: more than the 4 heights"),
+            (&format!("{head}1 2\n3 x"), "line 4: height is \"x\", not a number"),
+            (&format!("{head}1 2\n3 nan"), "row 1, column 1: its height is NaN, not a finite number"),
+            (&format!("{head}1 2\n3 1e39"), "row 1, column 1: its height is inf"),
+            (&format!("{head}nodata_value 7\n7 7\n7 7"), "all its samples are void"),
+            (&"x".repeat(1_000), "line 1: a word of more than 64 bytes"),
+        ] {
+            let fault = read(text).unwrap_err().to_string();
+            assert!(fault.contains(message), "{text:?}: {fault}");
+        }
+    }
+}

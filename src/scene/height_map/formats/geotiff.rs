@@ -1,0 +1,182 @@
+use super::check_compressed;
+use super::placement::{MapCoordinates, Unit};
+use crate::scene::HeightMap;
+use crate::scene::error::{Fault, Place};
+use crate::scene::height_map::grid::{Grid, Placement};
+use crate::scene::height_map::map::check_size;
+use glam::DVec2;
+use std::io::{Read, Seek};
+use tiff::ColorType;
+use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+
+/// The largest map in 64 bits a sample.
+const MAX_BYTES: usize = 8 << 28;
+/// Tables of strips or tiles.
+const MAX_TAG_BYTES: usize = 16 << 20;
+const GDAL_METADATA: Tag = Tag::Unknown(42_112);
+const GEO_DOUBLE_PARAMETERS: Tag = Tag::Unknown(34_736);
+
+/// Reads the first picture of a TIFF or BigTIFF, in strips or tiles, with the tags of GeoTIFF and GDAL where they are
+/// there.
+pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMap, Fault> {
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = MAX_BYTES;
+    limits.intermediate_buffer_size = MAX_BYTES;
+    limits.ifd_value_size = MAX_TAG_BYTES;
+    let mut decoder = Decoder::new(input).map_err(foreign)?.with_limits(limits);
+    let (width, height) = decoder.dimensions().map_err(foreign)?;
+    check_size(width.into(), height.into()).map_err(|reason| fault("ImageWidth, ImageLength", reason))?;
+    let ColorType::Gray(bits) = decoder.colortype().map_err(foreign)? else {
+        return Err(fault("SamplesPerPixel", "it is no picture of one channel; a height map has one band"));
+    };
+    check_compressed(size_bytes, (width, height), bits.into())
+        .map_err(|reason| fault("ImageWidth, ImageLength, BitsPerSample", reason))?;
+    let mut tags = Tags(&mut decoder);
+    tags.refuse_scaled_heights()?;
+    let (no_data, placement) = (tags.no_data()?, tags.placement(width, height)?);
+    let source = Source { width, height, no_data, placement };
+    match decoder.read_image().map_err(foreign)? {
+        DecodingResult::U8(_) | DecodingResult::I8(_) if bits != 8 => {
+            Err(fault("BitsPerSample", format!("it is {bits}; 8, 16, 32 and 64 can be read")))
+        }
+        DecodingResult::U8(values) => source.map(values, true),
+        DecodingResult::I8(values) => source.map(values, true),
+        DecodingResult::U16(values) => source.map(values, true),
+        DecodingResult::I16(values) => source.map(values, true),
+        DecodingResult::U32(values) => source.map(values, true),
+        DecodingResult::I32(values) => source.map(values, true),
+        DecodingResult::U64(values) => source.map(values.into_iter().map(|value| value as f64).collect(), true),
+        DecodingResult::I64(values) => source.map(values.into_iter().map(|value| value as f64).collect(), true),
+        DecodingResult::F16(values) => source.map(values.into_iter().map(f32::from).collect(), false),
+        DecodingResult::F32(values) => source.map(values, false),
+        DecodingResult::F64(values) => source.map(values, false),
+    }
+}
+
+struct Source {
+    width: u32,
+    height: u32,
+    no_data: Option<f64>,
+    placement: Placement,
+}
+
+impl Source {
+    fn map<T: Copy + Into<f64>>(self, values: Vec<T>, integral: bool) -> Result<HeightMap, Fault> {
+        let Self { width, height, no_data, placement } = self;
+        Grid { width, height, values, integral, no_data, placement }.into_map()
+    }
+}
+
+/// The tags that concern heights and places.
+struct Tags<'a, R: Read + Seek>(&'a mut Decoder<R>);
+
+impl<R: Read + Seek> Tags<'_, R> {
+    fn no_data(&mut self) -> Result<Option<f64>, Fault> {
+        let Some(text) = self.text(Tag::GdalNodata, "GDAL_NODATA")? else { return Ok(None) };
+        let number = text.trim_matches(|character: char| character == '\0' || character.is_whitespace());
+        let shown: String = number.chars().take(40).collect();
+        number.parse().map(Some).map_err(|_| fault("GDAL_NODATA", format!("it is {shown:?}, not a number")))
+    }
+
+    /// GDAL may store heights / scale; reading them as metres would be wrong in silence.
+    fn refuse_scaled_heights(&mut self) -> Result<(), Fault> {
+        let metadata = self.text(GDAL_METADATA, "GDAL_METADATA")?.unwrap_or_default();
+        if metadata.contains("role=\"scale\"") || metadata.contains("role=\"offset\"") {
+            let reason = "it gives heights a scale or an offset; write plain metres with gdal_translate -unscale";
+            return Err(fault("GDAL_METADATA", reason));
+        }
+        Ok(())
+    }
+
+    fn placement(&mut self, width: u32, height: u32) -> Result<Placement, Fault> {
+        let keys = self.keys()?;
+        // What a tie point names: the sample's corner, or with PixelIsPoint its centre.
+        let offset = if keys.raster_type == Some(2) { 0.0 } else { 0.5 };
+        let (corner, step) = if let Some(scale) = self.numbers(Tag::ModelPixelScaleTag, "ModelPixelScale", 2)? {
+            let step = DVec2::new(scale[0], scale[1]);
+            let corner = self
+                .numbers(Tag::ModelTiepointTag, "ModelTiepoint", 6)?
+                .map(|tie| DVec2::new(tie[3] - tie[0] * step.x, tie[4] + tie[1] * step.y));
+            (corner, step)
+        } else if let Some(matrix) = self.numbers(Tag::ModelTransformationTag, "ModelTransformation", 16)? {
+            if matrix[1] != 0.0 || matrix[4] != 0.0 {
+                let reason = "it turns the map; write one with north up with gdalwarp";
+                return Err(fault("ModelTransformation", reason));
+            }
+            (Some(DVec2::new(matrix[3], matrix[7])), DVec2::new(matrix[0], -matrix[5]))
+        } else {
+            return Ok(Placement::Unknown);
+        };
+        if !(step.is_finite() && step.min_element() > 0.0) {
+            let reason = format!("it makes steps of {} and {}; both have to be positive", step.x, step.y);
+            return Err(fault("ModelPixelScale", reason));
+        }
+        let north_west = corner.map(|corner| corner + DVec2::new(step.x, -step.y) * offset);
+        Ok(MapCoordinates { north_west, step, width, height }.placed(keys.unit))
+    }
+
+    /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the header.
+    fn keys(&mut self) -> Result<Keys, Fault> {
+        let directory = match self.0.find_tag(Tag::GeoKeyDirectoryTag).map_err(foreign)? {
+            Some(value) => value.into_u16_vec().map_err(|error| Fault::foreign(part("GeoKeyDirectory"), &error))?,
+            None => Vec::new(),
+        };
+        let short = |key: u16| {
+            let entry = directory.chunks_exact(4).skip(1).find(|entry| entry[0] == key && entry[1] == 0);
+            entry.map(|entry| entry[3])
+        };
+        let unit = match (short(1_024), short(3_076), short(2_054)) {
+            (Some(1), Some(9_002), _) => Some(Unit::Metres(0.3048)),
+            (Some(1), Some(9_003), _) => Some(Unit::Metres(1_200.0 / 3_937.0)),
+            (Some(1), None | Some(9_001), _) => Some(Unit::Metres(1.0)),
+            (Some(1), Some(32_767), _) => {
+                let entry = directory.chunks_exact(4).skip(1).find(|entry| entry[0] == 3_077 && entry[1] == 34_736);
+                let sizes = self.numbers(GEO_DOUBLE_PARAMETERS, "GeoDoubleParams", 1)?.unwrap_or_default();
+                let size = entry.and_then(|entry| sizes.get(usize::from(entry[3])));
+                Some(Unit::Metres(size.copied().filter(|size| size.is_finite() && *size > 0.0).unwrap_or(1.0)))
+            }
+            (Some(1), Some(other), _) => {
+                return Err(fault("ProjLinearUnits", format!("the unit {other} is not known; use metres or feet")));
+            }
+            (Some(2), _, None | Some(9_102)) => Some(Unit::Degrees),
+            (Some(2), _, Some(other)) => {
+                return Err(fault("GeogAngularUnits", format!("the unit {other} is not known; use degrees (9102)")));
+            }
+            _ => None,
+        };
+        Ok(Keys { raster_type: short(1_025), unit })
+    }
+
+    fn text(&mut self, tag: Tag, name: &str) -> Result<Option<String>, Fault> {
+        let Some(value) = self.0.find_tag(tag).map_err(foreign)? else { return Ok(None) };
+        value.into_string().map(Some).map_err(|error| Fault::foreign(part(name), &error))
+    }
+
+    /// A tag's numbers, at least so many.
+    fn numbers(&mut self, tag: Tag, name: &str, least: usize) -> Result<Option<Vec<f64>>, Fault> {
+        let Some(value) = self.0.find_tag(tag).map_err(foreign)? else { return Ok(None) };
+        let numbers = value.into_f64_vec().map_err(|error| Fault::foreign(part(name), &error))?;
+        if numbers.len() < least {
+            return Err(fault(name, format!("it has {} numbers instead of {least}", numbers.len())));
+        }
+        Ok(Some(numbers))
+    }
+}
+
+struct Keys {
+    raster_type: Option<u16>,
+    unit: Option<Unit>,
+}
+
+fn part(tag: &str) -> Place {
+    Place::Part(tag.to_owned())
+}
+
+fn fault(tag: &str, reason: impl Into<String>) -> Fault {
+    Fault::new(part(tag), reason)
+}
+
+fn foreign(error: tiff::TiffError) -> Fault {
+    Fault::foreign(Place::Whole, &error)
+}

@@ -1,0 +1,122 @@
+//! How far apart the samples of a raster with map coordinates lie.
+
+use super::read_text;
+use crate::scene::error::Asset;
+use crate::scene::height_map::Geographic;
+use crate::scene::height_map::grid::Placement;
+use crate::scene::{Error, file};
+use glam::DVec2;
+use std::path::Path;
+
+/// The unit of map coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Unit {
+    Degrees,
+    /// So many metres.
+    Metres(f64),
+}
+
+/// Steps of a degree or more are taken for metres where nothing names the unit.
+const COARSEST_DEG: f64 = 0.1;
+
+/// Where a raster lies in map coordinates of an unnamed unit: the centre of its north-west sample, and the steps east and
+/// south between samples.
+pub(super) struct MapCoordinates {
+    pub(super) north_west: Option<DVec2>,
+    pub(super) step: DVec2,
+    pub(super) width: u32,
+    pub(super) height: u32,
+}
+
+impl MapCoordinates {
+    /// The placement in the unit given; without one, coordinates that can be longitude and latitude in steps below 0.1
+    /// degrees are taken for degrees, as GTOPO30 has them, and all others for metres.
+    pub(super) fn placed(&self, unit: Option<Unit>) -> Placement {
+        let corner = self.north_west.filter(|corner| {
+            let south_east =
+                *corner + DVec2::new(1.0, -1.0) * self.step * DVec2::new(self.width.into(), self.height.into());
+            corner.min(south_east).cmpge(DVec2::new(-360.0, -91.0)).all()
+                && corner.max(south_east).cmple(DVec2::new(360.0, 91.0)).all()
+        });
+        let guess = || match corner {
+            Some(_) if self.step.max_element() < COARSEST_DEG => Unit::Degrees,
+            _ => Unit::Metres(1.0),
+        };
+        match (unit.unwrap_or_else(guess), corner) {
+            (Unit::Metres(metres), _) => Placement::Metres(self.step * metres),
+            (Unit::Degrees, Some(corner)) => {
+                Placement::Degrees(Geographic { west_deg: corner.x, north_deg: corner.y, step_deg: self.step })
+            }
+            // Degrees somewhere off the Earth tell no latitude.
+            (Unit::Degrees, None) => Placement::Unknown,
+        }
+    }
+}
+
+/// The unit that the `.prj` file beside a raster names, if there is one.
+pub(super) fn beside(raster: &Path) -> Result<Option<Unit>, Error> {
+    for ending in ["prj", "PRJ"] {
+        let path = raster.with_extension(ending);
+        if let Ok((file, _)) = file::open(&path, Asset::HeightMap) {
+            return Ok(unit(&read_text(file, &path)?));
+        }
+    }
+    Ok(None)
+}
+
+/// The unit in a projection's text: well-known text, or the older lines of keywords that GTOPO30 ships.
+fn unit(projection: &str) -> Option<Unit> {
+    let upper = projection.to_uppercase();
+    if upper.contains("PROJCS") || upper.contains("PROJCRS") {
+        // The last unit is that of the projected coordinates: UNIT["name",metres].
+        let unit = upper.rsplit("UNIT[").next().and_then(|tail| tail.split(',').nth(1));
+        let digits = |text: &str| text.trim().trim_end_matches([']', ' ']).parse::<f64>().ok();
+        let metres = unit.and_then(|tail| digits(tail.split(']').next().unwrap_or(tail)));
+        return Some(Unit::Metres(metres.filter(|metres| metres.is_finite() && *metres > 0.0).unwrap_or(1.0)));
+    }
+    if ["GEOGCS", "GEOGCRS", "GEOGRAPHIC"].iter().any(|word| upper.contains(word)) {
+        return Some(Unit::Degrees);
+    }
+    upper.contains("METERS").then_some(Unit::Metres(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projections_name_their_unit() {
+        let geographic =
+            r#"GEOGCS["GCS_WGS_1984",DATUM["D"],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]]"#;
+        assert_eq!(unit(geographic), Some(Unit::Degrees));
+        assert_eq!(unit("Projection    GEOGRAPHIC\nDatum WGS84\nUnits  DD\n"), Some(Unit::Degrees));
+        let projected = |unit: &str| format!(r#"PROJCS["x",{geographic},PROJECTION["y"],{unit}]"#);
+        assert_eq!(unit(&projected(r#"UNIT["Meter",1.0]"#)), Some(Unit::Metres(1.0)));
+        assert_eq!(
+            unit(&projected(r#"UNIT["Foot_US",0.3048006096012192]"#)),
+            Some(Unit::Metres(0.304_800_609_601_219_2))
+        );
+        assert_eq!(unit(&projected(r#"UNIT["broken""#)), Some(Unit::Metres(1.0)));
+        assert_eq!(unit("Projection UTM\nUnits METERS\n"), Some(Unit::Metres(1.0)));
+        assert_eq!(unit("nothing"), None);
+    }
+
+    #[test]
+    fn unnamed_units_follow_from_the_coordinates() {
+        let grid = |west: f64, north: f64, step: f64| MapCoordinates {
+            north_west: Some(DVec2::new(west, north)),
+            step: DVec2::splat(step),
+            width: 100,
+            height: 100,
+        };
+        let degrees = grid(139.99, 40.0, 1.0 / 120.0);
+        assert!(matches!(degrees.placed(None), Placement::Degrees(place) if place.north_deg == 40.0));
+        assert_eq!(degrees.placed(Some(Unit::Metres(2.0))), Placement::Metres(DVec2::splat(1.0 / 60.0)));
+        for metres in [grid(500_000.0, 4_000_000.0, 30.0), grid(0.0, 50.0, 1.0), grid(10.0, 90.0, 20.0)] {
+            assert_eq!(metres.placed(None), Placement::Metres(metres.step));
+        }
+        assert_eq!(grid(900.0, 0.0, 0.01).placed(Some(Unit::Degrees)), Placement::Unknown);
+        let nowhere = MapCoordinates { north_west: None, ..grid(0.0, 0.0, 0.01) };
+        assert_eq!(nowhere.placed(None), Placement::Metres(nowhere.step));
+    }
+}

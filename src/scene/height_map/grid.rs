@@ -1,0 +1,93 @@
+use super::map::check_size;
+use super::{Geographic, HeightMap, Samples, voids};
+use crate::scene::error::{Fault, Place};
+use glam::DVec2;
+
+/// What a reader found: the samples as the source holds them, row by row from the north-west.
+pub(super) struct Grid<T> {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) values: Vec<T>,
+    /// Whether all values that are not void are whole numbers.
+    pub(super) integral: bool,
+    /// The value of a sample without a height.
+    pub(super) no_data: Option<f64>,
+    pub(super) placement: Placement,
+}
+
+/// How far apart the samples lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Placement {
+    /// The source does not say: 1 m.
+    Unknown,
+    /// Metres between columns and rows.
+    Metres(DVec2),
+    Degrees(Geographic),
+}
+
+/// The widest range that whole metres in 16 bits have.
+const STEPS: f64 = u16::MAX as f64;
+/// Whole numbers up to here are exact in 32-bit floating point.
+const EXACT: f64 = 16_777_216.0;
+
+impl<T: Copy + Into<f64>> Grid<T> {
+    /// The map, with its voids filled. Whole numbers that 16-bit steps can hold stay exact.
+    pub(super) fn into_map(self) -> Result<HeightMap, Fault> {
+        let whole = |reason: String| Fault::new(Place::Whole, reason);
+        check_size(self.width.into(), self.height.into()).map_err(whole)?;
+        let (width, height) = (self.width as usize, self.height as usize);
+        if self.values.len() != width * height {
+            return Err(whole(format!("{} samples for {width} x {height}", self.values.len())));
+        }
+        let no_data = self.no_data;
+        let mut void_places = Vec::new();
+        let (mut low, mut high) = (f64::MAX, f64::MIN);
+        for (index, value) in self.values.iter().enumerate() {
+            let value = (*value).into();
+            if is_void(value, no_data) {
+                // A map has at most 2^28 samples.
+                void_places.push(index as u32);
+            } else if (value as f32).is_finite() {
+                (low, high) = (low.min(value), high.max(value));
+            } else {
+                let place = format!("row {}, column {}", index / width, index % width);
+                return Err(Fault::new(Place::Part(place), format!("its height is {value}, not a finite number")));
+            }
+        }
+        if void_places.len() == self.values.len() {
+            return Err(whole("all its samples are void; a map needs at least one height".to_owned()));
+        }
+        let fits = self.integral && high - low <= STEPS && low.abs() <= EXACT && high.abs() <= EXACT;
+        let samples = if fits {
+            // The void's own value may lie anywhere; the conversion saturates.
+            let values = self.values.into_iter().map(|value| (value.into() - low) as u16).collect();
+            Samples::Steps { values: voids::fill_steps(values, width, &void_places), origin_m: low as f32, step_m: 1.0 }
+        } else {
+            let heights = self.values.into_iter().map(|value| value.into() as f32).collect();
+            Samples::Float(voids::fill(heights, width, &void_places))
+        };
+        let map = HeightMap::new(self.width, self.height, samples)
+            .and_then(|map| match self.placement {
+                Placement::Unknown => Ok(map),
+                Placement::Metres(spacing_m) => map.with_spacing_m(spacing_m),
+                Placement::Degrees(place) => {
+                    let spacing_m = place.spacing_m(map.height());
+                    map.with_geographic(place).with_spacing_m(spacing_m)
+                }
+            })
+            .map_err(|error| Fault::foreign(Place::Whole, &error))?;
+        Ok(map.with_voids_filled(void_places.len() as u64))
+    }
+}
+
+/// Whether a value is the one that stands for no height.
+///
+/// Headers often round the lowest 32-bit number (-3.4e38), so huge values need to agree in four digits only.
+fn is_void(value: f64, no_data: Option<f64>) -> bool {
+    let Some(no_data) = no_data else { return false };
+    let huge = no_data.abs() > 1e30;
+    value == no_data
+        || value == f64::from(no_data as f32)
+        || (value.is_nan() && no_data.is_nan())
+        || (huge && (value / no_data - 1.0).abs() < 1e-4)
+}

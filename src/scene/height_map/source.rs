@@ -1,0 +1,95 @@
+use super::{HeightMap, formats, volcano};
+use crate::scene::Error;
+use std::convert::Infallible;
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Where a height map comes from: one of the built-in ones or a file.
+///
+/// As text: `volcano`, `maunga-whau` or `jacksboro`; anything else is a path, so that a file named `volcano` is
+/// `./volcano`.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum HeightMapSource {
+    /// [`volcano()`] of seed 1, [`Self::VOLCANO_SIDE`] samples a side. Call the function for another size.
+    Volcano,
+    /// The volcano Maunga Whau in Auckland: 61 x 87 samples, 10 m apart.
+    MaungaWhau,
+    /// The Jacksboro fault in Tennessee: 403 x 344 samples, 3 arc-seconds apart.
+    Jacksboro,
+    /// An SRTM tile, an ESRI raster with its header, a GeoTIFF, a PNG or an Esri ASCII grid.
+    File(PathBuf),
+}
+
+impl HeightMapSource {
+    /// Samples a side of the built-in volcano.
+    pub const VOLCANO_SIDE: u32 = 1_024;
+
+    /// Builds the volcano or reads the file.
+    ///
+    /// # Errors
+    /// For files only: one that cannot be read, is of an unknown format, or is malformed, with the field that is wrong.
+    pub fn load(&self) -> Result<HeightMap, Error> {
+        match self {
+            Self::Volcano => volcano(Self::VOLCANO_SIDE, 1),
+            Self::MaungaWhau => formats::maunga_whau(),
+            Self::Jacksboro => formats::jacksboro(),
+            Self::File(path) => formats::load(path),
+        }
+    }
+}
+
+impl FromStr for HeightMapSource {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(match text {
+            "volcano" => Self::Volcano,
+            "maunga-whau" => Self::MaungaWhau,
+            "jacksboro" => Self::Jacksboro,
+            path => Self::File(path.into()),
+        })
+    }
+}
+
+impl fmt::Display for HeightMapSource {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Volcano => formatter.write_str("volcano"),
+            Self::MaungaWhau => formatter.write_str("maunga-whau"),
+            Self::Jacksboro => formatter.write_str("jacksboro"),
+            Self::File(path) => path.display().fmt(formatter),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_round_trips() {
+        for (text, is_file) in
+            [("volcano", false), ("maunga-whau", false), ("jacksboro", false), ("./volcano", true), ("a.hgt", true)]
+        {
+            let Ok(source) = text.parse::<HeightMapSource>();
+            assert_eq!(source.to_string(), text);
+            assert_eq!(matches!(source, HeightMapSource::File(_)), is_file);
+        }
+    }
+
+    #[test]
+    fn built_in_maps_have_their_documented_sizes_and_heights() {
+        for (source, (width, height), (low_m, high_m)) in [
+            (HeightMapSource::Volcano, (1_024, 1_024), (500.0, 1_692.0)),
+            (HeightMapSource::MaungaWhau, (61, 87), (94.0, 195.0)),
+            (HeightMapSource::Jacksboro, (403, 344), (236.0, 1_076.0)),
+        ] {
+            let map = source.load().unwrap();
+            assert_eq!((map.width(), map.height()), (width, height), "{source}");
+            let (low, high) = map.range_m();
+            assert!((low - low_m).abs() < 1.0 && (high - high_m).abs() < 1.0, "{source}: {low} to {high}");
+            assert_eq!(map.voids_filled(), 0);
+        }
+    }
+}
