@@ -1,7 +1,8 @@
 #version 450
 
-// The vertices of the water's regular mesh (section 4.3) with their analytic normals.
+// The vertices of the water's regular mesh (section 4.3) with their analytic normals, under waves.
 
+#include "caustics/surface.glsl"
 #include "caustics/waves.glsl"
 
 layout(local_size_x = 64) in;
@@ -33,5 +34,5 @@ void main() {
     vec2 place = surface.corner + surface.cell * vec2(float(index % surface.columns), float(index / surface.columns));
     vec3 wave = wave_at(place, surface.time_s, surface.wave_count);
     water.vertices[index].position = vec4(place.x, surface.level_m + wave.x, place.y, 1.0);
-    water.vertices[index].normal = vec4(wave_normal(wave.yz), 0.0);
+    water.vertices[index].normal = vec4(surface_normal(wave.yz), 0.0);
 }

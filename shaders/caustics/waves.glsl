@@ -21,7 +21,3 @@ vec3 wave_at(vec2 place, float time_s, uint count) {
     }
     return sum;
 }
-
-vec3 wave_normal(vec2 slope) {
-    return normalize(vec3(-slope.x, 1.0, -slope.y));
-}

@@ -16,3 +16,4 @@ mod smart;
 mod stencil;
 mod variants;
 mod volumes;
+mod water_map;

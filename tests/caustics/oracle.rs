@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 use std::slice::from_ref;
 
 use fumarole::papers::caustics::reference::{
-    CausticsMap, Cell, IlluminationVolume, Medium, PositionMap, ReceiverBox, ReceiverTriangle, ReferenceLight, Water,
-    WaterVertex, Wave, align_box, caustics_map, illumination_volumes, place_planes, position_map, wave_vertex,
+    CausticsMap, Cell, HeightField, IlluminationVolume, Medium, PositionMap, ReceiverBox, ReceiverTriangle,
+    ReferenceLight, Water, WaterVertex, Wave, align_box, caustics_map, illumination_volumes, place_planes,
+    position_map, wave_vertex,
 };
 use fumarole::papers::caustics::water::{Grid, LEVEL_M, waves};
 use fumarole::papers::caustics::{Parameters, ReceiverInput};
-use fumarole::scene::{Bounds, Light};
+use fumarole::scene::{Bounds, HeightMap, Light};
 use glam::{DVec2, DVec3};
 
 use crate::drawing::FRAME;
@@ -62,7 +63,7 @@ impl Oracle {
         let everything = receivers.iter().flat_map(|r| r.mesh.positions.iter().copied());
         let center = Bounds::of_points(everything).center().as_dvec3();
         let aligned = align_box(light, &points, center, medium).unwrap();
-        let water = water(parameters, grid);
+        let water = water(parameters, grid, center);
         let indices: Vec<[u32; 3]> = grid.indices().chunks_exact(3).map(|i| [i[0], i[1], i[2]]).collect();
         Oracle {
             volumes: illumination_volumes(Water { vertices: &water, triangles: &indices }, light, medium),
@@ -86,7 +87,17 @@ impl Oracle {
     }
 }
 
-fn water(parameters: &Parameters, grid: &Grid) -> Vec<WaterVertex> {
+fn water(parameters: &Parameters, grid: &Grid, middle: DVec3) -> Vec<WaterVertex> {
+    let columns = grid.columns + 1;
+    let places = (0..grid.vertex_count())
+        .map(|i| DVec2::new(f64::from(i % columns), f64::from(i / columns)))
+        .map(|place| grid.corner + grid.cell * place);
+    if let Some(map) = &parameters.water_map {
+        let heights = exact_heights(map.heights());
+        let (columns, spacing_m) = (map.heights().width() as usize, map.heights().spacing_m());
+        let field = HeightField::through(&heights, columns, spacing_m, DVec2::new(middle.x, middle.z));
+        return places.map(|place| field.vertex(LEVEL_M, place.x, place.y)).collect();
+    }
     let waves: Vec<Wave> = waves(parameters)
         .iter()
         .map(|wave| Wave {
@@ -98,10 +109,10 @@ fn water(parameters: &Parameters, grid: &Grid) -> Vec<WaterVertex> {
         })
         .collect();
     let time_s = f64::from(FRAME) * f64::from(parameters.time_step_s);
-    let columns = grid.columns + 1;
-    (0..grid.vertex_count())
-        .map(|i| DVec2::new(f64::from(i % columns), f64::from(i / columns)))
-        .map(|place| grid.corner + grid.cell * place)
-        .map(|place| wave_vertex(&waves, LEVEL_M, place.x, place.y, time_s))
-        .collect()
+    places.map(|place| wave_vertex(&waves, LEVEL_M, place.x, place.y, time_s)).collect()
+}
+
+fn exact_heights(map: &HeightMap) -> Vec<f64> {
+    let places = (0..map.height()).flat_map(|row| (0..map.width()).map(move |column| (column, row)));
+    places.map(|(column, row)| f64::from(map.height_m(column, row))).collect()
 }

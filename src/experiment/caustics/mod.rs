@@ -15,7 +15,7 @@ use super::machine::Machine;
 use super::measure::Measurement;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, Mode, ShaderLibrary};
-use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant};
+use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::{Bounds, Light, MeshSource, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
@@ -120,7 +120,7 @@ impl Study for Setup {
         let floors = floors_ms(machine, measured)?;
         let findings = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Findings {
             results: results(&built.paper, measurement, floor_ms),
-            warnings: Vec::new(),
+            warnings: self.small_map(&built.paper).into_iter().collect(),
         });
         Ok(findings.collect())
     }
@@ -134,6 +134,7 @@ impl Study for Setup {
             SmartPlacement::Fitted { epsilon_m } => ("fitted", epsilon_m),
             SmartPlacement::Kept => ("kept", None),
         };
+        let waves = if p.water_map.is_none() { Some(p.waves) } else { None };
         let entries = [
             ("mesh", json!(meshes)),
             ("receiver_triangles", json!(triangles)),
@@ -148,9 +149,10 @@ impl Study for Setup {
             ("refraction_index", json!(p.refraction_index)),
             ("absorption", json!(p.absorption_per_m)),
             ("water_depth", json!(p.water_depth_m)),
-            ("waves", json!(p.waves.count)),
-            ("amplitude", json!(p.waves.amplitude_m)),
-            ("wavelength", json!(p.waves.wavelength_m)),
+            ("waves", json!(waves.map(|w| w.count))),
+            ("amplitude", json!(waves.map(|w| w.amplitude_m))),
+            ("wavelength", json!(waves.map(|w| w.wavelength_m))),
+            ("water_map", json!(p.water_map.as_ref().map(map_value))),
             ("lights", json!(lights)),
             ("ambient", json!(p.ambient.to_array())),
             ("camera", json!([p.camera.eye.to_array(), p.camera.target.to_array()])),
@@ -158,6 +160,34 @@ impl Study for Setup {
         ];
         entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
+}
+
+impl Setup {
+    /// What to say when the light that reaches the receivers passes water beyond the border of a height map.
+    fn small_map(&self, paper: &Caustics) -> Option<String> {
+        let map = self.parameters.water_map.as_ref()?;
+        let (map_m, mesh_m) = (map.extent_m(), paper.grid().extent_m());
+        map_m.cmplt(mesh_m).any().then(|| {
+            format!(
+                "the water map {} covers {:.2} x {:.2} m of the water's mesh of {:.2} x {:.2} m; beyond its border the \
+                 border's heights go on",
+                map.name(),
+                map_m.x,
+                map_m.y,
+                mesh_m.x,
+                mesh_m.y
+            )
+        })
+    }
+}
+
+fn map_value(map: &WaterMap) -> Value {
+    let heights = map.heights();
+    let (low, high) = heights.range_m();
+    json!({
+        "name": map.name(), "columns": heights.width(), "rows": heights.height(),
+        "spacing": heights.spacing_m().to_array(), "lowest": low, "highest": high,
+    })
 }
 
 fn light_value(light: &Light) -> Value {

@@ -37,8 +37,12 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["caustics/cast.vert", "caustics/stencil-receivers.vert"] {
         check_uniform::<CameraBlock>(shader, "camera");
     }
-    check_uniform::<ViewBlock>("caustics/view-above.frag", "view");
-    for shader in ["caustics/water-surface.comp", "caustics/illumination-volumes.comp"] {
+    for shader in ["caustics/view-above.frag", "caustics/view-above-map.frag"] {
+        check_uniform::<ViewBlock>(shader, "view");
+    }
+    let water =
+        ["caustics/water-surface.comp", "caustics/water-surface-map.comp", "caustics/illumination-volumes.comp"];
+    for shader in water {
         let water = block(shader, "water");
         assert_eq!(water.members[0].array_stride_bytes, Some(VERTEX_FLOATS * 4), "{shader}");
     }

@@ -25,11 +25,12 @@ mod stencil;
 mod view;
 mod volumetric;
 pub mod water;
+mod water_map;
 
 use std::sync::Arc;
 
 use ash::vk;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use self::cast::Underwater;
 use self::level_map::Slicing;
@@ -44,6 +45,7 @@ use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 
 pub use self::parameters::{Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;
+pub use self::water_map::WaterMap;
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Float, Feature::DepthStencil32];
@@ -88,7 +90,8 @@ impl Caustics {
             .zip(&axes)
             .flat_map(|(&light, &axes)| receivers.iter().map(move |r| (ReceiverBox::around(axes, &r.positions), light)))
             .collect();
-        let water = Water::new(shaders, label, Grid::over(&boxes, parameters), parameters)?;
+        let middle = DVec2::new(center.x, center.z);
+        let water = Water::new(shaders, label, Grid::over(&boxes, parameters), middle, parameters)?;
         let depth_format = if variant == Variant::Stencil { DEPTH_STENCIL } else { maps::DEPTH };
         let underwater = Underwater::new(shaders, label, depth_format, parameters)?;
         let view = View::new(shaders, label, &underwater, &water, &nearest, parameters)?;

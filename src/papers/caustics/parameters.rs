@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 pub use super::planes::SmartPlacement;
+use super::water_map::WaterMap;
 use crate::papers::ParameterError;
 use crate::scene::{Camera, Light};
 
@@ -53,6 +54,14 @@ pub struct WaveParameters {
     pub wavelength_m: f32,
 }
 
+impl WaveParameters {
+    /// The steepest slope that the sum of the waves could reach.
+    pub fn steepest_slope(&self) -> f32 {
+        // The shortest wave is 2/5 of the longest.
+        self.amplitude_m * 2.0 * PI / (0.4 * self.wavelength_m)
+    }
+}
+
 /// Every number of a configuration. [`Parameters::validate`] checks the ranges given here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
@@ -72,6 +81,8 @@ pub struct Parameters {
     /// Depth of the pool's floor below the water's level in metres, above 0.
     pub water_depth_m: f32,
     pub waves: WaveParameters,
+    /// A still surface in place of the waves: within 10 m of the water's level, slopes up to 10.
+    pub water_map: Option<WaterMap>,
     pub lights: Vec<Light>,
     /// Ambient light I_a, linear RGB, at least 0.
     pub ambient: Vec3,
@@ -96,6 +107,7 @@ impl Default for Parameters {
             absorption_per_m: 0.1,
             water_depth_m: 3.0,
             waves: WaveParameters { count: 12, amplitude_m: 0.05, wavelength_m: 1.2 },
+            water_map: None,
             lights: vec![Light::Parallel { direction: Vec3::NEG_Y, intensity: Vec3::splat(1.0) }],
             ambient: Vec3::new(0.10, 0.13, 0.16),
             time_step_s: 1.0 / 30.0,
@@ -105,6 +117,26 @@ impl Default for Parameters {
             height: 600,
         }
     }
+}
+
+/// The steepest water whose rays and normals still mean something.
+const STEEPEST: f32 = 10.0;
+
+fn validate_map(map: &WaterMap) -> Result<(), ParameterError> {
+    let (low, high) = map.heights().range_m();
+    ParameterError::check(
+        low >= -10.0 && high <= 10.0,
+        "--water-map",
+        map.name(),
+        &format!("its heights are {low} to {high} m; they must lie within 10 m of the water's level, y = 0"),
+    )?;
+    let slope = map.steepest_slope();
+    ParameterError::check(
+        slope <= STEEPEST,
+        "--water-map",
+        map.name(),
+        &format!("its slopes may reach {slope}; they must stay below 10: scale its heights down or its spacing up"),
+    )
 }
 
 /// As they are typed.
@@ -157,13 +189,15 @@ impl Parameters {
             waves.wavelength_m,
             "must be above 0 and at most 1000 metres",
         )?;
-        let steepness = self.steepest_slope();
         ParameterError::check(
-            steepness <= 10.0,
+            waves.steepest_slope() <= STEEPEST,
             "--amplitude",
             waves.amplitude_m,
             "with this --wavelength the waves are steeper than 10; lower one or raise the other",
         )?;
+        if let Some(map) = &self.water_map {
+            validate_map(map)?;
+        }
         ParameterError::check(!self.lights.is_empty(), "--light", "none", "at least one light is needed")?;
         for light in &self.lights {
             self.validate_light(light)?;
@@ -198,7 +232,7 @@ impl Parameters {
                 intensity
             }
             Light::Point { position, intensity } => {
-                if !position.is_finite() || position.y <= self.waves.amplitude_m {
+                if !position.is_finite() || position.y <= self.crest_m() {
                     return error("must lie above the water");
                 }
                 intensity
@@ -214,7 +248,17 @@ impl Parameters {
 
     /// Whether the camera looks through the water's surface.
     pub fn is_seen_from_above(&self) -> bool {
-        self.camera.eye.y > self.waves.amplitude_m
+        self.camera.eye.y > self.crest_m()
+    }
+
+    /// The water rises no higher above its level, metres.
+    pub fn crest_m(&self) -> f32 {
+        self.water_map.as_ref().map_or(self.waves.amplitude_m, |map| map.range_m().1.max(0.0))
+    }
+
+    /// The water is nowhere steeper.
+    pub fn steepest_slope(&self) -> f32 {
+        self.water_map.as_ref().map_or(self.waves.steepest_slope(), WaterMap::steepest_slope)
     }
 
     /// Width over height of the picture.
@@ -244,11 +288,5 @@ impl Parameters {
             near_m: 0.1,
             far_m: 100.0,
         }
-    }
-
-    /// The steepest slope that the sum of the waves could reach.
-    pub fn steepest_slope(&self) -> f32 {
-        // The shortest wave is 2/5 of the longest.
-        self.waves.amplitude_m * 2.0 * PI / (0.4 * self.waves.wavelength_m)
     }
 }

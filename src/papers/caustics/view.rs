@@ -6,7 +6,7 @@ use ash::vk;
 
 use super::cast::Underwater;
 use super::parameters::Parameters;
-use super::water::{LEVEL_M, Water};
+use super::water::{LEVEL_M, MapBlock, Shape, Water};
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary};
 use crate::host_block;
@@ -23,7 +23,7 @@ host_block! {
 }
 
 host_block! {
-    struct WaterConstants {
+    struct WavesConstants {
         time_s: f32,
         wave_count: u32,
         eta: f32,
@@ -32,12 +32,27 @@ host_block! {
     }
 }
 
+host_block! {
+    struct MapConstants {
+        map: MapBlock,
+        eta: f32,
+        absorption_per_m: f32,
+        floor_depth_m: f32,
+    }
+}
+
+/// The constants of the view from above, but for the time; the plain view has none.
+enum Constants {
+    Below,
+    AboveWaves(WavesConstants),
+    AboveMap(MapConstants),
+}
+
 /// The last pass of a picture; no experiment times it, since the thesis's times end with the cast.
 pub struct View {
     pub picture: Arc<ImageView>,
     pass: Pass,
-    /// Constants of the view from above, but for the time.
-    above: Option<WaterConstants>,
+    constants: Constants,
 }
 
 impl View {
@@ -65,7 +80,7 @@ impl View {
                 .with("nearest", nearest)
                 .color(&picture, Load::Discard, Blend::Replace)
                 .build(shaders)?;
-            return Ok(View { picture, pass, above: None });
+            return Ok(View { picture, pass, constants: Constants::Below });
         }
         let camera = &parameters.camera;
         let matrix = camera.projection(parameters.aspect()) * camera.view();
@@ -80,32 +95,44 @@ impl View {
         };
         let name = format!("{label}/view");
         let view = upload(device, &name, vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
-        let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-above.frag")
-            .with("waves", &water.waves)
-            .with("underwater_color", &underwater.color)
-            .with("underwater_depth", &underwater.fetched_depth)
-            .with("nearest", nearest)
-            .with("view", &view)
-            .constants::<WaterConstants>()
-            .color(&picture, Load::Discard, Blend::Replace)
-            .build(shaders)?;
-        let above = WaterConstants {
-            time_s: 0.0,
-            wave_count: water.wave_count,
-            eta: 1.0 / parameters.refraction_index,
-            absorption_per_m: parameters.absorption_per_m,
-            floor_depth_m: parameters.water_depth_m,
+        let pass = |shader| {
+            Pass::graphics("view", "1", "common/fullscreen.vert", shader)
+                .with("underwater_color", &underwater.color)
+                .with("underwater_depth", &underwater.fetched_depth)
+                .with("nearest", nearest)
+                .with("view", &view)
+                .color(&picture, Load::Discard, Blend::Replace)
         };
-        Ok(View { picture, pass, above: Some(above) })
+        let eta = 1.0 / parameters.refraction_index;
+        let (absorption_per_m, floor_depth_m) = (parameters.absorption_per_m, parameters.water_depth_m);
+        let (pass, constants) = match &water.shape {
+            Shape::Waves { list, count } => (
+                pass("caustics/view-above.frag").with("waves", list).constants::<WavesConstants>(),
+                Constants::AboveWaves(WavesConstants {
+                    time_s: 0.0,
+                    wave_count: *count,
+                    eta,
+                    absorption_per_m,
+                    floor_depth_m,
+                }),
+            ),
+            Shape::Map { coefficients, place } => (
+                pass("caustics/view-above-map.frag").with("coefficients", coefficients).constants::<MapConstants>(),
+                Constants::AboveMap(MapConstants { map: *place, eta, absorption_per_m, floor_depth_m }),
+            ),
+        };
+        Ok(View { pass: pass.build(shaders)?, picture, constants })
     }
 
     /// Draws the picture from the cast.
     pub fn draw(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
-            if let Some(above) = self.above {
-                draw.constants(&WaterConstants { time_s: time_s as f32, ..above });
+            match self.constants {
+                Constants::Below => draw,
+                Constants::AboveWaves(waves) => draw.constants(&WavesConstants { time_s: time_s as f32, ..waves }),
+                Constants::AboveMap(map) => draw.constants(&map),
             }
-            draw.vertices(3);
+            .vertices(3);
         })
     }
 }

@@ -1,5 +1,5 @@
-//! The water: a regular triangle mesh under a sum of sine waves, large enough that its refracted light covers every
-//! receiver.
+//! The water: a regular triangle mesh in the shape of a sum of sine waves or of a height map, large enough that its
+//! refracted light covers every receiver.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::parameters::Parameters;
 use super::planes::ReceiverBox;
+use super::water_map::WaterMap;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
@@ -29,7 +30,17 @@ host_block! {
 }
 
 host_block! {
-    struct Surface {
+    /// Where a height map lies: x and z of its node (columns / 2, rows / 2), spacing, samples along x and z.
+    pub struct MapBlock {
+        node: [f32; 2],
+        spacing: [f32; 2],
+        columns: u32,
+        rows: u32,
+    }
+}
+
+host_block! {
+    struct WavesConstants {
         corner: [f32; 2],
         cell: [f32; 2],
         columns: u32,
@@ -37,6 +48,17 @@ host_block! {
         wave_count: u32,
         level_m: f32,
         time_s: f32,
+    }
+}
+
+host_block! {
+    struct MapConstants {
+        map: MapBlock,
+        corner: [f32; 2],
+        cell: [f32; 2],
+        columns: u32,
+        rows: u32,
+        level_m: f32,
     }
 }
 
@@ -98,7 +120,12 @@ impl Grid {
         }
         // A wave of slope s turns a ray by about s (1 - 1/n): what it moves the footprint's edge by.
         let turn = f64::from(parameters.steepest_slope()) * (1.0 - 1.0 / f64::from(parameters.refraction_index));
-        let margin = (high - low) * MARGIN + DVec2::splat(turn.min(1.0) * (LEVEL_M - deepest));
+        let mut margin = (high - low) * MARGIN + DVec2::splat(turn.min(1.0) * (LEVEL_M - deepest));
+        if let Some(map) = &parameters.water_map {
+            // A map may lie above or below the level as a whole: a slanting ray then enters beside its place at the level.
+            let (low_m, high_m) = map.range_m();
+            margin += DVec2::splat(f64::from(low_m.abs().max(high_m.abs())));
+        }
         let (low, high) = (low - margin, high + margin);
         let (columns, rows) = cells(parameters.water_triangles);
         let cell = (high - low) / DVec2::new(f64::from(columns), f64::from(rows));
@@ -113,9 +140,14 @@ impl Grid {
         2 * self.columns * self.rows
     }
 
+    /// Extent along x and z, metres.
+    pub fn extent_m(&self) -> DVec2 {
+        self.cell * DVec2::new(f64::from(self.columns), f64::from(self.rows))
+    }
+
     /// x and z of the middle, metres.
     pub fn center(&self) -> DVec2 {
-        self.corner + self.cell * DVec2::new(f64::from(self.columns), f64::from(self.rows)) / 2.0
+        self.corner + self.extent_m() / 2.0
     }
 
     /// Three indices a triangle, row by row.
@@ -169,27 +201,21 @@ fn entry_point(light: &Light, target: DVec3, receiver: &ReceiverBox, refraction_
     }
 }
 
-/// The water on the device.
-pub struct Water {
-    pub grid: Grid,
-    pub vertices: Arc<Buffer>,
-    pub indices: Arc<Buffer>,
-    pub waves: Arc<Buffer>,
-    pub wave_count: u32,
-    animate: Pass,
+/// What gives the water its shape, on the device.
+pub enum Shape {
+    Waves { list: Arc<Buffer>, count: u32 },
+    Map { coefficients: Arc<Buffer>, place: MapBlock },
 }
 
-/// Floats of a `WaterVertex` of the shaders: position and normal, four each.
-pub const VERTEX_FLOATS: u32 = 8;
+impl Shape {
+    fn new(shaders: &ShaderLibrary, label: &str, middle: DVec2, parameters: &Parameters) -> Result<Self, Error> {
+        match &parameters.water_map {
+            None => Self::waves(shaders, label, parameters),
+            Some(map) => Self::map(shaders, label, middle, map),
+        }
+    }
 
-impl Water {
-    /// Uploads waves and indices; `label` goes before the resources' names.
-    ///
-    /// # Errors
-    /// What the Vulkan layer answers.
-    pub fn new(shaders: &ShaderLibrary, label: &str, grid: Grid, parameters: &Parameters) -> Result<Self, Error> {
-        let device = shaders.device();
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    fn waves(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
         let mut blocks: Vec<WaveBlock> = waves(parameters)
             .iter()
             .map(|wave| WaveBlock {
@@ -202,41 +228,98 @@ impl Water {
                 amplitude: [wave.amplitude_m as f32, 0.0, 0.0, 0.0],
             })
             .collect();
-        let wave_count = blocks.len() as u32;
+        let count = blocks.len() as u32;
         // Flat water has no wave, but a buffer has at least one element.
         blocks.resize(blocks.len().max(1), WaveBlock { vector: [0.0; 4], amplitude: [0.0; 4] });
+        let name = format!("{label}/waves");
+        let list = upload(shaders.device(), &name, STORAGE, bytemuck::cast_slice(&blocks))?;
+        Ok(Shape::Waves { list, count })
+    }
+
+    fn map(shaders: &ShaderLibrary, label: &str, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
+        let name = format!("{label}/water-map");
+        let coefficients = upload(shaders.device(), &name, STORAGE, bytemuck::cast_slice(map.coefficients()))?;
+        let (columns, rows) = (map.heights().width(), map.heights().height());
+        let spacing = map.heights().spacing_m();
+        // Places are measured from a node near the middle: far from it single precision has fewer digits to spare.
+        let past_middle = |samples: u32| f64::from(samples / 2) - f64::from(samples - 1) / 2.0;
+        let node = middle + spacing * DVec2::new(past_middle(columns), past_middle(rows));
+        let place = MapBlock { node: node.as_vec2().to_array(), spacing: spacing.as_vec2().to_array(), columns, rows };
+        Ok(Shape::Map { coefficients, place })
+    }
+}
+
+const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
+
+/// The water on the device.
+pub struct Water {
+    pub grid: Grid,
+    pub vertices: Arc<Buffer>,
+    pub indices: Arc<Buffer>,
+    pub shape: Shape,
+    animate: Pass,
+}
+
+/// Floats of a `WaterVertex` of the shaders: position and normal, four each.
+pub const VERTEX_FLOATS: u32 = 8;
+
+impl Water {
+    /// Uploads shape and indices; `label` goes before the resources' names, `middle` is where the middle of a height map
+    /// lies, x and z in metres.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        grid: Grid,
+        middle: DVec2,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
         let name = |what: &str| format!("{label}/{what}");
-        let waves = upload(device, &name("waves"), storage, bytemuck::cast_slice(&blocks))?;
+        let shape = Shape::new(shaders, label, middle, parameters)?;
         let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
-        let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(storage))?;
+        let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(STORAGE))?;
         let indices = upload(
             device,
             &name("water-indices"),
-            vk::BufferUsageFlags::INDEX_BUFFER | storage,
+            vk::BufferUsageFlags::INDEX_BUFFER | STORAGE,
             bytemuck::cast_slice(&grid.indices()),
         )?;
-        let animate = Pass::compute("water-surface", "5.2", "caustics/water-surface.comp")
-            .with("waves", &waves)
-            .with("water", &vertices)
-            .constants::<Surface>()
-            .build(shaders)?;
-        Ok(Water { grid, vertices, indices, waves, wave_count, animate })
+        let pass = |shader| Pass::compute("water-surface", "5.2", shader).with("water", &vertices);
+        let animate = match &shape {
+            Shape::Waves { list, .. } => {
+                pass("caustics/water-surface.comp").with("waves", list).constants::<WavesConstants>()
+            }
+            Shape::Map { coefficients, .. } => {
+                pass("caustics/water-surface-map.comp").with("coefficients", coefficients).constants::<MapConstants>()
+            }
+        };
+        Ok(Water { grid, vertices, indices, animate: animate.build(shaders)?, shape })
     }
 
-    /// Evaluates the waves at `time_s`.
+    /// Evaluates the surface at `time_s`; a height map stands still.
     pub fn animate(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
+        let Grid { corner, cell, columns, rows } = self.grid;
+        let (corner, cell) = (corner.as_vec2().to_array(), cell.as_vec2().to_array());
+        let (columns, rows, level_m) = (columns + 1, rows + 1, LEVEL_M as f32);
         frame.compute(&self.animate, |dispatch| {
-            dispatch
-                .constants(&Surface {
-                    corner: self.grid.corner.as_vec2().to_array(),
-                    cell: self.grid.cell.as_vec2().to_array(),
-                    columns: self.grid.columns + 1,
-                    rows: self.grid.rows + 1,
-                    wave_count: self.wave_count,
-                    level_m: LEVEL_M as f32,
+            match self.shape {
+                Shape::Waves { count, .. } => dispatch.constants(&WavesConstants {
+                    corner,
+                    cell,
+                    columns,
+                    rows,
+                    wave_count: count,
+                    level_m,
                     time_s: time_s as f32,
-                })
-                .threads(self.grid.vertex_count(), 1, 1);
+                }),
+                Shape::Map { place, .. } => {
+                    dispatch.constants(&MapConstants { map: place, corner, cell, columns, rows, level_m })
+                }
+            }
+            .threads(self.grid.vertex_count(), 1, 1);
         })
     }
 }

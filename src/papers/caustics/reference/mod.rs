@@ -33,7 +33,7 @@ pub use light::{AIR, Medium, ReferenceLight, refract};
 pub use planes::{Cell, depth_profile, keep_occupied, place_planes, smart_planes, smart_sub_boxes, uniform_epsilon};
 pub use position_map::{PositionMap, ReceiverTriangle, diffuse, diffuse_map, position_map};
 pub use receiver_box::{ReceiverBox, align_box};
-pub use water::{Water, WaterVertex, Wave, spherical_cap_focus, spherical_cap_vertex, wave_vertex};
+pub use water::{HeightField, Water, WaterVertex, Wave, spherical_cap_focus, spherical_cap_vertex, wave_vertex};
 
 /// Half width, in texels, of the band around an edge in which a rasteriser with snapped vertices may decide either way.
 pub const EDGE_BAND_TEXELS: f64 = 1.0 / 128.0;

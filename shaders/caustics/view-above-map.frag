@@ -1,0 +1,19 @@
+#version 450
+
+// The scene as seen from above the water (chapter 1, section 2.4) under a height map.
+
+#include "caustics/height-map.glsl"
+
+layout(push_constant) uniform Water {
+    HeightMap map;
+    float eta; // refraction index of air over that of water
+    float absorption_per_m;
+    float floor_depth_m; // of the deepest that can be seen, below the flat water
+} water;
+
+// Height above the level in x, slopes along x and z in y and z.
+vec3 surface_at(vec2 place) {
+    return map_at(water.map, place);
+}
+
+#include "caustics/view-above.glsl"

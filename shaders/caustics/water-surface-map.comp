@@ -1,0 +1,37 @@
+#version 450
+
+// The vertices of the water's regular mesh (section 4.3) with their analytic normals, under a height map.
+
+#include "caustics/height-map.glsl"
+#include "caustics/surface.glsl"
+
+layout(local_size_x = 64) in;
+
+struct WaterVertex {
+    vec4 position; // metres
+    vec4 normal; // unit
+};
+
+layout(std430, set = 0, binding = 1) buffer Water {
+    WaterVertex vertices[];
+} water;
+
+layout(push_constant) uniform Surface {
+    HeightMap map;
+    vec2 corner; // x and z of the first vertex, metres
+    vec2 cell; // cell size along x and z, metres
+    uint columns; // vertices along x
+    uint rows; // vertices along z
+    float level_m;
+} surface;
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= surface.columns * surface.rows) {
+        return;
+    }
+    vec2 place = surface.corner + surface.cell * vec2(float(index % surface.columns), float(index / surface.columns));
+    vec3 height = map_at(surface.map, place);
+    water.vertices[index].position = vec4(place.x, surface.level_m + height.x, place.y, 1.0);
+    water.vertices[index].normal = vec4(surface_normal(height.yz), 0.0);
+}
