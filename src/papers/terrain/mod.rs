@@ -11,6 +11,7 @@ mod parameters;
 mod placement;
 mod pyramid;
 mod ray_cast;
+pub mod reference;
 mod scene;
 
 use std::sync::Arc;
