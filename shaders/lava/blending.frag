@@ -1,7 +1,8 @@
 #version 450
 
 // Numerator and denominator of eq. 7.2: the lava's colour times the Gaussian in RGB, the Gaussian in alpha. A fragment
-// is blended exactly when its depth is less than epsilon behind the nearest.
+// is blended exactly when its depth is less than epsilon behind the nearest. The colour c_i belongs to the splat: height
+// and rock are those of its centre.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -39,16 +40,16 @@ void main() {
     if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest) {
         discard;
     }
-    vec3 color = scene.glow.rgb * (scene.space_m.y - height_m);
+    vec3 color = scene.glow.rgb * (scene.space_m.y - center_m.y);
     if (shading.mode == LAVA) {
-        color *= rock_at(world_m.xz);
+        color *= rock_at(center_m.xz);
     } else if (shading.mode == ROCK) {
-        color = rock_at(world_m.xz);
+        color = rock_at(center_m.xz);
     } else if (shading.mode == NORMALS) {
-        ivec2 column = ivec2(clamp(world_m.xz / scene.space_m.xz * scene.columns, vec2(0.0), scene.columns - 1.0));
+        ivec2 column = ivec2(clamp(center_m.xz / scene.space_m.xz * scene.columns, vec2(0.0), scene.columns - 1.0));
         color = 0.5 + 0.5 * texelFetch(normal_height, column, 0).xyz;
     } else if (shading.mode == HEIGHTS) {
-        color = vec3(height_m / scene.space_m.y);
+        color = vec3(center_m.y / scene.space_m.y);
     }
     float weight = gaussian(ratio_squared);
     accumulated = vec4(weight * color, weight);

@@ -3,4 +3,4 @@
 layout(location = 0) in vec2 disc; // from the centre, in radii along tangent and binormal
 layout(location = 1) in vec3 world_m;
 layout(location = 2) in float eye_depth_m;
-layout(location = 3) flat in float height_m; // of the centre
+layout(location = 3) flat in vec3 center_m;

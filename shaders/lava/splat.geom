@@ -16,7 +16,7 @@ layout(location = 0) in vec2 place_m[];
 layout(location = 0) out vec2 disc;
 layout(location = 1) out vec3 world_m;
 layout(location = 2) out float eye_depth_m;
-layout(location = 3) flat out float height_m;
+layout(location = 3) flat out vec3 center_m;
 
 void main() {
     Splat splat = splat_at(place_m[0]);
@@ -25,7 +25,7 @@ void main() {
         world_m = corner_of(splat, disc);
         gl_Position = scene.view_projection * vec4(world_m, 1.0);
         eye_depth_m = gl_Position.w;
-        height_m = splat.center_m.y;
+        center_m = splat.center_m;
         EmitVertex();
     }
     EndPrimitive();

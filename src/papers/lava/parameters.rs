@@ -142,7 +142,7 @@ impl Default for Parameters {
             epsilon_m: 0.05,
             border_m: 0.2,
             speed_m_s: 0.2,
-            color: Vec3::new(2.4, 0.95, 0.16),
+            color: Vec3::new(2.5, 1.2, 0.28),
             rock_tile_m: 2.0,
             shading: Shading::Lava,
             geometry_stage: true,
@@ -157,9 +157,9 @@ impl Default for Parameters {
 
 /// Our cameras for the four views of chapter 8; the thesis prints no positions.
 pub const CAMERAS: [(&str, Camera); 4] = [
-    ("fig-8.1", camera(Vec3::new(0.1, 2.6, 2.3), Vec3::new(1.75, 0.3, 0.45))),
-    ("fig-8.2", camera(Vec3::new(2.0, 3.2, 3.0), Vec3::new(2.0, 0.3, 0.5))),
-    ("fig-8.3", camera(Vec3::new(4.4, 2.0, 0.5), Vec3::new(2.6, 0.3, 0.5))),
+    ("fig-8.1", camera(Vec3::new(-0.9, 2.3, 2.5), Vec3::new(1.62, 0.15, 0.5))),
+    ("fig-8.2", camera(Vec3::new(2.0, 3.5, 2.9), Vec3::new(2.0, 0.2, 0.5))),
+    ("fig-8.3", camera(Vec3::new(5.0, 1.6, 0.5), Vec3::new(2.9, 0.15, 0.5))),
     ("fig-8.4", camera(Vec3::new(1.5, 1.6, 1.5), Vec3::new(2.0, 0.35, 0.5))),
 ];
 

@@ -94,12 +94,12 @@ impl Noise {
             let t = (1.0 - self.border(bent, period, layer) / width).max(0.0);
             t * t
         };
-        let cracks = crack(0.22, PLATES, 30).max(0.35 * crack(0.2, 3 * PLATES, 40));
+        let cracks = crack(0.3, PLATES, 30).max(0.45 * crack(0.3, 2 * PLATES, 40));
         // Lighter and darker crust, grain and pits; where it is torn the rock is fresh and bright.
         let crust = self.octaves(place, 3, 7, 50);
-        let grain = self.octaves(place, 24, 4, 60);
-        let crust = (0.9 * crust * crust + 0.25 * crust) * (0.45 + 0.75 * grain);
-        let value = (crust + (1.0 - crust) * 0.9 * cracks * (0.4 + 0.6 * grain)).min(1.0);
+        let grain = self.octaves(place, 20, 5, 60);
+        let crust = 0.12 + 0.9 * (crust - 0.25).max(0.0) * (0.3 + 1.2 * grain);
+        let value = (crust + (1.0 - crust) * cracks * (0.5 + 0.7 * grain)).min(1.0);
         let [r, g, b] = [value, value * 0.97, value * 0.93].map(|v| (v * 255.0 + 0.5) as u8);
         [r, g, b, 255]
     }
