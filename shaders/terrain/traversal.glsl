@@ -3,8 +3,8 @@
 // segment at a depth of d is number k of 2^d, and the next one after it is found by counting.
 //
 // The level follows the segment's projection: 1/2^(level + 1) < Lp <= 1/2^level, Lp being the larger of its sides as a share
-// of the map. Printed is the impossible 1/2^level < Lp < 1/2^(level + 1). Where the segment still touches three texels of
-// that level, the next coarser one answers for all of them with four at most.
+// of the map. Printed is the impossible 1/2^level < Lp < 1/2^(level + 1). Where the segment still touches three texels in a
+// row of that level, the next coarser one answers for all that it touches with four at most.
 //
 // One of the leaf files before this one says when subdivision ends and what is met then.
 
@@ -49,7 +49,8 @@ float highest_below(Segment segment, int shift) {
     ivec2 first = clamp(ivec2(floor(low)), ivec2(0), land.size.xy - 1);
     ivec2 last = clamp(ivec2(floor(high)) + 1, ivec2(0), land.size.xy - 1);
     ivec2 touched = (last >> shift) - (first >> shift);
-    int level = min(shift + (max(touched.x, touched.y) > 1 ? 1 : 0), land.size.z);
+    int most = max(touched.x, touched.y);
+    int level = min(shift + (most > 1 ? 1 : 0) + (most > 2 ? 1 : 0), land.size.z);
     first = first >> level;
     last = last >> level;
     float north = max(highest_at(level, first), highest_at(level, ivec2(last.x, first.y)));

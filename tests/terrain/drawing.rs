@@ -52,3 +52,14 @@ impl Drawing {
         }
     }
 }
+
+/// Pixels that saw different things: another surface, another depth by more than a thousandth, or another normal.
+pub fn differing(a: &Drawing, b: &Drawing) -> usize {
+    let pixels = a.hits.iter().zip(&b.hits).zip(a.normals.iter().zip(&b.normals));
+    let differ = pixels.filter(|((a, b), (n, m))| {
+        let is_same_depth = (a.depth_m - b.depth_m).abs() <= 1e-3 * a.depth_m.abs();
+        let is_same_normal = (0..3).all(|i| (n[i] - m[i]).abs() < 0.02);
+        a.surface != b.surface || !is_same_depth || !is_same_normal
+    });
+    differ.count()
+}

@@ -36,3 +36,24 @@ pub fn map(width: u32, height: u32, samples: Samples, spacing_m: f64) -> HeightM
 pub fn alone(map: HeightMap) -> Vec<MapInput> {
     vec![MapInput { map: Arc::new(map), placement: Placement::default() }]
 }
+
+/// Maps that break careless bounds.
+pub fn adversaries() -> Vec<(&'static str, HeightMap)> {
+    let steps = |width: u32, height: u32, value: &dyn Fn(u32, u32) -> u16| {
+        let values = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        let values = values.map(|(column, row)| value(column, row)).collect();
+        map(width, height, Samples::Steps { values, origin_m: -3.0, step_m: 0.01 }, 1.5)
+    };
+    let floats = |width: u32, height: u32, value: &dyn Fn(u32, u32) -> f32| {
+        let values = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        map(width, height, Samples::Float(values.map(|(column, row)| value(column, row)).collect()), 1.5)
+    };
+    vec![
+        ("spike", steps(67, 43, &|column, row| if (column, row) == (31, 17) { 6000 } else { 0 })),
+        ("checkerboard", steps(32, 32, &|column, row| if (column + row) % 2 == 0 { 1500 } else { 0 })),
+        ("cliff", steps(50, 33, &|column, _| if column > 47 { 4000 } else { 100 })),
+        ("plateau", steps(17, 17, &|_, _| 700)),
+        ("two by two", steps(2, 2, &|column, row| (1000 * (column + row)) as u16)),
+        ("ditch", floats(5, 90, &|column, row| if row == 44 { -40.0 } else { column as f32 })),
+    ]
+}

@@ -5,6 +5,8 @@
 //! ```
 
 mod blocks;
+mod caster;
+mod cpu;
 mod hit;
 mod levels;
 mod parameters;
@@ -12,18 +14,22 @@ mod placement;
 mod pyramid;
 mod ray_cast;
 pub mod reference;
+mod relief;
 mod scene;
+mod shading;
 
 use std::sync::Arc;
 
+use self::cpu::Cpu;
 pub use self::hit::{Hit, NO_DEPTH, Surface};
 pub use self::levels::Levels;
 pub use self::parameters::{Base, Interpolation, Lod, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Ground, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
 use self::ray_cast::{RayCast, Stage};
+pub use self::relief::Relief;
 pub use self::scene::MapInput;
-use self::scene::Scene;
+use self::scene::{DeviceScene, Scene};
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, ShaderLibrary};
 
@@ -35,7 +41,12 @@ pub struct Terrain {
     parameters: Parameters,
     scene: Scene,
     transformation: Arc<PassInfo>,
-    ray_cast: RayCast,
+    technique: Technique,
+}
+
+enum Technique {
+    Cpu(Cpu),
+    Gpu(DeviceScene, RayCast),
 }
 
 impl Terrain {
@@ -50,35 +61,66 @@ impl Terrain {
         parameters: &Parameters,
         maps: &[MapInput],
     ) -> Result<Self, Error> {
-        let scene = Scene::new(shaders, label, parameters, maps)?;
-        let stage = match variant {
-            Variant::GpuFragment => Stage::Fragment,
-            _ => Stage::Compute,
+        let scene = Scene::new(parameters, maps);
+        let ray_cast = |stage| {
+            let device_scene = DeviceScene::new(shaders, label, maps)?;
+            let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
+            Ok(Technique::Gpu(device_scene, ray_cast))
         };
-        let ray_cast = RayCast::new(shaders, label, stage, parameters, &scene)?;
+        let technique = match variant {
+            Variant::Cpu => {
+                let reliefs = maps.iter().map(|input| Relief::new(&input.map)).collect();
+                Technique::Cpu(Cpu::new(shaders, label, parameters, reliefs)?)
+            }
+            Variant::GpuFragment => ray_cast(Stage::Fragment)?,
+            _ => ray_cast(Stage::Compute)?,
+        };
         let reads = ["camera", "placement"];
         let transformation = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &["land", "light"]);
-        Ok(Terrain { parameters: parameters.clone(), scene, transformation, ray_cast })
+        Ok(Terrain { parameters: parameters.clone(), scene, transformation, technique })
     }
 }
 
 impl Paper for Terrain {
     fn record(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
-        frame.host(&self.transformation, || self.scene.transform(&self.parameters))?;
-        self.ray_cast.record(frame)
+        let (scene, parameters) = (&self.scene, &self.parameters);
+        match &mut self.technique {
+            Technique::Cpu(cpu) => {
+                let (lands, light) = frame.host(&self.transformation, || scene.transform(parameters));
+                cpu.record(frame, &lands, &light);
+                Ok(())
+            }
+            Technique::Gpu(device_scene, ray_cast) => {
+                frame.host(&self.transformation, || {
+                    let (lands, light) = scene.transform(parameters);
+                    device_scene.write(&lands, &light)
+                })?;
+                ray_cast.record(frame)
+            }
+        }
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        self.record(frame, number)
+        self.record(frame, number)?;
+        match &self.technique {
+            Technique::Cpu(cpu) => cpu.show(frame),
+            Technique::Gpu(..) => Ok(()),
+        }
     }
 
     fn picture(&self) -> &Arc<ImageView> {
-        &self.ray_cast.picture
+        match &self.technique {
+            Technique::Cpu(cpu) => cpu.picture(),
+            Technique::Gpu(_, ray_cast) => &ray_cast.picture,
+        }
     }
 
     fn targets(&self) -> Vec<Target> {
-        let mut targets = self.ray_cast.targets();
-        targets.push(Target::image("picture", &self.ray_cast.picture));
+        let mut targets = match &self.technique {
+            Technique::Cpu(cpu) => cpu.targets(),
+            Technique::Gpu(_, ray_cast) => ray_cast.targets(),
+        };
+        targets.push(Target::image("picture", self.picture()));
         targets
     }
 }

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::scene::{HeightMap, Samples};
+
 /// Sizes of the levels of a map. The paper counts levels from the coarsest, 0, to the data, n; a shift counts from the data,
 /// 0, to the single texel, `top`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,17 +63,28 @@ pub enum Bound {
 /// A number that a texel holds.
 pub trait Texel: Copy + PartialOrd + Send + Sync {
     fn to_f32(self) -> f32;
+
+    /// The samples of a map that holds this kind; none of another's.
+    fn samples_of(map: &HeightMap) -> &[Self];
 }
 
 impl Texel for u16 {
     fn to_f32(self) -> f32 {
         f32::from(self)
     }
+
+    fn samples_of(map: &HeightMap) -> &[Self] {
+        if let Samples::Steps { values, .. } = map.samples() { values } else { &[] }
+    }
 }
 
 impl Texel for f32 {
     fn to_f32(self) -> f32 {
         self
+    }
+
+    fn samples_of(map: &HeightMap) -> &[Self] {
+        if let Samples::Float(values) = map.samples() { values } else { &[] }
     }
 }
 

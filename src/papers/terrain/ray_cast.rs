@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::hit::NO_DEPTH;
 use super::parameters::{Lod, Parameters};
-use super::scene::Scene;
+use super::scene::DeviceScene;
 use crate::gpu::bindings::Resource;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::upload_rows;
@@ -55,7 +55,7 @@ impl RayCast {
         label: &str,
         stage: Stage,
         parameters: &Parameters,
-        scene: &Scene,
+        scene: &DeviceScene,
     ) -> Result<Self, Error> {
         let device = shaders.device();
         let size = (parameters.width, parameters.height);

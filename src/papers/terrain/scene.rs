@@ -1,5 +1,4 @@
-//! Everything of a configuration that the device's passes share: maps with their levels, and the blocks that the host writes
-//! anew for every frame.
+//! The maps of a configuration in their places, and what the device's passes share of them.
 
 use std::sync::Arc;
 
@@ -12,7 +11,7 @@ use super::parameters::Parameters;
 use super::placement::{Extent, Ground, Placement, Rays};
 use super::pyramid::Bound;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Location, ShaderLibrary};
-use crate::scene::HeightMap;
+use crate::scene::{HeightMap, Samples};
 
 /// A height map and its place.
 #[derive(Debug, Clone)]
@@ -21,72 +20,75 @@ pub struct MapInput {
     pub placement: Placement,
 }
 
+/// The maps' places over the base, and the box around all.
+pub struct Scene {
+    pub grounds: Vec<Ground>,
+    pub extent: Extent,
+    /// Of each map, whether its texels are the bits of floats.
+    are_floats: Vec<bool>,
+}
+
+impl Scene {
+    /// Of at least one map.
+    pub fn new(parameters: &Parameters, inputs: &[MapInput]) -> Self {
+        let lowest_m = inputs.iter().map(|input| input.map.range_m().0).fold(f32::INFINITY, f32::min);
+        let base_level_m = f64::from(parameters.base_level_m.unwrap_or(lowest_m));
+        let grounds: Vec<Ground> =
+            inputs.iter().map(|input| Ground::new(&input.map, input.placement, base_level_m)).collect();
+        let start = Extent { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        let extent = grounds
+            .iter()
+            .map(Ground::extent)
+            .fold(start, |all, one| Extent { low: all.low.min(one.low), high: all.high.max(one.high) });
+        let are_floats = inputs.iter().map(|input| matches!(input.map.samples(), Samples::Float(_))).collect();
+        Scene { grounds, extent, are_floats }
+    }
+
+    /// The pass `geometric-transformation`: eq. 10 and 11 for every map. Only the base's matrix is touched.
+    pub fn transform(&self, parameters: &Parameters) -> (Vec<LandBlock>, LightBlock) {
+        let camera = parameters.camera(&self.extent);
+        let rays = Rays::new(&camera, parameters.width, parameters.height);
+        let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
+        let lands = maps.map(|((ground, &is_float), index)| LandBlock::new(ground, is_float, index, &rays)).collect();
+        (lands, LightBlock::new(parameters, &rays, &self.extent))
+    }
+}
+
 /// A map on the device.
 pub struct Map {
-    pub ground: Ground,
     pub levels: Levels,
     pub land: Arc<Buffer>,
 }
 
-/// The maps and the light.
-pub struct Scene {
+/// The maps on the device, and the blocks that the host writes anew for every frame.
+pub struct DeviceScene {
     pub maps: Vec<Map>,
     pub light: Arc<Buffer>,
-    pub extent: Extent,
 }
 
-/// The maps' places over the base.
-pub fn grounds(parameters: &Parameters, inputs: &[MapInput]) -> Vec<Ground> {
-    let lowest_m = inputs.iter().map(|input| input.map.range_m().0).fold(f32::INFINITY, f32::min);
-    let base_level_m = f64::from(parameters.base_level_m.unwrap_or(lowest_m));
-    inputs.iter().map(|input| Ground::new(&input.map, input.placement, base_level_m)).collect()
-}
-
-/// The box around all maps.
-pub fn extent_of(grounds: &[Ground]) -> Extent {
-    let start = Extent { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-    grounds
-        .iter()
-        .map(Ground::extent)
-        .fold(start, |all, one| Extent { low: all.low.min(one.low), high: all.high.max(one.high) })
-}
-
-impl Scene {
+impl DeviceScene {
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        inputs: &[MapInput],
-    ) -> Result<Self, Error> {
+    pub fn new(shaders: &ShaderLibrary, label: &str, inputs: &[MapInput]) -> Result<Self, Error> {
         let device = shaders.device();
-        let grounds = grounds(parameters, inputs);
-        let extent = extent_of(&grounds);
-        let mut maps = Vec::new();
-        for (index, (ground, input)) in grounds.into_iter().zip(inputs).enumerate() {
+        let map = |(index, input): (usize, &MapInput)| {
             let name = format!("{label}/map-{index}");
-            maps.push(Map {
+            Ok(Map {
                 levels: Levels::new(shaders, &name, &input.map, &[Bound::Highest])?,
                 land: block_buffer::<LandBlock>(device, &format!("{name}/land"))?,
-                ground,
-            });
-        }
-        Ok(Scene { maps, light: block_buffer::<LightBlock>(device, &format!("{label}/light"))?, extent })
+            })
+        };
+        let maps = inputs.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
+        Ok(DeviceScene { maps, light: block_buffer::<LightBlock>(device, &format!("{label}/light"))? })
     }
 
-    /// The pass `geometric-transformation`: eq. 10 and 11 for every map.
-    ///
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn transform(&self, parameters: &Parameters) -> Result<(), Error> {
-        let camera = parameters.camera(&self.extent);
-        let rays = Rays::new(&camera, parameters.width, parameters.height);
-        for (index, map) in self.maps.iter().enumerate() {
-            let block = LandBlock::new(&map.ground, map.levels.is_float, index as u32, &rays);
-            map.land.write(0, bytemuck::bytes_of(&block))?;
+    pub fn write(&self, lands: &[LandBlock], light: &LightBlock) -> Result<(), Error> {
+        for (map, land) in self.maps.iter().zip(lands) {
+            map.land.write(0, bytemuck::bytes_of(land))?;
         }
-        self.light.write(0, bytemuck::bytes_of(&LightBlock::new(parameters, &rays, &self.extent)))
+        self.light.write(0, bytemuck::bytes_of(light))
     }
 }
 

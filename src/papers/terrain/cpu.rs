@@ -1,0 +1,183 @@
+//! Section 4's first application: everything on the processor, by rows on all cores.
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::Vec4;
+use rayon::prelude::*;
+
+use super::blocks::{LandBlock, LightBlock};
+use super::caster::Caster;
+use super::hit::{Hit, NO_DEPTH, Surface};
+use super::parameters::{Lod, Parameters};
+use super::pyramid::Texel;
+use super::relief::{Field, FieldWork, Relief};
+use super::shading::{color_of, normal_of};
+use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, Image, ImageDesc, ImageView, Load, Location};
+use crate::gpu::{Pass, PassInfo, ShaderLibrary};
+use crate::host_block;
+use crate::papers::Target;
+
+host_block! {
+    struct Size {
+        columns: u32,
+    }
+}
+
+const SKY: Hit = Hit { depth_m: NO_DEPTH, place: [0.0; 2], surface: Surface::Sky, shift: 0, map: 0 };
+
+/// What the passes of the processor write, and how its picture gets to the device.
+pub struct Cpu {
+    width: u32,
+    lod: Lod,
+    reliefs: Vec<Relief>,
+    hits: Vec<Hit>,
+    normals: Vec<Vec4>,
+    colors: Vec<[u8; 4]>,
+    infos: [Arc<PassInfo>; 3],
+    shown: Shown,
+}
+
+/// Copies of the targets that the device can read.
+struct Shown {
+    depth: Arc<Buffer>,
+    normal: Arc<Buffer>,
+    colors: Arc<Buffer>,
+    picture: Arc<ImageView>,
+    show: Pass,
+}
+
+impl Cpu {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        reliefs: Vec<Relief>,
+    ) -> Result<Self, Error> {
+        let (width, height) = (parameters.width, parameters.height);
+        let device = shaders.device();
+        let pixels = u64::from(width) * u64::from(height);
+        let buffer = |name: &str, pixel_bytes: u64| {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            let desc = BufferDesc::new(format!("{label}/{name}"), pixels * pixel_bytes).usage(usage);
+            Buffer::new(device, desc.location(Location::Upload))
+        };
+        let colors = buffer("colors", 4)?;
+        let desc = ImageDesc::new_2d(format!("{label}/picture"), vk::Format::R8G8B8A8_UNORM, width, height);
+        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
+        let show = Pass::graphics("show", "4", "common/fullscreen.vert", "terrain/show.frag")
+            .with("colors", &colors)
+            .constants::<Size>()
+            .color(&picture, Load::Discard, Blend::Replace)
+            .build(shaders)?;
+        let shown = Shown { depth: buffer("depth", 16)?, normal: buffer("normal", 16)?, colors, picture, show };
+        let infos = [
+            PassInfo::host("depth", "3", &["land", "levels"], &["depth"]),
+            PassInfo::host("normal", "4", &["land", "levels", "depth"], &["normal"]),
+            PassInfo::host("illumination", "4", &["light", "depth", "normal"], &["picture"]),
+        ];
+        let count = pixels as usize;
+        Ok(Cpu {
+            width,
+            lod: parameters.lod,
+            reliefs,
+            hits: vec![SKY; count],
+            normals: vec![Vec4::ZERO; count],
+            colors: vec![[0; 4]; count],
+            infos,
+            shown,
+        })
+    }
+
+    /// The three passes; `lands` are the maps' blocks.
+    pub fn record(&mut self, frame: &mut Frame<'_>, lands: &[LandBlock], light: &LightBlock) {
+        let Cpu { width, lod, ref reliefs, ref mut hits, ref mut normals, ref mut colors, ref infos, .. } = *self;
+        let maps = || reliefs.iter().zip(lands);
+        frame.host(&infos[0], || {
+            hits.par_iter_mut().for_each(|hit| *hit = SKY);
+            for (relief, land) in maps() {
+                relief.with(Depths { land, lod, width, hits });
+            }
+        });
+        frame.host(&infos[1], || {
+            for (index, (relief, land)) in maps().enumerate() {
+                relief.with(Normals { land, width, map: index as u32, hits, normals });
+            }
+        });
+        frame.host(&infos[2], || {
+            let rows = colors.par_chunks_mut(width as usize).enumerate();
+            rows.for_each(|(y, row)| {
+                for (x, color) in row.iter_mut().enumerate() {
+                    let pixel = y * width as usize + x;
+                    *color = color_of(light, (x as u32, y as u32), &hits[pixel], normals[pixel]);
+                }
+            });
+        });
+    }
+
+    /// Puts the targets where the device can read them, and draws the picture's bytes into an image.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn show(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        let depths: Vec<[f32; 4]> = self.hits.iter().map(|hit| hit.to_texel()).collect();
+        self.shown.depth.write(0, bytemuck::cast_slice(&depths))?;
+        self.shown.normal.write(0, bytemuck::cast_slice(&self.normals))?;
+        self.shown.colors.write(0, bytemuck::cast_slice(&self.colors))?;
+        frame.graphics(&self.shown.show, |draw| {
+            draw.constants(&Size { columns: self.width }).vertices(3);
+        })
+    }
+
+    pub fn picture(&self) -> &Arc<ImageView> {
+        &self.shown.picture
+    }
+
+    pub fn targets(&self) -> Vec<Target> {
+        vec![Target::table("depth", &self.shown.depth, 4), Target::table("normal", &self.shown.normal, 4)]
+    }
+}
+
+struct Depths<'a> {
+    land: &'a LandBlock,
+    lod: Lod,
+    width: u32,
+    hits: &'a mut [Hit],
+}
+
+impl FieldWork for Depths<'_> {
+    type Output = ();
+
+    fn run<T: Texel>(self, field: Field<'_, T>) {
+        let caster = Caster { land: self.land, field, lod: self.lod };
+        self.hits.par_chunks_mut(self.width as usize).enumerate().for_each(|(y, row)| {
+            for (x, hit) in row.iter_mut().enumerate() {
+                *hit = caster.find(caster.direction(x as u32, y as u32), *hit).0;
+            }
+        });
+    }
+}
+
+struct Normals<'a> {
+    land: &'a LandBlock,
+    width: u32,
+    map: u32,
+    hits: &'a [Hit],
+    normals: &'a mut [Vec4],
+}
+
+impl FieldWork for Normals<'_> {
+    type Output = ();
+
+    fn run<T: Texel>(self, field: Field<'_, T>) {
+        let width = self.width as usize;
+        let caster = Caster { land: self.land, field, lod: Lod::Exact };
+        self.normals.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
+            for (x, (normal, hit)) in row.iter_mut().zip(hits).enumerate().filter(|(_, (_, hit))| hit.map == self.map) {
+                *normal = normal_of(self.land, field, caster.direction(x as u32, y as u32), hit);
+            }
+        });
+    }
+}
