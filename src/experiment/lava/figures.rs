@@ -6,7 +6,7 @@ use crate::experiment::error::Error;
 use crate::experiment::machine::Machine;
 use crate::experiment::picture;
 use crate::experiment::study::Study;
-use crate::image::{Raster, Rgba8};
+use crate::image::{Raster, Rgba8, Samples, Shape};
 use crate::papers::Paper;
 use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading, Variant};
 
@@ -87,7 +87,7 @@ pub const FIGURES: [Figure; 15] = {
 /// What a part looks like.
 pub enum Drawn {
     Picture(Rgba8),
-    /// A texture at full precision.
+    /// A texture, scaled to be looked at.
     Texture(Raster),
 }
 
@@ -129,10 +129,28 @@ impl Figure {
                 _ => None,
             };
             drawn.push(match texture {
-                Some(target) => (suffix, Drawn::Texture(picture::read_target(&machine.device, target)?)),
+                Some(target) => (suffix, Drawn::Texture(visible(picture::read_target(&machine.device, target)?)?)),
                 None => (suffix, Drawn::Picture(picture)),
             });
         }
         Ok(drawn)
     }
+}
+
+/// A texture with its values where a picture shows them: several channels by the share of their largest value; of a depth,
+/// the background as far as the farthest surface.
+fn visible(texture: Raster) -> Result<Raster, Error> {
+    let (Shape::Image { layers, height, width, channels }, Samples::F32(values)) = (texture.shape(), texture.samples())
+    else {
+        return Ok(texture);
+    };
+    let largest_below = |limit: f32| values.iter().copied().filter(|&v| v < limit).fold(0.0, f32::max);
+    let shown: Vec<f32> = if channels == 1 {
+        let farthest = largest_below(1.0);
+        values.iter().map(|v| v.min(farthest)).collect()
+    } else {
+        let largest = largest_below(f32::INFINITY).max(f32::MIN_POSITIVE);
+        values.iter().map(|v| v / largest).collect()
+    };
+    Ok(Raster::image(width, height, channels, layers, shown)?)
 }
