@@ -9,9 +9,11 @@ use self::experiment::Experiments;
 use super::failure::Failure;
 use super::options::{Size, parse_finite, parse_numbers, parse_size};
 use super::paper::PaperArgs;
-use crate::experiment::caustics::Setup;
+use crate::experiment::Error;
+use crate::experiment::caustics::{Setup, water_map};
+use crate::papers::ParameterError;
 use crate::papers::caustics::{Parameters, SmartPlacement};
-use crate::scene::{Camera, Light, MeshSource};
+use crate::scene::{Camera, HeightMapSource, Light, MeshSource};
 
 /// How smart slicing places its planes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -103,6 +105,16 @@ pub struct CausticsArgs {
     /// Longest wavelength in metres, above 0 [default: 1.2]
     #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     wavelength: Option<f32>,
+    /// Water by a height map instead of waves: volcano, maunga-whau, jacksboro, or a file; heights are metres about the
+    /// water's level, within 10 m of it
+    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = ["waves", "amplitude", "wavelength"])]
+    water_map: Option<HeightMapSource>,
+    /// Metres between the samples of --water-map, above 0 [default: what the map says of itself]
+    #[arg(long, value_name = "M", requires = "water_map", value_parser = parse_finite, allow_negative_numbers = true)]
+    water_map_spacing: Option<f32>,
+    /// Scale --water-map so that its heights span this many metres about the water's level, above 0
+    #[arg(long, value_name = "M", requires = "water_map", value_parser = parse_finite, allow_negative_numbers = true)]
+    water_map_range: Option<f32>,
     /// Direction of parallel light, x,y,z, downwards; repeatable [default: 0,-1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     light: Vec<[f32; 3]>,
@@ -172,6 +184,16 @@ impl PaperArgs for CausticsArgs {
         set(&mut p.waves.count, self.waves);
         set(&mut p.waves.amplitude_m, self.amplitude);
         set(&mut p.waves.wavelength_m, self.wavelength);
+        if let Some(source) = &self.water_map {
+            let positive = "must be above 0 metres";
+            for (name, value) in
+                [("--water-map-spacing", self.water_map_spacing), ("--water-map-range", self.water_map_range)]
+            {
+                let value = value.unwrap_or(1.0);
+                ParameterError::check(value > 0.0, name, value, positive).map_err(Error::from)?;
+            }
+            p.water_map = Some(water_map(source, self.water_map_spacing, self.water_map_range)?);
+        }
         p.camera = match self.camera.unwrap_or(CameraWord::Above) {
             CameraWord::Above => Parameters::camera_above(p.water_depth_m),
             CameraWord::Below => Parameters::camera_below(p.water_depth_m),

@@ -5,8 +5,9 @@ pub mod sweep;
 mod thesis;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
-use glam::{Mat4, UVec2, Vec2, Vec3};
+use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
@@ -16,7 +17,7 @@ use super::measure::Measurement;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, Mode, ShaderLibrary};
 use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
-use crate::scene::{Bounds, Light, MeshSource, shapes};
+use crate::scene::{Bounds, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
 /// over it.
@@ -160,6 +161,30 @@ impl Study for Setup {
         ];
         entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
     }
+}
+
+/// Water by a height map: its heights as they are, metres about the water's level, or scaled so that they span `range_m`
+/// about it; samples as far apart as the map says, or `spacing_m`.
+///
+/// # Errors
+/// [`Error::Scene`] for a map that cannot be read; [`Error::Input`] for a flat map that is to span a range.
+pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Option<f32>) -> Result<WaterMap, Error> {
+    let mut map = source.load()?;
+    if let Some(range_m) = range_m {
+        let (low, high) = map.range_m();
+        let scale = range_m / (high - low);
+        if !scale.is_finite() {
+            return Err(Error::Input(format!("--water-map-range {range_m}: {source} is flat; leave the range out")));
+        }
+        let middle = low + (high - low) / 2.0;
+        let places = (0..map.height()).flat_map(|row| (0..map.width()).map(move |column| (column, row)));
+        let heights = places.map(|(column, row)| (map.height_m(column, row) - middle) * scale).collect();
+        map = HeightMap::new(map.width(), map.height(), Samples::Float(heights))?.with_spacing_m(map.spacing_m())?;
+    }
+    if let Some(spacing_m) = spacing_m {
+        map = map.with_spacing_m(DVec2::splat(f64::from(spacing_m)))?;
+    }
+    Ok(WaterMap::new(source.to_string(), Arc::new(map)))
 }
 
 impl Setup {
