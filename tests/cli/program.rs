@@ -36,6 +36,16 @@ pub fn caustics(arguments: &str) -> Program {
     Program::new(env!("CARGO_BIN_EXE_caustics")).args(arguments)
 }
 
+/// As [`caustics`].
+pub fn lava(arguments: &str) -> Program {
+    Program::new(env!("CARGO_BIN_EXE_lava")).args(arguments)
+}
+
+/// As [`caustics`].
+pub fn terrain(arguments: &str) -> Program {
+    Program::new(env!("CARGO_BIN_EXE_terrain")).args(arguments)
+}
+
 /// The umbrella.
 pub fn fumarole(arguments: &str) -> Program {
     Program::new(env!("CARGO_BIN_EXE_fumarole")).args(arguments)

@@ -1,0 +1,171 @@
+//! `lava` through the binary: its passes, its record, its experiments, and what it refuses.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::program::{ONCE, Program, assert_schema, device, entries, file, folder, fumarole, lava, read_json};
+
+/// Small enough for lavapipe's single-threaded geometry stage.
+const SMALL: &str = "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --splat-radius 0.2";
+
+/// In the thesis's order.
+const PASSES: [&str; 11] = [
+    "animate",
+    "read-positions",
+    "cluster",
+    "density",
+    "read-density",
+    "extract",
+    "accumulate-depths",
+    "normal-height",
+    "visibility",
+    "blending",
+    "normalisation",
+];
+
+fn small(verb: &str) -> Program {
+    lava(verb).args(SMALL).on_test_device()
+}
+
+fn names(passes: &Value) -> Vec<&str> {
+    passes.as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn the_passes_are_the_thesis_s() {
+    let listed = small("passes --json").run().succeeded().json();
+    assert_eq!(names(&listed[0]["passes"]), PASSES);
+    // Two clusters of four planes.
+    assert_eq!(listed[0]["passes"][3]["calls"], 2);
+}
+
+#[test]
+fn a_bench_times_gpu_and_host_and_says_what_it_did() {
+    let record = small("bench --json --quiet --validate").args(ONCE).run().succeeded().json();
+    assert_schema(&record);
+    let run = &record["runs"][0];
+    assert_eq!(
+        (&run["paper"], &run["variant"], &run["validation"]),
+        (&"lava".into(), &"paper".into(), &"clean".into())
+    );
+    assert_eq!(names(&run["passes"]), PASSES);
+    for pass in run["passes"].as_array().unwrap() {
+        let is_host = ["cluster", "extract"].contains(&pass["name"].as_str().unwrap());
+        assert_eq!(pass["host_ms"].is_null(), !is_host, "{pass}");
+        assert_eq!(pass["gpu_ms"].is_null(), is_host, "{pass}");
+    }
+    assert_eq!(run["config"]["density"], serde_json::json!([16, 8, 8]));
+    assert!(run["results"]["accepted_grid_points"].as_u64().unwrap() > 0, "{}", run["results"]);
+    for rate in ["particles_per_s", "grid_points_per_s", "splats_per_s", "frames_per_s"] {
+        assert!(run["results"][rate].as_f64().unwrap() > 0.0, "{rate}: {}", run["results"]);
+    }
+}
+
+#[test]
+fn a_density_that_accepts_nothing_is_a_warning_with_the_range() {
+    let record = small("bench --json --quiet --rho 1e6").args(ONCE).run().succeeded().json();
+    let warnings = record["runs"][0]["warnings"].to_string();
+    assert!(warnings.contains("no grid point was accepted") && warnings.contains("densities are"), "{warnings}");
+}
+
+#[test]
+fn a_frame_is_the_same_alone_and_in_a_range() {
+    let out = folder();
+    small("render --frame 3 --image alone.png --quiet").inside(out.path()).run().succeeded();
+    small("render --frame 2..4 --image of.png --quiet").inside(out.path()).run().succeeded();
+    let read = |name: &str| fs::read(out.path().join(name)).unwrap();
+    assert_eq!(entries(out.path()), ["alone.png", "of-0002.png", "of-0003.png"]);
+    assert!(read("alone.png") == read("of-0003.png"));
+    assert!(read("of-0002.png") != read("of-0003.png"));
+}
+
+#[test]
+fn figures_are_pictures_and_textures() {
+    let out = folder();
+    let figures = [
+        ("fig-4.1", &["lava-fig-4.1-position.png", "lava-fig-4.1-velocity.png"][..]),
+        ("fig-4.2", &["lava-fig-4.2a-density.png", "lava-fig-4.2b-normal-height.png", "lava-fig-4.2c-heights.png"]),
+        ("fig-8.3", &["lava-fig-8.3.png"]),
+    ];
+    for (name, files) in figures {
+        let folder = out.path().join(name);
+        small(&format!("experiment {name} --quiet")).arg("--out").arg(&folder).run().succeeded();
+        assert_eq!(entries(&folder), files);
+    }
+}
+
+#[test]
+fn the_frame_rate_stands_beside_the_thesis_s() {
+    let out = folder();
+    let ended = small("experiment results --out .").args(ONCE).inside(out.path()).run().succeeded();
+    assert_eq!(entries(out.path()), ["lava-results.csv", "lava-results.json", "lava-results.svg"]);
+    let record = read_json(&out.path().join("lava-results.json"));
+    assert_schema(&record);
+    let row = &record["runs"][0]["experiment"];
+    assert_eq!(row["paper"], 20.0);
+    let ours = row["ours"].as_f64().unwrap();
+    assert!((row["ratio"].as_f64().unwrap() - ours / 20.0).abs() < 1e-9, "{row}");
+    assert!(ended.stdout.contains("the thesis: around 20"), "{}", ended.stdout);
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_option() {
+    for (options, parts) in [
+        ("--particles 0", &["--particles 0", "1 to 16777216"][..]),
+        ("--radius 0", &["--radius 0"]),
+        ("--radius 1.5", &["--radius 1.5", "shortest side"]),
+        ("--density 0x8x8", &["--density 0x8x8"]),
+        ("--density 65536x1024x8", &["--density 65536x1024x8"]),
+        ("--splats 0x10", &["--splats 0x10"]),
+        ("--splat-radius 0", &["--splat-radius 0"]),
+        ("--space 0x1x1", &["--space 0x1x1"]),
+        ("--epsilon 0", &["--epsilon 0"]),
+        ("--rho -1", &["--rho -1"]),
+        ("--border -1", &["--border -1"]),
+        ("--rock no-such.png", &["no-such.png"]),
+        ("--size 0x0", &["--size 0x0"]),
+    ] {
+        lava("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
+    }
+    for option in ["radius", "rho", "splat-radius", "epsilon", "border", "speed", "rock-tile", "time-step"] {
+        for value in ["nan", "inf", "two", ""] {
+            lava("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+        }
+    }
+    for (option, value) in
+        [("space", "1x1"), ("density", "4x4"), ("splats", "ax4"), ("color", "1,2"), ("camera", "fig-9")]
+    {
+        lava("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+    }
+}
+
+#[test]
+fn points_larger_than_the_device_s_are_refused_with_both_figures() {
+    let program = lava("bench --density 4096x4x1024 --radius 0.5 --splats 4x4").args(ONCE).on_test_device();
+    program.run().refused(2, &["point", "limit"]);
+}
+
+#[test]
+fn a_rock_that_is_no_rock_is_refused() {
+    let out = folder();
+    let whole = {
+        small("render --quiet --image whole.png").inside(out.path()).run().succeeded();
+        fs::read(out.path().join("whole.png")).unwrap()
+    };
+    fs::write(out.path().join("truncated.png"), &whole[..whole.len() / 2]).unwrap();
+    file(&out, "text.png", "not a picture");
+    let pixel = SMALL.replace("--size 64x48", "--size 1x1 --quiet --image pixel.png");
+    lava("render").args(&pixel).on_test_device().inside(out.path()).run().succeeded();
+    for (name, part) in [("truncated.png", "truncated.png"), ("text.png", "text.png"), ("pixel.png", "1x1")] {
+        small("bench").arg("--rock").arg(name).args(ONCE).inside(out.path()).run().refused(2, &[part]);
+    }
+    small("render --quiet --rock whole.png --image rocky.png").inside(out.path()).run().succeeded();
+    assert!(fs::read(out.path().join("rocky.png")).unwrap() != whole);
+}
+
+#[test]
+fn the_umbrella_runs_it_too() {
+    let listed = fumarole("lava passes --json").args(SMALL).arg("--device").arg(device()).run().succeeded().json();
+    assert_eq!(listed[0]["paper"], "lava");
+}

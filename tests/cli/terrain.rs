@@ -1,0 +1,134 @@
+//! `terrain` through the binary: its passes, its record, its table, its maps, and what it refuses.
+
+use std::fs;
+
+use super::program::{ONCE, Program, assert_schema, entries, file, folder, read_json, terrain};
+
+const SMALL: &str = "--size 64x48";
+
+fn small(verb: &str) -> Program {
+    terrain(verb).args(SMALL).on_test_device()
+}
+
+#[test]
+fn the_passes_are_the_paper_s_in_every_variant() {
+    let listed = small("passes --json --resolution 64 --variant cpu,gpu-compute,gpu-fragment").run().succeeded().json();
+    for variant in listed.as_array().unwrap() {
+        let names: Vec<&str> =
+            variant["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap()).collect();
+        assert_eq!(names, ["geometric-transformation", "depth", "normal", "illumination"], "{}", variant["variant"]);
+    }
+}
+
+#[test]
+fn table_1_is_written_with_growth_beside_the_paper_s() {
+    let out = folder();
+    let sweep = "experiment 1 --counts 128,512 --variant cpu,gpu-compute --out .";
+    let ended = small(sweep).args(ONCE).inside(out.path()).run().succeeded();
+    assert_eq!(entries(out.path()), ["terrain-1.csv", "terrain-1.json", "terrain-1.svg"]);
+    let record = read_json(&out.path().join("terrain-1.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 4);
+    for run in runs {
+        assert!(run["results"]["mrays_per_s"].as_f64().unwrap() > 0.0, "{run}");
+    }
+    for (run, resolution, growth) in
+        [(&runs[0], 128, 1.0), (&runs[2], 512, 2033.6 / 802.65), (&runs[3], 512, 42.51 / 21.09)]
+    {
+        assert_eq!(run["config"]["resolution"], resolution);
+        assert!((run["experiment"]["paper"].as_f64().unwrap() - growth).abs() < 1e-9, "{}", run["experiment"]);
+    }
+    assert!(ended.stdout.contains("growth"), "{}", ended.stdout);
+}
+
+#[test]
+fn the_mesh_of_a_map_that_is_too_large_is_a_row_without_times() {
+    let out = folder();
+    let sweep = "experiment 1 --counts 8192 --variant gpu-compute,mesh --out .";
+    let ended = small(sweep).args(ONCE).inside(out.path()).run().succeeded();
+    let record = read_json(&out.path().join("terrain-1.json"));
+    assert_schema(&record);
+    let mesh = &record["runs"][1];
+    assert_eq!((&mesh["variant"], &mesh["frame_ms"]), (&"mesh".into(), &serde_json::Value::Null));
+    assert!(mesh["warnings"].to_string().contains("4096"), "{mesh}");
+    assert!(ended.stdout.contains("the mesh stops at 4096"), "{}", ended.stdout);
+}
+
+#[test]
+fn figures_are_one_picture() {
+    let out = folder();
+    for name in ["figure-1", "figure-2"] {
+        small(&format!("experiment {name} --quiet --out .")).inside(out.path()).run().succeeded();
+    }
+    assert_eq!(entries(out.path()), ["terrain-figure-1.png", "terrain-figure-2.png"]);
+    let read = |name: &str| fs::read(out.path().join(name)).unwrap();
+    assert!(read("terrain-figure-1.png") != read("terrain-figure-2.png"));
+}
+
+#[test]
+fn maps_are_loaded_placed_and_united() {
+    let out = folder();
+    file(&out, "ramp.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 5 10\n0 5 10\n");
+    let maps =
+        "bench --json --quiet --variant gpu-compute --map ramp.asc --map maunga-whau --place 0,0,0 --place 500,0,-90";
+    let record = small(maps).args(ONCE).inside(out.path()).run().succeeded().json();
+    let maps = &record["runs"][0]["config"]["maps"];
+    assert_eq!(maps[0]["samples"], serde_json::json!([3, 2]));
+    assert_eq!(maps[0]["spacing"], serde_json::json!([10.0, 10.0]));
+    assert_eq!(maps[1]["source"], "maunga-whau");
+    assert_eq!(maps[1]["place"], serde_json::json!([500.0, 0.0, -90.0]));
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_option() {
+    for (options, parts) in [
+        ("--resolution 1", &["--resolution 1", "2 to 16384"][..]),
+        ("--resolution 16385", &["--resolution 16385"]),
+        ("--resolution 64 --map maunga-whau", &["--resolution", "volcano"]),
+        ("--spacing 0", &["--spacing 0"]),
+        ("--exaggeration -1", &["--exaggeration -1"]),
+        ("--base-level 1e9", &["--base-level 1000000000"]),
+        ("--sun 0,-5", &["--sun"]),
+        ("--haze -1", &["--haze -1"]),
+        ("--camera 1,2,3,1,2,3", &["--camera 1,2,3,1,2,3"]),
+        ("--place 1,2,3 --place 1,2,3", &["--place", "2 places for 1 map"]),
+        ("--size 0x0", &["--size 0x0"]),
+        ("--map no-such.hgt", &["no-such.hgt"]),
+        ("--map no-such.xyz", &["no-such.xyz"]),
+    ] {
+        terrain("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
+    }
+    for option in ["spacing", "exaggeration", "base-level", "haze"] {
+        for value in ["nan", "inf", "two", ""] {
+            terrain("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+        }
+    }
+}
+
+#[test]
+fn maps_that_contradict_themselves_are_refused_with_file_and_field() {
+    let out = folder();
+    file(&out, "short.hgt", "odd");
+    file(&out, "rows.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 5 10\n0 5 10\n");
+    file(&out, "nan.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 nan\n0 5\n");
+    file(&out, "none.asc", "ncols 0\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
+    file(&out, "void.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -1\n-1 -1\n-1 -1\n");
+    file(&out, "cut.tif", "II*\0");
+    for name in ["short.hgt", "rows.asc", "nan.asc", "none.asc", "void.asc", "cut.tif"] {
+        small("bench").arg("--map").arg(name).args(ONCE).inside(out.path()).run().refused(2, &[name]);
+    }
+}
+
+#[test]
+fn options_that_an_experiment_would_not_heed_are_refused() {
+    for (arguments, part) in [
+        ("experiment 1 --map maunga-whau", "--map"),
+        ("experiment 1 --resolution 64", "--counts"),
+        ("experiment figure-1 --counts 64", "--counts"),
+        ("experiment figure-1 --json", "--json"),
+        ("experiment screen --size 64x64", "--counts"),
+    ] {
+        terrain(arguments).run().refused(2, &[part]);
+    }
+}
