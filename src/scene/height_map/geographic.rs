@@ -29,3 +29,21 @@ impl Geographic {
         DVec2::new(prime_vertical_m * cosine, meridian_m) * self.step_deg.map(f64::to_radians)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_are_as_long_as_on_the_ellipsoid() {
+        // Metres of one degree of longitude and latitude on WGS84, from tables.
+        for (latitude_deg, expected_m) in
+            [(0.0, [111_320.0, 110_574.0]), (45.0, [78_847.0, 111_132.0]), (-60.0, [55_800.0, 111_412.0])]
+        {
+            let place =
+                Geographic { west_deg: 7.0, north_deg: latitude_deg + 0.05, step_deg: DVec2::splat(0.1 / 100.0) };
+            let degree_m = place.spacing_m(101) * 1_000.0;
+            assert!((degree_m - DVec2::from(expected_m)).abs().max_element() < 1.0, "{latitude_deg}: {degree_m}");
+        }
+    }
+}

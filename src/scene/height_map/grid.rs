@@ -82,12 +82,70 @@ impl<T: Copy + Into<f64>> Grid<T> {
 
 /// Whether a value is the one that stands for no height.
 ///
-/// Headers often round the lowest 32-bit number (-3.4e38), so huge values need to agree in four digits only.
+/// Headers often round the lowest 32-bit number (-3.4e38), so huge values need to agree roughly only.
 fn is_void(value: f64, no_data: Option<f64>) -> bool {
     let Some(no_data) = no_data else { return false };
     let huge = no_data.abs() > 1e30;
     value == no_data
         || value == f64::from(no_data as f32)
         || (value.is_nan() && no_data.is_nan())
-        || (huge && (value / no_data - 1.0).abs() < 1e-4)
+        || (huge && (value / no_data - 1.0).abs() < 2e-3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map<T: Copy + Into<f64>>(values: &[T], integral: bool, no_data: Option<f64>) -> Result<HeightMap, Fault> {
+        let values = values.to_vec();
+        Grid { width: 2, height: 2, values, integral, no_data, placement: Placement::Unknown }.into_map()
+    }
+
+    #[test]
+    fn all_of_16_bits_is_exact() {
+        let signed = [i16::MIN, i16::MAX, 0, -1];
+        let map_signed = map(&signed, true, None).unwrap();
+        assert!(matches!(map_signed.samples(), Samples::Steps { .. }));
+        let unsigned = [0, u16::MAX, 1, 32_768];
+        let map_unsigned = map(&unsigned, true, None).unwrap();
+        for (index, (column, row)) in [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+            assert_eq!(map_signed.height_m(column, row), f32::from(signed[index]));
+            assert_eq!(map_unsigned.height_m(column, row), f32::from(unsigned[index]));
+        }
+    }
+
+    #[test]
+    fn whole_numbers_too_wide_or_too_far_for_steps_are_float() {
+        for values in [[0, 65_536, 1, 2], [1 << 24, (1 << 24) + 1, 1 << 24, 1 << 24]] {
+            assert!(matches!(map::<i32>(&values, true, None).unwrap().samples(), Samples::Float(_)), "{values:?}");
+        }
+        let far = map::<i32>(&[-9_000, 56_535, 0, 0], true, None).unwrap();
+        assert!(matches!(far.samples(), Samples::Steps { origin_m: -9_000.0, .. }));
+    }
+
+    #[test]
+    fn the_no_data_value_may_be_rounded_or_nan() {
+        let lowest = f32::MIN;
+        for (void, no_data) in [
+            (lowest, f64::from(f32::MIN)),
+            (lowest, -3.402_823e38),
+            (lowest, -3.4e38),
+            (0.1, 0.1),
+            (f32::NAN, f64::NAN),
+            (f32::NEG_INFINITY, f64::NEG_INFINITY),
+        ] {
+            let result = map(&[1.0, void, 1.0, 1.0], false, Some(no_data));
+            assert_eq!(result.map(|map| (map.voids_filled(), map.range_m())), Ok((1, (1.0, 1.0))), "{void} {no_data}");
+        }
+        assert_eq!(map(&[1.0, -9_998.999, 1.0, 1.0], false, Some(-9_999.0)).unwrap().voids_filled(), 0);
+    }
+
+    #[test]
+    fn heights_that_are_no_number_and_maps_without_heights_are_refused() {
+        for (value, shown) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (-1e300, "-1")] {
+            let fault = map(&[0.0, 1.0, value, 3.0], false, Some(-9_999.0)).unwrap_err().to_string();
+            assert!(fault.starts_with(&format!("row 1, column 0: its height is {shown}")), "{fault}");
+        }
+        assert!(map(&[-1_i16; 4], true, Some(-1.0)).unwrap_err().to_string().contains("all its samples are void"));
+    }
 }

@@ -188,3 +188,65 @@ pub(super) fn check_size(width: u64, height: u64) -> Result<(), String> {
 fn unusable(reason: impl Into<String>) -> Error {
     Error::HeightMap { reason: reason.into() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(values: &[u16], origin_m: f32, step_m: f32) -> Samples {
+        Samples::Steps { values: values.to_vec(), origin_m, step_m }
+    }
+
+    #[test]
+    fn heights_are_read_row_by_row_and_clamped_at_the_border() {
+        let map = HeightMap::new(3, 2, steps(&[0, 1, 2, 10, 11, 12], -5.0, 0.5)).unwrap();
+        assert_eq!((map.width(), map.height(), map.range_m()), (3, 2, (-5.0, 1.0)));
+        assert_eq!((map.height_m(2, 0), map.height_m(0, 1)), (-4.0, 0.0));
+        assert_eq!((map.height_m(9, 0), map.height_m(u32::MAX, u32::MAX)), (-4.0, 1.0));
+        assert_eq!((map.spacing_m(), map.geographic(), map.voids_filled()), (DVec2::ONE, None, 0));
+    }
+
+    #[test]
+    fn spacing_and_exaggeration_change_only_themselves() {
+        let float = HeightMap::new(2, 2, Samples::Float(vec![-1.0, 0.0, 1.0, 8.0])).unwrap();
+        for map in [float, HeightMap::new(2, 2, steps(&[0, 1, 2, 9], -1.0, 1.0)).unwrap()] {
+            let wide = map.clone().with_spacing_m(DVec2::new(3.0, 4.0)).unwrap();
+            assert_eq!((wide.spacing_m(), wide.samples()), (DVec2::new(3.0, 4.0), map.samples()));
+            let high = wide.with_exaggeration(2.0).unwrap();
+            assert_eq!((high.range_m(), high.spacing_m()), ((-2.0, 16.0), DVec2::new(3.0, 4.0)));
+            assert_eq!([(0, 0), (1, 0), (0, 1), (1, 1)].map(|(c, r)| high.height_m(c, r)), [-2.0, 0.0, 2.0, 16.0]);
+        }
+    }
+
+    #[test]
+    fn impossible_maps_are_refused_with_the_reason() {
+        let message = |result: Result<HeightMap, Error>| result.unwrap_err().to_string();
+        for (width, height, samples, expected) in [
+            (0, 5, steps(&[], 0.0, 1.0), "it has 0 x 5 samples; a map has 2 to 16384 a side"),
+            (1, 2, steps(&[1, 2], 0.0, 1.0), "it has 1 x 2 samples"),
+            (16_385, 2, steps(&[1], 0.0, 1.0), "it has 16385 x 2 samples"),
+            (2, 2, steps(&[1, 2, 3], 0.0, 1.0), "3 samples for 2 x 2, which needs 4"),
+            (2, 2, steps(&[0; 4], f32::NAN, 1.0), "16-bit steps need a finite origin"),
+            (2, 2, steps(&[0; 4], 0.0, 0.0), "16-bit steps need a finite origin and a finite, positive step"),
+            (2, 2, steps(&[9; 4], 0.0, f32::MAX), "16-bit steps need"),
+            (
+                2,
+                2,
+                Samples::Float(vec![0.0, 0.0, 0.0, f32::INFINITY]),
+                "row 1, column 1: the height is not a finite number",
+            ),
+            (2, 2, Samples::Float(vec![0.0, f32::NAN, 0.0, 0.0]), "row 0, column 1"),
+        ] {
+            let message = message(HeightMap::new(width, height, samples));
+            assert!(message.starts_with("cannot use the height map: ") && message.contains(expected), "{message}");
+        }
+        let map = || HeightMap::new(2, 2, Samples::Float(vec![0.0, 1.0, 1e38, 0.0])).unwrap();
+        for spacing_m in [DVec2::ZERO, DVec2::new(1.0, -1.0), DVec2::new(f64::NAN, 1.0), DVec2::INFINITY] {
+            assert!(message(map().with_spacing_m(spacing_m)).contains("give finite, positive numbers"));
+        }
+        for factor in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(message(map().with_exaggeration(factor)).contains("give a finite, positive number"));
+        }
+        assert!(message(map().with_exaggeration(10.0)).contains("takes its heights out of range"));
+    }
+}

@@ -67,8 +67,6 @@ struct Header {
 impl Header {
     fn set(&mut self, key: &str, words: &mut Words<impl BufRead>) -> Result<(), Fault> {
         let key = key.to_ascii_lowercase();
-        let Some(value) = words.next()? else { return Err(words.fault(format!("the file ends after {key:?}"))) };
-        let value = words.number(&value, &key)?;
         let field = match key.as_str() {
             "ncols" => &mut self.columns,
             "nrows" => &mut self.rows,
@@ -84,6 +82,8 @@ impl Header {
                 return Err(words.fault(format!("the word {key:?} is none of {known}")));
             }
         };
+        let Some(value) = words.next()? else { return Err(words.fault(format!("the file ends after {key:?}"))) };
+        let value = words.number(&value, &key)?;
         if field.replace(value).is_some() {
             return Err(words.fault(format!("{key} is given twice")));
         }

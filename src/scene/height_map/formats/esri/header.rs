@@ -45,13 +45,13 @@ impl Header {
         }
         // With one band, all three layouts are rows of samples.
         if let Some(layout) = fields.word("LAYOUT").filter(|layout| !["BIL", "BIP", "BSQ"].contains(&layout.as_str())) {
-            return Err(fields.fault("LAYOUT", format!("is {layout}, none of BIL, BIP and BSQ")));
+            return Err(fields.fault("LAYOUT", format!("is {}, none of BIL, BIP and BSQ", shown(&layout))));
         }
         let order = match fields.word("BYTEORDER").as_deref() {
             // The format leaves it to the machine, and nearly all are little-endian.
             None | Some("I" | "L" | "LSBFIRST" | "LSB") => ByteOrder::Little,
             Some("M" | "B" | "MSBFIRST" | "MSB") => ByteOrder::Big,
-            Some(other) => return Err(fields.fault("BYTEORDER", format!("is {other}, neither I nor M"))),
+            Some(other) => return Err(fields.fault("BYTEORDER", format!("is {}, neither I nor M", shown(other)))),
         };
         let bytes = |key| -> Result<Option<u64>, Fault> {
             match fields.number(key)? {
@@ -193,8 +193,8 @@ mod tests {
             (("NROWS         6000", "NROWS -1"), "line 3: NROWS is \"-1\", not a number of its kind"),
             (("NCOLS         4800", ""), "the header has no NCOLS"),
             (("NBANDS        1", "NBANDS 3"), "line 5: NBANDS is 3; a height map has one band"),
-            (("LAYOUT       BIL", "LAYOUT ZIP"), "line 2: LAYOUT is ZIP, none of BIL, BIP and BSQ"),
-            (("BYTEORDER      M", "BYTEORDER X"), "line 1: BYTEORDER is X, neither I nor M"),
+            (("LAYOUT       BIL", "LAYOUT ZIP"), "line 2: LAYOUT is \"ZIP\", none of BIL, BIP and BSQ"),
+            (("BYTEORDER      M", "BYTEORDER X"), "line 1: BYTEORDER is \"X\", neither I nor M"),
             (
                 ("YDIM          0.00833333333333", "YDIM 0"),
                 "line 13: XDIM and YDIM are 0.00833333333333 and 0; both have to be positive",
