@@ -1,7 +1,8 @@
-//! How long the CPU takes to make meshes: loading the shipped files, tessellating, computing normals.
+//! How long the CPU takes to make meshes and height maps: loading the shipped files, tessellating, computing normals,
+//! sampling the volcano.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fumarole::scene::{MeshSource, shapes};
+use fumarole::scene::{HeightMapSource, MeshSource, shapes, volcano};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -28,6 +29,35 @@ fn files(criterion: &mut Criterion) {
     }
 }
 
+fn maps(criterion: &mut Criterion) {
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/maps");
+    let mut group = criterion.benchmark_group("load map");
+    for name in
+        ["jacksboro.tif", "lidar-dem.tif", "topobathy-int16.asc", "topobathy-int16.bil", "topobathy-2000m-uint16.png"]
+    {
+        let source = HeightMapSource::File(assets.join(name));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| source.load().expect("a shipped map loads"));
+        });
+    }
+    group.finish();
+    let mut group = criterion.benchmark_group("volcano");
+    group.sample_size(10);
+    for side in [1_024, 4_096] {
+        group.bench_function(format!("sample {side} x {side}"), |bencher| {
+            bencher.iter(|| volcano(black_box(side), 1).expect("a valid side"));
+        });
+    }
+    // Another seed each time, so that the land itself is made.
+    let mut seed = 0;
+    group.bench_function("make the land", |bencher| {
+        bencher.iter(|| {
+            seed += 1;
+            volcano(2, seed).expect("a valid side")
+        });
+    });
+}
+
 fn tessellation(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("tessellate");
     group.bench_function("teapot", |bencher| bencher.iter(shapes::teapot));
@@ -47,5 +77,5 @@ fn normals(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, files, tessellation, normals);
+criterion_group!(benches, files, maps, tessellation, normals);
 criterion_main!(benches);

@@ -83,7 +83,7 @@ fn upsampled(coarse: &[f32], coarse_width: usize, column: usize, row: usize) -> 
     // A sample's centre lies a quarter of a coarse sample beside the centre of its coarse sample.
     let tap = |fine: usize, size: usize| {
         let near = fine / 2;
-        let far = if fine % 2 == 0 { near.saturating_sub(1) } else { (near + 1).min(size - 1) };
+        let far = if fine.is_multiple_of(2) { near.saturating_sub(1) } else { (near + 1).min(size - 1) };
         [(near, 0.75), (far, 0.25)]
     };
     let mut sum = 0.0;

@@ -33,7 +33,7 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
     let no_data = header.no_data;
     let mut integral = true;
     let mut word = Some(first);
-    for index in 0..count {
+    for (index, sample) in values.iter_mut().enumerate() {
         let Some(text) = word else {
             let reason =
                 format!("{index} heights for ncols x nrows = {width} x {height}, which makes {count}; it is cut off");
@@ -41,7 +41,7 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
         };
         let value = words.number(&text, "height")?;
         integral &= value.fract() == 0.0 || no_data == Some(value);
-        values[index] = value as f32;
+        *sample = value as f32;
         word = words.next()?;
     }
     if word.is_some() {

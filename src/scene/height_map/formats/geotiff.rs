@@ -32,7 +32,7 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMa
     };
     check_compressed(size_bytes, (width, height), bits.into())
         .map_err(|reason| fault("ImageWidth, ImageLength, BitsPerSample", reason))?;
-    let mut tags = Tags(&mut decoder);
+    let mut tags = Tags { decoder: &mut decoder, size_bytes };
     tags.refuse_scaled_heights()?;
     let (no_data, placement) = (tags.no_data()?, tags.placement(width, height)?);
     let source = Source { width, height, no_data, placement };
@@ -69,7 +69,10 @@ impl Source {
 }
 
 /// The tags that concern heights and places.
-struct Tags<'a, R: Read + Seek>(&'a mut Decoder<R>);
+struct Tags<'a, R: Read + Seek> {
+    decoder: &'a mut Decoder<R>,
+    size_bytes: u64,
+}
 
 impl<R: Read + Seek> Tags<'_, R> {
     fn no_data(&mut self) -> Result<Option<f64>, Fault> {
@@ -118,7 +121,7 @@ impl<R: Read + Seek> Tags<'_, R> {
 
     /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the header.
     fn keys(&mut self) -> Result<Keys, Fault> {
-        let directory = match self.0.find_tag(Tag::GeoKeyDirectoryTag).map_err(foreign)? {
+        let directory = match self.decoder.find_tag(Tag::GeoKeyDirectoryTag).map_err(foreign)? {
             Some(value) => value.into_u16_vec().map_err(|error| Fault::foreign(part("GeoKeyDirectory"), &error))?,
             None => Vec::new(),
         };
@@ -149,13 +152,18 @@ impl<R: Read + Seek> Tags<'_, R> {
     }
 
     fn text(&mut self, tag: Tag, name: &str) -> Result<Option<String>, Fault> {
-        let Some(value) = self.0.find_tag(tag).map_err(foreign)? else { return Ok(None) };
+        let length = self.decoder.image_ifd().find_entry(tag).map_or(0, |entry| entry.count());
+        // The library would allocate it.
+        if length > self.size_bytes {
+            return Err(fault(name, format!("it claims {length} characters, more than the file has; it is damaged")));
+        }
+        let Some(value) = self.decoder.find_tag(tag).map_err(foreign)? else { return Ok(None) };
         value.into_string().map(Some).map_err(|error| Fault::foreign(part(name), &error))
     }
 
     /// A tag's numbers, at least so many.
     fn numbers(&mut self, tag: Tag, name: &str, least: usize) -> Result<Option<Vec<f64>>, Fault> {
-        let Some(value) = self.0.find_tag(tag).map_err(foreign)? else { return Ok(None) };
+        let Some(value) = self.decoder.find_tag(tag).map_err(foreign)? else { return Ok(None) };
         let numbers = value.into_f64_vec().map_err(|error| Fault::foreign(part(name), &error))?;
         if numbers.len() < least {
             return Err(fault(name, format!("it has {} numbers instead of {least}", numbers.len())));
