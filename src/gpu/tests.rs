@@ -134,7 +134,11 @@ fn draw_pipeline(device: &Arc<Device>, modules: [Arc<ShaderModule>; 2]) -> Resul
         format: vector_format(input.format),
         offset_bytes: 16 * i,
     });
-    let layout = VertexLayout { stride_bytes: 16 * inputs.len() as u32, attributes: attributes.collect() };
+    let layout = VertexLayout {
+        stride_bytes: 16 * inputs.len() as u32,
+        rate: vk::VertexInputRate::VERTEX,
+        attributes: attributes.collect(),
+    };
     let target = |output: &shader_build::Location| Target {
         view: color_target(device, &output.name, vector_format(output.format)),
         load: Load::Discard,
