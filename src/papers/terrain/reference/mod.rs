@@ -28,6 +28,8 @@ mod pyramid;
 mod ray;
 mod search;
 mod shading;
+#[cfg(test)]
+mod tests;
 
 pub use base::{Base, Frame, Place};
 pub use grid::{Grid, Interpolation, Sample};
