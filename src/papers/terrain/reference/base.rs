@@ -55,7 +55,7 @@ impl Base {
             Base::Plane => DVec3::new(u, place.h, v),
             Base::Cylinder { radius_m } => around * (radius_m + place.h) + DVec3::Y * v,
             Base::Ellipsoid { equatorial_m, polar_m } => {
-                let across = across_m(equatorial_m, polar_m, v);
+                let across = across_m(equatorial_m, polar_m, v.sin().powi(2));
                 let flattened = (polar_m / equatorial_m).powi(2);
                 around * ((across + place.h) * v.cos()) + DVec3::Y * ((across * flattened + place.h) * v.sin())
             }
@@ -88,7 +88,7 @@ impl Base {
             }
             Base::Ellipsoid { equatorial_m, polar_m } => {
                 let along = along_m(equatorial_m, polar_m, v.sin().powi(2)) + place.h;
-                let across = (across_m(equatorial_m, polar_m, v) + place.h) * v.cos();
+                let across = (across_m(equatorial_m, polar_m, v.sin().powi(2)) + place.h) * v.cos();
                 let normal = out * v.cos() + DVec3::Y * v.sin();
                 let north = DVec3::Y * v.cos() - out * v.sin();
                 Frame { normal, axes: [east, north], scales: [across, along] }
@@ -128,9 +128,10 @@ impl Base {
     }
 }
 
-/// The prime vertical radius of curvature, across the meridian.
-fn across_m(equatorial_m: f64, polar_m: f64, latitude: f64) -> f64 {
-    equatorial_m.powi(2) / (equatorial_m * latitude.cos()).hypot(polar_m * latitude.sin())
+/// The prime vertical radius of curvature, across the meridian, from the squared sine of the latitude.
+pub(super) fn across_m(equatorial_m: f64, polar_m: f64, sin_squared: f64) -> f64 {
+    let square = equatorial_m.powi(2) * (1.0 - sin_squared) + polar_m.powi(2) * sin_squared;
+    equatorial_m.powi(2) / square.sqrt()
 }
 
 /// The meridional radius of curvature, from the squared sine of the latitude.

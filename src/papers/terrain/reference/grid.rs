@@ -22,6 +22,7 @@ pub struct Grid {
     pub origin: [f64; 2],
     /// From node to node along u and v, in the base's units; above 0.
     pub spacing: [f64; 2],
+    range_m: [f64; 2],
 }
 
 /// The interpolated surface at a place.
@@ -40,7 +41,12 @@ impl Grid {
         let numbers = fits
             && heights_m.iter().chain(&origin).all(|x| x.is_finite())
             && spacing.iter().all(|s| s.is_finite() && *s > 0.0);
-        numbers.then_some(Grid { size, heights_m, origin, spacing })
+        if !numbers {
+            return None;
+        }
+        let low = heights_m.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = heights_m.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Some(Grid { size, heights_m, origin, spacing, range_m: [low, high] })
     }
 
     /// The height of node (i, j); beyond the border the border's.
@@ -57,9 +63,7 @@ impl Grid {
 
     /// The lowest and the highest node.
     pub fn range_m(&self) -> [f64; 2] {
-        let low = self.heights_m.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = self.heights_m.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        [low, high]
+        self.range_m
     }
 
     /// Above every interpolated height: Catmull-Rom exceeds the nodes by at most 9/32 of their range.
@@ -201,4 +205,87 @@ impl Patch {
 /// From powers to Bernstein factors of degree 3.
 fn bernstein([c0, c1, c2, c3]: [f64; 4]) -> [f64; 4] {
     [c0, c0 + c1 / 3.0, c0 + c1 * 2.0 / 3.0 + c2 / 3.0, c0 + c1 + c2 + c3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::terrain::reference::fixtures::{Dice, random_grid};
+
+    const BOTH: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
+
+    #[test]
+    fn numbers_that_make_no_grid_are_refused() {
+        let grid = |size, heights: &[f64], spacing| Grid::new(size, heights.to_vec(), [0.0; 2], spacing);
+        assert!(grid([2, 2], &[0.0; 4], [1.0; 2]).is_some());
+        assert!(grid([1, 4], &[0.0; 4], [1.0; 2]).is_none());
+        assert!(grid([2, 3], &[0.0; 4], [1.0; 2]).is_none());
+        assert!(grid([2, 2], &[0.0, 1.0, f64::NAN, 2.0], [1.0; 2]).is_none());
+        assert!(grid([2, 2], &[0.0; 4], [1.0, 0.0]).is_none());
+    }
+
+    #[test]
+    fn both_pass_through_the_nodes_and_bilinear_is_eq_7() {
+        let grid = Grid { origin: [-3.0, 5.0], spacing: [0.5, 2.0], ..random_grid([6, 5], 1, 10.0) };
+        for (i, j) in (0..5).flat_map(|j| (0..6).map(move |i| (i, j))) {
+            let uv = [-3.0 + 0.5 * i as f64, 5.0 + 2.0 * j as f64];
+            for interpolation in BOTH {
+                let sample = grid.interpolate(interpolation, uv);
+                assert!((sample.height_m - grid.node(i, j)).abs() < 1e-13);
+            }
+        }
+        let small = Grid::new([2, 2], vec![1.0, 3.0, 7.0, 5.0], [0.0; 2], [2.0, 4.0]).unwrap();
+        let sample = small.interpolate(Interpolation::Bilinear, [0.5, 3.0]);
+        // f0 = 1.5, f1 = 6.5 and three quarters of the way.
+        assert_eq!(sample.height_m, 5.25);
+        assert_eq!(sample.gradient, [(0.25 * 2.0 - 0.75 * 2.0) / 2.0, 5.0 / 4.0]);
+    }
+
+    #[test]
+    fn gradients_are_derivatives_and_patches_are_the_interpolation() {
+        let grid = Grid { spacing: [0.5, 2.0], ..random_grid([5, 7], 2, 3.0) };
+        let mut dice = Dice::new(1);
+        for interpolation in BOTH {
+            for _ in 0..500 {
+                let uv = [dice.between(0.0, 2.0), dice.between(0.0, 12.0)];
+                let cell = grid.cell(uv);
+                let local = [0, 1].map(|axis| uv[axis] / grid.spacing[axis] - cell[axis] as f64);
+                let sample = grid.interpolate(interpolation, uv);
+                let patch = Patch::new(&grid, interpolation, cell, 1.0);
+                assert!((patch.height(local[0], local[1]) + 1.0 - sample.height_m).abs() < 1e-12);
+                let bounds = patch.bounds();
+                assert!((bounds.low - 1e-12..=bounds.high + 1e-12).contains(&(sample.height_m - 1.0)));
+                assert!(sample.height_m <= grid.ceiling_m(interpolation));
+                let slopes = patch.slopes(Interval::point(local[0]), Interval::point(local[1]));
+                for axis in 0..2 {
+                    assert!((slopes[axis].center() / grid.spacing[axis] - sample.gradient[axis]).abs() < 1e-11);
+                    if !(0.01..0.99).contains(&local[axis]) {
+                        continue;
+                    }
+                    let mut ends = [uv, uv];
+                    ends[0][axis] -= 1e-6;
+                    ends[1][axis] += 1e-6;
+                    let [a, b] = ends.map(|uv| grid.interpolate(interpolation, uv).height_m);
+                    assert!(((b - a) / 2e-6 - sample.gradient[axis]).abs() < 1e-6);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn catmull_rom_reaches_its_overshoot_and_no_more() {
+        // Half way along an axis the weights are -1/16, 9/16, 9/16, -1/16: 9/8 above, 1/8 below. In both axes the products
+        // above 0 sum to (9/8)² + (1/8)² = 41/32: the corners of the sixteen high and their edges low.
+        let rows = [0.0, 1.0, 1.0, 0.0];
+        let ridge: Vec<f64> = (0..16).map(|n| rows[n % 4]).collect();
+        let top: Vec<f64> = (0..16).map(|n| rows[n % 4] * rows[n / 4]).collect();
+        let worst: Vec<f64> =
+            (0..16).map(|n| if (rows[n % 4] > 0.0) == (rows[n / 4] > 0.0) { 1.0 } else { 0.0 }).collect();
+        for (heights, expected) in [(ridge, 1.125), (top, 1.265625), (worst, 1.28125)] {
+            let grid = Grid::new([4, 4], heights, [0.0; 2], [1.0; 2]).unwrap();
+            let middle = grid.interpolate(Interpolation::Bicubic, [1.5, 1.5]).height_m;
+            assert!((middle - expected).abs() < 1e-12, "{middle}");
+            assert!(middle <= grid.ceiling_m(Interpolation::Bicubic) + 1e-12);
+        }
+    }
 }

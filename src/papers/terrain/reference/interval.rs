@@ -59,11 +59,6 @@ impl Interval {
         Interval::around(self.center().cos(), self.radius()).clamp(-1.0, 1.0)
     }
 
-    /// An increasing function of every value.
-    pub(super) fn increasing(self, f: impl Fn(f64) -> f64) -> Self {
-        Interval { low: f(self.low), high: f(self.high) }
-    }
-
     /// The quotient by an interval above 0.
     pub(super) fn over(self, divisor: Interval) -> Self {
         self * Interval { low: 1.0 / divisor.high, high: 1.0 / divisor.low }

@@ -18,6 +18,8 @@
 //! | ellipsoid about y | longitude from +x towards -z, radians | geodetic latitude, radians | along the normal |
 
 mod base;
+mod clearance;
+mod collision;
 #[cfg(test)]
 mod fixtures;
 mod grid;
@@ -28,10 +30,13 @@ mod pyramid;
 mod ray;
 mod search;
 mod shading;
+mod sheet;
 #[cfg(test)]
 mod tests;
 
 pub use base::{Base, Frame, Place};
+pub use clearance::Clearance;
+pub use collision::Contact;
 pub use grid::{Grid, Interpolation, Sample};
 pub use pyramid::{Extreme, Level, pyramid};
 pub use ray::{Hit, Part, Ray, Terrain};

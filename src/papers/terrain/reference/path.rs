@@ -1,5 +1,6 @@
 //! A ray over one map, cut where it crosses the lines of the grid.
 
+use crate::papers::terrain::reference::base::across_m;
 use crate::papers::terrain::reference::ray::Ray;
 use crate::papers::terrain::reference::{Base, Grid, Place};
 use glam::DVec3;
@@ -94,7 +95,7 @@ impl Path<'_> {
     /// Normals of one latitude form a cone about the axis: ρ² sin² = (y - apex)² cos².
     fn parallels(&self, latitude: f64, flattened: f64, equatorial_m: f64, polar_m: f64) -> [f64; 2] {
         let (sin, cos) = latitude.sin_cos();
-        let across = equatorial_m.powi(2) / (equatorial_m * cos).hypot(polar_m * sin);
+        let across = across_m(equatorial_m, polar_m, sin * sin);
         let o = self.ray.origin + DVec3::Y * (across * flattened * sin);
         let d = self.ray.direction;
         let a = (d.x * d.x + d.z * d.z) * sin * sin - d.y * d.y * cos * cos;

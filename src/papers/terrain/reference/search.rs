@@ -31,13 +31,18 @@ impl<'a> Search<'a> {
 
     /// The first distance in `from..=to` at which the ray is in the map's solid.
     pub(super) fn first_root(&self, from: f64, to: f64) -> Option<f64> {
-        if self.lowest(from, to) > self.patch.bounds().high {
+        if self.is_above(from, to, 0.0) {
             return None;
         }
         match self.path.base {
             Base::Plane => self.first_root_over_plane(from, to),
             Base::Ellipsoid { .. } | Base::Cylinder { .. } => self.first_root_by_intervals(from, to),
         }
+    }
+
+    /// Whether the ray stays `margin_m` above every height of the cell.
+    pub(super) fn is_above(&self, from: f64, to: f64, margin_m: f64) -> bool {
+        self.lowest(from, to) - margin_m > self.patch.bounds().high
     }
 
     /// A bound of h below: along a line, the height above a convex body is convex, so its tangent lies below it.
