@@ -22,7 +22,7 @@ pub struct Grid {
     pub origin: [f64; 2],
     /// From node to node along u and v, in the base's units; above 0.
     pub spacing: [f64; 2],
-    range_m: [f64; 2],
+    pub(super) range_m: [f64; 2],
 }
 
 /// The interpolated surface at a place.
@@ -191,12 +191,11 @@ impl Patch {
 
     /// The lowest and highest of the patch's Bernstein factors, which enclose the surface.
     pub(super) fn bounds(&self) -> Interval {
-        let columns: Vec<[f64; 4]> = self.factors.iter().map(|row| bernstein(*row)).collect();
+        let in_v = self.factors.map(bernstein);
+        let transposed = [0, 1, 2, 3].map(|b| in_v.map(|row| row[b]));
         let mut bounds = Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
-        for b in 0..4 {
-            for value in bernstein([0, 1, 2, 3].map(|a| columns[a][b])) {
-                bounds = Interval { low: bounds.low.min(value), high: bounds.high.max(value) };
-            }
+        for value in transposed.into_iter().flat_map(bernstein) {
+            bounds = Interval { low: bounds.low.min(value), high: bounds.high.max(value) };
         }
         bounds
     }
