@@ -1,12 +1,13 @@
 //! Runs as comma-separated values (RFC 4180): one row per run and pass, for spreadsheets and data frames.
 //!
 //! The columns are [`COLUMNS`]. A run without passes keeps one row with empty pass cells. Absent is an empty cell. Raw
-//! samples are in the JSON only. `config` is the run's parameters as one JSON object.
+//! samples are in the JSON only. `config`, `results` and `experiment` are JSON objects: the run's
+//! parameters, the paper's own figures, and the row of a table that it reproduces.
 
 use super::record::{Bytes, Pass, Record, Run, Statistics, Summary};
 
 /// The header, in order. Times are milliseconds, sizes bytes.
-pub const COLUMNS: [&str; 41] = [
+pub const COLUMNS: [&str; 43] = [
     "device",
     "device_type",
     "paper",
@@ -20,6 +21,8 @@ pub const COLUMNS: [&str; 41] = [
     "repeat",
     "process",
     "config",
+    "results",
+    "experiment",
     "frame_min_ms",
     "frame_median_ms",
     "frame_mean_ms",
@@ -88,6 +91,8 @@ fn row(record: &Record, run: &Run, pass: Option<(usize, &Pass)>) -> [String; COL
         run.repeat.to_string(),
         run.process.to_string(),
         serde_json::Value::Object(run.config.clone()).to_string(),
+        serde_json::Value::Object(run.results.clone()).to_string(),
+        cell(run.experiment.as_ref().and_then(|row| serde_json::to_string(row).ok())),
         frame(|time| Some(time.min)),
         frame(|time| Some(time.median)),
         frame(|time| Some(time.mean)),
@@ -171,6 +176,8 @@ mod tests {
         assert_eq!(rows[0], COLUMNS);
         assert_eq!(rows.len(), 3);
         assert!(rows.iter().all(|row| row.len() == COLUMNS.len()));
+        assert_eq!(value(&rows, 1, "results"), r#"{"fps":200.0}"#);
+        assert!(value(&rows, 2, "experiment").contains(r#""ratio":0.125"#));
         assert_eq!(value(&rows, 1, "pass"), "cluster");
         assert_eq!(value(&rows, 1, "gpu_median_ms"), "");
         assert_eq!(value(&rows, 1, "host_median_ms"), "0.5");

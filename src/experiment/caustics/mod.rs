@@ -1,5 +1,6 @@
 //! The experiments of the `caustics` paper: what a user set up, its scene, its measured runs.
 
+mod bars;
 pub mod slicing;
 pub mod sweep;
 mod thesis;

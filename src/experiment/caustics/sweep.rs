@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use serde_json::json;
 
+use super::bars::{self, Bars, LEAST_SAMPLES};
 use super::thesis::{TABLE_5_1, TABLE_5_3, ThesisTable};
 use super::{Setup, mesh_name};
 use crate::experiment::bench::{Bench, load};
@@ -97,9 +98,6 @@ struct Row {
     thesis: Option<f64>,
 }
 
-/// Fewer samples a method say nothing of their noise.
-const LEAST_SAMPLES: usize = 5;
-
 impl Row {
     fn interval(&self) -> Option<[f64; 2]> {
         self.ratio.as_ref().filter(|_| self.samples >= LEAST_SAMPLES).map(|r| r.interval)
@@ -111,6 +109,7 @@ pub struct Outcome {
     comparison: Comparison,
     pub runs: Vec<Run>,
     rows: Vec<Row>,
+    bars: Vec<Bars>,
 }
 
 impl Sweep {
@@ -119,7 +118,7 @@ impl Sweep {
     /// # Errors
     /// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`]; [`Error::Interrupted`] before the first row.
     pub fn run(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Outcome, Error> {
-        let mut outcome = Outcome { comparison: self.comparison, runs: Vec::new(), rows: Vec::new() };
+        let mut outcome = Outcome { comparison: self.comparison, runs: Vec::new(), rows: Vec::new(), bars: Vec::new() };
         let variants = self.comparison.variants();
         for mesh in &self.meshes {
             let mut setup = self.setup.clone();
@@ -183,6 +182,7 @@ impl Outcome {
                 thesis,
             });
         }
+        self.bars.push(Bars::of(&mesh, planes, &mut runs));
         self.runs.append(&mut runs);
     }
 
@@ -224,6 +224,8 @@ impl Outcome {
                  rests on them\n",
             );
         }
+        text.push('\n');
+        text.push_str(&bars::render(&self.bars, style));
         text
     }
 
