@@ -44,6 +44,16 @@ pub enum Error {
 }
 
 impl Error {
+    /// Names the option by which a user lowers what is beyond a limit, beside the object.
+    pub fn set_by(self, option: &str) -> Self {
+        match self {
+            Error::Limit { object, what, wanted, limit } => {
+                Error::Limit { object: format!("{object} ({option})"), what, wanted, limit }
+            }
+            other => other,
+        }
+    }
+
     /// Wraps a result code that the caller has no better word for.
     pub(crate) fn vulkan(operation: &'static str, object: impl Into<String>, result: vk::Result) -> Self {
         let object = object.into();

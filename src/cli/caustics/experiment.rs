@@ -15,7 +15,7 @@ use crate::experiment::caustics::slicing;
 use crate::experiment::caustics::sweep::{
     ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Sweep,
 };
-use crate::experiment::caustics::{self, Setup, mesh_name};
+use crate::experiment::caustics::{self, NamedMesh, Setup};
 use crate::experiment::facts::Facts;
 use crate::experiment::machine::Machine;
 use crate::experiment::study::Study;
@@ -201,16 +201,16 @@ impl Experiment<'_> {
         let found = watched(output.quiet, &what, |watch| sweep.run(&mut self.machine, watch))?;
         let table = found.render(outcome::style());
         let plots = [(".svg".to_owned(), found.plot()?)];
-        self.publication.runs(&self.machine, found.runs, table, &plots)
+        self.publication.runs(&self.machine, found.runs, table, &plots)?;
+        found.stopped.map_or(Ok(()), |error| Err(error.into()))
     }
 
     fn depth_profiles(&mut self) -> Result<(), Failure> {
         let mut rows = Vec::new();
-        for mesh in self.meshes.clone() {
-            let setup = Setup { meshes: vec![mesh.clone()], ..self.setup.clone() };
+        for NamedMesh { source, name, .. } in NamedMesh::all(&self.meshes) {
+            let setup = Setup { meshes: vec![source], ..self.setup.clone() };
             let scene = setup.load()?;
             let histogram = slicing::depth_profile(&mut self.machine, &setup, &scene)?;
-            let name = mesh_name(&mesh);
             let levels = histogram.iter().enumerate();
             rows.extend(levels.map(|(level, texels)| vec![json!(name), json!(level + 1), json!(texels)]));
             let chart = BarChart {
@@ -236,11 +236,10 @@ impl Experiment<'_> {
     fn picture_pairs(&mut self) -> Result<(), Failure> {
         self.look_plainly();
         let mut rows = Vec::new();
-        for mesh in self.meshes.clone() {
-            let setup = Setup { meshes: vec![mesh.clone()], ..self.setup.clone() };
+        for NamedMesh { source, name, .. } in NamedMesh::all(&self.meshes) {
+            let setup = Setup { meshes: vec![source], ..self.setup.clone() };
             let scene = setup.load()?;
             let pair = slicing::picture_pair(&mut self.machine, &setup, &scene)?;
-            let name = mesh_name(&mesh);
             for (word, picture) in [("normal", &pair.normal), ("smart", &pair.smart)] {
                 self.publication.picture(&format!("-{name}-{word}.png"), picture)?;
             }
@@ -254,13 +253,13 @@ impl Experiment<'_> {
 
     fn pictures(&mut self) -> Result<(), Failure> {
         self.look_plainly();
-        for mesh in self.meshes.clone() {
-            let setup = Setup { meshes: vec![mesh.clone()], ..self.setup.clone() };
+        for NamedMesh { source, name, .. } in NamedMesh::all(&self.meshes) {
+            let setup = Setup { meshes: vec![source], ..self.setup.clone() };
             let scene = setup.load()?;
             for variant in [Variant::Volumetric, Variant::LevelMap, Variant::LevelMapSmart] {
                 let mut built = build(&self.machine, &setup, &scene, variant)?;
                 let rendered = picture::render(&mut self.machine, &mut built.paper, 0)?;
-                self.publication.picture(&format!("-{}-{}.png", mesh_name(&mesh), variant.word()), &rendered)?;
+                self.publication.picture(&format!("-{}-{}.png", name, variant.word()), &rendered)?;
             }
         }
         Ok(())

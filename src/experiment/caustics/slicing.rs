@@ -4,7 +4,7 @@
 use serde_json::json;
 
 use super::thesis::{TABLE_5_2, TABLE_5_4};
-use super::{Scene, Setup, mesh_name};
+use super::{NamedMesh, Scene, Setup};
 use crate::experiment::bench::build;
 use crate::experiment::error::Error;
 use crate::experiment::facts::Facts;
@@ -20,12 +20,12 @@ use crate::scene::MeshSource;
 fn for_each_mesh(
     setup: &Setup,
     meshes: &[MeshSource],
-    mut visit: impl FnMut(&str, &mut Setup, &Scene) -> Result<(), Error>,
+    mut visit: impl FnMut(&NamedMesh, &mut Setup, &Scene) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    for mesh in meshes {
-        let mut setup = Setup { meshes: vec![mesh.clone()], ..setup.clone() };
+    for mesh in NamedMesh::all(meshes) {
+        let mut setup = Setup { meshes: vec![mesh.source.clone()], ..setup.clone() };
         let scene = setup.load()?;
-        visit(&mesh_name(mesh), &mut setup, &scene)?;
+        visit(&mesh, &mut setup, &scene)?;
     }
     Ok(())
 }
@@ -37,8 +37,8 @@ fn for_each_mesh(
 pub fn polygon_counts(setup: &Setup, meshes: &[MeshSource]) -> Result<Facts, Error> {
     let mut rows = Vec::new();
     for_each_mesh(setup, meshes, |mesh, _, scene| {
-        let thesis = TABLE_5_2.iter().find(|(name, _)| *name == mesh).map(|(_, count)| *count);
-        rows.push(vec![json!(mesh), json!(scene.receivers[0].mesh.triangle_count()), json!(thesis)]);
+        let thesis = TABLE_5_2.iter().find(|(name, _)| *name == mesh.model).map(|(_, count)| *count);
+        rows.push(vec![json!(mesh.name), json!(scene.receivers[0].mesh.triangle_count()), json!(thesis)]);
         Ok(())
     })?;
     Ok(Facts { title: "Table 5-2: polygons of the models", columns: &["mesh", "triangles", "thesis"], rows })
@@ -67,8 +67,14 @@ pub fn actual_planes(
             };
             let fitted = drawn(SmartPlacement::Fitted { epsilon_m: None })?;
             let kept = drawn(SmartPlacement::Kept)?;
-            let thesis = TABLE_5_4.get(mesh, planes);
-            rows.push(vec![json!(mesh), json!(planes), json!(fitted), json!(kept), json!(thesis.map(|t| t as u64))]);
+            let thesis = TABLE_5_4.get(&mesh.model, planes);
+            rows.push(vec![
+                json!(mesh.name),
+                json!(planes),
+                json!(fitted),
+                json!(kept),
+                json!(thesis.map(|t| t as u64)),
+            ]);
         }
         Ok(())
     })?;
@@ -124,13 +130,13 @@ pub fn intensity_difference(
         for &planes in counts {
             setup.parameters.planes = planes;
             setup.parameters.validate()?;
-            let mut row = vec![json!(mesh), json!(planes)];
+            let mut row = vec![json!(mesh.name), json!(planes)];
             for placement in [SmartPlacement::Fitted { epsilon_m: None }, SmartPlacement::Kept] {
                 setup.parameters.smart.placement = placement;
                 let Difference { mean, p99, .. } = picture_pair(machine, setup, scene)?.difference;
                 row.extend([json!(mean), json!(p99)]);
             }
-            let thesis = TABLE_5_4.get(mesh, planes).map(|_| 0);
+            let thesis = TABLE_5_4.get(&mesh.model, planes).map(|_| 0);
             row.push(json!(thesis));
             rows.push(row);
         }
@@ -171,7 +177,7 @@ pub fn memory(machine: &mut Machine, setup: &Setup, meshes: &[MeshSource], count
                     built.memory.iter().filter(|m| test(&m.name)).map(|m| m.bytes).sum::<u64>()
                 };
                 rows.push(vec![
-                    json!(mesh),
+                    json!(mesh.name),
                     json!(planes),
                     json!(variant.word()),
                     json!(of(|name| name.ends_with("-map") || name.ends_with("-depth") && name != "underwater-depth")),

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::bars::{self, Bars, LEAST_SAMPLES};
 use super::thesis::{TABLE_5_1, TABLE_5_3, ThesisTable};
-use super::{Setup, mesh_name};
+use super::{NamedMesh, Setup};
 use crate::experiment::bench::{Bench, load};
 use crate::experiment::compare::{Ratio, ratio_within_process};
 use crate::experiment::error::Error;
@@ -86,6 +86,8 @@ pub struct Sweep {
 /// One method at one count.
 struct Row {
     mesh: String,
+    /// The name that the thesis's tables may know it by.
+    model: String,
     planes: u32,
     variant: Variant,
     /// Planes that were drawn.
@@ -110,24 +112,35 @@ pub struct Outcome {
     pub runs: Vec<Run>,
     rows: Vec<Row>,
     bars: Vec<Bars>,
+    /// What ended it before its last point; the rows before it are kept.
+    pub stopped: Option<Error>,
 }
 
 impl Sweep {
-    /// Measures every method, interleaved, at every count for every mesh. An interrupted sweep keeps its finished rows.
+    /// Measures every method, interleaved, at every count for every mesh. What fails after the first point ends the sweep,
+    /// which keeps its finished rows; so does Ctrl-C.
     ///
     /// # Errors
-    /// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`]; [`Error::Interrupted`] before the first row.
+    /// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`], [`Error::Interrupted`], before the first row.
     pub fn run(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Outcome, Error> {
-        let mut outcome = Outcome { comparison: self.comparison, runs: Vec::new(), rows: Vec::new(), bars: Vec::new() };
+        let mut outcome = Outcome {
+            comparison: self.comparison,
+            runs: Vec::new(),
+            rows: Vec::new(),
+            bars: Vec::new(),
+            stopped: None,
+        };
         let variants = self.comparison.variants();
-        for mesh in &self.meshes {
+        for mesh in &NamedMesh::all(&self.meshes) {
             let mut setup = self.setup.clone();
-            setup.meshes = vec![mesh.clone()];
+            setup.meshes = vec![mesh.source.clone()];
             setup.preset = Some(self.comparison.preset.to_owned());
-            let loaded = load(&setup)?;
+            let loaded = match load(&setup) {
+                Ok(loaded) => loaded,
+                Err(error) => return outcome.ended_by(error),
+            };
             for &planes in &self.counts {
                 setup.parameters.planes = planes;
-                setup.parameters.validate()?;
                 let bench = Bench {
                     study: &setup,
                     loaded: &loaded,
@@ -135,10 +148,10 @@ impl Sweep {
                     schedule: self.schedule,
                     limits: self.limits.as_ref(),
                 };
-                match bench.measure(machine, watch) {
+                let measured = setup.parameters.validate().map_err(Error::from);
+                match measured.and_then(|()| bench.measure(machine, watch)) {
                     Ok(runs) => outcome.add(mesh, planes, runs.into_iter().map(|r| r.run).collect()),
-                    Err(Error::Interrupted) if !outcome.rows.is_empty() => return Ok(outcome),
-                    Err(error) => return Err(error),
+                    Err(error) => return outcome.ended_by(error),
                 }
                 if watch.interrupted.load(Ordering::Relaxed) {
                     return Ok(outcome);
@@ -154,15 +167,28 @@ fn samples(run: &Run) -> &[f64] {
 }
 
 impl Outcome {
-    fn add(&mut self, mesh: &MeshSource, planes: u32, mut runs: Vec<Run>) {
-        let mesh = mesh_name(mesh);
+    /// Keeps the rows that there are; without one nothing was found.
+    fn ended_by(mut self, error: Error) -> Result<Self, Error> {
+        if self.rows.is_empty() {
+            return Err(error);
+        }
+        self.stopped = Some(error).filter(|error| !matches!(error, Error::Interrupted));
+        Ok(self)
+    }
+
+    fn add(&mut self, mesh: &NamedMesh, planes: u32, mut runs: Vec<Run>) {
         let base = runs.first().map(|run| samples(run).to_vec()).unwrap_or_default();
         for (index, (run, variant)) in runs.iter_mut().zip(self.comparison.variants()).enumerate() {
             let ratio = (index > 0).then(|| ratio_within_process(&base, samples(run))).flatten();
-            let thesis = self.comparison.thesis_ratio(&mesh, variant, planes).filter(|_| index > 0);
+            let thesis = self.comparison.thesis_ratio(&mesh.model, variant, planes).filter(|_| index > 0);
             if let Some(ratio) = &ratio {
                 run.experiment = Some(ExperimentRow {
-                    row: format!("{mesh}, {planes} planes: {} / {}", variant.word(), self.comparison.base.word()),
+                    row: format!(
+                        "{}, {planes} planes: {} / {}",
+                        mesh.name,
+                        variant.word(),
+                        self.comparison.base.word()
+                    ),
                     paper: thesis,
                     ours: Some(ratio.ratio),
                     ratio: thesis.map(|thesis| ratio.ratio / thesis),
@@ -171,7 +197,8 @@ impl Outcome {
                 run.results.insert("ratio_interval".into(), json!(interval));
             }
             self.rows.push(Row {
-                mesh: mesh.clone(),
+                mesh: mesh.name.clone(),
+                model: mesh.model.clone(),
                 planes,
                 variant,
                 drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()).unwrap_or(0),
@@ -182,7 +209,7 @@ impl Outcome {
                 thesis,
             });
         }
-        self.bars.push(Bars::of(&mesh, planes, &mut runs));
+        self.bars.push(Bars::of(&mesh.name, planes, &mut runs));
         self.runs.append(&mut runs);
     }
 
@@ -266,17 +293,18 @@ impl Outcome {
         let base = self.comparison.base;
         let of_base = self.rows.iter().filter(|row| row.mesh == mesh && row.variant == base);
         let Some(last) = of_base.max_by_key(|row| row.planes) else { return Vec::new() };
-        let Some(seconds) = self.comparison.thesis(mesh, base, last.planes) else { return Vec::new() };
+        let model = &last.model;
+        let Some(seconds) = self.comparison.thesis(model, base, last.planes) else { return Vec::new() };
         let scale = last.frame_ms / seconds;
         let curve = |variant: Variant| {
-            let at = |planes| Some((f64::from(planes), scale * self.comparison.thesis(mesh, variant, planes)?));
+            let at = |planes| Some((f64::from(planes), scale * self.comparison.thesis(model, variant, planes)?));
             (3..=last.planes).filter_map(at).collect::<Vec<_>>()
         };
         self.comparison
             .variants()
             .into_iter()
             .map(|variant| Series {
-                name: format!("thesis, {mesh}, {}, scaled", variant.word()),
+                name: format!("thesis, {model}, {}, scaled", variant.word()),
                 points: curve(variant),
                 reference: true,
             })
@@ -286,5 +314,5 @@ impl Outcome {
 }
 
 fn is_doubtful(row: &Row) -> bool {
-    row.mesh == "sphere" && row.variant == Variant::Volumetric && row.thesis.is_some()
+    row.model == "sphere" && row.variant == Variant::Volumetric && row.thesis.is_some()
 }

@@ -83,7 +83,8 @@ impl Underwater {
         let device = shaders.device();
         let image = |name: &str, format, attachment| {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
-            Image::new(device, desc.usage(attachment | vk::ImageUsageFlags::SAMPLED))
+            let image = Image::new(device, desc.usage(attachment | vk::ImageUsageFlags::SAMPLED));
+            image.map_err(|error| error.set_by("--size"))
         };
         let depth = image("underwater-depth", depth_format, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
         let camera = underwater_camera(parameters);

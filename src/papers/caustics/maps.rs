@@ -31,7 +31,8 @@ pub fn map(
     format: vk::Format,
     parameters: &Parameters,
 ) -> Result<Arc<ImageView>, Error> {
-    Image::new(shaders.device(), map_desc(name, format, parameters))?.view()
+    let image = Image::new(shaders.device(), map_desc(name, format, parameters));
+    image.map_err(|error| error.set_by("--map-size"))?.view()
 }
 
 /// What a square map is made from.

@@ -75,7 +75,8 @@ impl Stencil {
         let image = |name: &str, format| {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
             let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
-            Image::new(shaders.device(), desc.usage(usage))?.view()
+            let image = Image::new(shaders.device(), desc.usage(usage));
+            image.map_err(|error| error.set_by("--size"))?.view()
         };
         let surface = Surface {
             position: image("surface-position", vk::Format::R32G32B32A32_SFLOAT)?,

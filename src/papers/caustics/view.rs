@@ -73,7 +73,8 @@ impl View {
             parameters.width,
             parameters.height,
         );
-        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
+        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT));
+        let picture = picture.map_err(|error| error.set_by("--size"))?.view()?;
         if !parameters.is_seen_from_above() {
             let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-below.frag")
                 .with("underwater_color", &underwater.color)

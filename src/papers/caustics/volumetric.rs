@@ -39,14 +39,16 @@ impl Volumetric {
     pub fn new(site: Site<'_>) -> Result<Self, Error> {
         let Site { shaders, label, lit, water, volumes, nearest, parameters } = site;
         let map = |name: &str, format| maps::map(shaders, format!("{label}/{name}"), format, parameters);
-        let desc = maps::map_desc(format!("{label}/illumination-map"), maps::LIGHT, parameters);
-        let illumination_map = Image::new(shaders.device(), desc.layers(parameters.planes))?;
-        let slices = illumination_map.view()?;
-        let layers = (0..parameters.planes).map(|i| illumination_map.layer(i)).collect::<Result<Vec<_>, _>>()?;
         let caustics = map("caustics-map", maps::CAUSTICS)?;
         let position = map("position-map", maps::POSITION)?;
         let combined = map("combined-map", maps::LIGHT)?;
         let depth = map("slice-depth", maps::DEPTH)?;
+        // A map of this size exists by now: what a device may still refuse is the number of layers.
+        let desc = maps::map_desc(format!("{label}/illumination-map"), maps::LIGHT, parameters);
+        let illumination_map = Image::new(shaders.device(), desc.layers(parameters.planes));
+        let illumination_map = illumination_map.map_err(|error| error.set_by("--planes"))?;
+        let slices = illumination_map.view()?;
+        let layers = (0..parameters.planes).map(|i| illumination_map.layer(i)).collect::<Result<Vec<_>, _>>()?;
 
         let slice_image =
             Pass::graphics("slice-images", "5.2.1", "caustics/receiver-map.vert", "caustics/diffuse-map.frag")

@@ -238,7 +238,8 @@ impl Shape {
 
     fn map(shaders: &ShaderLibrary, label: &str, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
         let name = format!("{label}/water-map");
-        let coefficients = upload(shaders.device(), &name, STORAGE, bytemuck::cast_slice(map.coefficients()))?;
+        let coefficients = upload(shaders.device(), &name, STORAGE, bytemuck::cast_slice(map.coefficients()))
+            .map_err(|error| error.set_by("--water-map"))?;
         let (columns, rows) = (map.heights().width(), map.heights().height());
         let spacing = map.heights().spacing_m();
         // Places are measured from a node near the middle: far from it single precision has fewer digits to spare.
@@ -280,13 +281,16 @@ impl Water {
         let name = |what: &str| format!("{label}/{what}");
         let shape = Shape::new(shaders, label, middle, parameters)?;
         let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
-        let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(STORAGE))?;
+        let by_triangles = |error: Error| error.set_by("--water-triangles");
+        let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(STORAGE));
+        let vertices = vertices.map_err(by_triangles)?;
         let indices = upload(
             device,
             &name("water-indices"),
             vk::BufferUsageFlags::INDEX_BUFFER | STORAGE,
             bytemuck::cast_slice(&grid.indices()),
-        )?;
+        )
+        .map_err(by_triangles)?;
         let pass = |shader| Pass::compute("water-surface", "5.2", shader).with("water", &vertices);
         let animate = match &shape {
             Shape::Waves { list, .. } => {
