@@ -8,22 +8,14 @@ use super::clusters::{Clusters, Point};
 use super::parameters::Parameters;
 use super::particles::Particles;
 use super::targets::{FLOATS, target};
-use crate::gpu::transfer::upload;
-use crate::gpu::{
-    Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location, Mode, Pass, PassInfo, Recorder, ShaderLibrary,
-};
+use crate::gpu::transfer::upload_rows;
+use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location, Pass, PassInfo, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
     struct MotionConstants {
         space_m: [f32; 3],
         time_step_s: f32,
-    }
-}
-
-host_block! {
-    struct LoadConstants {
-        width: u32,
     }
 }
 
@@ -72,7 +64,7 @@ impl Animation {
         // The start stays, so that a restart moves nothing.
         let start = state("-start")?;
         let states = [state("-a")?, state("-b")?];
-        load(shaders, label, particles, &start)?;
+        load(shaders, particles, &start)?;
 
         let first = Pass::graphics("animate", "5.1", "common/fullscreen.vert", "lava/animate.frag")
             .constants::<MotionConstants>()
@@ -198,28 +190,18 @@ pub fn host_vertices(shaders: &ShaderLibrary, name: String, count: u64) -> Resul
     Ok(buffer)
 }
 
-/// Draws the particles as they start into `start`.
-fn load(shaders: &ShaderLibrary, label: &str, particles: &Particles, start: &State) -> Result<(), Error> {
-    let device = shaders.device();
-    let width = start.positions.width();
-    let texels = (width * start.positions.height()) as usize;
-    let buffer = |what: &str, values: &[glam::Vec3]| {
-        let mut rows: Vec<[f32; 4]> = values.iter().map(|v| v.extend(0.0).to_array()).collect();
-        rows.resize(texels, [0.0; 4]);
-        let name = format!("{label}/{what}");
-        upload(device, &name, vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::cast_slice(&rows))
-    };
-    let pass = Pass::graphics("load-particles", "5.1", "common/fullscreen.vert", "lava/load-particles.frag")
-        .constants::<LoadConstants>()
-        .with("Positions", &buffer("start-positions", &particles.positions)?)
-        .with("Velocities", &buffer("start-velocities", &particles.velocities)?)
-        .color(&start.positions, Load::Discard, Blend::Replace)
-        .color(&start.velocities, Load::Discard, Blend::Replace)
-        .build(shaders)?;
-    Recorder::new(device)?.run(Mode::Plain, |frame| {
-        frame.graphics(&pass, |draw| {
-            draw.constants(&LoadConstants { width }).vertices(3);
-        })
-    })?;
+/// Fills `start` with the particles; what is left of the last row stays at the origin and at rest.
+fn load(shaders: &ShaderLibrary, particles: &Particles, start: &State) -> Result<(), Error> {
+    for (view, values) in [(&start.positions, &particles.positions), (&start.velocities, &particles.velocities)] {
+        let size = (view.width(), view.height());
+        upload_rows(shaders.device(), view, size, |first_row, bytes| {
+            let first = (first_row * view.width()) as usize;
+            let mut values = values.iter().skip(first);
+            for texel in bytes.chunks_exact_mut(16) {
+                let value = values.next().map_or([0.0; 4], |v| v.extend(0.0).to_array());
+                texel.copy_from_slice(bytemuck::bytes_of(&value));
+            }
+        })?;
+    }
     Ok(())
 }

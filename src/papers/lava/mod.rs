@@ -13,9 +13,12 @@
 mod animation;
 mod clusters;
 mod isosurface;
+#[cfg(test)]
+mod layouts;
 pub mod parameters;
 mod particles;
 mod pattern;
+pub mod reference;
 mod rock;
 mod splatting;
 mod targets;

@@ -5,16 +5,9 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::targets::desc;
-use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, Error, Image, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary};
-use crate::host_block;
+use crate::gpu::transfer::upload_rows;
+use crate::gpu::{Error, Image, ImageView, ShaderLibrary};
 use crate::papers::ParameterError;
-
-host_block! {
-    struct LoadConstants {
-        size: [u32; 2],
-    }
-}
 
 /// Texels of a rock, rows from the top, sRGB with an alpha that is ignored. It repeats in both directions.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,7 +36,8 @@ impl Rock {
         })
     }
 
-    /// The rock on the device, with a border of one texel that repeats the opposite side.
+    /// The rock on the device, with a border of one texel that repeats the opposite side, so
+    /// that a filter finds its neighbours across the seam.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
@@ -52,21 +46,16 @@ impl Rock {
         let name = format!("{label}/rock");
         let desc = desc(name.clone(), vk::Format::R8G8B8A8_UNORM, self.width + 2, self.height + 2);
         let image = Image::new(device, desc)?.view()?;
-        let texels = upload(
-            device,
-            &format!("{name}-texels"),
-            vk::BufferUsageFlags::STORAGE_BUFFER,
-            bytemuck::cast_slice(&self.texels),
-        )?;
-        let pass = Pass::graphics("load-rock", "7.2", "common/fullscreen.vert", "lava/load-rock.frag")
-            .constants::<LoadConstants>()
-            .with("Rock", &texels)
-            .color(&image, Load::Discard, Blend::Replace)
-            .build(shaders)?;
-        Recorder::new(device)?.run(Mode::Plain, |frame| {
-            frame.graphics(&pass, |draw| {
-                draw.constants(&LoadConstants { size: [self.width, self.height] }).vertices(3);
-            })
+        let wrapped = |at: u32, count: u32| (at + count - 1) % count;
+        upload_rows(device, &image, (image.width(), image.height()), |first_row, bytes| {
+            let rows = bytes.chunks_exact_mut(4 * image.width() as usize);
+            for (row, bytes) in (first_row..).zip(rows) {
+                let from = (wrapped(row, self.height) * self.width) as usize;
+                for (column, texel) in (0..).zip(bytes.chunks_exact_mut(4)) {
+                    let at = from + wrapped(column, self.width) as usize;
+                    texel.copy_from_slice(&self.texels.get(at).copied().unwrap_or_default());
+                }
+            }
         })?;
         Ok(image)
     }

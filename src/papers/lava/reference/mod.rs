@@ -1,0 +1,14 @@
+//! The oracle of `lava`: the thesis's equations in `f64`, for the tests. It shares nothing with the shaders.
+//!
+//! [`step`] is listing 5.1, [`clusters`] section 5.2, [`density`] eq. 6.2, [`Grid::accepted`] section 6.2,
+//! [`Surface`] eq. 6.3 and section 6.4, [`Splats`] chapter 7.
+
+mod animation;
+mod density;
+mod splats;
+mod surface;
+
+pub use animation::{clusters, step};
+pub use density::{Grid, density};
+pub use splats::{Pixel, Splats};
+pub use surface::Surface;
