@@ -30,12 +30,17 @@ pub struct Pixel {
     pub depth: f64,
     /// Sum of weighted values, sum of weights (eq. 7.2).
     pub sums: [f64; 2],
+    /// Splats that lie epsilon or more behind.
+    pub hidden: u32,
     /// Rounding may decide otherwise whether some splat counts.
     pub is_close_call: bool,
 }
 
-/// Relative distance to a splat's rim, or to epsilon, within which single precision may decide either way.
-const CLOSE: f64 = 1e-4;
+/// Relative distance to a splat's rim, or to epsilon, within which a device's precision may decide either way: vertices
+/// are snapped to 1/256 of a pixel.
+const CLOSE: f64 = 1e-3;
+/// Cosine between ray and normal below which that snapping moves a point far across its splat.
+const EDGE_ON: f64 = 0.05;
 
 impl Splats {
     /// `counts` splats spread evenly over `surface`, seen by `camera` in a picture of `width` x `height` pixels.
@@ -81,26 +86,27 @@ impl Splats {
             let along = (splat.center - self.eye).dot(splat.normal) / facing;
             let point = self.eye + ray * along;
             let ratio = point.distance(splat.center) / self.radius;
-            if !(along > 0.0 && ratio < 1.0 + 100.0 * CLOSE) {
+            if !(along > 0.0 && ratio < 1.5) {
                 continue;
             }
-            // Seen from the side a splat's rim moves far with a small error.
-            is_close_call |= (ratio - 1.0).abs() < CLOSE / facing.abs().max(CLOSE);
+            is_close_call |= facing.abs() < EDGE_ON || (ratio - 1.0).abs() < CLOSE / facing.abs();
             if ratio <= 1.0 {
                 seen.push(((point - self.eye).dot(self.forward), gaussian(ratio), value(splat.center)));
             }
         }
         let depth = seen.iter().map(|s| s.0).reduce(f64::min)?;
-        let mut sums = [0.0; 2];
+        let (mut sums, mut hidden) = ([0.0; 2], 0);
         for (d, weight, value) in seen {
             let behind = d - depth;
-            is_close_call |= (behind - self.epsilon).abs() < CLOSE * depth;
+            is_close_call |= (behind - self.epsilon).abs() < CLOSE * self.radius / EDGE_ON;
             // Eq. 7.1: o = depth + epsilon.
             if d < depth + self.epsilon {
                 sums[0] += weight * value;
                 sums[1] += weight;
+            } else {
+                hidden += 1;
             }
         }
-        Some(Pixel { depth, sums, is_close_call })
+        Some(Pixel { depth, sums, hidden, is_close_call })
     }
 }

@@ -1,0 +1,124 @@
+//! Whole frames: pass order, replay, both ways to make splats, both compilers.
+
+use fumarole::gpu::{Compiler, Mode, PassKind, Recorder, ShaderLibrary};
+use fumarole::papers::Paper;
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
+
+use crate::common::gpu_test;
+use crate::scene::{draw, lava, parameters, texels};
+
+#[test]
+fn passes_run_in_the_order_of_the_thesis() {
+    gpu_test(|device| {
+        let parameters = parameters();
+        let mut lava = lava(device, &parameters);
+        let sample = draw(device, &mut lava, 0);
+        let passes: Vec<_> = sample.passes.iter().map(|p| (p.info.name, p.calls, p.info.kind)).collect();
+        use PassKind::{Graphics, Host, Transfer};
+        // Ten planes make three clusters.
+        assert_eq!(
+            passes,
+            [
+                ("animate", 1, Graphics),
+                ("read-positions", 1, Transfer),
+                ("cluster", 1, Host),
+                ("density", 3, Graphics),
+                ("read-density", 3, Transfer),
+                ("extract", 3, Host),
+                ("accumulate-depths", 1, Graphics),
+                ("normal-height", 1, Graphics),
+                ("visibility", 1, Graphics),
+                ("blending", 1, Graphics),
+                ("normalisation", 1, Graphics),
+            ]
+        );
+        let is_timed = |name: &str| sample.passes.iter().any(|p| p.info.name == name && p.host_ms.is_some());
+        assert!(is_timed("cluster") && is_timed("extract"));
+        let waits = sample.passes.iter().filter(|p| p.wait_ms.is_some()).map(|p| p.info.name);
+        assert_eq!(waits.collect::<Vec<_>>(), ["read-positions", "read-density"]);
+    });
+}
+
+#[test]
+fn a_frame_depends_on_its_number_alone() {
+    gpu_test(|device| {
+        let parameters = parameters();
+        let mut lava = lava(device, &parameters);
+        let picture = |lava: &mut Lava, number| -> Vec<u8> {
+            draw(device, lava, number);
+            texels(device, lava.picture())
+        };
+        let straight: Vec<_> = (0..4).map(|number| picture(&mut lava, number)).collect();
+        assert_ne!(straight[0], straight[3]);
+        lava.restart().unwrap();
+        assert_eq!(picture(&mut lava, 0), straight[0]);
+        // Frames 1 and 2 are caught up.
+        assert_eq!(picture(&mut lava, 3), straight[3]);
+        let mut recorder = Recorder::new(device).unwrap();
+        let error = recorder.run(Mode::Plain, |frame| lava.record(frame, 3)).unwrap_err().to_string();
+        assert!(error.contains("frame 3 comes before frame 4") && error.contains("restart"), "{error}");
+        let mut other = self::lava(device, &parameters);
+        assert_eq!(picture(&mut other, 3), straight[3], "another paper, the same seed");
+    });
+}
+
+/// Bytes by which two pictures differ at most, and in how many pixels by more than one.
+fn difference(a: &[u8], b: &[u8]) -> (u8, usize) {
+    assert_eq!(a.len(), b.len());
+    let off = |(x, y): (&u8, &u8)| x.abs_diff(*y);
+    let worst = a.iter().zip(b).map(off).max().unwrap_or(0);
+    (worst, a.iter().zip(b).filter(|&pair| off(pair) > 1).count())
+}
+
+#[test]
+fn instanced_quads_draw_what_the_geometry_stage_draws() {
+    gpu_test(|device| {
+        let pictures = [true, false].map(|geometry_stage| {
+            let parameters = Parameters { geometry_stage, ..parameters() };
+            let mut lava = lava(device, &parameters);
+            let sample = draw(device, &mut lava, 0);
+            let has_geometry = |name: &str| {
+                let pass = sample.passes.iter().find(|p| p.info.name == name).unwrap();
+                pass.info.shaders.iter().any(|s| s.ends_with(".geom"))
+            };
+            for pass in ["accumulate-depths", "visibility", "blending"] {
+                assert_eq!(has_geometry(pass), geometry_stage, "{pass}");
+            }
+            // The device has the stage, so leaving it out is the user's choice and no warning.
+            assert_eq!(lava.warnings(), [String::new(); 0]);
+            texels::<u8>(device, lava.picture())
+        });
+        let (worst, off) = difference(&pictures[0], &pictures[1]);
+        assert!(off <= 8, "{off} values differ, by {worst} at most");
+    });
+}
+
+#[test]
+fn both_compilers_draw_one_picture() {
+    gpu_test(|device| {
+        let pictures = [Compiler::Glslang, Compiler::Naga].map(|compiler| {
+            let parameters = Parameters { geometry_stage: false, ..parameters() };
+            let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+            let particles = Particles::seeded(&parameters);
+            let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in()).unwrap();
+            let sample = draw(device, &mut lava, 1);
+            let ran = sample.passes.iter().filter_map(|p| p.info.compiler);
+            assert!(ran.clone().count() == 7 && ran.into_iter().all(|c| c == compiler));
+            texels::<u8>(device, lava.picture())
+        });
+        let (worst, off) = difference(&pictures[0], &pictures[1]);
+        assert!(off <= 8, "{off} values differ, by {worst} at most");
+
+        // With a geometry stage every stage of the pass is glslang's, and the record says so.
+        let parameters = parameters();
+        let shaders = ShaderLibrary::new(device, Compiler::Naga, None).unwrap();
+        let particles = Particles::seeded(&parameters);
+        let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in()).unwrap();
+        let sample = draw(device, &mut lava, 0);
+        for pass in sample.passes.iter().filter(|p| p.info.compiler.is_some()) {
+            let has_geometry = pass.info.shaders.iter().any(|s| s.ends_with(".geom"));
+            let expected = if has_geometry { Compiler::Glslang } else { Compiler::Naga };
+            assert_eq!(pass.info.compiler, Some(expected), "{}", pass.info.name);
+        }
+    });
+}

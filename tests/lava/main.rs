@@ -1,0 +1,13 @@
+//! The paper `lava` on the device: each stage against its oracle, laws, and its pictures.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod animation;
+mod density;
+mod frames;
+mod pictures;
+mod refusals;
+mod scene;
+mod splatting;
+mod surface;
