@@ -8,7 +8,7 @@ layout(set = 0, binding = 0, std140) uniform Land {
     vec4 down; // and to the next below
     vec4 bounds; // lowest and highest height; height of the base; metres for a unit of height
     vec4 margin; // what rounding may have cost: nodes, height; metres between columns and rows
-    vec4 turn; // cosine and sine of the map's turn about the vertical; unused; the map's number
+    vec4 turn; // cosine and sine of the map's turn about the vertical; near plane of what is rasterised; the map's number
     ivec4 size; // columns, rows, the number of levels above the data, 2 to that power
     ivec4 form; // axis along which the levels lie (0, 1); whether texels are bits of floats; unused
 } land;

@@ -5,4 +5,5 @@ mod common;
 mod drawing;
 mod land;
 mod pictures;
+mod pyramids;
 mod variants;

@@ -14,7 +14,7 @@ fn look() {
         for view in [View::Side, View::Top] {
             for lod in [Lod::Exact, Lod::Pixel] {
                 let parameters = Parameters { view, lod, ..Parameters::default() };
-                for variant in [Variant::GpuCompute, Variant::GpuFragment] {
+                for variant in [Variant::GpuCompute, Variant::Mesh] {
                     let drawing = Drawing::of(device, variant, &parameters, &alone(volcano(200)));
                     let name = format!("/tmp/h4-{view:?}-{lod:?}-{}.png", variant.word());
                     write_png(name.as_ref(), &drawing.picture).unwrap();

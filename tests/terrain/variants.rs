@@ -2,7 +2,7 @@
 
 use fumarole::gpu::Compiler;
 use fumarole::papers::Variant as _;
-use fumarole::papers::terrain::{Lod, MapInput, Parameters, Variant, View};
+use fumarole::papers::terrain::{Lod, MapInput, Parameters, Surface, Variant, View};
 
 use crate::common::gpu_test;
 use crate::drawing::{Drawing, differing};
@@ -48,6 +48,34 @@ fn both_compilers_draw_one_picture() {
                 };
                 assert_agree(variant.word(), &of(Compiler::Glslang), &of(Compiler::Naga));
             }
+        }
+    });
+}
+
+/// Nodes that the mesh shows are where the rays meet the exact surface: both are the map there.
+#[test]
+fn depth_agrees_with_the_mesh_at_visible_nodes() {
+    gpu_test(|device| {
+        let map = volcano(40);
+        for view in [View::Side, View::Top] {
+            let parameters = Parameters { width: 200, height: 150, ..small(view, Lod::Exact) };
+            let maps = alone(map.clone());
+            let [rays, mesh] =
+                [Variant::GpuCompute, Variant::Mesh].map(|variant| Drawing::of(device, variant, &parameters, &maps));
+            let mut nodes = 0;
+            for (ray, mesh) in rays.hits.iter().zip(&mesh.hits) {
+                let is_node = mesh.surface == Surface::Terrain
+                    && mesh.place.iter().all(|&c| (c - c.round()).abs() < 0.08 && c > 0.5 && c < 38.5);
+                if is_node {
+                    nodes += 1;
+                    assert_eq!(ray.surface, Surface::Terrain);
+                    let off = (ray.depth_m - mesh.depth_m).abs();
+                    assert!(off <= 2e-3 * mesh.depth_m, "{view:?} {:?}: {} {}", mesh.place, ray.depth_m, mesh.depth_m);
+                }
+            }
+            assert!(nodes >= 100, "{view:?}: only {nodes} nodes");
+            let others = rays.hits.iter().zip(&mesh.hits).filter(|(ray, mesh)| ray.surface != mesh.surface).count();
+            assert!(others * 50 < rays.hits.len(), "{view:?}: {others} pixels see another surface");
         }
     });
 }

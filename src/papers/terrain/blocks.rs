@@ -45,7 +45,7 @@ fn four(v: DVec3, w: f64) -> [f32; 4] {
 
 impl LandBlock {
     /// Of the map that is number `index`; `rays` are the world's.
-    pub fn new(ground: &Ground, is_float: bool, index: u32, rays: &Rays) -> Self {
+    pub fn new(ground: &Ground, is_float: bool, index: u32, rays: &Rays, near_m: f32) -> Self {
         let seen = rays.in_map(&ground.to_map);
         let shape = ground.shape;
         let side = f64::from(shape.width.max(shape.height));
@@ -59,7 +59,7 @@ impl LandBlock {
             down: four(seen.down, 0.0),
             bounds: [ground.lowest, ground.highest, ground.base, ground.unit_m].map(|v| v as f32),
             margin: [nodes, height, ground.spacing_m.x, ground.spacing_m.y].map(|v| v as f32),
-            turn: [ground.turn_rad.cos() as f32, ground.turn_rad.sin() as f32, 0.0, index as f32],
+            turn: [ground.turn_rad.cos() as f32, ground.turn_rad.sin() as f32, near_m, index as f32],
             size: [shape.width, shape.height, shape.top, shape.side()].map(|v| v as i32),
             form: [axis_u as i32, axis_v as i32, is_float.into(), 0],
         }

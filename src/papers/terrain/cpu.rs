@@ -6,12 +6,13 @@ use ash::vk;
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::blocks::{LandBlock, LightBlock};
+use super::blocks::LandBlock;
 use super::caster::Caster;
 use super::hit::{Hit, NO_DEPTH, Surface};
 use super::parameters::{Lod, Parameters};
 use super::pyramid::Texel;
 use super::relief::{Field, FieldWork, Relief};
+use super::scene::Seen;
 use super::shading::{color_of, normal_of};
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, Image, ImageDesc, ImageView, Load, Location};
 use crate::gpu::{Pass, PassInfo, ShaderLibrary};
@@ -91,10 +92,10 @@ impl Cpu {
         })
     }
 
-    /// The three passes; `lands` are the maps' blocks.
-    pub fn record(&mut self, frame: &mut Frame<'_>, lands: &[LandBlock], light: &LightBlock) {
+    /// The three passes.
+    pub fn record(&mut self, frame: &mut Frame<'_>, seen: &Seen) {
         let Cpu { width, lod, ref reliefs, ref mut hits, ref mut normals, ref mut colors, ref infos, .. } = *self;
-        let maps = || reliefs.iter().zip(lands);
+        let maps = || reliefs.iter().zip(&seen.lands);
         frame.host(&infos[0], || {
             hits.par_iter_mut().for_each(|hit| *hit = SKY);
             for (relief, land) in maps() {
@@ -111,7 +112,7 @@ impl Cpu {
             rows.for_each(|(y, row)| {
                 for (x, color) in row.iter_mut().enumerate() {
                     let pixel = y * width as usize + x;
-                    *color = color_of(light, (x as u32, y as u32), &hits[pixel], normals[pixel]);
+                    *color = color_of(&seen.light, (x as u32, y as u32), &hits[pixel], normals[pixel]);
                 }
             });
         });

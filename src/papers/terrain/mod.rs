@@ -9,6 +9,8 @@ mod caster;
 mod cpu;
 mod hit;
 mod levels;
+mod lighting;
+mod mesh;
 mod parameters;
 mod placement;
 mod pyramid;
@@ -17,19 +19,24 @@ pub mod reference;
 mod relief;
 mod scene;
 mod shading;
+mod stage;
 
 use std::sync::Arc;
 
 use self::cpu::Cpu;
 pub use self::hit::{Hit, NO_DEPTH, Surface};
 pub use self::levels::Levels;
+use self::lighting::Lighting;
+pub use self::mesh::MESH_SIDE;
+use self::mesh::Mesh;
 pub use self::parameters::{Base, Interpolation, Lod, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Ground, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
-use self::ray_cast::{RayCast, Stage};
+use self::ray_cast::RayCast;
 pub use self::relief::Relief;
 pub use self::scene::MapInput;
 use self::scene::{DeviceScene, Scene};
+use self::stage::Stage;
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, ShaderLibrary};
 
@@ -46,14 +53,21 @@ pub struct Terrain {
 
 enum Technique {
     Cpu(Cpu),
-    Gpu(DeviceScene, RayCast),
+    Device(DeviceScene, DepthMethod, Lighting),
+}
+
+/// How the device finds what a pixel sees.
+enum DepthMethod {
+    RayCast(RayCast),
+    Mesh(Mesh),
 }
 
 impl Terrain {
     /// Makes every resource and pass, and the maps' pyramids; `label` goes before the names of the resources.
     ///
     /// # Errors
-    /// What the Vulkan layer answers. The caller has validated `parameters`, and there is a map.
+    /// [`Error::Limit`] for a map that the device or the variant cannot hold, what the Vulkan layer answers. The caller has
+    /// validated `parameters`, and there is a map.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -62,18 +76,24 @@ impl Terrain {
         maps: &[MapInput],
     ) -> Result<Self, Error> {
         let scene = Scene::new(parameters, maps);
-        let ray_cast = |stage| {
-            let device_scene = DeviceScene::new(shaders, label, maps)?;
-            let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
-            Ok(Technique::Gpu(device_scene, ray_cast))
-        };
         let technique = match variant {
             Variant::Cpu => {
                 let reliefs = maps.iter().map(|input| Relief::new(&input.map)).collect();
                 Technique::Cpu(Cpu::new(shaders, label, parameters, reliefs)?)
             }
-            Variant::GpuFragment => ray_cast(Stage::Fragment)?,
-            _ => ray_cast(Stage::Compute)?,
+            Variant::GpuCompute | Variant::GpuFragment => {
+                let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
+                let device_scene = DeviceScene::new(shaders, label, maps)?;
+                let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
+                let lighting = Lighting::new(shaders, label, stage, parameters, &device_scene, &ray_cast.depth)?;
+                Technique::Device(device_scene, DepthMethod::RayCast(ray_cast), lighting)
+            }
+            Variant::Mesh => {
+                let device_scene = DeviceScene::new(shaders, label, maps)?;
+                let mesh = Mesh::new(shaders, label, parameters, &scene.grounds, &device_scene)?;
+                let lighting = Lighting::new(shaders, label, Stage::Fragment, parameters, &device_scene, &mesh.depth)?;
+                Technique::Device(device_scene, DepthMethod::Mesh(mesh), lighting)
+            }
         };
         let reads = ["camera", "placement"];
         let transformation = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &["land", "light"]);
@@ -86,16 +106,20 @@ impl Paper for Terrain {
         let (scene, parameters) = (&self.scene, &self.parameters);
         match &mut self.technique {
             Technique::Cpu(cpu) => {
-                let (lands, light) = frame.host(&self.transformation, || scene.transform(parameters));
-                cpu.record(frame, &lands, &light);
+                let seen = frame.host(&self.transformation, || scene.transform(parameters));
+                cpu.record(frame, &seen);
                 Ok(())
             }
-            Technique::Gpu(device_scene, ray_cast) => {
-                frame.host(&self.transformation, || {
-                    let (lands, light) = scene.transform(parameters);
-                    device_scene.write(&lands, &light)
+            Technique::Device(device_scene, method, lighting) => {
+                let seen = frame.host(&self.transformation, || {
+                    let seen = scene.transform(parameters);
+                    device_scene.write(&seen).map(|()| seen)
                 })?;
-                ray_cast.record(frame)
+                match method {
+                    DepthMethod::RayCast(ray_cast) => ray_cast.record(frame)?,
+                    DepthMethod::Mesh(mesh) => mesh.record(frame, &scene.grounds, &seen)?,
+                }
+                lighting.record(frame)
             }
         }
     }
@@ -104,21 +128,21 @@ impl Paper for Terrain {
         self.record(frame, number)?;
         match &self.technique {
             Technique::Cpu(cpu) => cpu.show(frame),
-            Technique::Gpu(..) => Ok(()),
+            Technique::Device(..) => Ok(()),
         }
     }
 
     fn picture(&self) -> &Arc<ImageView> {
         match &self.technique {
             Technique::Cpu(cpu) => cpu.picture(),
-            Technique::Gpu(_, ray_cast) => &ray_cast.picture,
+            Technique::Device(_, _, lighting) => &lighting.picture,
         }
     }
 
     fn targets(&self) -> Vec<Target> {
         let mut targets = match &self.technique {
             Technique::Cpu(cpu) => cpu.targets(),
-            Technique::Gpu(_, ray_cast) => ray_cast.targets(),
+            Technique::Device(_, _, lighting) => lighting.targets(),
         };
         targets.push(Target::image("picture", self.picture()));
         targets

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::DVec3;
+use glam::{DMat4, DVec3, DVec4};
 
 use super::blocks::{LandBlock, LightBlock};
 use super::levels::Levels;
@@ -11,7 +11,7 @@ use super::parameters::Parameters;
 use super::placement::{Extent, Ground, Placement, Rays};
 use super::pyramid::Bound;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Location, ShaderLibrary};
-use crate::scene::{HeightMap, Samples};
+use crate::scene::{Camera, HeightMap, Samples};
 
 /// A height map and its place.
 #[derive(Debug, Clone)]
@@ -45,13 +45,39 @@ impl Scene {
     }
 
     /// The pass `geometric-transformation`: eq. 10 and 11 for every map. Only the base's matrix is touched.
-    pub fn transform(&self, parameters: &Parameters) -> (Vec<LandBlock>, LightBlock) {
+    pub fn transform(&self, parameters: &Parameters) -> Seen {
         let camera = parameters.camera(&self.extent);
         let rays = Rays::new(&camera, parameters.width, parameters.height);
         let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
-        let lands = maps.map(|((ground, &is_float), index)| LandBlock::new(ground, is_float, index, &rays)).collect();
-        (lands, LightBlock::new(parameters, &rays, &self.extent))
+        let lands = maps
+            .map(|((ground, &is_float), index)| LandBlock::new(ground, is_float, index, &rays, camera.near_m))
+            .collect();
+        Seen {
+            lands,
+            light: LightBlock::new(parameters, &rays, &self.extent),
+            to_clip: to_clip(&camera, parameters.aspect()),
+        }
     }
+}
+
+/// The scene in the camera's eyes.
+pub struct Seen {
+    pub lands: Vec<LandBlock>,
+    pub light: LightBlock,
+    /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
+    /// 1 - near / w, without a far plane.
+    pub to_clip: DMat4,
+}
+
+fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
+    let scale = 1.0 / (f64::from(camera.vertical_fov_rad) / 2.0).tan();
+    let projection = DMat4::from_cols(
+        DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -scale, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0, -1.0),
+        DVec4::new(0.0, 0.0, -f64::from(camera.near_m), 0.0),
+    );
+    projection * camera.view().as_dmat4()
 }
 
 /// A map on the device.
@@ -84,11 +110,11 @@ impl DeviceScene {
 
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn write(&self, lands: &[LandBlock], light: &LightBlock) -> Result<(), Error> {
-        for (map, land) in self.maps.iter().zip(lands) {
+    pub fn write(&self, seen: &Seen) -> Result<(), Error> {
+        for (map, land) in self.maps.iter().zip(&seen.lands) {
             map.land.write(0, bytemuck::bytes_of(land))?;
         }
-        self.light.write(0, bytemuck::bytes_of(light))
+        self.light.write(0, bytemuck::bytes_of(&seen.light))
     }
 }
 

@@ -1,0 +1,73 @@
+//! Section 4: normal and illumination on the device, whoever found the depth.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::parameters::Parameters;
+use super::scene::DeviceScene;
+use super::stage::Stage;
+use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use crate::papers::Target;
+
+/// The passes `normal`, once for each map, and `illumination`.
+pub struct Lighting {
+    stage: Stage,
+    depth: Arc<ImageView>,
+    normal: Arc<ImageView>,
+    pub picture: Arc<ImageView>,
+    normal_passes: Vec<Pass>,
+    illumination: Pass,
+}
+
+impl Lighting {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        stage: Stage,
+        parameters: &Parameters,
+        scene: &DeviceScene,
+        depth: &Arc<ImageView>,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let image = |name: &str, format| {
+            stage.image(device, format!("{label}/{name}"), format, (parameters.width, parameters.height))
+        };
+        let normal = image("normal", vk::Format::R32G32B32A32_SFLOAT)?;
+        let picture = image("picture", vk::Format::R8G8B8A8_UNORM)?;
+        let mut normal_passes = Vec::new();
+        for (i, map) in scene.maps.iter().enumerate() {
+            let load = if i == 0 { Load::Discard } else { Load::Keep };
+            let pass = stage.say(
+                ("normal", "4"),
+                "normal",
+                (&normal, load),
+                &[("land", (&map.land).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())],
+            );
+            normal_passes.push(pass.build(shaders)?);
+        }
+        let illumination = stage.say(
+            ("illumination", "4"),
+            "illumination",
+            (&picture, Load::Discard),
+            &[("light", (&scene.light).into()), ("depth", depth.into()), ("normal", (&normal).into())],
+        );
+        let illumination = illumination.build(shaders)?;
+        Ok(Lighting { stage, depth: depth.clone(), normal, picture, normal_passes, illumination })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        for pass in &self.normal_passes {
+            self.stage.record(frame, pass, &self.normal)?;
+        }
+        self.stage.record(frame, &self.illumination, &self.picture)
+    }
+
+    pub fn targets(&self) -> Vec<Target> {
+        vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal)]
+    }
+}
