@@ -1,6 +1,7 @@
 //! The papers, one folder each. They know no command line, no window and no file.
 
 pub mod caustics;
+pub mod gas;
 pub mod lava;
 pub mod terrain;
 

@@ -5,6 +5,8 @@ use super::{CompiledShader, Error, Stage};
 /// Vertex, fragment and compute shaders outside naga's GLSL subset, each with the reason.
 /// Geometry shaders are excluded by their kind and do not belong here.
 pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
+    ("gas/fragments.frag", "atomics: fragments take their slots and their places in the lists"),
+    ("gas/sort.comp", "an atomic: pixels reserve the slots of their sections"),
     ("lava/point.vert", "it feeds a geometry stage and writes no gl_Position, which naga demands"),
     ("lava/splat.vert", "it feeds a geometry stage and writes no gl_Position, which naga demands"),
 ];

@@ -1,0 +1,70 @@
+// The fragment structure's "light attenuation values for each light": the share of the light that the gas takes, 1 - exp(-tau sum),
+// for each visible fragment. Surfaces cast no shadows; a surface that turns away from a light has no use for the value.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 6, std430) readonly buffer Objects {
+    Object objects[];
+};
+
+layout(set = 0, binding = 7, std430) readonly buffer Heads {
+    uint heads[];
+};
+
+layout(set = 0, binding = 8, std430) readonly buffer Links {
+    uvec4 links[];
+};
+
+layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
+    uvec4 surfaces[];
+};
+
+layout(set = 0, binding = 10, std430) readonly buffer Colors {
+    uvec2 colors[];
+};
+
+layout(set = 0, binding = 14, std430) buffer Attenuations {
+    float attenuations[]; // of each fragment, for each light
+};
+
+layout(push_constant, std430) uniform Band {
+    uint first_row;
+    uint end_row;
+} band;
+
+void main() {
+    uvec2 place = gl_GlobalInvocationID.xy + uvec2(0u, band.first_row);
+    if (place.x >= frame.counts.x || place.y >= band.end_row) {
+        return;
+    }
+    vec3 ray = ray_direction(vec2(place) + 0.5);
+    uint covered = 0u;
+    bool is_shown_through = false; // by the fragment before, which it intersects
+    for (uint f = heads[place.y * frame.counts.x + place.x]; f != NONE; f = links[f].x) {
+        uvec4 link = links[f];
+        uvec4 surface = surfaces[f];
+        if ((link.y & ~covered) != 0u || is_shown_through) {
+            vec3 point = frame.eye.xyz + ray * mean_depth(link);
+            vec3 normal = unpack_normal(surface.x);
+            normal = dot(normal, ray) > 0.0 ? -normal : normal;
+            for (uint l = 0u; l < frame.counts.z; l++) {
+                float depth = 0.0;
+                if (dot(normal, towards_light(l, point).xyz) > 0.0) {
+                    depth = optical_depth_to(l, point);
+                }
+                attenuations[f * frame.counts.z + l] = 1.0 - exp(-depth);
+            }
+            is_shown_through = false;
+            if (link.x != NONE) {
+                uvec4 next = links[link.x];
+                is_shown_through = surfaces[link.x].y != surface.y && (link.y & next.y) != 0u && share_behind(link, next) > 0.0;
+            }
+        }
+        if (opacity_of(colors[f]) >= 1.0) {
+            covered |= link.y;
+        }
+        if (covered == 0xffffffffu && !is_shown_through) {
+            break;
+        }
+    }
+}

@@ -1,0 +1,30 @@
+#version 450
+
+// Section "Calculation of the shadow table": "a table of the same dimensions containing functional values is first computed". Entries lie
+// on the box around the volume, the first and the last of an axis on its faces.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "gas/frame.glsl"
+#include "gas/volume.glsl"
+#include "gas/density.glsl"
+
+layout(set = 0, binding = 15, std430) buffer DensityTables {
+    float density_tables[]; // a table a volume; x runs fastest
+};
+
+layout(push_constant, std430) uniform Table {
+    uint volume;
+} table;
+
+void main() {
+    uint n = frame.limits.z;
+    uvec3 entry = gl_GlobalInvocationID;
+    if (entry.x >= n || entry.y >= n || entry.z >= n) {
+        return;
+    }
+    vec3 q = 2.0 * vec3(entry) / float(n - 1u) - 1.0;
+    vec3 point = volumes[table.volume].center.xyz + q * volumes[table.volume].half_extent.xyz;
+    uint at = ((table.volume * n + entry.z) * n + entry.y) * n + entry.x;
+    density_tables[at] = volume_density(table.volume, point);
+}

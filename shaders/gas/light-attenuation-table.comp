@@ -1,0 +1,11 @@
+#version 450
+
+// What the gas takes of the light that falls on surfaces, read from the table.
+
+#include "gas/frame.glsl"
+#include "gas/volume.glsl"
+#include "gas/light.glsl"
+#include "gas/lists.glsl"
+#include "gas/object.glsl"
+#include "gas/shadow-table.glsl"
+#include "gas/attenuation.glsl"

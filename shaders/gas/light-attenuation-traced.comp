@@ -1,0 +1,12 @@
+#version 450
+
+// What the gas takes of the light that falls on surfaces, traced from their points.
+
+#include "gas/frame.glsl"
+#include "gas/volume.glsl"
+#include "gas/density.glsl"
+#include "gas/light.glsl"
+#include "gas/lists.glsl"
+#include "gas/object.glsl"
+#include "gas/shadow-traced.glsl"
+#include "gas/attenuation.glsl"

@@ -1,0 +1,222 @@
+// Section "Volume rendering". The viewer's ray goes through the volumes of a pixel up to the depth that `sort` found, cut at every
+// fragment and at every entry and exit of a volume (figure 1). Each section is marched in increments of the step, the last one scaled,
+// with a sample at a random place in each (Monte Carlo), and becomes a fragment with a full mask.
+//
+// - An increment adds T_before albedo (1 - exp(-tau rho dt)) sum(I_i phase), premultiplied. The text's sum adds I rho dt: tau is
+//   missing there, and this is its exact integral for constant density.
+// - Volumes that overlap are marched once, with their extinctions and emissions added.
+// - The text's loops shade inside `if self_shadowing`, their indentation is lost: gas is shaded with and without shadows, once, after
+//   all lights. Phase functions integrate to 1, and light is in units in which a white surface that faces an irradiance of 1
+//   shows 1, not 1 / pi: hence the phase's factor of pi.
+// - Solid (hypertexture) volumes: opacity is 1 - (1 - density)^(c step); the normal is from the density at the previous point, at this
+//   one, and in two directions orthogonal to the ray.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 7, std430) readonly buffer Heads {
+    uint heads[];
+};
+
+layout(set = 0, binding = 8, std430) readonly buffer Links {
+    uvec4 links[];
+};
+
+layout(set = 0, binding = 12, std430) buffer Pixels {
+    uvec4 pixels[];
+};
+
+layout(set = 0, binding = 13, std430) buffer Sections {
+    Section sections[];
+};
+
+layout(push_constant, std430) uniform Band {
+    uint first_row;
+    uint end_row;
+} band;
+
+const float PI = 3.14159265;
+const float SOLID_OPACITY = 0.99; // of which no more is marched
+
+float random(uint pixel, uint number) {
+    uint h = scramble(pixel * 0x9e3779b9u ^ scramble(number ^ scramble(frame.limits.w + uint(frame.sampling.x))));
+    return float(h >> 8u) / 16777216.0;
+}
+
+// Henyey and Greenstein; the angle is between the light's way and the way to the eye, so that g > 0 scatters forwards.
+float scattered(float g, float cosine) {
+    float under = max(1.0 + g * g - 2.0 * g * cosine, 1.0e-6);
+    return (1.0 - g * g) / (4.0 * PI * under * sqrt(under));
+}
+
+float phase(uint v, float cosine) {
+    vec4 p = volumes[v].phase;
+    return p.x * scattered(p.y, cosine) + p.z * scattered(p.w, cosine);
+}
+
+// One section of a pixel; the samples before it are counted so that every increment has its own random number.
+Section march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
+    float scale = length(ray);
+    vec3 direction = ray / scale;
+    float middle = 0.5 * (extent.x + extent.y);
+    float step_m = 1.0e30;
+    bool is_in[MAX_VOLUMES];
+    float previous[MAX_VOLUMES];
+    vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+    vec3 up = cross(side, direction);
+    vec3 entry = frame.eye.xyz + ray * extent.x;
+    float previous_m = 0.0;
+    uint evaluations = 0u;
+    for (uint v = 0u; v < frame.counts.w; v++) {
+        is_in[v] = spans[v].x <= middle && middle <= spans[v].y;
+        previous[v] = 0.0;
+        if (is_in[v]) {
+            step_m = min(step_m, volumes[v].profile.w);
+            if (volumes[v].profile.z > 0.0) {
+                previous[v] = volume_density(v, entry);
+                evaluations++;
+            }
+        }
+    }
+    float length_m = (extent.y - extent.x) * scale;
+    vec3 color = vec3(0.0);
+    float transparency = 1.0;
+    uint number = first_number;
+    bool has_solid = false;
+    for (float from = 0.0; from < length_m; from += step_m) {
+        float increment = min(step_m, length_m - from);
+        float at_m = from + increment * random(pixel, number);
+        number++;
+        vec3 point = entry + direction * at_m;
+        float extinctions[MAX_VOLUMES];
+        float extinction = 0.0;
+        float densest = 0.0;
+        for (uint v = 0u; v < frame.counts.w; v++) {
+            extinctions[v] = 0.0;
+            if (is_in[v]) {
+                float density = volume_density(v, point);
+                evaluations++;
+                densest = max(densest, density);
+                extinctions[v] = volumes[v].optics.x * density;
+                extinction += extinctions[v];
+            }
+        }
+        if (extinction > 0.0) {
+            vec3 shadowed[MAX_LIGHTS];
+            vec4 ways[MAX_LIGHTS];
+            for (uint l = 0u; l < frame.counts.z; l++) {
+                ways[l] = towards_light(l, point);
+                // For patchy gas, shadows are not computed where it is thinner than a threshold.
+                float depth = densest >= frame.sampling.z ? optical_depth_to(l, point) : 0.0;
+                shadowed[l] = irradiance(l, ways[l].w) * exp(-depth);
+            }
+            vec3 emission = vec3(0.0);
+            for (uint v = 0u; v < frame.counts.w; v++) {
+                if (extinctions[v] > 0.0) {
+                    vec3 light = frame.ambient.xyz;
+                    if (volumes[v].profile.z > 0.0) {
+                        has_solid = true;
+                        float apart = 0.25 * volumes[v].profile.w;
+                        float here = extinctions[v] / volumes[v].optics.x;
+                        float along = (here - previous[v]) / max(at_m - previous_m, 1.0e-3 * step_m);
+                        float aside = (volume_density(v, point + side * apart) - here) / apart;
+                        float above = (volume_density(v, point + up * apart) - here) / apart;
+                        evaluations += 2u;
+                        vec3 rise = direction * along + side * aside + up * above;
+                        vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -direction;
+                        for (uint l = 0u; l < frame.counts.z; l++) {
+                            light += shadowed[l] * max(dot(normal, ways[l].xyz), 0.0);
+                        }
+                    } else {
+                        for (uint l = 0u; l < frame.counts.z; l++) {
+                            light += shadowed[l] * (PI * phase(v, dot(ways[l].xyz, direction)));
+                        }
+                    }
+                    emission += extinctions[v] * volumes[v].optics.yzw * light;
+                }
+            }
+            float passed = exp(-extinction * increment);
+            color += emission / extinction * (transparency * (1.0 - passed));
+            transparency *= passed;
+        }
+        for (uint v = 0u; v < frame.counts.w; v++) {
+            if (volumes[v].profile.z > 0.0) {
+                previous[v] = extinctions[v] / volumes[v].optics.x;
+            }
+        }
+        previous_m = at_m;
+        float early = has_solid ? max(frame.sampling.w, 1.0 - SOLID_OPACITY) : frame.sampling.w;
+        if (before * transparency < early) {
+            break;
+        }
+    }
+    Section section;
+    section.extent = vec4(extent, transparency, float(evaluations));
+    section.color = vec4(color, float(number - first_number));
+    return section;
+}
+
+void main() {
+    uvec2 place = gl_GlobalInvocationID.xy + uvec2(0u, band.first_row);
+    if (place.x >= frame.counts.x || place.y >= band.end_row) {
+        return;
+    }
+    uint pixel = place.y * frame.counts.x + place.x;
+    uvec4 mine = pixels[pixel];
+    if (mine.y == 0u) {
+        return;
+    }
+    vec3 ray = ray_direction(vec2(place) + 0.5);
+    float end = uintBitsToFloat(mine.z);
+    vec2 spans[MAX_VOLUMES];
+    float depth = 1.0e30;
+    for (uint v = 0u; v < frame.counts.w; v++) {
+        spans[v] = meet(volume_span(v, frame.eye.xyz, ray), vec2(frame.eye.w, end));
+        if (spans[v].x < spans[v].y) {
+            depth = min(depth, spans[v].x);
+        }
+    }
+    uint fragment = heads[pixel];
+    uint used = 0u;
+    uint number = 0u;
+    float transparency = 1.0;
+    while (depth < end && used < mine.y) {
+        float next = end;
+        while (fragment != NONE) {
+            uvec4 link = links[fragment];
+            float cut = mean_depth(link);
+            if (cut > depth) {
+                next = min(next, cut);
+                break;
+            }
+            fragment = link.x;
+        }
+        bool has_gas = false;
+        bool has_more = false;
+        for (uint v = 0u; v < frame.counts.w; v++) {
+            if (spans[v].x < spans[v].y && spans[v].y > depth) {
+                has_more = true;
+                if (spans[v].x > depth) {
+                    next = min(next, spans[v].x);
+                } else {
+                    has_gas = true;
+                    next = min(next, spans[v].y);
+                }
+            }
+        }
+        if (!has_more || next <= depth) {
+            break;
+        }
+        if (has_gas) {
+            Section section = march(pixel, ray, spans, vec2(depth, next), transparency, number);
+            number += uint(section.color.w);
+            transparency *= section.extent.z;
+            sections[mine.x + used] = section;
+            used++;
+            if (transparency < frame.sampling.w) {
+                break;
+            }
+        }
+        depth = next;
+    }
+    pixels[pixel].w = used;
+}

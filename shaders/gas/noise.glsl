@@ -1,0 +1,35 @@
+// Noise and turbulence of "An Image Synthesizer" (reference 16, 1985): a pseudo-random gradient at every lattice point, blended by
+// 3 t^2 - 2 t^3; the value at the lattice points is 0, which leaves no frequencies below the lattice's. The gradients come from an integer
+// hash of the point, so that host and device agree to the bit on them.
+
+vec3 lattice_gradient(ivec3 cell) {
+    uint h = scramble(uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ uint(cell.z) * 0xcb1ab31fu ^ frame.limits.w);
+    return vec3(float(h & 1023u), float((h >> 10u) & 1023u), float((h >> 20u) & 1023u)) / 511.5 - 1.0;
+}
+
+float lattice_slope(ivec3 cell, ivec3 corner, vec3 from_cell) {
+    return dot(lattice_gradient(cell + corner), from_cell - vec3(corner));
+}
+
+float noise(vec3 p) {
+    vec3 low = floor(p);
+    ivec3 cell = ivec3(low);
+    vec3 t = p - low;
+    vec3 s = t * t * (3.0 - 2.0 * t);
+    float x00 = mix(lattice_slope(cell, ivec3(0, 0, 0), t), lattice_slope(cell, ivec3(1, 0, 0), t), s.x);
+    float x10 = mix(lattice_slope(cell, ivec3(0, 1, 0), t), lattice_slope(cell, ivec3(1, 1, 0), t), s.x);
+    float x01 = mix(lattice_slope(cell, ivec3(0, 0, 1), t), lattice_slope(cell, ivec3(1, 0, 1), t), s.x);
+    float x11 = mix(lattice_slope(cell, ivec3(0, 1, 1), t), lattice_slope(cell, ivec3(1, 1, 1), t), s.x);
+    return mix(mix(x00, x10, s.y), mix(x01, x11, s.y), s.z);
+}
+
+// Octaves while the scale exceeds pixel_size, which is a constant of the scene: the same gas from everywhere.
+float turbulence(vec3 p) {
+    float sum = 0.0;
+    float frequency = 1.0;
+    for (float scale = 1.0; scale > frame.sampling.y; scale *= 0.5) {
+        sum += abs(noise(p * frequency)) * scale;
+        frequency *= 2.0;
+    }
+    return sum;
+}

@@ -1,0 +1,113 @@
+#version 450
+
+// Section "Calculation of the shadow table", figure 2: the sum of density times step between an entry and the light. The ray towards
+// the light pierces a face of the cube of the entry's neighbours; there the sums of the four entries round the point, and their densities
+// times the distance to it, are interpolated. They must be finished before: the text sorts the entries by their distance from the
+// light, which reads unfinished ones where a farther entry lies on a nearer ray. Here a dispatch does all entries of one
+// Manhattan distance, counted in entries from the cell that holds the light: the four are nearer by it always. The eight
+// entries of that cell see the light before the face and are integrated directly. What lies outside the table has no density.
+// The text lists six of the cube's eight corners, and stores sums of densities that it multiplies by one step later; ours are times their
+// own steps, which differ with the ray.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "gas/frame.glsl"
+
+layout(set = 0, binding = 15, std430) readonly buffer DensityTables {
+    float density_tables[];
+};
+
+layout(set = 0, binding = 16, std430) buffer ShadowTables {
+    float shadow_tables[]; // a table a volume and light
+};
+
+layout(push_constant, std430) uniform Wave {
+    vec4 source; // the light in entries and 1, or the way to it in entries and 0
+    vec4 spacing_m; // between entries
+    ivec4 cell; // the light's cell; -1 or the last entry where it lies outside; w: this wave's distance
+    uvec4 numbers; // first entries of the volume's densities and of its sums
+} wave;
+
+int distance_along(int entry, int cell) {
+    return entry <= cell ? cell - entry : entry - cell - 1;
+}
+
+uint index_of(ivec3 entry) {
+    int n = int(frame.limits.z);
+    return uint((entry.z * n + entry.y) * n + entry.x);
+}
+
+// Sum at an entry plus its density over the step to it.
+float sum_through(ivec3 entry, float step_m) {
+    uint at = index_of(entry);
+    return shadow_tables[wave.numbers.y + at] + density_tables[wave.numbers.x + at] * step_m;
+}
+
+float sum_to_light(ivec3 entry) {
+    int n = int(frame.limits.z);
+    vec3 way = wave.source.w == 0.0 ? wave.source.xyz : wave.source.xyz - vec3(entry);
+    // At a face and on its way out: nothing lies between the entry and the light.
+    for (int axis = 0; axis < 3; axis++) {
+        if ((entry[axis] == 0 && way[axis] < 0.0) || (entry[axis] == n - 1 && way[axis] > 0.0)) {
+            return 0.0;
+        }
+    }
+    vec3 size = abs(way);
+    float largest = max(size.x, max(size.y, size.z));
+    float way_m = length(way * wave.spacing_m.xyz);
+    if (wave.source.w != 0.0 && largest <= 1.0) {
+        return density_tables[wave.numbers.x + index_of(entry)] * way_m;
+    }
+    if (largest <= 0.0) {
+        return 0.0;
+    }
+    // The way to the face, a whole entry along its largest axis; b and c run along the face.
+    vec3 to_face = way / largest;
+    float step_m = way_m / largest;
+    ivec3 a = size.x == largest ? ivec3(1, 0, 0) : (size.y == largest ? ivec3(0, 1, 0) : ivec3(0, 0, 1));
+    ivec3 b = ivec3(a.z, a.x, a.y);
+    ivec3 c = ivec3(a.y, a.z, a.x);
+    ivec3 turn = ivec3(way.x >= 0.0 ? 1 : -1, way.y >= 0.0 ? 1 : -1, way.z >= 0.0 ? 1 : -1);
+    ivec3 last = ivec3(n - 1);
+    ivec3 base = entry + a * turn;
+    float share_b = abs(dot(to_face, vec3(b)));
+    float share_c = abs(dot(to_face, vec3(c)));
+    // Beyond a face only with share 0: clamped, not read outside.
+    ivec3 base_b = clamp(base + b * turn, ivec3(0), last);
+    ivec3 base_c = clamp(base + c * turn, ivec3(0), last);
+    ivec3 base_bc = clamp(base + (b + c) * turn, ivec3(0), last);
+    // What is not needed is not read: it may be unfinished.
+    float s0 = sum_through(base, step_m);
+    float sb = share_b > 0.0 ? sum_through(base_b, step_m) : s0;
+    float sc = share_c > 0.0 ? sum_through(base_c, step_m) : s0;
+    float sbc = s0;
+    if (share_b > 0.0 && share_c > 0.0) {
+        sbc = sum_through(base_bc, step_m);
+    } else if (share_b > 0.0) {
+        sbc = sb;
+    } else if (share_c > 0.0) {
+        sbc = sc;
+    }
+    return mix(mix(s0, sb, share_b), mix(sc, sbc, share_b), share_c);
+}
+
+void write_entry(ivec3 entry) {
+    if (entry.z >= 0 && entry.z < int(frame.limits.z)) {
+        shadow_tables[wave.numbers.y + index_of(entry)] = sum_to_light(entry);
+    }
+}
+
+void main() {
+    int n = int(frame.limits.z);
+    ivec2 xy = ivec2(gl_GlobalInvocationID.xy);
+    if (xy.x >= n || xy.y >= n) {
+        return;
+    }
+    int along_z = wave.cell.w - distance_along(xy.x, wave.cell.x) - distance_along(xy.y, wave.cell.y);
+    if (along_z < 0) {
+        return;
+    }
+    // Of this column two entries have the distance, one on each side of the light's cell.
+    write_entry(ivec3(xy, wave.cell.z - along_z));
+    write_entry(ivec3(xy, wave.cell.z + 1 + along_z));
+}

@@ -1,0 +1,33 @@
+// Section "Calculation of the shadow table": the eight entries round the point, interpolated. Outside the volume's box the table is
+// read where the light's ray enters it.
+
+layout(set = 0, binding = 16, std430) readonly buffer ShadowTables {
+    float shadow_tables[]; // a table a volume and light
+};
+
+float table_value(uint v, uint l, vec3 point) {
+    uint n = frame.limits.z;
+    vec3 q = (point - volumes[v].center.xyz) / volumes[v].half_extent.xyz * 0.5 + 0.5;
+    vec3 place = clamp(q, 0.0, 1.0) * float(n - 1u);
+    uvec3 low = min(uvec3(place), uvec3(n - 2u));
+    vec3 t = place - vec3(low);
+    uint first = (v * frame.counts.z + l) * n * n * n + (low.z * n + low.y) * n + low.x;
+    uint up = first + n * n;
+    float s00 = mix(shadow_tables[first], shadow_tables[first + 1u], t.x);
+    float s10 = mix(shadow_tables[first + n], shadow_tables[first + n + 1u], t.x);
+    float s01 = mix(shadow_tables[up], shadow_tables[up + 1u], t.x);
+    float s11 = mix(shadow_tables[up + n], shadow_tables[up + n + 1u], t.x);
+    return mix(mix(s00, s10, t.y), mix(s01, s11, t.y), t.z);
+}
+
+float optical_depth_to(uint l, vec3 point) {
+    vec4 way = towards_light(l, point);
+    float sum = 0.0;
+    for (uint v = 0u; v < frame.counts.w; v++) {
+        vec2 span = meet(bounds_span(v, point, way.xyz), vec2(0.0, way.w));
+        if (span.x <= span.y) {
+            sum += volumes[v].optics.x * table_value(v, l, point + way.xyz * span.x);
+        }
+    }
+    return sum;
+}

@@ -1,0 +1,11 @@
+#version 450
+
+// The gas of each pixel, shadows from the table.
+
+#include "gas/frame.glsl"
+#include "gas/volume.glsl"
+#include "gas/density.glsl"
+#include "gas/light.glsl"
+#include "gas/lists.glsl"
+#include "gas/shadow-table.glsl"
+#include "gas/march.glsl"

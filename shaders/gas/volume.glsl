@@ -1,0 +1,123 @@
+// The solids that bound the gases. Any convex solid does that a ray can be cut with (section on volume-modelled phenomena).
+
+struct Volume {
+    vec4 center; // m; w: shape
+    vec4 half_extent; // m; w: share of the way from boundary to middle over which the gas fades
+    vec4 profile; // radii at bottom and top over half_extent.xz; 1 for a hypertexture solid; step of the march, m
+    vec4 placement; // of the solid texture: offset; texture units a metre
+    vec4 gas; // density function; opaque; power; frequency
+    vec4 motion; // texture units a frame; frames of a turn; the ellipse's diameters (ELLIPSE1, ELLIPSE2)
+    vec4 front; // of the fog: x at frame 0, m; m a frame; m until it is at its thickest; frames until then
+    vec4 detail; // of the fog's front: share of turbulence, m; of the random table, m. Of a hypertexture: noise, softness
+    vec4 optics; // tau, or a solid's c, 1/m; albedo, linear RGB
+    vec4 phase; // two Henyey-Greenstein functions: weight, g, weight, g
+};
+
+layout(set = 0, binding = 1, std430) readonly buffer Volumes {
+    Volume volumes[];
+};
+
+const uint BOX = 0u;
+const uint SPHERE = 1u;
+const uint FRUSTUM = 2u;
+const vec2 NOWHERE = vec2(1.0, -1.0);
+
+// Where the line is inside |p| <= 1 along one axis.
+vec2 slab_span(float origin, float direction) {
+    if (abs(direction) < 1.0e-12) {
+        return abs(origin) <= 1.0 ? vec2(-1.0e30, 1.0e30) : NOWHERE;
+    }
+    float a = (-1.0 - origin) / direction;
+    float b = (1.0 - origin) / direction;
+    return vec2(min(a, b), max(a, b));
+}
+
+vec2 meet(vec2 a, vec2 b) {
+    return vec2(max(a.x, b.x), min(a.y, b.y));
+}
+
+vec2 box_span(vec3 origin, vec3 direction) {
+    vec2 xy = meet(slab_span(origin.x, direction.x), slab_span(origin.y, direction.y));
+    return meet(xy, slab_span(origin.z, direction.z));
+}
+
+// Where a t^2 + 2 b t + c <= 0 for a > 0.
+vec2 quadratic_span(float a, float b, float c) {
+    float under = b * b - a * c;
+    if (under < 0.0) {
+        return NOWHERE;
+    }
+    // The root of larger size first: the other has no cancellation then.
+    float q = -(b + (b >= 0.0 ? sqrt(under) : -sqrt(under)));
+    float first = q / a;
+    float second = q != 0.0 ? c / q : first;
+    return vec2(min(first, second), max(first, second));
+}
+
+// x^2 + z^2 <= (m + n y)^2 between y = -1 and 1, where m + n y is not negative.
+vec2 frustum_span(vec3 o, vec3 d, vec2 radii) {
+    vec2 slab = slab_span(o.y, d.y);
+    if (slab.x > slab.y) {
+        return NOWHERE;
+    }
+    float n = 0.5 * (radii.y - radii.x);
+    float radius = 0.5 * (radii.x + radii.y) + n * o.y; // at the origin
+    float slope = n * d.y;
+    float a = dot(d.xz, d.xz) - slope * slope;
+    float b = dot(o.xz, d.xz) - radius * slope;
+    float c = dot(o.xz, o.xz) - radius * radius;
+    if (abs(a) < 1.0e-9) {
+        if (abs(b) < 1.0e-12) {
+            return c <= 0.0 ? slab : NOWHERE;
+        }
+        float t = -0.5 * c / b;
+        return meet(slab, b > 0.0 ? vec2(-1.0e30, t) : vec2(t, 1.0e30));
+    }
+    if (a > 0.0) {
+        return meet(slab, quadratic_span(a, b, c));
+    }
+    // Steeper than the cone: inside before the first root and after the second, of which the slab holds one.
+    vec2 outside = quadratic_span(-a, -b, -c);
+    if (outside.x > outside.y) {
+        return slab;
+    }
+    vec2 before = meet(slab, vec2(-1.0e30, outside.x));
+    return before.x < before.y ? before : meet(slab, vec2(outside.y, 1.0e30));
+}
+
+// Where the line origin + t direction is inside the solid; empty (x > y) where it misses it.
+vec2 volume_span(uint v, vec3 origin, vec3 direction) {
+    vec3 scale = 1.0 / volumes[v].half_extent.xyz;
+    vec3 o = (origin - volumes[v].center.xyz) * scale;
+    vec3 d = direction * scale;
+    uint shape = uint(volumes[v].center.w);
+    if (shape == BOX) {
+        return box_span(o, d);
+    }
+    if (shape == SPHERE) {
+        return quadratic_span(dot(d, d), dot(o, d), dot(o, o) - 1.0);
+    }
+    return frustum_span(o, d, volumes[v].profile.xy);
+}
+
+// Where the line is inside the box around the solid, which is the box of its tables.
+vec2 bounds_span(uint v, vec3 origin, vec3 direction) {
+    vec3 scale = 1.0 / volumes[v].half_extent.xyz;
+    return box_span((origin - volumes[v].center.xyz) * scale, direction * scale);
+}
+
+// How far inside the solid a point is: 0 on the boundary, 1 in the middle, negative outside.
+float inwardness(uint v, vec3 point) {
+    vec3 q = (point - volumes[v].center.xyz) / volumes[v].half_extent.xyz;
+    uint shape = uint(volumes[v].center.w);
+    if (shape == BOX) {
+        vec3 inside = 1.0 - abs(q);
+        return min(inside.x, min(inside.y, inside.z));
+    }
+    if (shape == SPHERE) {
+        return 1.0 - length(q);
+    }
+    vec2 radii = volumes[v].profile.xy;
+    float radius = mix(radii.x, radii.y, clamp(0.5 * q.y + 0.5, 0.0, 1.0));
+    return min(1.0 - abs(q.y), radius - length(q.xz));
+}

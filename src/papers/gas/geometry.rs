@@ -1,0 +1,99 @@
+//! The scene on the device: all meshes in one, volumes, lights, and what changes from frame to frame.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::blocks::{Capacity, FrameBlock, LightBlock, ObjectBlock, VertexBlock, VolumeBlock, offsets};
+use super::model::Object;
+use super::parameters::Parameters;
+use crate::gpu::transfer::upload;
+use crate::gpu::{Buffer, BufferDesc, Error, Location, ShaderLibrary};
+
+const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
+
+/// Buffers of the scene, by the names the shaders give them.
+pub struct Geometry {
+    pub frame: Arc<Buffer>,
+    pub volumes: Arc<Buffer>,
+    pub lights: Arc<Buffer>,
+    pub offsets: Arc<Buffer>,
+    pub vertices: Arc<Buffer>,
+    pub triangles: Arc<Buffer>,
+    pub objects: Arc<Buffer>,
+    pub triangle_count: u32,
+    /// What of the objects their blocks are made from: all but the meshes.
+    moving: Vec<Object>,
+}
+
+impl Geometry {
+    /// # Errors
+    /// [`Error::Limit`] for meshes beyond what the device binds; what Vulkan answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        objects: &[Object],
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let name = |name: &str| format!("{label}/{name}");
+        let storage = |what: &str, bytes: &[u8]| upload(device, &name(what), STORAGE, bytes);
+        let mut volumes: Vec<VolumeBlock> =
+            parameters.volumes.iter().map(|v| VolumeBlock::of_volume(v, parameters.steps)).collect();
+        volumes.extend(objects.iter().filter_map(|o| o.gas.as_ref()).map(VolumeBlock::of_texture));
+        if volumes.is_empty() {
+            volumes.push(bytemuck::Zeroable::zeroed());
+        }
+        let lights: Vec<LightBlock> = parameters.lights.iter().map(LightBlock::from).collect();
+        let mut vertices = Vec::new();
+        let mut triangles = Vec::new();
+        for (number, object) in objects.iter().enumerate() {
+            let first = vertices.len() as u32;
+            let mesh = &object.mesh;
+            vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(|(p, n)| VertexBlock {
+                position: p.extend(1.0).to_array(),
+                normal: n.extend(0.0).to_array(),
+            }));
+            triangles.extend(
+                mesh.indices.chunks_exact(3).map(|t| [first + t[0], first + t[1], first + t[2], number as u32]),
+            );
+        }
+        let triangle_count = triangles.len() as u32;
+        let mapped = |what: &str, bytes: usize, usage| {
+            Buffer::new(device, BufferDesc::new(name(what), bytes as u64).usage(usage).location(Location::Upload))
+        };
+        Ok(Geometry {
+            frame: mapped("frame", size_of::<FrameBlock>(), vk::BufferUsageFlags::UNIFORM_BUFFER)?,
+            volumes: storage("volumes", bytemuck::cast_slice(&volumes))?,
+            lights: storage("lights", bytemuck::cast_slice(&lights))?,
+            offsets: storage("offsets", bytemuck::cast_slice(&offsets(parameters.seed)))?,
+            vertices: storage("vertices", bytemuck::cast_slice(&vertices))?,
+            triangles: storage("triangles", bytemuck::cast_slice(&triangles))?,
+            objects: mapped("objects", size_of::<ObjectBlock>() * objects.len().max(1), STORAGE)?,
+            triangle_count,
+            moving: objects.iter().map(|o| Object { mesh: Default::default(), ..o.clone() }).collect(),
+        })
+    }
+
+    /// Writes what depends on the scene's frame `number`; the device is idle.
+    pub fn write(
+        &self,
+        parameters: &Parameters,
+        number: u32,
+        volume_count: usize,
+        capacity: Capacity,
+    ) -> Result<(), Error> {
+        let block = FrameBlock::new(parameters, number, volume_count, capacity);
+        self.frame.write(0, bytemuck::bytes_of(&block))?;
+        let mut textures = parameters.volumes.len()..;
+        let mut blocks: Vec<ObjectBlock> = self
+            .moving
+            .iter()
+            .map(|o| ObjectBlock::new(o, number, o.gas.and_then(|_| textures.next())))
+            .collect();
+        if blocks.is_empty() {
+            blocks.push(bytemuck::Zeroable::zeroed());
+        }
+        self.objects.write(0, bytemuck::cast_slice(&blocks))
+    }
+}

@@ -1,0 +1,184 @@
+//! The A-buffer: a list of fragments a pixel, sorted, with the slots of the sections to come.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::blocks::Capacity;
+use super::geometry::Geometry;
+use super::parameters::Parameters;
+use crate::gpu::transfer::{read_buffer, upload};
+use crate::gpu::{Buffer, BufferDesc, Error, Feature, Frame, Pass, ShaderLibrary, Topology};
+
+const LINK_BYTES: u64 = 16;
+const COLOR_BYTES: u64 = 8;
+const PIXEL_BYTES: u64 = 16;
+pub const SECTION_BYTES: u64 = 32;
+
+/// The section of the paper that these passes come from.
+const SECTION: &str = "A-buffer";
+
+/// The lists of one configuration.
+pub struct Lists {
+    pub capacity: Capacity,
+    pub heads: Arc<Buffer>,
+    pub links: Arc<Buffer>,
+    pub surfaces: Arc<Buffer>,
+    pub colors: Arc<Buffer>,
+    pub pixels: Arc<Buffer>,
+    counters: Arc<Buffer>,
+    empty: Pass,
+    fragments: Pass,
+    sort: Pass,
+    pixel_count: u32,
+    size: (u32, u32),
+    /// Vertices that the fragments pass draws.
+    vertex_count: u32,
+}
+
+/// A fragment as the device left it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fragment {
+    /// Bit 4 row + column of a sub-pixel, rows from the top.
+    pub mask: u32,
+    /// Depth along the view direction, metres.
+    pub depth_m: [f32; 2],
+    /// Area of the triangle inside the pixel, pixels.
+    pub coverage: f32,
+    /// 0 to 1.
+    pub opacity: f32,
+    pub object: u32,
+    pub triangle: u32,
+}
+
+impl Lists {
+    /// # Errors
+    /// [`Error::Limit`] for a capacity or a picture beyond what the device binds.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        geometry: &Geometry,
+        parameters: &Parameters,
+        capacity: Capacity,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let pixel_count = parameters.width.saturating_mul(parameters.height);
+        let buffer = |name: &str, count: u32, bytes: u64| {
+            let desc = BufferDesc::new(format!("{label}/{name}"), u64::from(count) * bytes);
+            Buffer::new(device, desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
+        };
+        let heads = buffer("heads", pixel_count, 4)?;
+        let links = buffer("fragment-links", capacity.fragments, LINK_BYTES)?;
+        let surfaces = buffer("fragment-surfaces", capacity.fragments, LINK_BYTES)?;
+        let colors = buffer("fragment-colors", capacity.fragments, COLOR_BYTES)?;
+        let pixels = buffer("pixels", pixel_count, PIXEL_BYTES)?;
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let counters = upload(device, &format!("{label}/counters"), usage, &[0; 16])?;
+        let empty = Pass::compute("empty-lists", SECTION, "gas/empty-lists.comp")
+            .with("frame", &geometry.frame)
+            .with("Heads", &heads)
+            .with("Counters", &counters)
+            .build(shaders)?;
+        let has_geometry_stage = device.physical().has(Feature::GeometryShader);
+        let first = if has_geometry_stage {
+            Pass::graphics("fragments", SECTION, "gas/fragments.vert", "gas/fragments.frag")
+                .geometry("gas/fragments.geom")
+                .topology(Topology::Points)
+        } else {
+            Pass::graphics("fragments", SECTION, "gas/fragments-pulled.vert", "gas/fragments.frag")
+        };
+        let fragments = first
+            .with("frame", &geometry.frame)
+            .with("Volumes", &geometry.volumes)
+            .with("Offsets", &geometry.offsets)
+            .with("Vertices", &geometry.vertices)
+            .with("Triangles", &geometry.triangles)
+            .with("Objects", &geometry.objects)
+            .with("Heads", &heads)
+            .with("Links", &links)
+            .with("Surfaces", &surfaces)
+            .with("Colors", &colors)
+            .with("Counters", &counters)
+            .extent(parameters.width, parameters.height)
+            .build(shaders)?;
+        let sort = Pass::compute("sort", SECTION, "gas/sort.comp")
+            .with("frame", &geometry.frame)
+            .with("Volumes", &geometry.volumes)
+            .with("Heads", &heads)
+            .with("Links", &links)
+            .with("Surfaces", &surfaces)
+            .with("Colors", &colors)
+            .with("Counters", &counters)
+            .with("Pixels", &pixels)
+            .build(shaders)?;
+        Ok(Lists {
+            capacity,
+            heads,
+            links,
+            surfaces,
+            colors,
+            pixels,
+            counters,
+            empty,
+            fragments,
+            sort,
+            pixel_count,
+            size: (parameters.width, parameters.height),
+            vertex_count: geometry.triangle_count.saturating_mul(if has_geometry_stage { 1 } else { 6 }),
+        })
+    }
+
+    /// Makes the sorted lists of a frame.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.compute(&self.empty, |dispatch| {
+            dispatch.threads(self.pixel_count, 1, 1);
+        })?;
+        frame.graphics(&self.fragments, |draw| {
+            draw.vertices(self.vertex_count);
+        })?;
+        frame.compute(&self.sort, |dispatch| {
+            dispatch.threads(self.size.0, self.size.1, 1);
+        })
+    }
+
+    /// The most fragments and sections that any frame has wanted; more than the capacity means a picture with gaps.
+    ///
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn demand(&self, shaders: &ShaderLibrary) -> Result<Capacity, Error> {
+        let bytes = read_buffer(shaders.device(), &self.counters)?;
+        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+        let most = |a: usize, b: usize| counts.get(a).max(counts.get(b)).copied().unwrap_or(0);
+        Ok(Capacity { fragments: most(0, 2), sections: most(1, 3) })
+    }
+
+    /// The sorted lists of the last frame, pixel by pixel.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
+    pub fn read(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<Fragment>>, Error> {
+        let words = |buffer: &Arc<Buffer>| -> Result<Vec<u32>, Error> {
+            Ok(bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), buffer)?))
+        };
+        let (heads, links) = (words(&self.heads)?, words(&self.links)?);
+        let (surfaces, colors) = (words(&self.surfaces)?, words(&self.colors)?);
+        let fragment = |at: usize| -> Option<(Fragment, u32)> {
+            let &[next, mask, near, far] = links.get(4 * at..4 * at + 4)? else { return None };
+            let &[_, object, triangle, coverage] = surfaces.get(4 * at..4 * at + 4)? else { return None };
+            let opacity = (colors.get(2 * at + 1)? >> 16) as f32 / 65535.0;
+            let depth_m = [near, far].map(f32::from_bits);
+            let coverage = f32::from_bits(coverage);
+            Some((Fragment { mask, depth_m, coverage, opacity, object, triangle }, next))
+        };
+        let list = |&head: &u32| {
+            let mut next = head;
+            std::iter::from_fn(|| {
+                let (found, after) = fragment(next as usize)?;
+                next = after;
+                Some(found)
+            })
+            .collect()
+        };
+        Ok(heads.iter().take(self.pixel_count as usize).map(list).collect())
+    }
+}

@@ -1,0 +1,170 @@
+//! What a scene is made of: solids full of gas, surfaces, and the solid textures of both.
+
+use glam::Vec3;
+
+use crate::scene::Mesh;
+
+/// The solid that bounds a gas, inside its box of `center` and `half_extent_m`. Axes of cylinder and frustum are vertical.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    Box,
+    /// An ellipsoid where the half extents differ.
+    Sphere,
+    Cylinder,
+    /// Radii at the bottom and at the top as shares of the half extents, 0 to 1.
+    Frustum {
+        bottom: f32,
+        top: f32,
+    },
+}
+
+/// A density function (section "Modeling and animating the gases").
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DensityFunction {
+    /// `opaque` everywhere.
+    Constant,
+    /// (turbulence x opaque)^power.
+    Turbulence,
+    /// `clouds`: a sine wave through the turbulent space.
+    Clouds { frequency: f32 },
+    /// `chess_fog`, which rolls in along +X.
+    Fog { swirl: Swirl, front: Front },
+    /// Rises, and thins with its height in the volume (figure 6).
+    Steam { swirl: Swirl },
+    /// A soft ball with a turbulent surface (Perlin and Hoffert).
+    Hypertexture {
+        /// Share of its radius that the turbulence moves the surface by, at least 0.
+        amplitude: f32,
+        /// Share of the radius over which it turns dense, above 0.
+        softness: f32,
+    },
+}
+
+/// How a point moves through the solid texture as the frames go on: along a helix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Swirl {
+    /// DOWN of the fog, or how far the steam rises: texture units a frame.
+    pub along_per_frame: f32,
+    /// SWIRL_FRAMES, frames of a turn; 0 for no turns.
+    pub frames: f32,
+    /// ELLIPSE1 and ELLIPSE2, texture units.
+    pub ellipse: [f32; 2],
+}
+
+/// The fog's front: no fog has a greater x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Front {
+    /// At frame 0, metres.
+    pub x_m: f32,
+    /// Metres a frame.
+    pub per_frame_m: f32,
+    /// Behind the front until the fog is at its thickest, above 0.
+    pub depth_m: f32,
+    /// FULL_FOG: frames until the fog is at its thickest; 0 for at once.
+    pub full_frames: f32,
+    /// How far a turbulence of 1 moves it, metres.
+    pub turbulence_m: f32,
+    /// How far a random number of 1 of the table moves it, metres.
+    pub table_m: f32,
+}
+
+/// A density function with its place in the solid texture's space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolidTexture {
+    pub function: DensityFunction,
+    /// The density's factor, 0 to 1,000,000.
+    pub opaque: f32,
+    /// Its exponent, above 0 and at most 100.
+    pub power: f32,
+    /// Texture units a metre, above 0.
+    pub scale_per_m: f32,
+    /// Texture units.
+    pub offset: Vec3,
+}
+
+/// One Henyey-Greenstein function of a sum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HenyeyGreenstein {
+    /// At least 0; the weights add up to 1.
+    pub weight: f32,
+    /// -1 (backwards) to 1 (forwards), both excluded.
+    pub g: f32,
+}
+
+/// A solid full of gas, or a solid (hypertexture) object rendered as a volume.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Volume {
+    pub shape: Shape,
+    /// Metres.
+    pub center: Vec3,
+    /// Metres, above 0.
+    pub half_extent_m: Vec3,
+    /// Share of the way from the boundary to the middle over which the gas fades, 0 (not at all) to 1.
+    pub falloff: f32,
+    /// Whether it is a solid, with normals and opacity = 1 - (1 - density)^(c step).
+    pub is_solid: bool,
+    pub texture: SolidTexture,
+    /// tau of a gas or c of a solid, per metre, 0 to 1,000,000.
+    pub tau_per_m: f32,
+    /// Linear RGB, 0 to 1.
+    pub albedo: Vec3,
+    pub phase: [HenyeyGreenstein; 2],
+}
+
+impl Volume {
+    /// Step of the march: the longest side over `steps`.
+    pub fn step_m(&self, steps: u32) -> f32 {
+        2.0 * self.half_extent_m.max_element() / steps as f32
+    }
+}
+
+/// A pattern of squares in all three dimensions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Checker {
+    /// Of every other square, linear RGB.
+    pub color: Vec3,
+    /// Above 0.
+    pub edge_m: f32,
+}
+
+/// Phong's highlight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Highlight {
+    pub strength: f32,
+    pub exponent: f32,
+}
+
+/// A surface object: scanline-rendered in the paper's words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// In world space.
+    pub mesh: Mesh,
+    /// Linear RGB.
+    pub color: Vec3,
+    /// 0 to 1.
+    pub opacity: f32,
+    pub checker: Option<Checker>,
+    pub highlight: Highlight,
+    /// Whether triangles are seen from behind.
+    pub is_two_sided: bool,
+    /// A surface-defined gas: its opacity at every point.
+    pub gas: Option<SolidTexture>,
+    /// Metres a frame.
+    pub per_frame_m: Vec3,
+}
+
+impl Object {
+    /// A dull opaque object, seen from both sides.
+    pub fn new(mesh: Mesh, color: Vec3) -> Self {
+        Object {
+            mesh,
+            color,
+            opacity: 1.0,
+            checker: None,
+            highlight: Highlight { strength: 0.0, exponent: 1.0 },
+            is_two_sided: true,
+            gas: None,
+            per_frame_m: Vec3::ZERO,
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The visible fragments, shaded and blended, and the picture.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::geometry::Geometry;
+use super::lists::{Lists, SECTION_BYTES};
+use super::march::March;
+use super::parameters::Parameters;
+use crate::gpu::transfer::upload;
+use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    struct Shading {
+        is_attenuated: u32,
+    }
+}
+
+/// The last passes.
+pub struct Resolve {
+    /// Linear RGB, and the opacity of all together.
+    pub radiance: Arc<ImageView>,
+    pub picture: Arc<ImageView>,
+    resolve: Pass,
+    view: Pass,
+    shading: Shading,
+}
+
+impl Resolve {
+    /// # Errors
+    /// [`Error::Limit`] for a size that the device does not allow.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        geometry: &Geometry,
+        lists: &Lists,
+        march: Option<&March>,
+        parameters: &Parameters,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let image = |name: &str, format, usage| {
+            let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
+            Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | usage))?.view()
+        };
+        let radiance = image("radiance", vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED)?;
+        let picture = image("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::empty())?;
+        // A binding needs a buffer where the variant has none; nothing reads it.
+        let nothing = |name: &str| {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            upload(device, &format!("{label}/{name}"), usage, &[0; SECTION_BYTES as usize])
+        };
+        let sections = march.map_or_else(|| nothing("no sections"), |m| Ok(m.sections.clone()))?;
+        let attenuations = march.and_then(|m| m.attenuations.clone());
+        let shading = Shading { is_attenuated: attenuations.is_some().into() };
+        let attenuations = attenuations.map_or_else(|| nothing("no attenuations"), Ok)?;
+        let resolve = Pass::graphics("resolve", "A-buffer", "common/fullscreen.vert", "gas/resolve.frag")
+            .with("frame", &geometry.frame)
+            .with("Lights", &geometry.lights)
+            .with("Objects", &geometry.objects)
+            .with("Heads", &lists.heads)
+            .with("Links", &lists.links)
+            .with("Surfaces", &lists.surfaces)
+            .with("Colors", &lists.colors)
+            .with("Pixels", &lists.pixels)
+            .with("Sections", &sections)
+            .with("Attenuations", &attenuations)
+            .constants::<Shading>()
+            .color(&radiance, Load::Discard, Blend::Replace)
+            .build(shaders)?;
+        let view = Pass::graphics("view", "A-buffer", "common/fullscreen.vert", "gas/view.frag")
+            .with("radiance", &radiance)
+            .color(&picture, Load::Discard, Blend::Replace)
+            .build(shaders)?;
+        Ok(Resolve { radiance, picture, resolve, view, shading })
+    }
+
+    /// Resolves the lists.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.graphics(&self.resolve, |draw| {
+            draw.constants(&self.shading).vertices(3);
+        })
+    }
+
+    /// Draws the picture from what is resolved.
+    pub fn draw(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.graphics(&self.view, |draw| {
+            draw.vertices(3);
+        })
+    }
+}
