@@ -50,10 +50,12 @@ impl Geometry {
         for (number, object) in objects.iter().enumerate() {
             let first = vertices.len() as u32;
             let mesh = &object.mesh;
-            vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(|(p, n)| VertexBlock {
-                position: p.extend(1.0).to_array(),
-                normal: n.extend(0.0).to_array(),
-            }));
+            vertices.extend(
+                mesh.positions
+                    .iter()
+                    .zip(&mesh.normals)
+                    .map(|(p, n)| VertexBlock { position: p.extend(1.0).to_array(), normal: n.extend(0.0).to_array() }),
+            );
             triangles.extend(
                 mesh.indices.chunks_exact(3).map(|t| [first + t[0], first + t[1], first + t[2], number as u32]),
             );
@@ -86,11 +88,8 @@ impl Geometry {
         let block = FrameBlock::new(parameters, number, volume_count, capacity);
         self.frame.write(0, bytemuck::bytes_of(&block))?;
         let mut textures = parameters.volumes.len()..;
-        let mut blocks: Vec<ObjectBlock> = self
-            .moving
-            .iter()
-            .map(|o| ObjectBlock::new(o, number, o.gas.and_then(|_| textures.next())))
-            .collect();
+        let mut blocks: Vec<ObjectBlock> =
+            self.moving.iter().map(|o| ObjectBlock::new(o, number, o.gas.and_then(|_| textures.next()))).collect();
         if blocks.is_empty() {
             blocks.push(bytemuck::Zeroable::zeroed());
         }

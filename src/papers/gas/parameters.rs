@@ -159,8 +159,13 @@ impl Parameters {
     /// # Errors
     /// The first parameter outside its range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-            ParameterError::check((1..=100_000).contains(&self.steps), "--steps", self.steps, "must be 1 to 100000")?;
-        ParameterError::check((2..=512).contains(&self.table_size), "--table", self.table_size, "must be 2 to 512 entries")?;
+        ParameterError::check((1..=100_000).contains(&self.steps), "--steps", self.steps, "must be 1 to 100000")?;
+        ParameterError::check(
+            (2..=512).contains(&self.table_size),
+            "--table",
+            self.table_size,
+            "must be 2 to 512 entries",
+        )?;
         let size = self.pixel_size;
         ParameterError::check((1e-4..=1.0).contains(&size), "--pixel-size", size, "must be 0.0001 to 1")?;
         let threshold = self.shadow_threshold;
@@ -178,9 +183,19 @@ impl Parameters {
             validate_light(light)?;
         }
         ParameterError::check(is_color(self.ambient, 64.0), "--ambient", components(self.ambient), "must be 0 to 64")?;
-        ParameterError::check(is_color(self.background, 64.0), "--background", components(self.background), "must be 0 to 64")?;
+        ParameterError::check(
+            is_color(self.background, 64.0),
+            "--background",
+            components(self.background),
+            "must be 0 to 64",
+        )?;
         let last = u64::from(self.first_frame) + u64::from(self.frame_step) * 1000;
-        ParameterError::check(last <= 16_000_000, "--first-frame", self.first_frame, "is too late; a scene has 16000000 frames")?;
+        ParameterError::check(
+            last <= 16_000_000,
+            "--first-frame",
+            self.first_frame,
+            "is too late; a scene has 16000000 frames",
+        )?;
         let size = format!("{}x{}", self.width, self.height);
         ParameterError::check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
         let Camera { eye, target, .. } = self.camera;
@@ -219,7 +234,12 @@ fn validate_volume(volume: &Volume) -> Result<(), ParameterError> {
     let text = format!("{},{},{},{}", first.weight, first.g, second.weight, second.g);
     let is_good = volume.phase.iter().all(|p| p.weight >= 0.0 && p.g.abs() < 1.0)
         && (first.weight + second.weight - 1.0).abs() < 1e-3;
-    ParameterError::check(is_good, "--phase", text, "must be weights of at least 0 that add up to 1, each with a g between -1 and 1")?;
+    ParameterError::check(
+        is_good,
+        "--phase",
+        text,
+        "must be weights of at least 0 that add up to 1, each with a g between -1 and 1",
+    )?;
     validate_texture(&volume.texture)
 }
 
@@ -228,7 +248,12 @@ fn validate_texture(texture: &SolidTexture) -> Result<(), ParameterError> {
     let is_good = texture.power > 0.0 && texture.power <= 100.0;
     ParameterError::check(is_good, "--power", texture.power, "must be above 0 and at most 100")?;
     let scale = texture.scale_per_m;
-    ParameterError::check((1e-4..=1e4).contains(&scale), "--texture-scale", scale, "must be 0.0001 to 10000 per metre")?;
+    ParameterError::check(
+        (1e-4..=1e4).contains(&scale),
+        "--texture-scale",
+        scale,
+        "must be 0.0001 to 10000 per metre",
+    )?;
     let is_good = texture.offset.to_array().iter().all(|o| o.abs() <= 1e4);
     ParameterError::check(is_good, "--texture-offset", components(texture.offset), "must be -10000 to 10000")?;
     match texture.function {
@@ -240,15 +265,30 @@ fn validate_texture(texture: &SolidTexture) -> Result<(), ParameterError> {
             let is_good = front.depth_m > 0.0 && front.depth_m.is_finite();
             ParameterError::check(is_good, "--front-depth", front.depth_m, "must be above 0 metres")?;
             let rest = [front.x_m, front.per_frame_m, front.full_frames, front.turbulence_m, front.table_m];
-            ParameterError::check(rest.iter().all(|v| v.is_finite()), "--front", format!("{rest:?}"), "must be finite")?;
-            ParameterError::check(front.full_frames >= 0.0, "--full-fog", front.full_frames, "must be at least 0 frames")?;
+            ParameterError::check(
+                rest.iter().all(|v| v.is_finite()),
+                "--front",
+                format!("{rest:?}"),
+                "must be finite",
+            )?;
+            ParameterError::check(
+                front.full_frames >= 0.0,
+                "--full-fog",
+                front.full_frames,
+                "must be at least 0 frames",
+            )?;
             validate_swirl(&swirl)
         }
         DensityFunction::Steam { swirl } => validate_swirl(&swirl),
         DensityFunction::Hypertexture { amplitude, softness } => {
             let is_good = (0.0..=100.0).contains(&amplitude);
             ParameterError::check(is_good, "--amplitude", amplitude, "must be 0 to 100")?;
-            ParameterError::check(softness > 0.0 && softness <= 1.0, "--softness", softness, "must be above 0 and at most 1")
+            ParameterError::check(
+                softness > 0.0 && softness <= 1.0,
+                "--softness",
+                softness,
+                "must be above 0 and at most 1",
+            )
         }
     }
 }
@@ -265,7 +305,12 @@ fn validate_light(light: &Light) -> Result<(), ParameterError> {
         Light::Parallel { direction, intensity } => {
             let is_good = direction.is_finite() && direction.normalize_or_zero() != Vec3::ZERO;
             ParameterError::check(is_good, "--light", components(direction), "must be a direction")?;
-            ParameterError::check(is_color(intensity, 1e6), "--light", components(intensity), "must have an intensity of 0 to 1000000")
+            ParameterError::check(
+                is_color(intensity, 1e6),
+                "--light",
+                components(intensity),
+                "must have an intensity of 0 to 1000000",
+            )
         }
         Light::Point { position, intensity } => {
             ParameterError::check(position.is_finite(), "--point-light", components(position), "must be a place")?;

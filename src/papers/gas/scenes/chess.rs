@@ -19,24 +19,51 @@ fn piece(name: &str, points: &[(f32, f32)]) -> Mesh {
 fn rook() -> Mesh {
     piece(
         "rook",
-        &[(0.42, 0.0), (0.42, 0.12), (0.30, 0.22), (0.24, 0.5), (0.22, 0.85), (0.34, 0.95), (0.34, 1.2), (0.24, 1.2), (0.22, 1.05), (0.0, 1.05)],
+        &[
+            (0.42, 0.0),
+            (0.42, 0.12),
+            (0.30, 0.22),
+            (0.24, 0.5),
+            (0.22, 0.85),
+            (0.34, 0.95),
+            (0.34, 1.2),
+            (0.24, 1.2),
+            (0.22, 1.05),
+            (0.0, 1.05),
+        ],
     )
 }
 
 fn pawn() -> Mesh {
     piece(
         "pawn",
-        &[(0.36, 0.0), (0.36, 0.1), (0.26, 0.2), (0.15, 0.45), (0.13, 0.6), (0.24, 0.66), (0.14, 0.72), (0.23, 0.86), (0.16, 1.02), (0.0, 1.08)],
+        &[
+            (0.36, 0.0),
+            (0.36, 0.1),
+            (0.26, 0.2),
+            (0.15, 0.45),
+            (0.13, 0.6),
+            (0.24, 0.66),
+            (0.14, 0.72),
+            (0.23, 0.86),
+            (0.16, 1.02),
+            (0.0, 1.08),
+        ],
     )
 }
 
 /// A stylised knight: a turned foot and a leaning head.
 fn knight(at: Vec3, color: Vec3) -> [Object; 2] {
-    let foot = piece("knight's foot", &[(0.40, 0.0), (0.40, 0.12), (0.28, 0.24), (0.24, 0.4), (0.30, 0.5), (0.0, 0.52)]);
+    let foot =
+        piece("knight's foot", &[(0.40, 0.0), (0.40, 0.12), (0.28, 0.24), (0.24, 0.4), (0.30, 0.5), (0.0, 0.52)]);
     let mut head = crate::scene::shapes::sphere(32, 24);
     for p in &mut head.positions {
         let nose = (p.x - 0.2).max(0.0);
-        *p = Vec3::new(p.x * 0.26 + nose * 0.22 - p.y * 0.06, 0.85 + p.y * 0.42 - nose * 0.3, p.z * (0.18 - nose * 0.06));
+        *p = Vec3::new(
+            p.x * 0.26 + nose * 0.22 - p.y * 0.06,
+            0.85 + p.y * 0.42 - nose * 0.3,
+            p.z * (0.18 - nose * 0.06),
+        );
     }
     head.name = "knight's head".to_owned();
     head.smooth_normals();
@@ -113,7 +140,8 @@ pub fn volume_fog() -> Scene {
         tau_per_m: 6.0,
         ..default_volume()
     });
-    let rook = Object { per_frame_m: Vec3::new(0.0, 0.0, 0.0045), ..piece_at(rook(), Vec3::new(-0.5, 0.0, -1.2), WHITE) };
+    let rook =
+        Object { per_frame_m: Vec3::new(0.0, 0.0, 0.0045), ..piece_at(rook(), Vec3::new(-0.5, 0.0, -1.2), WHITE) };
     let objects = vec![
         board(),
         rook,

@@ -24,7 +24,16 @@ fn tumbler() -> Mesh {
 }
 
 fn drink() -> Mesh {
-    let profile = [(0.0, 0.09), (0.355, 0.09), (0.355, 0.09), (0.395, 0.35), (0.435, 0.80), (0.438, DRINK_M), (0.438, DRINK_M), (0.0, DRINK_M)];
+    let profile = [
+        (0.0, 0.09),
+        (0.355, 0.09),
+        (0.355, 0.09),
+        (0.395, 0.35),
+        (0.435, 0.80),
+        (0.438, DRINK_M),
+        (0.438, DRINK_M),
+        (0.0, DRINK_M),
+    ];
     turned("drink", &profile.map(|(x, y)| Vec2::new(x, y)), 48)
 }
 
@@ -56,7 +65,10 @@ fn steam() -> Volume {
 
 fn scene(objects: Vec<Object>) -> Scene {
     let room = [
-        Object { checker: Some(Checker { color: Vec3::new(0.24, 0.14, 0.09), edge_m: 0.6 }), ..floor(Vec2::splat(12.0), 0.0, Vec3::new(0.34, 0.20, 0.12)) },
+        Object {
+            checker: Some(Checker { color: Vec3::new(0.24, 0.14, 0.09), edge_m: 0.6 }),
+            ..floor(Vec2::splat(12.0), 0.0, Vec3::new(0.34, 0.20, 0.12))
+        },
         block(Vec3::new(-6.0, 0.0, -1.7), Vec3::new(6.0, 5.0, -1.5), Vec3::new(0.28, 0.34, 0.45)),
     ];
     let position = Vec3::new(1.8, 4.0, 3.2);

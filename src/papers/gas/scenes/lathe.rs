@@ -55,7 +55,8 @@ pub fn curve(points: &[Vec2], pieces: u32) -> Vec<Vec2> {
         let [a, b, c, d] = [at(i.saturating_sub(1)), at(i), at(i + 1), at(i + 2)];
         for part in 0..pieces {
             let t = part as f32 / pieces as f32;
-            let tangent = (c - a) * t + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t * t + (b * 3.0 - a - c * 3.0 + d) * t * t * t;
+            let tangent =
+                (c - a) * t + (a * 2.0 - b * 5.0 + c * 4.0 - d) * t * t + (b * 3.0 - a - c * 3.0 + d) * t * t * t;
             let point = b + tangent * 0.5;
             all.push(Vec2::new(point.x.max(0.0), point.y));
         }
