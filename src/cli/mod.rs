@@ -7,6 +7,7 @@ mod compare;
 mod devices;
 mod experiment;
 mod failure;
+mod gas;
 mod lava;
 mod options;
 mod outcome;
@@ -23,6 +24,7 @@ use clap::{Parser, Subcommand};
 
 use self::caustics::CausticsArgs;
 use self::failure::Failure;
+use self::gas::GasArgs;
 use self::lava::LavaArgs;
 use self::paper::PaperCommand;
 use self::terrain::TerrainArgs;
@@ -45,6 +47,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Lava: particles to density to isosurface to splats (Unnthorsson)
     Lava(PaperCommand<LavaArgs>),
+    /// Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent)
+    Gas(PaperCommand<GasArgs>),
     /// Refractive water caustics with level maps (Tipprasert)
     Caustics(PaperCommand<CausticsArgs>),
     /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
@@ -60,6 +64,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Lava(arguments)) => arguments.run(),
+        Some(Command::Gas(arguments)) => arguments.run(),
         Some(Command::Caustics(arguments)) => arguments.run(),
         Some(Command::Terrain(arguments)) => arguments.run(),
     })
@@ -68,6 +73,11 @@ pub fn umbrella() -> ExitCode {
 /// Runs the paper's own binary `lava`.
 pub fn lava() -> ExitCode {
     end(paper::binary::<LavaArgs>())
+}
+
+/// Runs the paper's own binary `gas`.
+pub fn gas() -> ExitCode {
+    end(paper::binary::<GasArgs>())
 }
 
 /// Runs the paper's own binary `caustics`.

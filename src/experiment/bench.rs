@@ -90,12 +90,21 @@ impl<S: Study> Bench<'_, S> {
             .collect::<Result<Vec<_>, _>>()?;
         machine.device.wait_idle()?;
         let stamp_floor_ms = machine.recorder.stamp_floor_ms()?;
-        let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
-        let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
-        machine.device.wait_idle()?;
-        if measurements.iter().any(|m| m.frame_ms.is_empty()) {
-            return Err(Error::Interrupted);
-        }
+        let measurements = loop {
+            let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
+            let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
+            machine.device.wait_idle()?;
+            if measurements.iter().any(|m| m.frame_ms.is_empty()) {
+                return Err(Error::Interrupted);
+            }
+            let mut are_settled = true;
+            for paper in papers {
+                are_settled &= paper.settle(&machine.shaders)?;
+            }
+            if are_settled {
+                break measurements;
+            }
+        };
         let mut measured: Vec<_> = built.into_iter().zip(measurements).collect();
         let findings = study.findings(machine, &mut measured)?;
         let validation = machine.check_validation()?;

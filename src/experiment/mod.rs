@@ -5,6 +5,7 @@ pub mod caustics;
 pub mod compare;
 mod error;
 pub mod facts;
+pub mod gas;
 pub mod lava;
 pub mod limits;
 pub mod machine;

@@ -18,7 +18,12 @@ use crate::papers::{Paper, Target};
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
 pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
-    machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
+    loop {
+        machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
+        if paper.settle(&machine.shaders)? {
+            break;
+        }
+    }
     let view = paper.picture();
     let texels = transfer::read_image(&machine.device, view)?;
     Ok(Rgba8::new(view.width(), view.height(), texels)?)

@@ -8,7 +8,7 @@ pub mod terrain;
 use std::sync::Arc;
 
 use crate::gpu::bindings::Resource;
-use crate::gpu::{Buffer, Error, Frame, ImageView};
+use crate::gpu::{Buffer, Error, Frame, ImageView, ShaderLibrary};
 
 /// The methods that a paper compares.
 pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
@@ -66,6 +66,15 @@ pub trait Paper {
     /// # Errors
     /// What the Vulkan layer answers.
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
+
+    /// Whether every frame so far had room for all that it made. If not, its pictures have gaps: the paper has made more room,
+    /// and the frames must be recorded again.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where there cannot be enough room on this device.
+    fn settle(&mut self, _shaders: &ShaderLibrary) -> Result<bool, Error> {
+        Ok(true)
+    }
 
     /// The finished picture, 8-bit sRGB.
     fn picture(&self) -> &Arc<ImageView>;

@@ -90,29 +90,6 @@ impl Gas {
         Ok(Gas { label: label.to_owned(), variant, parameters: parameters.clone(), geometry, passes })
     }
 
-    /// Whether every frame so far had room for its lists. If not, its pictures have gaps: the lists have grown, and the
-    /// frames must be recorded again.
-    ///
-    /// # Errors
-    /// [`Error::Limit`] when they cannot grow so far on this device.
-    pub fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
-        let demand = self.passes.lists.demand(shaders)?;
-        let capacity = self.passes.lists.capacity;
-        if demand.fragments <= capacity.fragments && demand.sections <= capacity.sections {
-            return Ok(true);
-        }
-        // An eighth more: the frames to come may want a little more. What is enough stays as it is.
-        let grown = |demand: u32, capacity: u32| {
-            if demand > capacity { demand.saturating_add(demand / 8) } else { capacity }
-        };
-        let capacity = Capacity {
-            fragments: grown(demand.fragments, capacity.fragments),
-            sections: grown(demand.sections, capacity.sections),
-        };
-        self.passes = Passes::new(shaders, &self.label, &self.geometry, self.variant, &self.parameters, capacity)?;
-        Ok(false)
-    }
-
     /// The most fragments and sections that a frame has wanted so far.
     ///
     /// # Errors
@@ -154,6 +131,24 @@ impl Paper for Gas {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         self.passes.resolve.draw(frame)
+    }
+
+    fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        let demand = self.passes.lists.demand(shaders)?;
+        let capacity = self.passes.lists.capacity;
+        if demand.fragments <= capacity.fragments && demand.sections <= capacity.sections {
+            return Ok(true);
+        }
+        // An eighth more: the frames to come may want a little more. What is enough stays as it is.
+        let grown = |demand: u32, capacity: u32| {
+            if demand > capacity { demand.saturating_add(demand / 8) } else { capacity }
+        };
+        let capacity = Capacity {
+            fragments: grown(demand.fragments, capacity.fragments),
+            sections: grown(demand.sections, capacity.sections),
+        };
+        self.passes = Passes::new(shaders, &self.label, &self.geometry, self.variant, &self.parameters, capacity)?;
+        Ok(false)
     }
 
     fn picture(&self) -> &Arc<ImageView> {

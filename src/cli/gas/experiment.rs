@@ -1,0 +1,201 @@
+//! `experiment NAME`: the paper's tables, its sequences, and what table size and steps buy.
+
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::GasArgs;
+use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::failure::Failure;
+use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::outcome;
+use crate::cli::paper::ExperimentArgs;
+use crate::cli::watch::watched;
+use crate::experiment::bench::{build, load};
+use crate::experiment::facts::Facts;
+use crate::experiment::gas::Setup;
+use crate::experiment::gas::tables::{Number, Outcome, Trade};
+use crate::experiment::machine::Machine;
+use crate::experiment::study::Study;
+use crate::experiment::sweep::{Plan, Point, Swept};
+use crate::experiment::{limits, picture};
+use crate::papers::gas::model::DensityFunction;
+use crate::papers::gas::scenes::Preset;
+use crate::papers::gas::{NEEDS, Variant};
+
+/// The tables and figures that are reproduced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Name {
+    /// Table 1: times of figures 3 to 7, with and without the volume
+    #[value(name = "1")]
+    Table1,
+    /// Table 2: times of figure 8 by shadowing
+    #[value(name = "2")]
+    Table2,
+    /// Shadow table of 16 to 128 entries a side: cost against the difference from tracing
+    TableSize,
+    /// Steps along a volume: cost against the difference from the most
+    Steps,
+    /// The share of turbulence in the volume's time
+    Noise,
+    /// The picture strips of figures 6 and 7
+    Sequence,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct Experiments {
+    /// Table or figure of the paper
+    #[arg(value_enum, required_unless_present = "list")]
+    name: Option<Name>,
+    /// List the experiments
+    #[arg(long)]
+    list: bool,
+    /// Table sizes or steps of a sweep, comma-separated [default: 16,32,64,96,128, or 10,20,40,80,160]
+    #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
+    counts: Vec<u32>,
+    #[command(flatten)]
+    scene: GasArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    #[command(flatten)]
+    measure: MeasureArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Frames and repetitions at each point that names none.
+const FRAMES: u32 = 1;
+const REPEAT: u32 = 5;
+
+impl ExperimentArgs for Experiments {
+    fn run(&self) -> Result<(), Failure> {
+        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
+        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
+        self.refuse_unsuited(name)?;
+        publication.check()?;
+        match name {
+            Name::Table1 => self.table(&publication, Number::One),
+            Name::Table2 => self.table(&publication, Number::Two),
+            Name::TableSize => self.trade(&publication, Trade::TableSize, Variant::Table),
+            Name::Steps => self.trade(&publication, Trade::Steps, Variant::None),
+            Name::Noise => self.noise(&publication),
+            Name::Sequence => self.sequence(&publication),
+        }
+    }
+}
+
+impl Experiments {
+    /// Options that other verbs know and this experiment would not heed.
+    fn refuse_unsuited(&self, name: Name) -> Result<(), Failure> {
+        let has_counts = matches!(name, Name::TableSize | Name::Steps);
+        let has_scenes = matches!(name, Name::Table1 | Name::Table2 | Name::Sequence);
+        let is_pictures = name == Name::Sequence;
+        let unsuited = [
+            (!has_counts && !self.counts.is_empty(), "--counts: this experiment has none"),
+            (has_scenes && self.scene.names_scene(), "--preset: this experiment has its own scenes"),
+            (
+                name == Name::TableSize && self.scene.table.is_some(),
+                "--table: this experiment sweeps it; give --counts",
+            ),
+            (name == Name::Steps && self.scene.steps.is_some(), "--steps: this experiment sweeps them; give --counts"),
+            (name == Name::Noise && self.scene.density.is_some(), "--density: this experiment compares two"),
+            (is_pictures && self.scene.first_frame.is_some(), "--first-frame: the strips have the paper's frames"),
+            (is_pictures && self.output.json.is_some(), "--json: a strip is pictures; `1` has a record"),
+            (is_pictures && self.output.csv.is_some(), "--csv: a strip is pictures; `1` has rows"),
+        ];
+        refuse(&self.measure, &self.output, &unsuited)
+    }
+
+    fn open(&self) -> Result<Machine, Failure> {
+        let machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
+        outcome::say_device(&self.output, &machine);
+        Ok(machine)
+    }
+
+    fn sweep(
+        &self,
+        publication: &Publication<'_>,
+        machine: &mut Machine,
+        points: &[Point<Setup>],
+    ) -> Result<Swept, Failure> {
+        let limits = if self.measure.no_limits { None } else { Some(limits::measure(machine)?) };
+        let plan = Plan { schedule: self.measure.schedule(FRAMES, REPEAT), limits: limits.as_ref() };
+        let what = format!("{} {}", Setup::PAPER, publication.name);
+        Ok(watched(self.output.quiet, &what, |watch| plan.measure(points, machine, watch))?)
+    }
+
+    fn table(&self, publication: &Publication<'_>, number: Number) -> Result<(), Failure> {
+        let points = number.points(&|setup| self.scene.over(setup));
+        points.iter().try_for_each(|point| load(&point.study).map(drop))?;
+        let mut machine = self.open()?;
+        let swept = self.sweep(publication, &mut machine, &points)?;
+        let outcome = Outcome::new(number, swept.rows);
+        let (table, plots) = (outcome.render(outcome::style()), [(".svg".to_owned(), outcome.plot()?)]);
+        publication.runs(&machine, outcome.into_runs(), table, &plots)?;
+        machine.check_validation()?;
+        swept.stopped.map_or(Ok(()), |error| Err(error.into()))
+    }
+
+    fn trade(&self, publication: &Publication<'_>, trade: Trade, variant: Variant) -> Result<(), Failure> {
+        let setup = self.scene.over(Setup::of(self.scene.scene()));
+        let counts = if self.counts.is_empty() { trade.counts() } else { self.counts.clone() };
+        let points = trade.points(&setup, &counts, variant);
+        points.iter().try_for_each(|point| load(&point.study).map(drop))?;
+        let mut machine = self.open()?;
+        let swept = self.sweep(publication, &mut machine, &points)?;
+        let facts = trade.table(&mut machine, &setup, &swept.rows, variant)?;
+        publication.save(&publication.file(".svg"), trade.plot(&swept.rows)?.as_bytes())?;
+        publication.facts(&machine, &facts)?;
+        machine.check_validation()?;
+        swept.stopped.map_or(Ok(()), |error| Err(error.into()))
+    }
+
+    /// The volume's time with the scene's density function, and with a constant in its place: what is left is turbulence.
+    fn noise(&self, publication: &Publication<'_>) -> Result<(), Failure> {
+        let setup = self.scene.over(Setup::of(self.scene.scene()));
+        let mut constant = setup.clone();
+        for volume in &mut constant.parameters.volumes {
+            volume.texture.function = DensityFunction::Constant;
+        }
+        let point = |label: &str, study| Point {
+            label: label.to_owned(),
+            x: 0.0,
+            study,
+            variants: vec![Variant::None],
+            left_out: Vec::new(),
+        };
+        let points = [point("turbulent", setup), point("constant", constant)];
+        points.iter().try_for_each(|point| load(&point.study).map(drop))?;
+        let mut machine = self.open()?;
+        let swept = self.sweep(publication, &mut machine, &points)?;
+        let volume_ms = |label: &str| {
+            let row = swept.rows.iter().find(|row| row.label == label)?;
+            row.run.passes.iter().find(|p| p.name == "volume")?.gpu_ms.as_ref().map(|s| s.median)
+        };
+        let (turbulent, constant) = (volume_ms("turbulent"), volume_ms("constant"));
+        let share = turbulent.zip(constant).map(|(t, c)| (t - c) / t);
+        let facts = Facts {
+            title: "The share of turbulence in the volume's time",
+            columns: &["turbulent ms", "constant ms", "share", "paper"],
+            rows: vec![vec![json!(turbulent), json!(constant), json!(share), json!(0.65)]],
+        };
+        publication.facts(&machine, &facts)?;
+        machine.check_validation()?;
+        swept.stopped.map_or(Ok(()), |error| Err(error.into()))
+    }
+
+    fn sequence(&self, publication: &Publication<'_>) -> Result<(), Failure> {
+        let mut machine = self.open()?;
+        for scene in [Preset::Fig6, Preset::Fig7] {
+            let mut setup = self.scene.over(Setup::of(scene));
+            for frame in scene.frames() {
+                setup.parameters.first_frame = frame;
+                let surfaces = setup.load()?;
+                let mut built = build(&machine, &setup, &surfaces, scene.variant())?;
+                let drawn = picture::render(&mut machine, &mut built.paper, 0)?;
+                publication.picture(&format!("-{}-{frame:04}.png", scene.word()), &drawn)?;
+            }
+        }
+        machine.check_validation()?;
+        Ok(())
+    }
+}
