@@ -97,3 +97,38 @@ fn a_meshs_name_may_hold_a_comma() {
     let csv = fs::read_to_string(out.path().join("tables/caustics-5-2.csv")).unwrap();
     assert_eq!(csv.lines().nth(1), Some("\"a,b\",1,"), "{csv}");
 }
+
+#[test]
+fn meshes_of_one_name_have_files_of_their_own() {
+    let out = folder();
+    fs::create_dir(out.path().join("other")).unwrap();
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n";
+    let (first, second) = (file(&out, "part.obj", triangle), file(&out, "other/part.obj", triangle));
+    let program = caustics("experiment depth-profile --quiet --out tables").inside(out.path());
+    let program = program.arg("--mesh").arg(first).arg("--mesh").arg(second).args(SMALL);
+    program.on_test_device().run().succeeded();
+    let profiles = ["caustics-depth-profile-part-2-profile.svg", "caustics-depth-profile-part-profile.svg"];
+    let expected = [&profiles[..], &["caustics-depth-profile.csv", "caustics-depth-profile.json"]].concat();
+    assert_eq!(entries(&out.path().join("tables")), expected);
+    let csv = fs::read_to_string(out.path().join("tables/caustics-depth-profile.csv")).unwrap();
+    assert!(csv.contains("\npart,1,") && csv.contains("\npart-2,1,"), "{csv}");
+}
+
+/// lavapipe has 2048 layers for the volumetric method's slices; a device with 4096 goes on.
+#[test]
+fn a_sweep_that_a_limit_ends_keeps_its_rows() {
+    let out = folder();
+    let program = caustics("experiment 5-1 --counts 3,4096 --mesh box --out .").inside(out.path());
+    let ended = program.args("--size 64x48 --map-size 16 --water-triangles 8").args(ONCE).on_test_device().run();
+    let record = read_json(&out.path().join("caustics-5-1.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    if ended.status.code() != Some(0) {
+        assert!(ended.stdout.contains("volumetric"), "{}", ended.stdout);
+        assert_eq!(ended.status.code(), Some(2), "{}", ended.stderr);
+        let last = ended.stderr.lines().last().unwrap();
+        assert!(last.contains("illumination-map (--planes)") && last.contains("4096"), "{last}");
+        assert_eq!(runs.len(), 2);
+    }
+    assert_eq!(runs[0]["config"]["planes"], 3);
+}

@@ -22,7 +22,6 @@ use crate::experiment::study::Study;
 use crate::experiment::{self, limits, picture};
 use crate::papers::Variant as _;
 use crate::papers::caustics::{NEEDS, Parameters, Variant};
-use crate::report::plot::{BarChart, BarSeries};
 use crate::scene::MeshSource;
 
 /// The tables and figures that are reproduced.
@@ -200,7 +199,7 @@ impl Experiment<'_> {
         let what = format!("{} {}", Setup::PAPER, self.publication.name);
         let found = watched(output.quiet, &what, |watch| sweep.run(&mut self.machine, watch))?;
         let table = found.render(outcome::style());
-        let plots = [(".svg".to_owned(), found.plot()?)];
+        let plots = found.plots()?;
         self.publication.runs(&self.machine, found.runs, table, &plots)?;
         found.stopped.map_or(Ok(()), |error| Err(error.into()))
     }
@@ -213,16 +212,7 @@ impl Experiment<'_> {
             let histogram = slicing::depth_profile(&mut self.machine, &setup, &scene)?;
             let levels = histogram.iter().enumerate();
             rows.extend(levels.map(|(level, texels)| vec![json!(name), json!(level + 1), json!(texels)]));
-            let chart = BarChart {
-                title: format!("Figure 5-12: depth profile of {name}"),
-                y_label: "texels".to_owned(),
-                groups: (1..=histogram.len()).map(|level| level.to_string()).collect(),
-                series: vec![BarSeries {
-                    name: "texels".to_owned(),
-                    values: histogram.iter().map(|&texels| Some(f64::from(texels))).collect(),
-                }],
-            };
-            let svg = chart.to_svg().map_err(experiment::Error::from)?;
+            let svg = slicing::profile_chart(&name, &histogram).to_svg().map_err(experiment::Error::from)?;
             self.publication.save(&self.publication.file(&format!("-{name}-profile.svg")), svg.as_bytes())?;
         }
         if self.name == Name::DepthProfile {

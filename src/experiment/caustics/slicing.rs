@@ -15,6 +15,7 @@ use crate::gpu::Mode;
 use crate::image::{Difference, Rgba8, Samples, compare};
 use crate::papers::caustics::{SmartPlacement, Variant};
 use crate::papers::{Paper, Variant as _};
+use crate::report::plot::{BarChart, BarSeries};
 use crate::scene::MeshSource;
 
 fn for_each_mesh(
@@ -161,6 +162,22 @@ pub fn depth_profile(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Res
     Ok(built.paper.depth_profile().unwrap_or_default().to_vec())
 }
 
+/// The histogram of figure 5-12.
+pub fn profile_chart(mesh: &str, histogram: &[u32]) -> BarChart {
+    // About ten levels have their number under them.
+    let step = histogram.len().div_ceil(10).max(1);
+    let label = |level: usize| if level == 1 || level.is_multiple_of(step) { level.to_string() } else { String::new() };
+    BarChart {
+        title: format!("Figure 5-12: depth profile of {mesh}, level 1 nearest to the light"),
+        y_label: "texels".to_owned(),
+        groups: (1..=histogram.len()).map(label).collect(),
+        series: vec![BarSeries {
+            name: "texels".to_owned(),
+            values: histogram.iter().map(|&texels| Some(f64::from(texels))).collect(),
+        }],
+    }
+}
+
 /// Section 5.1: device memory of the methods by number of planes; only the volumetric method grows.
 ///
 /// # Errors
@@ -180,7 +197,7 @@ pub fn memory(machine: &mut Machine, setup: &Setup, meshes: &[MeshSource], count
                     json!(mesh.name),
                     json!(planes),
                     json!(variant.word()),
-                    json!(of(|name| name.ends_with("-map") || name.ends_with("-depth") && name != "underwater-depth")),
+                    json!(of(is_map)),
                     json!(of(|_| true)),
                 ]);
             }
@@ -192,4 +209,11 @@ pub fn memory(machine: &mut Machine, setup: &Setup, meshes: &[MeshSource], count
         columns: &["mesh", "planes", "method", "maps, bytes", "all, bytes"],
         rows,
     })
+}
+
+/// Whether a method keeps the resource for its own light: its maps and their depth, the stencil method's images of what is
+/// seen. The cast's target, the water and the receivers are all methods' alike.
+fn is_map(resource: &str) -> bool {
+    let is_depth = resource.ends_with("-depth") && resource != "underwater-depth";
+    resource != "water-map" && resource.ends_with("-map") || is_depth || resource.starts_with("surface-")
 }

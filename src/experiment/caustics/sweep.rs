@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use serde_json::json;
 
 use super::bars::{self, Bars, LEAST_SAMPLES};
-use super::thesis::{TABLE_5_1, TABLE_5_3, ThesisTable};
+use super::thesis::{TABLE_5_1, TABLE_5_3};
 use super::{NamedMesh, Setup};
 use crate::experiment::bench::{Bench, load};
 use crate::experiment::compare::{Ratio, ratio_within_process};
@@ -28,7 +28,6 @@ pub struct Comparison {
     /// The method that ratios are taken against.
     pub base: Variant,
     pub others: &'static [Variant],
-    thesis: ThesisTable,
 }
 
 /// Table 5-1 and figure 5-10.
@@ -37,7 +36,6 @@ pub const LEVEL_MAP_AGAINST_VOLUMETRIC: Comparison = Comparison {
     title: "Table 5-1: level map against volumetric",
     base: Variant::LevelMap,
     others: &[Variant::Volumetric],
-    thesis: TABLE_5_1,
 };
 
 /// Table 5-3 and figure 5-11.
@@ -46,7 +44,6 @@ pub const NORMAL_AGAINST_SMART: Comparison = Comparison {
     title: "Table 5-3: normal against smart slicing",
     base: Variant::LevelMapSmart,
     others: &[Variant::LevelMap],
-    thesis: TABLE_5_3,
 };
 
 /// The appendix's graphs.
@@ -55,7 +52,6 @@ pub const ALL_THREE: Comparison = Comparison {
     title: "Appendix: rendering time by number of planes",
     base: Variant::LevelMap,
     others: &[Variant::Volumetric, Variant::LevelMapSmart],
-    thesis: TABLE_5_1,
 };
 
 impl Comparison {
@@ -65,7 +61,9 @@ impl Comparison {
 
     /// The thesis's seconds for a variant.
     fn thesis(&self, mesh: &str, variant: Variant, planes: u32) -> Option<f64> {
-        self.thesis.get(&format!("{mesh} {}", variant.word()), planes)
+        // Table 5-3 has the normal level map's times as well, digit for digit those of table 5-1.
+        let table = if variant == Variant::LevelMapSmart { TABLE_5_3 } else { TABLE_5_1 };
+        table.get(&format!("{mesh} {}", variant.word()), planes)
     }
 
     fn thesis_ratio(&self, mesh: &str, variant: Variant, planes: u32) -> Option<f64> {
@@ -256,42 +254,43 @@ impl Outcome {
         text
     }
 
-    /// Time against the number of planes; the thesis's curves are drawn dashed, scaled so that its base meets ours at the
-    /// largest count: shapes compare, machines do not.
+    /// Time against the number of planes, a plot for each mesh with its file's suffix; the thesis's curves are drawn dashed,
+    /// scaled so that its base meets ours at the largest count: shapes compare, machines do not.
     ///
     /// # Errors
     /// [`Error::Plot`].
-    pub fn plot(&self) -> Result<String, Error> {
-        let mut series = Vec::new();
+    pub fn plots(&self) -> Result<Vec<(String, String)>, Error> {
         let mut meshes: Vec<&str> = self.rows.iter().map(|row| row.mesh.as_str()).collect();
         meshes.dedup();
-        for mesh in &meshes {
-            for variant in self.comparison.variants() {
-                let rows = self.rows.iter().filter(|row| row.mesh == *mesh && row.variant == variant);
-                series.push(Series {
-                    name: format!("{mesh}, {}", variant.word()),
-                    points: rows.map(|row| (f64::from(row.planes), row.frame_ms)).collect(),
-                    reference: false,
-                });
-            }
-        }
-        if let Some(mesh) = meshes.first() {
-            series.extend(self.thesis_series(mesh));
-        }
+        let suffix = |mesh: &str| if meshes.len() == 1 { ".svg".to_owned() } else { format!("-{mesh}.svg") };
+        meshes.iter().map(|mesh| Ok((suffix(mesh), self.plot(mesh)?))).collect()
+    }
+
+    fn plot(&self, mesh: &str) -> Result<String, Error> {
+        let rows: Vec<&Row> = self.rows.iter().filter(|row| row.mesh == mesh).collect();
+        let ours = self.comparison.variants().into_iter().map(|variant| Series {
+            name: variant.word().to_owned(),
+            points: rows
+                .iter()
+                .filter(|row| row.variant == variant)
+                .map(|row| (f64::from(row.planes), row.frame_ms))
+                .collect(),
+            reference: false,
+        });
         let chart = LineChart {
-            title: self.comparison.title.to_owned(),
+            title: format!("{}, {mesh}", self.comparison.title),
             x_label: "planes".to_owned(),
             y_label: "frame, ms".to_owned(),
             x_scale: Scale::Linear,
             y_scale: Scale::Linear,
-            series,
+            series: ours.chain(self.thesis_series(&rows)).collect(),
         };
         Ok(chart.to_svg()?)
     }
 
-    fn thesis_series(&self, mesh: &str) -> Vec<Series> {
+    fn thesis_series(&self, rows: &[&Row]) -> Vec<Series> {
         let base = self.comparison.base;
-        let of_base = self.rows.iter().filter(|row| row.mesh == mesh && row.variant == base);
+        let of_base = rows.iter().filter(|row| row.variant == base);
         let Some(last) = of_base.max_by_key(|row| row.planes) else { return Vec::new() };
         let model = &last.model;
         let Some(seconds) = self.comparison.thesis(model, base, last.planes) else { return Vec::new() };
@@ -304,7 +303,7 @@ impl Outcome {
             .variants()
             .into_iter()
             .map(|variant| Series {
-                name: format!("thesis, {model}, {}, scaled", variant.word()),
+                name: format!("thesis, {}, scaled", variant.word()),
                 points: curve(variant),
                 reference: true,
             })

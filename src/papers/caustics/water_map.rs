@@ -24,13 +24,11 @@ pub struct WaterMap {
 impl WaterMap {
     /// `name` is what the record calls it.
     pub fn new(name: impl Into<String>, heights: Arc<HeightMap>) -> Self {
-        let (columns, rows) = (heights.width(), heights.height());
-        let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
-        let mut values: Vec<f32> = places.map(|(column, row)| heights.height_m(column, row)).collect();
-        let (width, count) = (columns as usize, values.len());
-        let mut line = Vec::with_capacity(width.max(rows as usize));
-        for row in 0..rows as usize {
-            interpolate(&mut values, (row * width..(row + 1) * width).step_by(1), &mut line);
+        let mut values = samples(&heights);
+        let (width, count) = (heights.width() as usize, values.len());
+        let mut line = Vec::new();
+        for row in 0..heights.height() as usize {
+            interpolate(&mut values, row * width..(row + 1) * width, &mut line);
         }
         for column in 0..width {
             interpolate(&mut values, (column..count).step_by(width), &mut line);
@@ -72,28 +70,29 @@ impl WaterMap {
     }
 }
 
+/// Row by row, metres.
+fn samples(map: &HeightMap) -> Vec<f32> {
+    let places = (0..map.height()).flat_map(|row| (0..map.width()).map(move |column| (column, row)));
+    places.map(|(column, row)| map.height_m(column, row)).collect()
+}
+
 /// Replaces the samples at `places` by the coefficients c of the B-spline through them: (c[i-1] + 4 c[i] + c[i+1]) / 6 is
 /// the sample i, and c goes on beyond both ends as at the ends. Gauss's elimination of a system with three diagonals.
-fn interpolate(
-    values: &mut [f32],
-    places: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator,
-    line: &mut Vec<(f64, f64)>,
-) {
-    let last = places.len() - 1;
+fn interpolate(values: &mut [f32], places: impl Iterator<Item = usize> + Clone, line: &mut Vec<(usize, f64, f64)>) {
+    let last = places.clone().last();
     line.clear();
-    let places: Vec<usize> = places.collect();
     let (mut factor, mut value) = (0.0, 0.0);
-    for (i, &place) in places.iter().enumerate() {
-        let ends = f64::from(u8::from(i == 0) + u8::from(i == last));
+    for (i, place) in places.enumerate() {
+        let ends = f64::from(u8::from(i == 0) + u8::from(Some(place) == last));
         let pivot = 4.0 + ends - factor;
         value = (6.0 * f64::from(values[place]) - value) / pivot;
         factor = 1.0 / pivot;
-        line.push((factor, value));
+        line.push((place, factor, value));
     }
     let mut next = 0.0;
-    for (&place, &(factor, value)) in places.iter().zip(line.iter()).rev() {
-        let ends = if place == places[last] { 0.0 } else { factor * next };
-        next = value - ends;
+    for &(place, factor, value) in line.iter().rev() {
+        // Nothing follows the last one, whose neighbour is itself.
+        next = if Some(place) == last { value } else { value - factor * next };
         values[place] = next as f32;
     }
 }

@@ -18,6 +18,9 @@ pub enum Scale {
     Log,
 }
 
+/// The points of a line with more lie too close to be told apart by dots.
+const MOST_DOTS: usize = 20;
+
 /// One line of a [`LineChart`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
@@ -99,7 +102,9 @@ impl LineChart {
             } else {
                 chart.draw_series(LineSeries::new(points.clone(), style))?;
             }
-            chart.draw_series(points.map(|point| Circle::new(point, 3, color(index).filled())))?;
+            if points.len() <= MOST_DOTS {
+                chart.draw_series(points.map(|point| Circle::new(point, 3, color(index).filled())))?;
+            }
         }
         Ok(())
     }
