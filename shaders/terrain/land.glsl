@@ -1,16 +1,26 @@
-// The map and how the camera sees it: eq. 9 to 11. Heights are the map's own numbers (16-bit steps or metres), which the
-// host's matrix accounts for, so that no texel needs decoding on the way.
+// The map and how the camera sees it: eq. 9 to 11. Heights are the map's own numbers (16-bit steps or metres), so that no
+// texel needs decoding on the way.
 
 layout(set = 0, binding = 0, std140) uniform Land {
-    vec4 eye; // u and v in nodes, h; nodes that a pixel covers at a depth of 1 m
+    vec4 eye; // in the map's frame; nodes that a pixel covers at a depth of 1 m
     vec4 corner; // direction to the middle of pixel (0, 0), for 1 m of depth
     vec4 across; // its change from a pixel to the next on the right
     vec4 down; // and to the next below
     vec4 bounds; // lowest and highest height; height of the base; metres for a unit of height
     vec4 margin; // what rounding may have cost: nodes, height; metres between columns and rows
-    vec4 turn; // cosine and sine of the map's turn about the vertical; near plane of what is rasterised; the map's number
+    vec4 sundry; // how near a height counts as met; the map's number; near plane of what is rasterised; unused
     ivec4 size; // columns, rows, the number of levels above the data, 2 to that power
-    ivec4 form; // axis along which the levels lie (0, 1); whether texels are bits of floats; unused
+    ivec4 form; // axis along which the levels lie (0, 1); whether texels are bits of floats; base: 0 plane, 1 cylinder,
+                // 2 ellipsoid
+    vec4 curve; // of the ellipse of a meridian: semi-major axis, squared eccentricity; sine, cosine of the middle latitude
+    vec4 middle; // of the map: distance from the axis; its place in nodes; smallest radius of curvature
+    vec4 steps; // nodes for a radian along u, along v (cylinder: for a metre); latitude's share of changing curvature
+    vec4 shell; // the surface through the highest height, as a quadric: squares off and along the axis; its constant
+    vec4 slope; // linear terms of the shell off and along the axis, and of the base
+    vec4 ground; // squares of the base off and along the axis
+    vec4 east; // the frame's axes in the world: on a plane east, up, south; else east, off the axis, along it
+    vec4 up;
+    vec4 south;
 } land;
 
 layout(set = 0, binding = 1) uniform utexture2DArray levels;
@@ -31,15 +41,11 @@ const float NO_DEPTH = 1.0e30;
 struct Hit {
     float depth; // metres along the view's axis
     vec2 place; // u and v, nodes
-    float surface; // which surface + 8 x level + 256 x map
+    float surface; // which surface + 8 x level + 256 x map + 4096 x segments looked at
 };
 
-Hit miss() {
-    return Hit(NO_DEPTH, vec2(0.0), float(SKY));
-}
-
-float surface_code(int surface, int shift) {
-    return float(surface + 8 * shift) + 256.0 * land.turn.w;
+float surface_code(int surface, int shift, int segments) {
+    return float(surface + 8 * shift + 4096 * min(segments, 4095)) + 256.0 * land.sundry.y;
 }
 
 // The value of a texel `shift` levels above the data. Layer 0 holds the data, `layer` the coarser levels, each beginning at
@@ -59,26 +65,15 @@ ivec2 last_texel(int shift) {
     return (land.size.xy - 1) >> shift;
 }
 
-// A cell of a level: its four corner values and where the place lies in it, 0 to 1.
-struct Cell {
-    vec4 corners; // north-west, north-east, south-west, south-east
-    vec2 corner; // the north-west corner, texels of the level
-    vec2 part;
-};
-
-// The cell around a place in nodes. A coarser level's texel stands in the middle of the nodes that it covers.
-Cell cell_at(int shift, vec2 place) {
+// The north-west corner of the cell of a level around a place in nodes, and where the place lies in it, 0 to 1. A coarser
+// level's texel stands in the middle of the nodes that it covers.
+vec4 cell_at(int shift, vec2 place) {
     float size = exp2(-float(shift));
     vec2 texel = clamp(place * size + (0.5 * size - 0.5), vec2(0.0), vec2(last_texel(shift)));
-    ivec2 a = min(ivec2(texel), max(last_texel(shift) - 1, 0));
-    ivec2 b = min(a + 1, last_texel(shift));
-    vec4 corners = vec4(highest_at(shift, a), highest_at(shift, ivec2(b.x, a.y)), highest_at(shift, ivec2(a.x, b.y)),
-                        highest_at(shift, b));
-    return Cell(corners, vec2(a), texel - vec2(a));
+    vec2 corner = min(floor(texel), vec2(max(last_texel(shift) - 1, 0)));
+    return vec4(corner, texel - corner);
 }
 
-// Eq. 7.
-float bilinear(Cell cell) {
-    vec2 ends = mix(cell.corners.xz, cell.corners.yw, cell.part.x);
-    return mix(ends.x, ends.y, cell.part.y);
+vec3 direction_of(vec2 pixel) {
+    return land.corner.xyz + pixel.x * land.across.xyz + pixel.y * land.down.xyz;
 }

@@ -6,26 +6,17 @@ int finest_shift(float depth_m) {
     return clamp(exponent, 0, land.size.z);
 }
 
-float surface_at(int shift, vec2 place) {
-    return bilinear(cell_at(shift, place));
-}
-
-bool is_leaf(Segment segment, int shift) {
-    return shift <= finest_shift(segment.depth_m);
-}
-
-float intersect(Segment segment) {
-    int shift = finest_shift(segment.depth_m);
-    float near = segment.near.z - surface_at(shift, segment.near.xy);
-    float far = segment.far.z - surface_at(shift, segment.far.xy);
-    float part = near <= 0.0 ? 0.0 : -1.0;
-    if (near > 0.0 && far <= 0.0) {
+float intersect(vec3 near, vec3 far, float depth_m) {
+    int shift = finest_shift(depth_m);
+    float above = near.z - height_at(shift, near.xy);
+    float below = far.z - height_at(shift, far.xy);
+    float part = above <= 0.0 ? 0.0 : -1.0;
+    if (above > 0.0 && below <= 0.0) {
         // Regula falsi, twice.
-        float guess = near / (near - far);
-        vec3 middle = mix(segment.near, segment.far, guess);
-        float amid = middle.z - surface_at(shift, middle.xy);
-        part = amid <= 0.0 ? guess * near / (near - amid)
-                           : guess + (1.0 - guess) * amid / (amid - far);
+        float guess = above / (above - below);
+        vec3 middle = mix(near, far, guess);
+        float amid = middle.z - height_at(shift, middle.xy);
+        part = amid <= 0.0 ? guess * above / (above - amid) : guess + (1.0 - guess) * amid / (amid - below);
     }
     return part;
 }

@@ -4,13 +4,17 @@
 
 #include "terrain/land.glsl"
 #include "terrain/mesh.glsl"
+#include "terrain/round.glsl"
 
 layout(location = 0) out vec4 depth;
 
 void main() {
     float depth_m = 1.0 / gl_FragCoord.w;
-    vec2 pixel = floor(gl_FragCoord.xy);
-    vec3 direction = land.corner.xyz + pixel.x * land.across.xyz + pixel.y * land.down.xyz;
-    vec2 place = land.eye.xy + depth_m * direction.xy;
-    depth = vec4(depth_m, clamp(place, vec2(0.0), vec2(land.size.xy - 1)), surface_code(mesh.surface, 0));
+    vec3 direction = direction_of(floor(gl_FragCoord.xy));
+    vec3 point = land.eye.xyz + depth_m * direction;
+    vec2 place = point.xy;
+    if (land.form.w != 0) {
+        place = on_map(point, point.x).xy;
+    }
+    depth = vec4(depth_m, clamp(place, vec2(0.0), vec2(land.size.xy - 1)), surface_code(mesh.surface, 0, 0));
 }

@@ -7,6 +7,7 @@
 
 #include "terrain/land.glsl"
 #include "terrain/mesh.glsl"
+#include "terrain/round.glsl"
 
 void main() {
     int index = int(gl_VertexIndex);
@@ -27,5 +28,5 @@ void main() {
     if (is_low) {
         height = min(land.bounds.z, height);
     }
-    gl_Position = mesh.to_clip * vec4(vec2(node), height, 1.0);
+    gl_Position = mesh.to_clip * vec4(in_frame(vec2(node), height), 1.0);
 }

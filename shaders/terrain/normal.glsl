@@ -1,49 +1,63 @@
 // The pass `normal` of one pixel: the normal of the surface that the ray met, interpolated at the level that was used, and
-// the height there.
+// the height there above the base in metres.
 
 layout(set = 0, binding = 2) uniform texture2D depth;
 
-// North is -z, east +x; the map may be turned about the vertical.
-vec3 turned(vec3 normal) {
-    float c = land.turn.x;
-    float s = land.turn.y;
-    return vec3(c * normal.x - s * normal.z, normal.y, s * normal.x + c * normal.z);
-}
-
-int surface_of(vec4 hit) {
-    return int(hit.w) & 7;
-}
+#include "terrain/round.glsl"
 
 // Whether this map's pass answers for the pixel.
 bool is_ours(vec4 hit) {
-    return int(hit.w) >> 8 == int(land.turn.w);
+    return ((int(hit.w) >> 8) & 15) == int(land.sundry.y);
+}
+
+// East, up and south where the map is at `place`, as directions of the map's frame, and metres between nodes there.
+struct Local {
+    vec3 east;
+    vec3 up;
+    vec3 south;
+    vec2 spacing_m;
+};
+
+Local local_at(vec2 place, float height_m) {
+    Local local = Local(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), land.margin.zw);
+    if (land.form.w != 0) {
+        float half_longitude = 0.5 * (place.x - land.middle.y) / land.steps.x;
+        float s = 2.0 * sine(half_longitude) * cosine(half_longitude);
+        float c = 1.0 - 2.0 * sine(half_longitude) * sine(half_longitude);
+        local.east = vec3(c, -s, 0.0);
+        local.up = vec3(s, c, 0.0);
+        local.spacing_m = vec2((land.middle.x + height_m) / land.steps.x, 1.0 / abs(land.steps.y));
+        if (land.form.w != CYLINDER) {
+            Meridian foot = meridian_at((place.y - land.middle.z) / land.steps.y);
+            local.up = vec3(foot.c * s, foot.c * c, foot.s);
+            local.south = vec3(foot.s * s, foot.s * c, -foot.c);
+            vec2 radii = vec2((foot.cross_radius + height_m) * max(foot.c, 1.0e-6), foot.radius + height_m);
+            local.spacing_m = radii / abs(land.steps.xy);
+        }
+    }
+    return local;
 }
 
 vec4 normal_of(ivec2 pixel, vec4 hit) {
-    int surface = surface_of(hit);
+    int surface = int(hit.w) & 7;
     int shift = (int(hit.w) >> 3) & 31;
-    vec3 direction = land.corner.xyz + float(pixel.x) * land.across.xyz + float(pixel.y) * land.down.xyz;
-    Cell cell = cell_at(shift, hit.yz);
-    vec2 slope = vec2(mix(cell.corners.y - cell.corners.x, cell.corners.w - cell.corners.z, cell.part.y),
-                      mix(cell.corners.z - cell.corners.x, cell.corners.w - cell.corners.y, cell.part.x));
-    slope *= exp2(-float(shift)) * land.bounds.w / land.margin.zw;
-    vec3 normal = vec3(0.0, 1.0, 0.0);
+    float height_m = (height_at(shift, hit.yz) - land.bounds.z) * land.bounds.w;
+    Local local = local_at(hit.yz, height_m);
+    vec3 direction = direction_of(vec2(pixel));
+    vec3 normal = local.up;
     if (surface == TERRAIN) {
-        normal = vec3(-slope.x, 1.0, -slope.y);
+        vec2 slope = slope_at(shift, hit.yz) * exp2(-float(shift)) * land.bounds.w / local.spacing_m;
+        normal = local.up - slope.x * local.east - slope.y * local.south;
     }
     if (surface == WALL_WEST || surface == WALL_EAST) {
-        normal = vec3(surface == WALL_EAST ? 1.0 : -1.0, 0.0, 0.0);
+        normal = surface == WALL_EAST ? local.east : -local.east;
     }
     if (surface == WALL_NORTH || surface == WALL_SOUTH) {
-        normal = vec3(0.0, 0.0, surface == WALL_SOUTH ? 1.0 : -1.0);
+        normal = surface == WALL_SOUTH ? local.south : -local.south;
     }
     if (surface == INSIDE) {
-        normal = -direction * vec3(land.margin.z, land.margin.w, land.bounds.w);
-        normal = normal.xzy;
+        normal = land.form.w == 0 ? -(direction * vec3(land.margin.zw, land.bounds.w)).xzy : -direction;
     }
-    float above_base_m = (land.eye.z + hit.x * direction.z - land.bounds.z) * land.bounds.w;
-    if (surface == SKY) {
-        above_base_m = 0.0;
-    }
-    return vec4(turned(normalize(normal)), above_base_m);
+    vec3 turned = normal.x * land.east.xyz + normal.y * land.up.xyz + normal.z * land.south.xyz;
+    return vec4(normalize(turned), surface <= BASE ? 0.0 : height_m);
 }

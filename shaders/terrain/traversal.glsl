@@ -3,38 +3,15 @@
 // segment at a depth of d is number k of 2^d, and the next one after it is found by counting.
 //
 // The level follows the segment's projection: 1/2^(level + 1) < Lp <= 1/2^level, Lp being the larger of its sides as a share
-// of the map. Printed is the impossible 1/2^level < Lp < 1/2^(level + 1). Where the segment still touches three texels in a
-// row of that level, the next coarser one answers for all that it touches with four at most.
+// of the map. Printed is the impossible 1/2^level < Lp < 1/2^(level + 1). Where the segment still touches more than four
+// texels of that level, a coarser one answers for all that it touches.
 //
-// One of the leaf files before this one says when subdivision ends and what is met then.
+// Before this file stand one for the base, one for the interpolation and one for where subdivision ends.
 
-// Narrows `range` to where a coordinate lies between two bounds.
-vec2 between(vec2 range, float eye, float direction, float low, float high) {
-    float inverse = 1.0 / (abs(direction) < 1.0e-20 ? 1.0e-20 : direction);
-    float a = (low - eye) * inverse;
-    float b = (high - eye) * inverse;
-    return vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
-}
-
-Span clip(vec3 direction, float limit_m) {
-    vec2 all = vec2(0.0, limit_m);
-    vec2 last = vec2(land.size.xy - 1);
-    vec2 u = between(all, land.eye.x, direction.x, 0.0, last.x);
-    vec2 v = between(all, land.eye.y, direction.y, 0.0, last.y);
-    vec2 h = between(all, land.eye.z, direction.z, land.bounds.x - land.margin.y, land.bounds.y + land.margin.y);
-    float near_m = max(max(u.x, v.x), h.x);
-    int side = direction.x > 0.0 ? WALL_WEST : WALL_EAST;
-    if (v.x > u.x) {
-        side = direction.y > 0.0 ? WALL_NORTH : WALL_SOUTH;
-    }
-    if (h.x >= max(u.x, v.x)) {
-        side = TERRAIN;
-    }
-    if (near_m <= 0.0) {
-        side = INSIDE;
-    }
-    return Span(near_m, min(min(u.y, v.y), h.y), side);
-}
+// Halvings after which a segment is intersected whatever it touches.
+const int DEEPEST = 23;
+// How far a last segment may be from straight, in texels of the level that it is met at.
+const float STRAIGHT = 2.5e-4;
 
 // The smallest number of levels above the data whose texels are as large as the extent, in nodes.
 int shift_for(float extent) {
@@ -42,58 +19,59 @@ int shift_for(float extent) {
     return clamp(exponent, 0, land.size.z);
 }
 
-// The highest value of every texel that reaches into the segment's rectangle. Interpolation reads the node beyond.
-float highest_below(Segment segment, int shift) {
-    vec2 low = min(segment.near.xy, segment.far.xy) - land.margin.x;
-    vec2 high = max(segment.near.xy, segment.far.xy) + land.margin.x;
-    ivec2 first = clamp(ivec2(floor(low)), ivec2(0), land.size.xy - 1);
-    ivec2 last = clamp(ivec2(floor(high)) + 1, ivec2(0), land.size.xy - 1);
-    ivec2 touched = (last >> shift) - (first >> shift);
-    int most = max(touched.x, touched.y);
-    int level = min(shift + (most > 1 ? 1 : 0) + (most > 2 ? 1 : 0), land.size.z);
-    first = first >> level;
-    last = last >> level;
-    float north = max(highest_at(level, first), highest_at(level, ivec2(last.x, first.y)));
-    float south = max(highest_at(level, ivec2(first.x, last.y)), highest_at(level, last));
-    return max(north, south);
+// A height above everything that interpolation reads between two places; far below all heights where no map is.
+float highest_below(vec2 low, vec2 high, int shift) {
+    vec2 end = vec2(land.size.xy - 1);
+    bool is_outside = high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y;
+    ivec4 nodes = clamp(nodes_between(max(low, vec2(-4.0)), min(high, end + 4.0)), ivec4(0), land.size.xyxy - 1);
+    ivec2 touched = (nodes.zw >> shift) - (nodes.xy >> shift);
+    int most = max(max(touched.x, touched.y), 1);
+    int level = min(shift + findMSB(uint(2 * most - 1)), land.size.z);
+    float highest = highest_of(level, nodes.xy >> level, nodes.zw >> level);
+    return is_outside ? -NO_DEPTH : highest;
 }
 
-// The first place where the ray is not above the surface; a miss beyond `limit_m`.
-Hit trace(vec3 direction, float limit_m) {
-    Span span = clip(direction, limit_m);
-    vec3 origin = land.eye.xyz + span.near_m * direction;
-    vec3 whole = (span.far_m - span.near_m) * direction;
-    bool done = !(span.near_m < span.far_m);
-    Hit hit = miss();
+// The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
+Hit trace(vec3 direction, float limit_m, Hit before) {
+    Way way = way_of(direction, limit_m);
+    Hit hit = before;
+    int steps = 0;
+    bool done = !(way.near_m < way.far_m);
     if (!done) {
-        // Terrain is solid below its height: a wall at the map's edge, or the inside of the mountain.
-        int shift = finest_shift(span.near_m);
-        if (origin.z <= surface_at(shift, origin.xy)) {
-            hit = Hit(span.near_m, origin.xy, surface_code(span.side, shift));
+        Segment first = segment_of(way, 0.0, 0.0);
+        int shift = finest_shift(way.near_m);
+        int surface = entered(way, height_at(shift, first.near.xy));
+        if (surface != 0) {
+            hit = Hit(way.near_m, first.near.xy, surface_code(surface, shift, 1));
             done = true;
         }
     }
     uint k = 0u;
-    int depth = 0;
+    int depth = first_depth(way);
     while (!done) {
         bool found = false;
-        Segment segment = Segment(origin, origin, span.near_m);
+        Segment segment = segment_of(way, 0.0, 0.0);
+        float start = 0.0;
         float size = 1.0;
         while (!found && !done) {
             size = exp2(-float(depth));
-            float start = float(k) * size;
-            segment.near = origin + start * whole;
-            segment.far = origin + (start + size) * whole;
-            segment.depth_m = span.near_m + start * (span.far_m - span.near_m);
-            vec2 extent = abs(segment.far.xy - segment.near.xy);
-            int shift = shift_for(max(extent.x, extent.y));
-            COUNT_STEP
-            if (min(segment.near.z, segment.far.z) - land.margin.y > highest_below(segment, shift)) {
+            start = float(k) * size;
+            segment = segment_of(way, start, size);
+            vec3 slack = slack_of(way, segment, size);
+            vec2 low = min(segment.near.xy, segment.far.xy) - slack.xy;
+            vec2 high = max(segment.near.xy, segment.far.xy) + slack.xy;
+            int shift = shift_for(max(high.x - low.x, high.y - low.y));
+            int finest = finest_shift(segment.depth_m);
+            float straight = STRAIGHT * exp2(float(finest));
+            bool is_straight = max(slack.x, slack.y) <= straight && slack.z * land.bounds.w <= straight * land.margin.z;
+            float lowest = min(segment.near.z, segment.far.z) - slack.z - land.margin.y;
+            steps += 1;
+            if (lowest > highest_below(low - land.margin.x, high + land.margin.x, shift)) {
                 int up = findLSB(~k);
                 k = (k >> up) + 1u;
                 depth -= up;
                 done = (k >> depth) != 0u;
-            } else if (is_leaf(segment, shift) || depth >= DEEPEST) {
+            } else if ((shift <= finest && is_straight) || depth >= DEEPEST) {
                 found = true;
             } else {
                 k = 2u * k;
@@ -101,11 +79,19 @@ Hit trace(vec3 direction, float limit_m) {
             }
         }
         if (found) {
-            float part = intersect(segment);
+            vec3 over = over_map(segment);
+            vec3 near = mix(segment.near, segment.far, over.x);
+            vec3 far = mix(segment.near, segment.far, over.y);
+            int surface = int(over.z);
+            float part = -1.0;
+            if (over.x <= over.y) {
+                part = intersect(near, far, segment.depth_m);
+            }
             if (part >= 0.0) {
-                vec3 place = mix(segment.near, segment.far, part);
-                float depth_m = segment.depth_m + part * size * (span.far_m - span.near_m);
-                hit = Hit(depth_m, place.xy, surface_code(TERRAIN, finest_shift(depth_m)));
+                float along = mix(over.x, over.y, part);
+                float depth_m = depth_in(way, start + along * size);
+                vec2 place = mix(segment.near.xy, segment.far.xy, along);
+                hit = Hit(depth_m, place, surface_code(part > 0.0 ? TERRAIN : surface, finest_shift(depth_m), steps));
                 done = true;
             } else {
                 int up = findLSB(~k);

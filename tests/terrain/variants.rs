@@ -2,7 +2,7 @@
 
 use fumarole::gpu::Compiler;
 use fumarole::papers::Variant as _;
-use fumarole::papers::terrain::{Lod, MapInput, Parameters, Surface, Variant, View};
+use fumarole::papers::terrain::{Base, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
 
 use crate::common::gpu_test;
 use crate::drawing::{Drawing, differing};
@@ -35,6 +35,50 @@ fn all_variants_find_the_same_hits() {
                 }
             }
         }
+    });
+}
+
+const BASES: [Base; 3] = [
+    Base::Cylinder { radius_m: 9000.0 },
+    Base::Ellipsoid { equatorial_m: 15_000.0, polar_m: 11_000.0 },
+    Base::Ellipsoid { equatorial_m: 8_000.0, polar_m: 10_000.0 },
+];
+
+#[test]
+fn all_variants_agree_on_every_base_and_interpolation() {
+    gpu_test(|device| {
+        for base in [Base::Plane, Base::EARTH].into_iter().chain(BASES) {
+            for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+                for lod in [Lod::Exact, Lod::Pixel] {
+                    let parameters = Parameters { base, interpolation, ..small(View::Side, lod) };
+                    let maps = alone(volcano(100));
+                    let compute = Drawing::of(device, Variant::GpuCompute, &parameters, &maps);
+                    for variant in [Variant::GpuFragment, Variant::Cpu] {
+                        let other = Drawing::of(device, variant, &parameters, &maps);
+                        assert_agree(
+                            &format!("{base:?} {interpolation:?} {lod:?} {}", variant.word()),
+                            &compute,
+                            &other,
+                        );
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// Over so short a distance a base as large as a star is a plane.
+#[test]
+fn a_huge_round_base_is_a_plane() {
+    gpu_test(|device| {
+        let of = |base| {
+            let parameters = Parameters { base, ..small(View::Top, Lod::Exact) };
+            Drawing::of(device, Variant::GpuCompute, &parameters, &alone(volcano(100)))
+        };
+        let plane = of(Base::Plane);
+        let radius_m = 1.0e8;
+        assert_agree("cylinder", &plane, &of(Base::Cylinder { radius_m }));
+        assert_agree("sphere", &plane, &of(Base::Ellipsoid { equatorial_m: radius_m, polar_m: radius_m }));
     });
 }
 

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::blocks::LandBlock;
 use super::caster::Caster;
 use super::hit::{Hit, NO_DEPTH, Surface};
-use super::parameters::{Lod, Parameters};
+use super::parameters::{Interpolation, Lod, Parameters};
 use super::pyramid::Texel;
 use super::relief::{Field, FieldWork, Relief};
 use super::scene::Seen;
@@ -25,12 +25,13 @@ host_block! {
     }
 }
 
-const SKY: Hit = Hit { depth_m: NO_DEPTH, place: [0.0; 2], surface: Surface::Sky, shift: 0, map: 0 };
+const SKY: Hit = Hit { depth_m: NO_DEPTH, place: [0.0; 2], surface: Surface::Sky, shift: 0, map: 0, steps: 0 };
 
 /// What the passes of the processor write, and how its picture gets to the device.
 pub struct Cpu {
     width: u32,
     lod: Lod,
+    interpolation: Interpolation,
     reliefs: Vec<Relief>,
     hits: Vec<Hit>,
     normals: Vec<Vec4>,
@@ -83,6 +84,7 @@ impl Cpu {
         Ok(Cpu {
             width,
             lod: parameters.lod,
+            interpolation: parameters.interpolation,
             reliefs,
             hits: vec![SKY; count],
             normals: vec![Vec4::ZERO; count],
@@ -94,17 +96,27 @@ impl Cpu {
 
     /// The three passes.
     pub fn record(&mut self, frame: &mut Frame<'_>, seen: &Seen) {
-        let Cpu { width, lod, ref reliefs, ref mut hits, ref mut normals, ref mut colors, ref infos, .. } = *self;
+        let Cpu {
+            width,
+            lod,
+            interpolation,
+            ref reliefs,
+            ref mut hits,
+            ref mut normals,
+            ref mut colors,
+            ref infos,
+            ..
+        } = *self;
         let maps = || reliefs.iter().zip(&seen.lands);
         frame.host(&infos[0], || {
             hits.par_iter_mut().for_each(|hit| *hit = SKY);
             for (relief, land) in maps() {
-                relief.with(Depths { land, lod, width, hits });
+                relief.with(Depths { land, lod, interpolation, width, hits });
             }
         });
         frame.host(&infos[1], || {
             for (index, (relief, land)) in maps().enumerate() {
-                relief.with(Normals { land, width, map: index as u32, hits, normals });
+                relief.with(Normals { land, interpolation, width, map: index as u32, hits, normals });
             }
         });
         frame.host(&infos[2], || {
@@ -144,6 +156,7 @@ impl Cpu {
 struct Depths<'a> {
     land: &'a LandBlock,
     lod: Lod,
+    interpolation: Interpolation,
     width: u32,
     hits: &'a mut [Hit],
 }
@@ -152,10 +165,10 @@ impl FieldWork for Depths<'_> {
     type Output = ();
 
     fn run<T: Texel>(self, field: Field<'_, T>) {
-        let caster = Caster { land: self.land, field, lod: self.lod };
+        let caster = Caster { land: self.land, field, lod: self.lod, interpolation: self.interpolation };
         self.hits.par_chunks_mut(self.width as usize).enumerate().for_each(|(y, row)| {
             for (x, hit) in row.iter_mut().enumerate() {
-                *hit = caster.find(caster.direction(x as u32, y as u32), *hit).0;
+                *hit = caster.find(caster.direction(x as u32, y as u32), *hit);
             }
         });
     }
@@ -163,6 +176,7 @@ impl FieldWork for Depths<'_> {
 
 struct Normals<'a> {
     land: &'a LandBlock,
+    interpolation: Interpolation,
     width: u32,
     map: u32,
     hits: &'a [Hit],
@@ -174,10 +188,10 @@ impl FieldWork for Normals<'_> {
 
     fn run<T: Texel>(self, field: Field<'_, T>) {
         let width = self.width as usize;
-        let caster = Caster { land: self.land, field, lod: Lod::Exact };
+        let caster = Caster { land: self.land, field, lod: Lod::Exact, interpolation: self.interpolation };
         self.normals.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
             for (x, (normal, hit)) in row.iter_mut().zip(hits).enumerate().filter(|(_, (_, hit))| hit.map == self.map) {
-                *normal = normal_of(self.land, field, caster.direction(x as u32, y as u32), hit);
+                *normal = normal_of(&caster, caster.direction(x as u32, y as u32), hit);
             }
         });
     }

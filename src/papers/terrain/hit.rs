@@ -40,8 +40,10 @@ pub struct Hit {
     pub surface: Surface,
     /// The level that the surface was taken from, counted from the data.
     pub shift: u32,
-    /// Which of the maps.
+    /// Which of the maps, 0 to 15.
     pub map: u32,
+    /// Segments of the ray that were looked at until the map's surface was met, up to 4095; 0 where none was.
+    pub steps: u32,
 }
 
 impl Hit {
@@ -52,12 +54,13 @@ impl Hit {
             place: [texel[1], texel[2]],
             surface: Surface::ALL[(code & 7) as usize],
             shift: code >> 3 & 31,
-            map: code >> 8,
+            map: code >> 8 & 15,
+            steps: code >> 12,
         }
     }
 
     pub fn to_texel(self) -> [f32; 4] {
-        let code = self.surface as u32 + 8 * self.shift + 256 * self.map;
+        let code = self.surface as u32 + 8 * self.shift + 256 * self.map + 4096 * self.steps.min(4095);
         [self.depth_m, self.place[0], self.place[1], code as f32]
     }
 }

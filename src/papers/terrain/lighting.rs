@@ -37,12 +37,13 @@ impl Lighting {
         };
         let normal = image("normal", vk::Format::R32G32B32A32_SFLOAT)?;
         let picture = image("picture", vk::Format::R8G8B8A8_UNORM)?;
+        let program = format!("normal-{}", parameters.interpolation.word());
         let mut normal_passes = Vec::new();
         for (i, map) in scene.maps.iter().enumerate() {
             let load = if i == 0 { Load::Discard } else { Load::Keep };
             let pass = stage.say(
                 ("normal", "4"),
-                "normal",
+                &program,
                 (&normal, load),
                 &[("land", (&map.land).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())],
             );

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::ground::Ground;
 use super::hit::{NO_DEPTH, Surface};
-use super::parameters::Parameters;
-use super::placement::Ground;
+use super::parameters::{Base, Parameters};
 use super::pyramid::Shape;
 use super::scene::{DeviceScene, Seen};
 use super::stage::Stage;
@@ -61,7 +61,9 @@ impl Mesh {
         let Some(first) = scene.maps.first() else {
             return Err(Error::Pass { pass: "mesh".into(), problem: "there is no map".into() });
         };
-        let base = Pass::graphics("base", "2", "common/fullscreen.vert", "terrain/mesh-base.frag")
+        let kind = if parameters.base == Base::Plane { "plane" } else { "curved" };
+        let fragment = format!("terrain/mesh-base-{kind}.frag");
+        let base = Pass::graphics("base", "2", "common/fullscreen.vert", &fragment)
             .with("land", &first.land)
             .with("levels", &first.levels.view)
             .color(&depth, Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]), Blend::Replace)
@@ -103,7 +105,7 @@ impl Mesh {
             draw.vertices(3);
         })?;
         for (grid, ground) in self.grids.iter().zip(grounds) {
-            let to_clip = (seen.to_clip * ground.to_map.inverse()).as_mat4().to_cols_array();
+            let to_clip = (seen.to_clip * ground.to_frame.inverse()).as_mat4().to_cols_array();
             let constants = |surface: Surface, first_row: u32| MeshConstants {
                 to_clip,
                 first_row: first_row as i32,

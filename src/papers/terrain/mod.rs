@@ -7,6 +7,8 @@
 mod blocks;
 mod caster;
 mod cpu;
+mod curve;
+mod ground;
 mod hit;
 mod levels;
 mod lighting;
@@ -20,17 +22,20 @@ mod relief;
 mod scene;
 mod shading;
 mod stage;
+mod surface;
+mod way;
 
 use std::sync::Arc;
 
 use self::cpu::Cpu;
+pub use self::ground::{Ground, Origin};
 pub use self::hit::{Hit, NO_DEPTH, Surface};
 pub use self::levels::Levels;
 use self::lighting::Lighting;
 pub use self::mesh::MESH_SIDE;
 use self::mesh::Mesh;
 pub use self::parameters::{Base, Interpolation, Lod, Parameters, Sun, Variant, View};
-pub use self::placement::{Extent, Ground, Placement, Rays};
+pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
 use self::ray_cast::RayCast;
 pub use self::relief::Relief;
@@ -78,18 +83,18 @@ impl Terrain {
         let scene = Scene::new(parameters, maps);
         let technique = match variant {
             Variant::Cpu => {
-                let reliefs = maps.iter().map(|input| Relief::new(&input.map)).collect();
+                let reliefs = maps.iter().map(|input| Relief::new(&input.map, parameters.interpolation)).collect();
                 Technique::Cpu(Cpu::new(shaders, label, parameters, reliefs)?)
             }
             Variant::GpuCompute | Variant::GpuFragment => {
                 let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
-                let device_scene = DeviceScene::new(shaders, label, maps)?;
+                let device_scene = DeviceScene::new(shaders, label, parameters, maps)?;
                 let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
                 let lighting = Lighting::new(shaders, label, stage, parameters, &device_scene, &ray_cast.depth)?;
                 Technique::Device(device_scene, DepthMethod::RayCast(ray_cast), lighting)
             }
             Variant::Mesh => {
-                let device_scene = DeviceScene::new(shaders, label, maps)?;
+                let device_scene = DeviceScene::new(shaders, label, parameters, maps)?;
                 let mesh = Mesh::new(shaders, label, parameters, &scene.grounds, &device_scene)?;
                 let lighting = Lighting::new(shaders, label, Stage::Fragment, parameters, &device_scene, &mesh.depth)?;
                 Technique::Device(device_scene, DepthMethod::Mesh(mesh), lighting)

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::placement::Extent;
+use super::placement::{Extent, Placement};
 use crate::papers::{self, ParameterError};
 use crate::scene::Camera;
 
@@ -59,14 +59,17 @@ impl Lod {
 pub enum Interpolation {
     /// Eq. 7.
     Bilinear,
+    /// Catmull-Rom: through the samples, with a continuous slope.
+    Bicubic,
 }
 
 impl Interpolation {
-    pub const ALL: [Interpolation; 1] = [Interpolation::Bilinear];
+    pub const ALL: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
 
     pub fn word(self) -> &'static str {
         match self {
             Interpolation::Bilinear => "bilinear",
+            Interpolation::Bicubic => "bicubic",
         }
     }
 }
@@ -75,12 +78,27 @@ impl Interpolation {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Base {
     Plane,
+    /// An ellipsoid of revolution, by its semi-axes, 1 to 100,000,000 m and within a factor of 4 of each other. Maps lie by
+    /// longitude and latitude.
+    Ellipsoid {
+        equatorial_m: f32,
+        polar_m: f32,
+    },
+    /// By its radius, 1 to 100,000,000 m. Its axis runs north and south; maps are wound around it eastwards.
+    Cylinder {
+        radius_m: f32,
+    },
 }
 
 impl Base {
+    /// The Earth's, WGS84.
+    pub const EARTH: Base = Base::Ellipsoid { equatorial_m: 6_378_137.0, polar_m: 6_356_752.5 };
+
     pub fn word(self) -> &'static str {
         match self {
             Base::Plane => "plane",
+            Base::Ellipsoid { .. } => "ellipsoid",
+            Base::Cylinder { .. } => "cylinder",
         }
     }
 }
@@ -156,6 +174,19 @@ impl Parameters {
         if let Some(level) = self.base_level_m {
             ParameterError::check(level.abs() <= 1.0e6, "--base-level", level, "must be -1000000 to 1000000 metres")?;
         }
+        match self.base {
+            Base::Plane => {}
+            Base::Cylinder { radius_m } => {
+                let range = "its radius must be 1 to 100000000 metres";
+                ParameterError::check((1.0..=1.0e8).contains(&radius_m), "--base", radius_m, range)?;
+            }
+            Base::Ellipsoid { equatorial_m, polar_m } => {
+                let is_good = [equatorial_m, polar_m].iter().all(|axis| (1.0..=1.0e8).contains(axis))
+                    && (0.25..=4.0).contains(&(polar_m / equatorial_m));
+                let range = "its semi-axes must be 1 to 100000000 metres and within a factor of 4 of each other";
+                ParameterError::check(is_good, "--base", format!("{equatorial_m},{polar_m}"), range)?;
+            }
+        }
         let Sun { azimuth_rad, elevation_rad } = self.sun;
         let (azimuth, elevation) = (azimuth_rad.to_degrees(), elevation_rad.to_degrees());
         let sun = format!("{azimuth},{elevation}");
@@ -179,6 +210,19 @@ impl Parameters {
             "must lie within 100000 km",
         )?;
         camera.validate().map_err(|e| ParameterError { name: "--camera", value: place, range: e.to_string() })
+    }
+
+    /// Checks a map's place over the base.
+    ///
+    /// # Errors
+    /// A place that is not finite or too far away, and a turn on a base that is not a plane.
+    pub fn validate_placement(&self, placement: &Placement) -> Result<(), ParameterError> {
+        let Placement { center_m, turn_rad } = *placement;
+        let place = format!("{},{},{}", center_m.x, center_m.y, turn_rad.to_degrees());
+        let is_near = center_m.is_finite() && center_m.abs().max_element() <= 1.0e8 && turn_rad.is_finite();
+        ParameterError::check(is_near, "--place", &place, "must lie within 100000 km and be finite")?;
+        let is_turnable = self.base == Base::Plane || turn_rad == 0.0;
+        ParameterError::check(is_turnable, "--place", &place, "only maps on a plane can be turned; give 0 degrees")
     }
 
     /// Width over height of the picture.

@@ -1,10 +1,8 @@
-//! The geometric transformation (eq. 10 and 11): which way a ray of the picture takes through a map. The base surface alone
-//! is transformed; heights never are.
+//! Where maps lie, and which way the rays of a picture go.
 
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat4, DVec2, DVec3};
 
-use super::pyramid::Shape;
-use crate::scene::{Camera, HeightMap, Samples};
+use crate::scene::Camera;
 
 /// The box around all maps in the world, metres; y counts from the base.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,79 +11,14 @@ pub struct Extent {
     pub high: DVec3,
 }
 
-/// A map's place on the plane.
+/// A map's place on the base.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Placement {
-    /// East and south of the world's origin, metres.
+    /// East and south of the world's origin, along the base, metres. A map that knows its longitude and latitude ignores it on
+    /// an ellipsoid.
     pub center_m: DVec2,
-    /// About the vertical, counterclockwise seen from above.
+    /// About the vertical, counterclockwise seen from above; on a plane alone.
     pub turn_rad: f64,
-}
-
-/// Rows of eq. 10 with the one that the print lost: u = x, v = z, h = y.
-const T: DMat4 = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
-
-/// One map as the rays see it.
-#[derive(Debug, Clone)]
-pub struct Ground {
-    pub shape: Shape,
-    /// World to map: u and v in nodes from the first sample, h in the map's own numbers; G = T M.
-    pub to_map: DMat4,
-    /// Metres between columns and rows.
-    pub spacing_m: DVec2,
-    /// Metres for a unit of h.
-    pub unit_m: f64,
-    /// Lowest and highest h, and that of the base.
-    pub lowest: f64,
-    pub highest: f64,
-    pub base: f64,
-    pub turn_rad: f64,
-}
-
-impl Ground {
-    /// `base_level_m` is the map's height at which the base lies.
-    pub fn new(map: &HeightMap, placement: Placement, base_level_m: f64) -> Self {
-        let (origin_m, unit_m) = match map.samples() {
-            Samples::Steps { origin_m, step_m, .. } => (f64::from(*origin_m), f64::from(*step_m)),
-            Samples::Float(_) => (0.0, 1.0),
-        };
-        let spacing_m = map.spacing_m();
-        let shape = Shape::new(map.width(), map.height());
-        let middle = DVec2::new(f64::from(shape.width - 1), f64::from(shape.height - 1)) / 2.0;
-        let model = DMat4::from_translation(DVec3::new(middle.x, (base_level_m - origin_m) / unit_m, middle.y))
-            * DMat4::from_scale(DVec3::new(1.0 / spacing_m.x, 1.0 / unit_m, 1.0 / spacing_m.y))
-            * DMat4::from_rotation_y(-placement.turn_rad)
-            * DMat4::from_translation(DVec3::new(-placement.center_m.x, 0.0, -placement.center_m.y));
-        let (low_m, high_m) = map.range_m();
-        let value = |height_m: f64| (height_m - origin_m) / unit_m;
-        Ground {
-            shape,
-            to_map: T * model,
-            spacing_m,
-            unit_m,
-            lowest: value(low_m.into()),
-            highest: value(high_m.into()),
-            base: value(base_level_m),
-            turn_rad: placement.turn_rad,
-        }
-    }
-
-    /// The box around the map in the world.
-    pub fn extent(&self) -> Extent {
-        let to_world = self.to_map.inverse();
-        let last = DVec2::new(f64::from(self.shape.width - 1), f64::from(self.shape.height - 1));
-        let corners = [0.0, last.x].into_iter().flat_map(|u| {
-            let heights = [self.lowest, self.highest];
-            [0.0, last.y].into_iter().flat_map(move |v| heights.map(|h| DVec3::new(u, v, h)))
-        });
-        let points = corners.map(|corner| to_world.project_point3(corner));
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for point in points {
-            low = low.min(point);
-            high = high.max(point);
-        }
-        Extent { low: low.with_y(low.y.min(0.0)), high: high.with_y(high.y.max(0.0)) }
-    }
 }
 
 /// The rays of a picture: pixel (x, y) looks from `eye` along `corner` + x `across` + y `down`, which is 1 m long along the
@@ -96,6 +29,18 @@ pub struct Rays {
     pub corner: DVec3,
     pub across: DVec3,
     pub down: DVec3,
+}
+
+impl Extent {
+    /// Around points.
+    pub fn of(points: impl Iterator<Item = DVec3>) -> Self {
+        let start = Extent { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+        points.fold(start, |all, point| Extent { low: all.low.min(point), high: all.high.max(point) })
+    }
+
+    pub fn union(self, other: Extent) -> Self {
+        Extent { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
 }
 
 impl Rays {

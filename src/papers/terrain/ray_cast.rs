@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::hit::NO_DEPTH;
-use super::parameters::{Lod, Parameters};
+use super::parameters::{Base, Parameters};
 use super::scene::DeviceScene;
 use super::stage::Stage;
 use crate::gpu::transfer::upload_rows;
@@ -37,10 +37,9 @@ impl RayCast {
         upload_rows(device, &nothing, (1, 1), |_, bytes| {
             bytes.copy_from_slice(bytemuck::bytes_of(&[NO_DEPTH, 0.0, 0.0, 0.0]));
         })?;
-        let program = match parameters.lod {
-            Lod::Exact => "depth-plane-exact",
-            Lod::Pixel => "depth-plane-pixel",
-        };
+        let base = if parameters.base == Base::Plane { "plane" } else { "curved" };
+        let (interpolation, lod) = (parameters.interpolation.word(), parameters.lod.word());
+        let program = format!("depth-{base}-{interpolation}-{lod}");
         let size = (parameters.width, parameters.height);
         let depths = (0..scene.maps.len().min(2))
             .map(|_| stage.image(device, format!("{label}/depth"), format, size))
@@ -50,7 +49,7 @@ impl RayCast {
         for (map, target) in scene.maps.iter().zip(depths.iter().cycle()) {
             let pass = stage.say(
                 ("depth", "3"),
-                program,
+                &program,
                 (target, Load::Discard),
                 &[("land", (&map.land).into()), ("levels", (&map.levels.view).into()), ("prior", (&depth).into())],
             );

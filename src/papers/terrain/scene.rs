@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec4};
 
 use super::blocks::{LandBlock, LightBlock};
+use super::ground::{Ground, Origin};
 use super::levels::Levels;
-use super::parameters::Parameters;
-use super::placement::{Extent, Ground, Placement, Rays};
+use super::parameters::{Interpolation, Parameters};
+use super::placement::{Extent, Placement, Rays};
 use super::pyramid::Bound;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Location, ShaderLibrary};
 use crate::scene::{Camera, HeightMap, Samples};
@@ -24,6 +25,8 @@ pub struct MapInput {
 pub struct Scene {
     pub grounds: Vec<Ground>,
     pub extent: Extent,
+    /// Lowest and highest above the base, metres.
+    range_m: (f64, f64),
     /// Of each map, whether its texels are the bits of floats.
     are_floats: Vec<bool>,
 }
@@ -31,17 +34,20 @@ pub struct Scene {
 impl Scene {
     /// Of at least one map.
     pub fn new(parameters: &Parameters, inputs: &[MapInput]) -> Self {
-        let lowest_m = inputs.iter().map(|input| input.map.range_m().0).fold(f32::INFINITY, f32::min);
+        let maps = || inputs.iter().map(|input| &*input.map);
+        let lowest_m = maps().map(|map| map.range_m().0).fold(f32::INFINITY, f32::min);
+        let highest_m = maps().map(|map| map.range_m().1).fold(f32::NEG_INFINITY, f32::max);
         let base_level_m = f64::from(parameters.base_level_m.unwrap_or(lowest_m));
-        let grounds: Vec<Ground> =
-            inputs.iter().map(|input| Ground::new(&input.map, input.placement, base_level_m)).collect();
-        let start = Extent { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        let extent = grounds
-            .iter()
-            .map(Ground::extent)
-            .fold(start, |all, one| Extent { low: all.low.min(one.low), high: all.high.max(one.high) });
-        let are_floats = inputs.iter().map(|input| matches!(input.map.samples(), Samples::Float(_))).collect();
-        Scene { grounds, extent, are_floats }
+        let origin = Origin::of(maps());
+        let ground = |input: &MapInput| Ground::new(&input.map, input.placement, parameters.base, origin, base_level_m);
+        let grounds: Vec<Ground> = inputs.iter().map(ground).collect();
+        let start = Extent::of(std::iter::empty());
+        Scene {
+            extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
+            range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
+            grounds,
+            are_floats: maps().map(|map| matches!(map.samples(), Samples::Float(_))).collect(),
+        }
     }
 
     /// The pass `geometric-transformation`: eq. 10 and 11 for every map. Only the base's matrix is touched.
@@ -49,12 +55,12 @@ impl Scene {
         let camera = parameters.camera(&self.extent);
         let rays = Rays::new(&camera, parameters.width, parameters.height);
         let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
-        let lands = maps
-            .map(|((ground, &is_float), index)| LandBlock::new(ground, is_float, index, &rays, camera.near_m))
-            .collect();
+        let land = |((ground, &is_float), index)| {
+            LandBlock::new(ground, parameters.interpolation, is_float, index, &rays, camera.near_m)
+        };
         Seen {
-            lands,
-            light: LightBlock::new(parameters, &rays, &self.extent),
+            lands: maps.map(land).collect(),
+            light: LightBlock::new(parameters, &rays, self.range_m),
             to_clip: to_clip(&camera, parameters.aspect()),
         }
     }
@@ -95,12 +101,21 @@ pub struct DeviceScene {
 impl DeviceScene {
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn new(shaders: &ShaderLibrary, label: &str, inputs: &[MapInput]) -> Result<Self, Error> {
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        inputs: &[MapInput],
+    ) -> Result<Self, Error> {
+        let bounds: &[Bound] = match parameters.interpolation {
+            Interpolation::Bilinear => &[Bound::Highest],
+            Interpolation::Bicubic => &[Bound::Highest, Bound::Lowest],
+        };
         let device = shaders.device();
         let map = |(index, input): (usize, &MapInput)| {
             let name = format!("{label}/map-{index}");
             Ok(Map {
-                levels: Levels::new(shaders, &name, &input.map, &[Bound::Highest])?,
+                levels: Levels::new(shaders, &name, &input.map, bounds)?,
                 land: block_buffer::<LandBlock>(device, &format!("{name}/land"))?,
             })
         };

@@ -1,11 +1,13 @@
 //! Normal and illumination of a pixel on the processor, as `shaders/terrain/normal.glsl` and `illumination.glsl` have them.
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec3Swizzles, Vec4};
 
 use super::blocks::{LandBlock, LightBlock};
+use super::caster::Caster;
 use super::hit::{Hit, Surface};
 use super::pyramid::Texel;
-use super::relief::Field;
+use super::surface;
+use super::way::meridian;
 
 /// Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
 const TINTS: [Vec3; 6] = [
@@ -22,31 +24,72 @@ const ZENITH: Vec3 = Vec3::new(0.16, 0.34, 0.68);
 const SUNLIGHT: Vec3 = Vec3::new(2.6, 2.45, 2.2);
 const SKYLIGHT: Vec3 = Vec3::new(0.8, 0.95, 1.2);
 
-/// The normal of the surface that was met, in the world, and the height above the base in metres.
-pub fn normal_of<T: Texel>(land: &LandBlock, field: Field<'_, T>, direction: Vec3, hit: &Hit) -> Vec4 {
-    let unit_m = land.bounds[3];
-    let spacing_m = Vec2::new(land.margin[2], land.margin[3]);
-    let normal = match hit.surface {
-        Surface::Sky | Surface::Base => Vec3::Y,
-        Surface::Terrain => {
-            let cell = field.cell(hit.shift as i32, Vec2::from_array(hit.place));
-            let slope = cell.slope() * ((-(hit.shift as f32)).exp2() * unit_m) / spacing_m;
-            Vec3::new(-slope.x, 1.0, -slope.y)
+/// East, up and south where the map is at `place`, as directions of the map's frame, and metres between nodes there.
+struct Local {
+    east: Vec3,
+    up: Vec3,
+    south: Vec3,
+    spacing_m: Vec2,
+}
+
+impl Local {
+    fn at(land: &LandBlock, place: Vec2, height_m: f32) -> Self {
+        let [off_m, middle_u, middle_v, _] = land.middle;
+        let steps = Vec2::from_slice(&land.steps);
+        let (s, c) = ((place.x - middle_u) / steps.x).sin_cos();
+        let east = Vec3::new(c, -s, 0.0);
+        match land.form[3] {
+            0 => Local {
+                east: Vec3::X,
+                up: Vec3::Y,
+                south: Vec3::Z,
+                spacing_m: Vec2::new(land.margin[2], land.margin[3]),
+            },
+            1 => Local {
+                east,
+                up: Vec3::new(s, c, 0.0),
+                south: Vec3::Z,
+                spacing_m: Vec2::new((off_m + height_m) / steps.x, 1.0 / steps.y.abs()),
+            },
+            _ => {
+                let foot = meridian(land, (place.y - middle_v) / steps.y);
+                let radii = Vec2::new((foot.across + height_m) * foot.cosine.max(1e-6), foot.radius + height_m);
+                Local {
+                    east,
+                    up: Vec3::new(foot.cosine * s, foot.cosine * c, foot.sine),
+                    south: Vec3::new(foot.sine * s, foot.sine * c, -foot.cosine),
+                    spacing_m: radii / steps.abs(),
+                }
+            }
         }
-        Surface::WallWest => Vec3::NEG_X,
-        Surface::WallEast => Vec3::X,
-        Surface::WallNorth => Vec3::NEG_Z,
-        Surface::WallSouth => Vec3::Z,
-        Surface::Inside => -Vec3::new(direction.x * spacing_m.x, direction.z * unit_m, direction.y * spacing_m.y),
+    }
+}
+
+/// The normal of the surface that was met, in the world, and the height above the base in metres.
+pub fn normal_of<T: Texel>(caster: &Caster<'_, T>, direction: Vec3, hit: &Hit) -> Vec4 {
+    let (land, field, shift) = (caster.land, &caster.field, hit.shift as i32);
+    let [_, _, base, unit_m] = land.bounds;
+    let place = Vec2::from_array(hit.place);
+    let height_m = (surface::height(field, caster.interpolation, shift, place) - base) * unit_m;
+    let local = Local::at(land, place, height_m);
+    let normal = match hit.surface {
+        Surface::Sky | Surface::Base => local.up,
+        Surface::Terrain => {
+            let slope = surface::slope(field, caster.interpolation, shift, place);
+            let slope = slope * ((-shift as f32).exp2() * unit_m) / local.spacing_m;
+            local.up - slope.x * local.east - slope.y * local.south
+        }
+        Surface::WallWest => -local.east,
+        Surface::WallEast => local.east,
+        Surface::WallNorth => -local.south,
+        Surface::WallSouth => local.south,
+        Surface::Inside if land.form[3] != 0 => -direction,
+        Surface::Inside => -(direction * Vec3::new(land.margin[2], land.margin[3], unit_m)).xzy(),
     };
-    let normal = normal.normalize();
-    let [cosine, sine, ..] = land.turn;
-    let turned = Vec3::new(cosine * normal.x - sine * normal.z, normal.y, sine * normal.x + cosine * normal.z);
-    let above_base_m = match hit.surface {
-        Surface::Sky => 0.0,
-        _ => (land.eye[2] + hit.depth_m * direction.z - land.bounds[2]) * unit_m,
-    };
-    turned.extend(above_base_m)
+    let axes = [&land.east, &land.up, &land.south].map(|axis| Vec3::from_slice(axis));
+    let turned = normal.x * axes[0] + normal.y * axes[1] + normal.z * axes[2];
+    let above_m = if matches!(hit.surface, Surface::Sky | Surface::Base) { 0.0 } else { height_m };
+    turned.normalize().extend(above_m)
 }
 
 /// The colour of a pixel, 8-bit sRGB: Lambert's law under the sun and the sky, the ground's colour by height, haze by distance.

@@ -2,12 +2,10 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#define COUNT_STEP
-#define DEEPEST 23
-
 #include "terrain/land.glsl"
-#include "terrain/traversal-types.glsl"
-#include "terrain/leaf-exact.glsl"
+#include "terrain/base-plane.glsl"
+#include "terrain/interpolation-bicubic.glsl"
+#include "terrain/leaf-pixel.glsl"
 #include "terrain/traversal.glsl"
 #include "terrain/depth.glsl"
-#include "terrain/depth-compute.glsl"
+#include "terrain/depth-fragment.glsl"

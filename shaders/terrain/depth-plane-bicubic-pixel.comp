@@ -2,11 +2,9 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#define COUNT_STEP
-#define DEEPEST 23
-
 #include "terrain/land.glsl"
-#include "terrain/traversal-types.glsl"
+#include "terrain/base-plane.glsl"
+#include "terrain/interpolation-bicubic.glsl"
 #include "terrain/leaf-pixel.glsl"
 #include "terrain/traversal.glsl"
 #include "terrain/depth.glsl"

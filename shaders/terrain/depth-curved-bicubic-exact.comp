@@ -2,17 +2,10 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#define COUNT_STEP
-#define DEEPEST 23
-
 #include "terrain/land.glsl"
-#include "terrain/traversal-types.glsl"
+#include "terrain/base-curved.glsl"
+#include "terrain/interpolation-bicubic.glsl"
 #include "terrain/leaf-exact.glsl"
 #include "terrain/traversal.glsl"
 #include "terrain/depth.glsl"
-
-layout(location = 0) out vec4 depth;
-
-void main() {
-    depth = find(ivec2(gl_FragCoord.xy));
-}
+#include "terrain/depth-compute.glsl"

@@ -1,10 +1,3 @@
-#version 450
-
-#extension GL_EXT_samplerless_texture_functions : require
-
-#include "terrain/land.glsl"
-#include "terrain/normal.glsl"
-
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 3, rgba32f) uniform writeonly image2D normal;

@@ -1,10 +1,3 @@
-#version 450
-
-#extension GL_EXT_samplerless_texture_functions : require
-
-#include "terrain/land.glsl"
-#include "terrain/normal.glsl"
-
 layout(location = 0) out vec4 normal;
 
 void main() {

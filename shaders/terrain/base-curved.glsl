@@ -1,0 +1,130 @@
+// The base as a cylinder or an ellipsoid of revolution: F = P + n h (eq. 5, 6). A ray is bent in the map's frame. Its height over
+// the base is convex, so that the lowest of a segment is below its ends by its sagitta at most; latitude and longitude leave
+// the straight line between its ends by what their second derivatives allow. Segments are halved until both are nothing.
+
+#include "terrain/between.glsl"
+#include "terrain/round.glsl"
+
+// The part of a ray that can meet the map.
+struct Way {
+    float near_m; // depth of its ends, metres
+    float far_m;
+    vec3 from; // metres from the map's middle: east, off the axis, along it
+    vec3 whole;
+    float cut; // the part of it at which it passes behind the axis, where longitudes end; 0 where it does not
+};
+
+// A piece of a ray in the map's frame (eq. 9), the depth of its near end, and how far it may leave the straight line.
+struct Segment {
+    vec3 near;
+    vec3 far;
+    float depth_m;
+    vec3 slack;
+};
+
+// A quadric along a ray: a t^2 + 2 b t + c.
+vec3 along_ray(vec3 direction, vec2 squares, vec2 linear, float constant) {
+    vec3 eye = land.eye.xyz;
+    float a = squares.x * dot(direction.xy, direction.xy) + squares.y * direction.z * direction.z;
+    float b = squares.x * dot(eye.xy, direction.xy) + squares.y * eye.z * direction.z + dot(linear, direction.yz);
+    float c = squares.x * dot(eye.xy, eye.xy) + squares.y * eye.z * eye.z + 2.0 * dot(linear, eye.yz) + constant;
+    return vec3(max(a, 1.0e-30), b, c);
+}
+
+// Where the ray meets the base, and how much farther it must go to be below it without doubt.
+vec2 base_depth(vec3 direction) {
+    vec3 q = along_ray(direction, land.ground.xy, land.slope.zw, 0.0);
+    float discriminant = q.y * q.y - q.x * q.z;
+    float root = sqrt(max(discriminant, 0.0));
+    bool is_met = discriminant > 0.0 && q.y < 0.0;
+    float base_m = is_met ? q.z / (root - q.y) : NO_DEPTH;
+    float slack_m = land.margin.y * land.bounds.w / max(root, 1.0e-20);
+    return q.z <= 0.0 ? vec2(0.0) : vec2(base_m, slack_m);
+}
+
+vec2 base_place(vec3 direction, float depth_m) {
+    return depth_m < NO_DEPTH ? on_map(land.eye.xyz + depth_m * direction, 1.0).xy : vec2(0.0);
+}
+
+Way way_of(vec3 direction, float limit_m) {
+    vec3 q = along_ray(direction, land.shell.xy, land.slope.xy, land.shell.z);
+    float discriminant = q.y * q.y - q.x * q.z;
+    float root = sqrt(max(discriminant, 0.0));
+    float sum = q.y < 0.0 ? root - q.y : -q.y - root;
+    float a = q.z / (abs(sum) < 1.0e-30 ? 1.0e-30 : sum);
+    float b = sum / q.x;
+    vec2 range = vec2(max(0.0, min(a, b)), min(limit_m, max(a, b)));
+    if (land.form.w == CYLINDER) {
+        float low = -land.middle.z / land.steps.y;
+        float high = (float(land.size.y - 1) - land.middle.z) / land.steps.y;
+        range = between(range, land.eye.z, direction.z, low, high);
+    }
+    if (discriminant <= 0.0 || !(range.x < range.y)) {
+        range = vec2(1.0, 0.0);
+    }
+    vec3 from = land.eye.xyz + range.x * direction;
+    vec3 whole = (range.y - range.x) * direction;
+    float cut = whole.x != 0.0 ? -from.x / whole.x : 0.0;
+    bool is_behind = land.middle.x + from.y + cut * whole.y < 0.0;
+    return Way(range.x, range.y, from, whole, cut > 0.0 && cut < 1.0 && is_behind ? cut : 0.0);
+}
+
+// A ray behind the axis is cut there before it is halved.
+int first_depth(Way way) {
+    return way.cut > 0.0 ? 1 : 0;
+}
+
+float part_at(Way way, float start) {
+    float cut_part = start < 0.5 ? 2.0 * start * way.cut : way.cut + (2.0 * start - 1.0) * (1.0 - way.cut);
+    return way.cut > 0.0 ? cut_part : start;
+}
+
+float depth_in(Way way, float start) {
+    return way.near_m + part_at(way, start) * (way.far_m - way.near_m);
+}
+
+Segment segment_of(Way way, float start, float size) {
+    vec3 a = way.from + part_at(way, start) * way.whole;
+    vec3 b = way.from + part_at(way, start + size) * way.whole;
+    float side = way.cut > 0.0 ? (start < 0.5 ? -way.whole.x : way.whole.x) : a.x + b.x;
+    // The distance from the axis at its smallest.
+    vec2 from = vec2(a.x, land.middle.x + a.y);
+    vec2 move = b.xy - a.xy;
+    float nearest = clamp(-dot(from, move) / max(dot(move, move), 1.0e-30), 0.0, 1.0);
+    float radius = max(length(from + nearest * move), 1.0e-6 * land.middle.x);
+    float turn = length(move) / radius;
+    vec3 slack = vec3(min(0.125 * turn * turn, 0.5 * turn) * land.steps.x, 0.0, 0.125 * length(move) * turn);
+    if (land.form.w != CYLINDER) {
+        float bend = length(b - a) / land.middle.w;
+        float second = 0.125 * bend * bend * (2.0 + land.steps.z + land.middle.w / radius);
+        slack.y = min(second, 0.5 * bend) * abs(land.steps.y);
+        slack.z = 0.125 * length(b - a) * bend;
+    }
+    slack.z = slack.z / land.bounds.w;
+    return Segment(on_map(a, side), on_map(b, side), depth_in(way, start), slack);
+}
+
+// Whether the camera stands in the mountain. 0 where it does not.
+int entered(Way way, float height) {
+    vec3 eye = on_map(way.from, 1.0);
+    bool is_over = eye.x >= 0.0 && eye.y >= 0.0 && eye.x <= float(land.size.x - 1) && eye.y <= float(land.size.y - 1);
+    return way.near_m <= 0.0 && is_over && eye.z <= height ? INSIDE : 0;
+}
+
+// How far the ray may leave the straight line between the ends: nodes along u and v, height.
+vec3 slack_of(Way way, Segment segment, float size) {
+    return segment.slack;
+}
+
+// The part of the segment over the map, and the surface at its near end.
+vec3 over_map(Segment segment) {
+    vec2 move = segment.far.xy - segment.near.xy;
+    vec2 u = between(vec2(0.0, 1.0), segment.near.x, move.x, 0.0, float(land.size.x - 1));
+    vec2 v = between(vec2(0.0, 1.0), segment.near.y, move.y, 0.0, float(land.size.y - 1));
+    int side = move.x > 0.0 ? WALL_WEST : WALL_EAST;
+    if (v.x > u.x) {
+        side = move.y > 0.0 ? WALL_NORTH : WALL_SOUTH;
+    }
+    float near = max(u.x, v.x);
+    return vec3(near, min(u.y, v.y), float(near > 0.0 ? side : TERRAIN));
+}

@@ -1,0 +1,81 @@
+// The base as a plane: a ray stays straight in the map's frame, and so do its halves.
+
+#include "terrain/between.glsl"
+
+// The part of a ray that can meet the map.
+struct Way {
+    float near_m; // depth of its ends, metres
+    float far_m;
+    int side; // the surface it comes in through
+    vec3 from; // u, v, h
+    vec3 whole;
+};
+
+// A piece of a ray in the map's frame (eq. 9), and the depth of its near end.
+struct Segment {
+    vec3 near;
+    vec3 far;
+    float depth_m;
+};
+
+// Where the ray meets the base, and how much farther it must go to be below it without doubt.
+vec2 base_depth(vec3 direction) {
+    float above = land.eye.z - land.bounds.z;
+    float base_m = direction.z < 0.0 ? above / -direction.z : NO_DEPTH;
+    float slack_m = 2.0 * land.margin.y / max(-direction.z, 1.0e-20);
+    return above <= 0.0 ? vec2(0.0) : vec2(base_m, slack_m);
+}
+
+vec2 base_place(vec3 direction, float depth_m) {
+    return land.eye.xy + depth_m * direction.xy;
+}
+
+Way way_of(vec3 direction, float limit_m) {
+    vec2 all = vec2(0.0, limit_m);
+    vec2 last = vec2(land.size.xy - 1);
+    vec2 u = between(all, land.eye.x, direction.x, 0.0, last.x);
+    vec2 v = between(all, land.eye.y, direction.y, 0.0, last.y);
+    vec2 h = between(all, land.eye.z, direction.z, land.bounds.x - land.margin.y, land.bounds.y + land.margin.y);
+    float near_m = max(max(u.x, v.x), h.x);
+    float far_m = min(min(u.y, v.y), h.y);
+    int side = direction.x > 0.0 ? WALL_WEST : WALL_EAST;
+    if (v.x > u.x) {
+        side = direction.y > 0.0 ? WALL_NORTH : WALL_SOUTH;
+    }
+    if (h.x >= max(u.x, v.x)) {
+        side = TERRAIN;
+    }
+    if (near_m <= 0.0) {
+        side = INSIDE;
+    }
+    return Way(near_m, far_m, side, land.eye.xyz + near_m * direction, (far_m - near_m) * direction);
+}
+
+// Halvings that come before everything else.
+int first_depth(Way way) {
+    return 0;
+}
+
+Segment segment_of(Way way, float start, float size) {
+    vec3 near = way.from + start * way.whole;
+    return Segment(near, way.from + (start + size) * way.whole, way.near_m + start * (way.far_m - way.near_m));
+}
+
+float depth_in(Way way, float start) {
+    return way.near_m + start * (way.far_m - way.near_m);
+}
+
+// Terrain is solid below its height: a wall where the ray comes in, or the inside of the mountain. 0 where it is neither.
+int entered(Way way, float height) {
+    return way.from.z <= height ? way.side : 0;
+}
+
+// How far the ray may leave the straight line between the ends: nodes along u and v, height.
+vec3 slack_of(Way way, Segment segment, float size) {
+    return vec3(0.0);
+}
+
+// The part of the segment over the map, and the surface at its near end.
+vec3 over_map(Segment segment) {
+    return vec3(0.0, 1.0, float(TERRAIN));
+}

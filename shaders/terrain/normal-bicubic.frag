@@ -1,0 +1,8 @@
+#version 450
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/land.glsl"
+#include "terrain/interpolation-bicubic.glsl"
+#include "terrain/normal.glsl"
+#include "terrain/normal-fragment.glsl"

@@ -1,0 +1,160 @@
+//! The geometric transformation (eq. 10 and 11): a map over its base surface, as rays see it. The base alone is transformed;
+//! heights never are.
+
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
+
+use super::curve::Curve;
+use super::parameters::Base;
+use super::placement::{Extent, Placement};
+use super::pyramid::Shape;
+use crate::scene::{HeightMap, Samples};
+
+/// Rows of eq. 10 with the one that the print lost: u = x, v = z, h = y.
+const T: DMat4 = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
+
+/// Longitude and latitude of the world's origin on an ellipsoid, radians.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Origin {
+    pub longitude_rad: f64,
+    pub latitude_rad: f64,
+}
+
+impl Origin {
+    /// The middle of the first map that knows its place, or where equator and prime meridian meet.
+    pub fn of<'a>(maps: impl Iterator<Item = &'a HeightMap>) -> Self {
+        maps.filter_map(middle_of).next().unwrap_or_default()
+    }
+}
+
+/// Longitude and latitude of the middle of a map that knows its place.
+fn middle_of(map: &HeightMap) -> Option<Origin> {
+    let geographic = map.geographic()?;
+    let last = DVec2::new(f64::from(map.width() - 1), f64::from(map.height() - 1));
+    let half_deg = last * geographic.step_deg / 2.0;
+    Some(Origin {
+        longitude_rad: (geographic.west_deg + half_deg.x).to_radians(),
+        latitude_rad: (geographic.north_deg - half_deg.y).to_radians(),
+    })
+}
+
+/// One map as the rays see it.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    pub shape: Shape,
+    /// World to the map's frame. On a plane u and v in nodes from the first sample and h in the map's own numbers: G = T M. On
+    /// a curved base metres from the map's middle: east, off the axis, along it.
+    pub to_frame: DMat4,
+    /// What the frame's axes are in the world: on a plane east, up and south; else those of `to_frame`.
+    pub axes: [DVec3; 3],
+    /// Metres between columns and rows, in the middle of the map.
+    pub spacing_m: DVec2,
+    /// Metres for a unit of h.
+    pub unit_m: f64,
+    /// Lowest and highest h, and that of the base.
+    pub lowest: f64,
+    pub highest: f64,
+    pub base: f64,
+    pub curve: Option<Curve>,
+}
+
+impl Ground {
+    /// `base_level_m` is the map's height at which the base lies.
+    pub fn new(map: &HeightMap, placement: Placement, base: Base, origin: Origin, base_level_m: f64) -> Self {
+        let (origin_m, unit_m) = match map.samples() {
+            Samples::Steps { origin_m, step_m, .. } => (f64::from(*origin_m), f64::from(*step_m)),
+            Samples::Float(_) => (0.0, 1.0),
+        };
+        let shape = Shape::new(map.width(), map.height());
+        let middle = DVec2::new(f64::from(shape.width - 1), f64::from(shape.height - 1)) / 2.0;
+        let (low_m, high_m) = map.range_m();
+        let value = |height_m: f64| (height_m - origin_m) / unit_m;
+        let mut ground = Ground {
+            shape,
+            to_frame: DMat4::IDENTITY,
+            axes: [DVec3::X, DVec3::Y, DVec3::Z],
+            spacing_m: map.spacing_m(),
+            unit_m,
+            lowest: value(low_m.into()),
+            highest: value(high_m.into()),
+            base: value(base_level_m),
+            curve: None,
+        };
+        let highest_m = (ground.highest - ground.base) * unit_m;
+        let overshoot_m = (ground.highest - ground.lowest) * unit_m * 9.0 / 32.0;
+        let reach_m = (highest_m + overshoot_m).max(0.0);
+        match base {
+            Base::Plane => {
+                let center = DVec3::new(placement.center_m.x, 0.0, placement.center_m.y);
+                let scale = DVec3::new(1.0 / ground.spacing_m.x, 1.0 / unit_m, 1.0 / ground.spacing_m.y);
+                let model = DMat4::from_translation(DVec3::new(middle.x, ground.base, middle.y))
+                    * DMat4::from_scale(scale)
+                    * DMat4::from_rotation_y(-placement.turn_rad)
+                    * DMat4::from_translation(-center);
+                ground.to_frame = T * model;
+                let turn = DMat3::from_rotation_y(placement.turn_rad);
+                ground.axes = ground.axes.map(|axis| turn * axis);
+            }
+            Base::Cylinder { radius_m } => {
+                let radius_m = f64::from(radius_m);
+                let angle = placement.center_m.x / radius_m;
+                let axis = DVec3::new(0.0, -radius_m, 0.0);
+                ground.to_frame = DMat4::from_translation(axis)
+                    * DMat4::from_rotation_z(angle)
+                    * DMat4::from_translation(DVec3::new(0.0, radius_m, -placement.center_m.y));
+                ground.curve = Some(Curve::cylinder(radius_m, ground.spacing_m, middle, reach_m));
+                ground.set_axes();
+            }
+            Base::Ellipsoid { equatorial_m, polar_m } => {
+                let (a, b) = (f64::from(equatorial_m), f64::from(polar_m));
+                let (place, step_rad) = match (middle_of(map), map.geographic()) {
+                    (Some(place), Some(geographic)) => (place, geographic.step_deg.map(f64::to_radians)),
+                    _ => {
+                        let radii = |latitude: f64| Curve::radii(a, b, latitude);
+                        let (across, along) = radii(origin.latitude_rad);
+                        let cosine = origin.latitude_rad.cos();
+                        let place = Origin {
+                            longitude_rad: origin.longitude_rad + placement.center_m.x / (across * cosine),
+                            latitude_rad: origin.latitude_rad - placement.center_m.y / along,
+                        };
+                        let (across, along) = radii(place.latitude_rad);
+                        let metres = DVec2::new(across * place.latitude_rad.cos(), along);
+                        (place, ground.spacing_m / metres)
+                    }
+                };
+                let curve = Curve::ellipsoid(a, b, place.latitude_rad, step_rad, middle, reach_m);
+                let world = Curve::ellipsoid(a, b, origin.latitude_rad, step_rad, middle, reach_m);
+                let to_world = world.frame(origin.longitude_rad) * world.tangent();
+                ground.to_frame = curve.frame(place.longitude_rad).inverse() * to_world;
+                ground.spacing_m = curve.spacing_m();
+                ground.curve = Some(curve);
+                ground.set_axes();
+            }
+        }
+        ground
+    }
+
+    fn set_axes(&mut self) {
+        let to_world = self.to_frame.inverse();
+        self.axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
+    }
+
+    /// F = P + n h (eq. 6): the world's point over a place in nodes at a height in the map's own numbers.
+    pub fn point(&self, place: DVec2, height: f64) -> DVec3 {
+        let framed = match &self.curve {
+            None => DVec3::new(place.x, place.y, height),
+            Some(curve) => curve.point(place, (height - self.base) * self.unit_m),
+        };
+        self.to_frame.inverse().project_point3(framed)
+    }
+
+    /// The box around the map in the world.
+    pub fn extent(&self) -> Extent {
+        let last = DVec2::new(f64::from(self.shape.width - 1), f64::from(self.shape.height - 1));
+        // Enough points for a curved base; the corners alone would do on a plane.
+        let points = (0..17 * 17).flat_map(|i| {
+            let share = DVec2::new(f64::from(i % 17), f64::from(i / 17)) / 16.0;
+            [self.lowest.min(self.base), self.highest].map(|height| self.point(share * last, height))
+        });
+        Extent::of(points)
+    }
+}

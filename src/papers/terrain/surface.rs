@@ -1,0 +1,237 @@
+//! The surface between the samples of a map on the processor: `shaders/terrain/interpolation-bilinear.glsl` and
+//! `interpolation-bicubic.glsl`.
+
+use glam::{IVec2, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
+
+use super::parameters::Interpolation;
+use super::pyramid::{Bound, Texel};
+use super::relief::{Cell, Field};
+
+/// How much Catmull-Rom surfaces may exceed their nodes, as a share of the nodes' range: the negative weights' sum.
+pub const OVERSHOOT: f32 = 9.0 / 32.0;
+
+/// The height at a place in nodes, on a level.
+pub fn height<T: Texel>(field: &Field<'_, T>, interpolation: Interpolation, shift: i32, place: Vec2) -> f32 {
+    let cell = field.cell(shift, place);
+    match interpolation {
+        Interpolation::Bilinear => {
+            let c = corners(field, shift, cell.corner);
+            let north = c.x + (c.y - c.x) * cell.part.x;
+            let south = c.z + (c.w - c.z) * cell.part.x;
+            north + (south - north) * cell.part.y
+        }
+        Interpolation::Bicubic => {
+            let rows = around(field, shift, cell.corner).transpose() * weights(cell.part.x);
+            rows.dot(weights(cell.part.y))
+        }
+    }
+}
+
+/// Change of the height over a texel of the level along u and v.
+pub fn slope<T: Texel>(field: &Field<'_, T>, interpolation: Interpolation, shift: i32, place: Vec2) -> Vec2 {
+    let cell = field.cell(shift, place);
+    match interpolation {
+        Interpolation::Bilinear => {
+            let c = corners(field, shift, cell.corner);
+            let (north, south) = (c.y - c.x, c.w - c.z);
+            let (west, east) = (c.z - c.x, c.w - c.y);
+            Vec2::new(north + (south - north) * cell.part.y, west + (east - west) * cell.part.x)
+        }
+        Interpolation::Bicubic => {
+            let rows = around(field, shift, cell.corner).transpose();
+            Vec2::new(
+                (rows * weight_slopes(cell.part.x)).dot(weights(cell.part.y)),
+                (rows * weights(cell.part.x)).dot(weight_slopes(cell.part.y)),
+            )
+        }
+    }
+}
+
+/// A height that nothing which interpolation reads between two places exceeds; none where no map is. `shift` is that of the
+/// rectangle's extent; a coarser level answers where more than four texels of it are touched.
+pub fn highest_below<T: Texel>(
+    field: &Field<'_, T>,
+    interpolation: Interpolation,
+    low: Vec2,
+    high: Vec2,
+    shift: i32,
+) -> Option<f32> {
+    let last_node = field.last(0);
+    let end = last_node.as_vec2();
+    if high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y {
+        return None;
+    }
+    let (before, after) = match interpolation {
+        Interpolation::Bilinear => (0, 1),
+        Interpolation::Bicubic => (1, 2),
+    };
+    let first = (low.max(Vec2::splat(-4.0)).floor().as_ivec2() - before).clamp(IVec2::ZERO, last_node);
+    let last = (high.min(end + 4.0).floor().as_ivec2() + after).clamp(IVec2::ZERO, last_node);
+    let most = ((last >> shift) - (first >> shift)).max_element().max(1) as u32;
+    let level = (shift + (2 * most - 1).ilog2() as i32).min(field.shape().top as i32);
+    let (a, b) = (first >> level, last >> level);
+    let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
+    let highest = four.map(|texel| field.value(Bound::Highest, level, texel)).into_iter().fold(f32::MIN, f32::max);
+    Some(match interpolation {
+        Interpolation::Bilinear => highest,
+        Interpolation::Bicubic => {
+            let lowest =
+                four.map(|texel| field.value(Bound::Lowest, level, texel)).into_iter().fold(f32::MAX, f32::min);
+            highest + OVERSHOOT * (highest - lowest)
+        }
+    })
+}
+
+/// The part of a line over at most three cells of the data at which it first meets the surface. `met` is how near a height
+/// counts as met where the root is approached.
+pub fn intersect<T: Texel>(
+    field: &Field<'_, T>,
+    interpolation: Interpolation,
+    near: Vec3,
+    far: Vec3,
+    met: f32,
+) -> Option<f32> {
+    let whole = far - near;
+    let u = crossing(near.x, far.x);
+    let v = crossing(near.y, far.y);
+    let ends = [0.0, u.min(v), u.max(v), 1.0];
+    ends.windows(2).find_map(|ends| {
+        let size = ends[1] - ends[0];
+        if size <= 0.0 {
+            return None;
+        }
+        let from = near + ends[0] * whole;
+        let Cell { corner, .. } = field.cell(0, (from + 0.5 * size * whole).xy());
+        let inside = Vec3::new(from.x - corner.x as f32, from.y - corner.y as f32, from.z);
+        let part = match interpolation {
+            Interpolation::Bilinear => touch_bilinear(corners(field, 0, corner), inside, size * whole),
+            Interpolation::Bicubic => touch_bicubic(around(field, 0, corner), inside, size * whole, met),
+        };
+        part.map(|part| ends[0] + part * size)
+    })
+}
+
+/// The part of the way from one number to another at which it crosses a whole one; 1 where it crosses none.
+fn crossing(from: f32, to: f32) -> f32 {
+    if from.floor() == to.floor() {
+        return 1.0;
+    }
+    ((from.floor().max(to.floor()) - from) / (to - from)).clamp(0.0, 1.0)
+}
+
+/// Four corner values: north-west, north-east, south-west, south-east.
+fn corners<T: Texel>(field: &Field<'_, T>, shift: i32, a: IVec2) -> Vec4 {
+    let b = (a + 1).min(field.last(shift));
+    let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
+    Vec4::from_array(four.map(|texel| field.value(Bound::Highest, shift, texel)))
+}
+
+/// Where a line that moves by `way` from `from` inside a cell first touches the cell's surface, as a part of `way`. Along a
+/// line the surface (eq. 7) is a quadratic.
+fn touch_bilinear(corners: Vec4, from: Vec3, way: Vec3) -> Option<f32> {
+    let a = corners.x;
+    let (b, c) = (corners.y - a, corners.z - a);
+    let e = corners.w - corners.y - c;
+    let qa = -e * way.x * way.y;
+    let qb = way.z - b * way.x - c * way.y - e * (from.x * way.y + from.y * way.x);
+    let qc = from.z - (a + b * from.x + c * from.y + e * from.x * from.y);
+    if qc <= 0.0 {
+        return Some(0.0);
+    }
+    // The smaller positive root of a function that begins above zero, without cancellation.
+    let discriminant = qb * qb - 4.0 * qa * qc;
+    let root = discriminant.max(0.0).sqrt();
+    let (numerator, denominator) = if qb < 0.0 { (2.0 * qc, root - qb) } else { (qb + root, -2.0 * qa) };
+    if discriminant >= 0.0 && denominator > 0.0 && numerator <= denominator {
+        return Some(numerator / denominator);
+    }
+    (qa + qb + qc <= 0.0).then_some(1.0)
+}
+
+/// The sixteen values around a cell: columns are rows from north to south, borders repeated.
+fn around<T: Texel>(field: &Field<'_, T>, shift: i32, cell: IVec2) -> Mat4 {
+    let last = field.last(shift);
+    let row = |row: i32| {
+        let value = |column: i32| {
+            let texel = (cell + IVec2::new(column, row)).clamp(IVec2::ZERO, last);
+            field.value(Bound::Highest, shift, texel)
+        };
+        Vec4::new(value(-1), value(0), value(1), value(2))
+    };
+    Mat4::from_cols(row(-1), row(0), row(1), row(2))
+}
+
+/// Catmull-Rom.
+fn weights(t: f32) -> Vec4 {
+    0.5 * Vec4::new(
+        t * (-1.0 + t * (2.0 - t)),
+        2.0 + t * t * (3.0 * t - 5.0),
+        t * (1.0 + t * (4.0 - 3.0 * t)),
+        t * t * (t - 1.0),
+    )
+}
+
+fn weight_slopes(t: f32) -> Vec4 {
+    0.5 * Vec4::new(-1.0 + t * (4.0 - 3.0 * t), t * (9.0 * t - 10.0), 1.0 + t * (8.0 - 9.0 * t), t * (3.0 * t - 2.0))
+}
+
+/// The part from `s` to `e` of four curves at once, given and left as Bezier points.
+fn restricted(p: Mat4, s: f32, e: f32) -> Mat4 {
+    let mix = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;
+    let [p0, p1, p2, p3] = [p.x_axis, p.y_axis, p.z_axis, p.w_axis];
+    let (s0, s1, s2) = (mix(p0, p1, s), mix(p1, p2, s), mix(p2, p3, s));
+    let (e0, e1, e2) = (mix(p0, p1, e), mix(p1, p2, e), mix(p2, p3, e));
+    let (ss0, ss1) = (mix(s0, s1, s), mix(s1, s2, s));
+    Mat4::from_cols(
+        mix(ss0, ss1, s),
+        mix(ss0, ss1, e),
+        mix(mix(s0, s1, e), mix(s1, s2, e), e),
+        mix(mix(e0, e1, e), mix(e1, e2, e), e),
+    )
+}
+
+/// Catmull-Rom values as Bezier points.
+fn bezier(p: Mat4) -> Mat4 {
+    let [p0, p1, p2, p3] = [p.x_axis, p.y_axis, p.z_axis, p.w_axis];
+    Mat4::from_cols(p1, p1 + (p2 - p0) / 6.0, p2 - (p3 - p1) / 6.0, p2)
+}
+
+/// As [`touch_bilinear`]. Along a line the surface is of the sixth degree. Its Bezier points bound it, so the line is free up
+/// to where their hull meets it; what is left is restricted and bounded anew. This approaches the first root from the near
+/// side and misses none.
+fn touch_bicubic(mut values: Mat4, from: Vec3, way: Vec3, met: f32) -> Option<f32> {
+    let reference = values.y_axis.y;
+    for row in 0..4 {
+        *values.col_mut(row) -= Vec4::splat(reference);
+    }
+    let points = restricted(bezier(values), from.y, from.y + way.y).transpose();
+    let c = restricted(bezier(points), from.x, from.x + way.x).to_cols_array_2d();
+    let (above, rise) = (from.z - reference, way.z / 6.0);
+    let mut g = [
+        above - c[0][0],
+        above + rise - 0.5 * (c[0][1] + c[1][0]),
+        above + 2.0 * rise - (c[0][2] + 3.0 * c[1][1] + c[2][0]) / 5.0,
+        above + 3.0 * rise - (c[0][3] + 9.0 * (c[1][2] + c[2][1]) + c[3][0]) / 20.0,
+        above + 4.0 * rise - (c[1][3] + 3.0 * c[2][2] + c[3][1]) / 5.0,
+        above + 5.0 * rise - 0.5 * (c[2][3] + c[3][2]),
+        above + 6.0 * rise - c[3][3],
+    ];
+    if g[0] <= 0.0 {
+        return Some(0.0);
+    }
+    let mut start = 0.0;
+    for _ in 0..40 {
+        let hull = g.iter().enumerate().skip(1).filter(|(_, point)| **point <= 0.0);
+        let free = hull.map(|(k, point)| k as f32 / 6.0 * g[0] / (g[0] - point)).reduce(f32::min)?;
+        for j in 1..7 {
+            for k in 0..7 - j {
+                g[k] += (g[k + 1] - g[k]) * free;
+            }
+        }
+        start += free * (1.0 - start);
+        if g[0] <= met {
+            break;
+        }
+    }
+    Some(start)
+}
