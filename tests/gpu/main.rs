@@ -14,4 +14,5 @@ mod replay;
 mod resources;
 mod sentences;
 mod sequences;
+mod splats;
 mod timing;

@@ -1,12 +1,17 @@
-//! The picture: a closed surface, and the golden.
+//! The picture: a closed surface, particles as points, and the goldens.
 
-use fumarole::gpu::Device;
-use fumarole::papers::lava::{CAMERAS, Parameters};
-use glam::{Vec3, Vec4};
+use std::path::Path;
 use std::sync::Arc;
 
+use fumarole::gpu::Device;
+use fumarole::image::Rgba8;
+use fumarole::image::golden::{self, Tolerance};
+use fumarole::papers::Paper;
+use fumarole::papers::lava::{CAMERAS, Lava, Parameters, Shading};
+use glam::{Vec3, Vec4};
+
 use crate::common::gpu_test;
-use crate::scene::{draw, lava, texels};
+use crate::scene::{clamped, draw, lava, texels};
 
 /// The preset `results` with a ninth of its splats, each three times as large, and fewer particles.
 fn reduced() -> Parameters {
@@ -21,7 +26,7 @@ fn reduced() -> Parameters {
 }
 
 /// Whether the ray through each pixel meets the height field inside the border, at least a texel away from it.
-fn meets_the_surface(device: &Arc<Device>, lava: &fumarole::papers::lava::Lava, parameters: &Parameters) -> Vec<bool> {
+fn meets_the_surface(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<bool> {
     let field: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
     let [columns, _, rows] = parameters.density;
     let space = parameters.space_m;
@@ -62,6 +67,96 @@ fn meets_the_surface(device: &Arc<Device>, lava: &fumarole::papers::lava::Lava, 
         false
     };
     pixels.map(met).collect()
+}
+
+fn picture(device: &Arc<Device>, parameters: &Parameters) -> Rgba8 {
+    let mut lava = lava(device, parameters);
+    draw(device, &mut lava, 0);
+    let view = lava.picture();
+    Rgba8::new(view.width(), view.height(), texels(device, view)).unwrap()
+}
+
+/// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
+const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
+
+#[test]
+fn the_pictures_are_the_golden_ones() {
+    gpu_test(|device| {
+        for (name, camera) in CAMERAS {
+            let picture = picture(device, &Parameters { camera, ..reduced() });
+            let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/golden/lava-{name}.png"));
+            if let Err(error) = golden::check(&picture, &golden, TOLERANCE, Path::new(env!("CARGO_TARGET_TMPDIR"))) {
+                panic!("{error}");
+            }
+        }
+    });
+}
+
+/// Light comes from the hollows: seen from above, low places are brighter than high ones.
+#[test]
+fn hollows_are_brighter_than_ridges() {
+    gpu_test(|device| {
+        let parameters = Parameters { camera: CAMERAS[1].1, ..reduced() };
+        let shaded = |shading| picture(device, &Parameters { shading, ..parameters.clone() });
+        let (lava, heights) = (shaded(Shading::Lava), shaded(Shading::Heights));
+        // Low and high places: sums of brightness, and pixels.
+        let mut sums = [(0.0, 0u32); 2];
+        for (lava, height) in lava.pixels().chunks_exact(4).zip(heights.pixels().chunks_exact(4)) {
+            let (brightness, height) = (lava[..3].iter().map(|&c| f64::from(c)).sum::<f64>(), height[0]);
+            let place = match height {
+                25..115 => 0,
+                140..=255 => 1,
+                _ => continue,
+            };
+            sums[place].0 += brightness;
+            sums[place].1 += 1;
+        }
+        let [low, high] = sums.map(|(sum, pixels)| sum / f64::from(pixels));
+        assert!(sums.iter().all(|s| s.1 > 500) && low > 1.25 * high, "{low} {high} {sums:?}");
+    });
+}
+
+/// Figure 5.2: every particle inside the picture leaves a point, and nothing else does.
+#[test]
+fn particles_are_drawn_as_points() {
+    gpu_test(|device| {
+        let parameters = Parameters { shading: Shading::Particles, particles: 300, ..reduced() };
+        let mut lava = lava(device, &parameters);
+        for number in [0, 1] {
+            draw(device, &mut lava, number);
+            let pixels: Vec<[u8; 4]> = texels(device, lava.picture());
+            let camera = &parameters.camera;
+            let matrix = camera.projection(parameters.aspect()) * camera.view();
+            let (width, height) = (parameters.width as f32, parameters.height as f32);
+            let mut expected = vec![false; pixels.len()];
+            let mut close_calls = vec![false; pixels.len()];
+            for place in clamped(device, &lava, &parameters) {
+                let clip = matrix.project_point3(place.as_vec3());
+                let (x, y) = ((clip.x + 1.0) / 2.0 * width, (clip.y + 1.0) / 2.0 * height);
+                let at = |x: f32, y: f32| {
+                    (x >= 0.0 && y >= 0.0 && x < width && y < height)
+                        .then(|| y as usize * parameters.width as usize + x as usize)
+                };
+                if let Some(pixel) = at(x, y) {
+                    expected[pixel] = true;
+                }
+                for (dx, dy) in [(-0.1, -0.1), (0.1, -0.1), (-0.1, 0.1), (0.1, 0.1)] {
+                    if let Some(pixel) = at(x + dx, y + dy).filter(|&p| Some(p) != at(x, y)) {
+                        close_calls[pixel] = true;
+                    }
+                }
+                let frays = [x, y].iter().any(|c| c.fract() < 0.1 || c.fract() > 0.9);
+                if let Some(pixel) = at(x, y).filter(|_| frays) {
+                    close_calls[pixel] = true;
+                }
+            }
+            let drawn = expected.iter().filter(|&&e| e).count();
+            assert!(drawn > 200, "{drawn}");
+            for (i, pixel) in pixels.iter().enumerate().filter(|&(i, _)| !close_calls[i]) {
+                assert_eq!(pixel[0] > 0, expected[i], "frame {number}, pixel {i}: {pixel:?}");
+            }
+        }
+    });
 }
 
 #[test]

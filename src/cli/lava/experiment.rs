@@ -33,6 +33,9 @@ enum Name {
     /// Figure 5.1: the texture of 65,536 particles
     #[value(name = "fig-5.1")]
     Fig51,
+    /// Figure 5.2: the particles as points
+    #[value(name = "fig-5.2")]
+    Fig52,
     /// Figure 6.2: a density texture
     #[value(name = "fig-6.2")]
     Fig62,

@@ -67,6 +67,8 @@ enum ShadingWord {
     Normals,
     /// The heights of the surface as grey
     Heights,
+    /// No surface: every particle as a point
+    Particles,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -177,6 +179,7 @@ impl LavaArgs {
             ShadingWord::Rock => Shading::Rock,
             ShadingWord::Normals => Shading::Normals,
             ShadingWord::Heights => Shading::Heights,
+            ShadingWord::Particles => Shading::Particles,
         };
         set(&mut p.shading, self.shading.map(shading));
         p.geometry_stage &= !self.no_geometry_stage;

@@ -35,7 +35,7 @@ const fn figure(name: &'static str, preset: Preset, parts: &'static [(&'static s
 }
 
 /// In the thesis's order.
-pub const FIGURES: [Figure; 15] = {
+pub const FIGURES: [Figure; 16] = {
     use Part::{Shaded, Splats, Texture};
     use Preset::{Fig62, Results};
     const PICTURE: &[(&str, Part)] = &[("", Shaded(Shading::Lava))];
@@ -61,6 +61,7 @@ pub const FIGURES: [Figure; 15] = {
             ],
         ),
         figure("fig-5.1", Fig62, &[("", Texture("positions"))]),
+        figure("fig-5.2", Fig62, &[("", Shaded(Shading::Particles))]),
         figure("fig-6.2", Fig62, &[("", Texture("density"))]),
         figure("fig-6.3", Results, &[("", Texture("normal-height"))]),
         figure("fig-6.4", Results, &[("-normals", Shaded(Shading::Normals)), ("-heights", Shaded(Shading::Heights))]),

@@ -165,6 +165,16 @@ impl Animation {
         &self.clusters.particles
     }
 
+    /// The position textures of both states, which take turns.
+    pub fn positions(&self) -> [&Arc<ImageView>; 2] {
+        self.states.each_ref().map(|state| &state.positions)
+    }
+
+    /// Number of particles.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
     /// Positions and velocities after the last step; the first state before any.
     pub fn state(&self) -> (&Arc<ImageView>, &Arc<ImageView>) {
         let state = &self.states[self.current()];

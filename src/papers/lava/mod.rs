@@ -18,6 +18,7 @@ mod layouts;
 pub mod parameters;
 mod particles;
 mod pattern;
+mod points;
 pub mod reference;
 mod rock;
 mod splatting;
@@ -25,6 +26,7 @@ mod targets;
 
 use std::sync::Arc;
 
+use self::points::Points;
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 
@@ -46,6 +48,8 @@ pub struct Lava {
     animation: Animation,
     isosurface: Isosurface,
     splatting: Splatting,
+    /// Where the picture shows particles instead of the surface.
+    points: Option<Points>,
     lacks_geometry_stage: bool,
 }
 
@@ -66,8 +70,11 @@ impl Lava {
         let animation = Animation::new(shaders, label, parameters, particles)?;
         let isosurface = Isosurface::new(shaders, label, parameters, animation.vertices(), instanced)?;
         let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
+        let points = (parameters.shading == Shading::Particles)
+            .then(|| Points::new(shaders, &animation, &splatting))
+            .transpose()?;
         let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
-        Ok(Lava { parameters: parameters.clone(), animation, isosurface, splatting, lacks_geometry_stage })
+        Ok(Lava { parameters: parameters.clone(), animation, isosurface, splatting, points, lacks_geometry_stage })
     }
 
     /// What a user should know of the device and of the last frame.
@@ -140,9 +147,13 @@ impl Paper for Lava {
         self.splatting.record(frame, self.drift_m(number))
     }
 
-    /// The thesis's last pass is the picture.
+    /// The thesis's last pass is the picture, but where it shows particles.
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        self.record(frame, number)
+        self.record(frame, number)?;
+        match &self.points {
+            Some(points) => points.record(frame, &self.animation),
+            None => Ok(()),
+        }
     }
 
     fn picture(&self) -> &Arc<ImageView> {

@@ -69,10 +69,13 @@ pub enum Shading {
     Normals,
     /// The heights of the surface as grey (figures 4.2c and 6.4).
     Heights,
+    /// No surface: every particle as a point (figure 5.2).
+    Particles,
 }
 
 impl Shading {
-    pub const ALL: [Shading; 5] = [Shading::Lava, Shading::Color, Shading::Rock, Shading::Normals, Shading::Heights];
+    pub const ALL: [Shading; 6] =
+        [Shading::Lava, Shading::Color, Shading::Rock, Shading::Normals, Shading::Heights, Shading::Particles];
 
     pub fn word(self) -> &'static str {
         match self {
@@ -81,10 +84,11 @@ impl Shading {
             Shading::Rock => "rock",
             Shading::Normals => "normals",
             Shading::Heights => "heights",
+            Shading::Particles => "particles",
         }
     }
 
-    /// As `lava/blending.frag` numbers it.
+    /// As `lava/blending.frag` numbers it; particles are drawn over its picture.
     pub(super) fn mode(self) -> u32 {
         self as u32
     }
@@ -157,10 +161,10 @@ impl Default for Parameters {
 
 /// Our cameras for the four views of chapter 8; the thesis prints no positions.
 pub const CAMERAS: [(&str, Camera); 4] = [
-    ("fig-8.1", camera(Vec3::new(-0.9, 2.3, 2.5), Vec3::new(1.62, 0.15, 0.5))),
-    ("fig-8.2", camera(Vec3::new(2.0, 3.5, 2.9), Vec3::new(2.0, 0.2, 0.5))),
-    ("fig-8.3", camera(Vec3::new(5.0, 1.6, 0.5), Vec3::new(2.9, 0.15, 0.5))),
-    ("fig-8.4", camera(Vec3::new(1.5, 1.6, 1.5), Vec3::new(2.0, 0.35, 0.5))),
+    ("fig-8.1", camera(Vec3::new(-0.7, 3.1, 2.4), Vec3::new(1.65, 0.05, 0.5))),
+    ("fig-8.2", camera(Vec3::new(2.0, 3.9, 2.2), Vec3::new(2.0, 0.2, 0.6))),
+    ("fig-8.3", camera(Vec3::new(5.0, 2.2, 0.5), Vec3::new(3.0, 0.1, 0.5))),
+    ("fig-8.4", camera(Vec3::new(1.4, 1.9, 1.2), Vec3::new(1.9, 0.3, 0.5))),
 ];
 
 const fn camera(eye: Vec3, target: Vec3) -> Camera {

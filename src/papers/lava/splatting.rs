@@ -9,7 +9,7 @@ use super::rock::Rock;
 use super::targets::{DEPTH, FAR, FLOATS, ZERO, target};
 use crate::gpu::transfer::upload;
 use crate::gpu::{
-    Blend, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary, Topology,
+    Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary, Topology,
 };
 use crate::host_block;
 
@@ -50,6 +50,7 @@ pub struct Splatting {
     splats: u32,
     instanced: bool,
     shading: Shading,
+    scene: Arc<Buffer>,
     visibility: Arc<ImageView>,
     accumulated: Arc<ImageView>,
     picture: Arc<ImageView>,
@@ -122,6 +123,7 @@ impl Splatting {
             splats: places.len() as u32,
             instanced,
             shading: parameters.shading,
+            scene,
             visibility,
             accumulated,
             picture,
@@ -162,6 +164,11 @@ impl Splatting {
     /// Weighted colours, sum of weights in alpha.
     pub fn accumulated_colors(&self) -> &Arc<ImageView> {
         &self.accumulated
+    }
+
+    /// The uniform block of the stage.
+    pub(super) fn scene(&self) -> &Arc<Buffer> {
+        &self.scene
     }
 
     /// 8-bit sRGB, though its format does not say so.
