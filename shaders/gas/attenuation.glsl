@@ -3,10 +3,6 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 6, std430) readonly buffer Objects {
-    Object objects[];
-};
-
 layout(set = 0, binding = 7, std430) readonly buffer Heads {
     uint heads[];
 };

@@ -34,71 +34,67 @@ float interpolated_offset(float at) {
     return mix(offsets[first], offsets[(first + 1u) & (OFFSET_SIZE - 1u)], at - low);
 }
 
-float cloud_density(uint v, vec3 texture_point) {
-    vec3 p = texture_point;
-    p.x += noise(p);
-    p.y += noise(p);
-    // The text's transparency is 1 - pow(sin + 1, power) / 2, which leaves 0..1 for any power but 1; this is equal to it there.
-    float wave = 0.5 * (sin(turbulence(p) * volumes[v].gas.w) + 1.0);
-    return volumes[v].gas.y * pow(wave, volumes[v].gas.z);
-}
-
-// chess_fog. Of the text's `direction.y = pnt.x + cyl.y` we read pnt.y, or the fog would not vary with height; frame / FULL_FOG is
-// taken in floats; and as the section says, nothing is in front of the front, and behind it the fog thickens.
-float fog_density(uint v, vec3 texture_point, vec3 world) {
-    float number = frame.sampling.x;
-    float disturbance = turbulence(texture_point);
-    float table = interpolated_offset(texture_point.z);
-    float front = volumes[v].front.x + volumes[v].front.y * number + volumes[v].detail.x * disturbance
-        + volumes[v].detail.y * table;
-    if (world.x > front) {
-        return 0.0;
-    }
-    vec3 p = texture_point + vec3(2.0 + disturbance, 0.5 + disturbance, -2.0 - disturbance);
-    vec2 cylinder = swirl(v);
-    vec3 moved = vec3(p.x - number * volumes[v].motion.x, p.y + cylinder.x, p.z + cylinder.y);
-    float thickening = clamp((front - world.x) / volumes[v].front.z, 0.0, 1.0);
-    float factor = volumes[v].front.w > 0.0 ? min(number / volumes[v].front.w, 1.0) : 1.0;
-    return pow(turbulence(moved) * volumes[v].gas.y * factor, volumes[v].gas.z) * thickening;
-}
-
-// Figure 6: the gas rises, so that its texture's point falls, swirls about the vertical, and thins as it moves from its source.
-float steam_density(uint v, vec3 texture_point, vec3 world) {
-    vec2 ellipse = swirl(v);
-    float disturbance = turbulence(texture_point);
-    vec3 p = texture_point + vec3(disturbance);
-    p.y -= frame.sampling.x * volumes[v].motion.x;
-    p.xz += ellipse;
-    float height = (world.y - volumes[v].center.y) / volumes[v].half_extent.y * 0.5 + 0.5;
-    return pow(turbulence(p) * volumes[v].gas.y, volumes[v].gas.z) * clamp(1.0 - height, 0.0, 1.0);
-}
-
-// Reference 17: a soft sphere whose surface the turbulence moves.
-float hypertexture_density(uint v, vec3 texture_point, vec3 world) {
-    vec3 q = (world - volumes[v].center.xyz) / volumes[v].half_extent.xyz;
-    float radius = length(q) * (1.0 + volumes[v].detail.x * turbulence(texture_point));
-    return clamp((1.0 - radius) / volumes[v].detail.y, 0.0, 1.0) * volumes[v].gas.y;
-}
-
-// The density function of a gas, wherever its solid ends.
+// The density function of a gas, wherever its solid ends. Each takes noise or turbulence up to three times, one after the other, at
+// points that follow from what it took before; all share one place in the code where it is taken, or a compiler that inlines
+// makes dozens of copies.
+//
+// - clouds: the text's transparency is 1 - pow(sin + 1, power) / 2, which leaves 0..1 for any power but 1;
+//   1 - pow((sin + 1) / 2, power) is equal to it there.
+// - fog (chess_fog): of the text's `direction.y = pnt.x + cyl.y` we read pnt.y, or the fog would not vary with height;
+//   frame / FULL_FOG is taken in floats; and as the section says, no fog is before the front, and behind it the fog thickens.
+// - steam (figure 6): it rises, so that its point in the texture falls, swirls about the vertical, and thins with its height.
+// - hypertexture (reference 17): a soft sphere whose surface the turbulence moves.
 float gas_density(uint v, vec3 world) {
-    vec3 p = world * volumes[v].placement.w + volumes[v].placement.xyz;
-    switch (uint(volumes[v].gas.x)) {
-        case CONSTANT:
-            return volumes[v].gas.y;
-        case TURBULENCE:
-            return pow(turbulence(p) * volumes[v].gas.y, volumes[v].gas.z);
-        case CLOUDS:
-            return cloud_density(v, p);
-        case FOG:
-            return fog_density(v, p, world);
-        case STEAM:
-            return steam_density(v, p, world);
-        case HYPERTEXTURE:
-            return hypertexture_density(v, p, world);
-        default:
-            return 0.0;
+    uint kind = uint(volumes[v].gas.x);
+    float opaque = volumes[v].gas.y;
+    float power = volumes[v].gas.z;
+    if (kind == CONSTANT) {
+        return opaque;
     }
+    float number = frame.sampling.x;
+    vec3 p = world * volumes[v].placement.w + volumes[v].placement.xyz;
+    vec2 ellipse = swirl(v);
+    float factor = opaque;
+    float thickness = 1.0;
+    uint last = kind == CLOUDS ? 2u : (kind == FOG || kind == STEAM ? 1u : 0u);
+    float value = 0.0;
+    for (uint i = 0u; i <= last; i++) {
+        value = fractal(p, kind == CLOUDS && i < last);
+        if (i == last) {
+            break;
+        }
+        if (kind == CLOUDS) {
+            p += i == 0u ? vec3(value, 0.0, 0.0) : vec3(0.0, value, 0.0);
+        } else if (kind == FOG) {
+            float front = volumes[v].front.x + volumes[v].front.y * number + volumes[v].detail.x * value
+                + volumes[v].detail.y * interpolated_offset(p.z);
+            if (world.x > front) {
+                return 0.0;
+            }
+            factor *= volumes[v].front.w > 0.0 ? min(number / volumes[v].front.w, 1.0) : 1.0;
+            p += vec3(2.0 + value, 0.5 + value, -2.0 - value);
+            p += vec3(-number * volumes[v].motion.x, ellipse);
+            thickness = clamp((front - world.x) / volumes[v].front.z, 0.0, 1.0);
+        } else {
+            p += vec3(ellipse.x + value, value - number * volumes[v].motion.x, ellipse.y + value);
+        }
+    }
+    if (kind == CLOUDS) {
+        return opaque * pow(0.5 * (sin(value * volumes[v].gas.w) + 1.0), power);
+    }
+    if (kind == HYPERTEXTURE) {
+        vec3 q = (world - volumes[v].center.xyz) / volumes[v].half_extent.xyz;
+        float radius = length(q) * (1.0 + volumes[v].detail.x * value);
+        return clamp((1.0 - radius) / volumes[v].detail.y, 0.0, 1.0) * opaque;
+    }
+    float density = pow(value * factor, power);
+    if (kind == FOG) {
+        density *= thickness;
+    } else if (kind == STEAM) {
+        float height = (world.y - volumes[v].center.y) / volumes[v].half_extent.y * 0.5 + 0.5;
+        density *= clamp(1.0 - height, 0.0, 1.0);
+    }
+    return density;
 }
 
 // Density inside the solid, faded towards its boundary so that the boundary cannot be seen. Of a hypertexture solid it is the

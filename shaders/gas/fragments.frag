@@ -49,24 +49,64 @@ vec2 corner_of(uint index) {
 }
 
 // Twice the area of edge and point, positive on the left of from -> to. It is computed in one direction for both triangles of an
-// edge, so that a point is inside exactly one of them; `tie` is what a point on the edge belongs to.
-float side_of(vec2 from, vec2 to, vec2 point) {
-    bool forwards = from.x < to.x || (from.x == to.x && from.y < to.y);
-    vec2 low = forwards ? from : to;
-    vec2 high = forwards ? to : from;
+// edge, so that a point is inside exactly one of them.
+float side_of(vec2 low, vec2 high, vec2 point) {
     vec2 edge = high - low;
     vec2 way = point - low;
-    float area = edge.x * way.y - edge.y * way.x;
-    return forwards ? area : -area;
+    return edge.x * way.y - edge.y * way.x;
 }
 
-bool is_inside(vec2 from, vec2 to, vec2 point) {
-    float side = side_of(from, to, point);
-    bool forwards = from.x < to.x || (from.x == to.x && from.y < to.y);
-    return side > 0.0 || (side == 0.0 && forwards);
+// Mean of y between 0 and 1 along a straight line from y0 to y1.
+float mean_within(float y0, float y1) {
+    float low = min(y0, y1);
+    float high = max(y0, y1);
+    if (low >= 1.0) {
+        return 1.0;
+    }
+    if (high <= 0.0) {
+        return 0.0;
+    }
+    float first = max(low, 0.0);
+    float last = min(high, 1.0);
+    float length = high - low;
+    if (length < 1.0e-6) {
+        return last;
+    }
+    return (max(high - 1.0, 0.0) + (last - first) * 0.5 * (first + last)) / length;
 }
 
-// The world's point under a place of the picture: where the ray meets the triangle's plane, but no nearer or farther than its corners.
+// Area between an edge and the side y = 0, inside the pixel; positive for edges to the left.
+float area_under(vec2 from, vec2 to) {
+    float x0 = clamp(from.x, 0.0, 1.0);
+    float x1 = clamp(to.x, 0.0, 1.0);
+    if (x0 == x1) {
+        return 0.0;
+    }
+    float slope = (to.y - from.y) / (to.x - from.x);
+    return (x0 - x1) * mean_within(from.y + (x0 - from.x) * slope, from.y + (x1 - from.x) * slope);
+}
+
+// The part of an edge that lies inside the pixel, as shares of the edge; empty (x > y) where none does.
+vec2 part_inside(vec2 from, vec2 to) {
+    vec2 way = to - from;
+    vec2 part = vec2(0.0, 1.0);
+    for (uint axis = 0u; axis < 2u; axis++) {
+        float start = axis == 0u ? from.x : from.y;
+        float along = axis == 0u ? way.x : way.y;
+        if (abs(along) < 1.0e-12) {
+            if (start < 0.0 || start > 1.0) {
+                return vec2(1.0, 0.0);
+            }
+        } else {
+            float a = -start / along;
+            float b = (1.0 - start) / along;
+            part = vec2(max(part.x, min(a, b)), min(part.y, max(a, b)));
+        }
+    }
+    return part;
+}
+
+// Depth under a place of the picture: where its ray meets the triangle's plane, but no nearer or farther than its corners.
 float depth_at(vec2 pixel, vec3 normal, float height, vec2 range) {
     float slope = dot(normal, ray_direction(pixel));
     float depth = abs(slope) > 1.0e-12 ? height / slope : range.x;
@@ -77,99 +117,43 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 origin = vec2(pixel);
     uint count = identity.y;
-
-    // The polygon relative to the pixel's corner, counter-clockwise in its coordinates.
-    vec2 polygon[8];
-    float area = 0.0;
-    for (uint i = 0u; i < count; i++) {
-        vec2 next = corner_of(i + 1u == count ? 0u : i + 1u) - corner_of(0u);
-        vec2 here = corner_of(i) - corner_of(0u);
-        area += here.x * next.y - here.y * next.x;
-    }
-    for (uint i = 0u; i < count; i++) {
-        polygon[i] = corner_of(area >= 0.0 ? i : count - 1u - i) - origin;
+    float turn = 0.0;
+    for (uint i = 1u; i + 1u < count; i++) {
+        vec2 a = corner_of(i) - corner_of(0u);
+        vec2 b = corner_of(i + 1u) - corner_of(0u);
+        turn += a.x * b.y - a.y * b.x;
     }
 
-    uint mask = 0u;
-    bool is_full = true;
+    // Mask, and whether the pixel's corners are inside.
+    uint mask = FULL;
+    vec4 corners_inside = vec4(1.0);
     for (uint i = 0u; i < count; i++) {
-        vec2 from = polygon[i];
-        vec2 to = polygon[i + 1u == count ? 0u : i + 1u];
-        float a = side_of(from, to, vec2(0.0, 0.0));
-        float b = side_of(from, to, vec2(1.0, 0.0));
-        float c = side_of(from, to, vec2(0.0, 1.0));
-        float d = side_of(from, to, vec2(1.0, 1.0));
-        if (max(max(a, b), max(c, d)) < 0.0) {
+        vec2 a = corner_of(i) - origin;
+        vec2 b = corner_of(i + 1u == count ? 0u : i + 1u) - origin;
+        bool forwards = a.x < b.x || (a.x == b.x && a.y < b.y);
+        vec2 low = forwards ? a : b;
+        vec2 high = forwards ? b : a;
+        float inwards = forwards == (turn >= 0.0) ? 1.0 : -1.0;
+        vec4 sides = inwards * vec4(side_of(low, high, vec2(0.0, 0.0)), side_of(low, high, vec2(1.0, 0.0)),
+            side_of(low, high, vec2(0.0, 1.0)), side_of(low, high, vec2(1.0, 1.0)));
+        if (max(max(sides.x, sides.y), max(sides.z, sides.w)) < 0.0) {
             return; // the pixel lies beside this edge
         }
-        is_full = is_full && min(min(a, b), min(c, d)) > 0.0;
+        corners_inside = min(corners_inside, sides);
+        if (min(min(sides.x, sides.y), min(sides.z, sides.w)) <= 0.0) {
+            uint inside = 0u;
+            for (uint bit = 0u; bit < 32u; bit++) {
+                vec2 point = vec2((float(bit & 3u) + 0.5) / 4.0, (float(bit >> 2u) + 0.5) / 8.0);
+                float side = inwards * side_of(low, high, point);
+                // A point on the edge belongs to the triangle on one side of it.
+                if (side > 0.0 || (side == 0.0 && inwards > 0.0)) {
+                    inside |= 1u << bit;
+                }
+            }
+            mask &= inside;
+        }
     }
-
-    vec2 piece[8];
-    uint piece_count = 4u;
-    float coverage = 1.0;
-    vec2 middle = vec2(0.5);
-    if (is_full) {
-        mask = FULL;
-        piece[0] = vec2(0.0, 0.0);
-        piece[1] = vec2(1.0, 0.0);
-        piece[2] = vec2(1.0, 1.0);
-        piece[3] = vec2(0.0, 1.0);
-    } else {
-        for (uint bit = 0u; bit < 32u; bit++) {
-            vec2 point = vec2((float(bit & 3u) + 0.5) / 4.0, (float(bit >> 2u) + 0.5) / 8.0);
-            bool inside = true;
-            for (uint i = 0u; i < count; i++) {
-                if (!is_inside(polygon[i], polygon[i + 1u == count ? 0u : i + 1u], point)) {
-                    inside = false;
-                }
-            }
-            mask |= inside ? 1u << bit : 0u;
-        }
-        // Sutherland and Hodgman against the pixel's four sides: 0 <= x, x <= 1, 0 <= y, y <= 1.
-        piece_count = count;
-        for (uint i = 0u; i < count; i++) {
-            piece[i] = polygon[i];
-        }
-        for (uint side = 0u; side < 4u; side++) {
-            vec2 before[8];
-            for (uint i = 0u; i < piece_count; i++) {
-                before[i] = piece[i];
-            }
-            uint before_count = piece_count;
-            piece_count = 0u;
-            for (uint i = 0u; i < before_count; i++) {
-                vec2 from = before[i];
-                vec2 to = before[i + 1u == before_count ? 0u : i + 1u];
-                float from_in = side == 0u ? from.x : (side == 1u ? 1.0 - from.x : (side == 2u ? from.y : 1.0 - from.y));
-                float to_in = side == 0u ? to.x : (side == 1u ? 1.0 - to.x : (side == 2u ? to.y : 1.0 - to.y));
-                if (from_in >= 0.0 && piece_count < 8u) {
-                    piece[piece_count] = from;
-                    piece_count++;
-                }
-                if ((from_in >= 0.0) != (to_in >= 0.0) && piece_count < 8u) {
-                    piece[piece_count] = mix(from, to, from_in / (from_in - to_in));
-                    piece_count++;
-                }
-            }
-        }
-        if (piece_count < 3u) {
-            return;
-        }
-        float twice = 0.0;
-        middle = vec2(0.0);
-        for (uint i = 0u; i < piece_count; i++) {
-            vec2 here = piece[i];
-            vec2 next = piece[i + 1u == piece_count ? 0u : i + 1u];
-            twice += here.x * next.y - here.y * next.x;
-            middle += here;
-        }
-        coverage = clamp(0.5 * twice, 0.0, 1.0);
-        if (coverage <= 0.0) {
-            return;
-        }
-        middle = clamp(middle / float(piece_count), vec2(0.0), vec2(1.0));
-    }
+    bool is_full = min(min(corners_inside.x, corners_inside.y), min(corners_inside.z, corners_inside.w)) > 0.0;
 
     uvec4 corner = triangles[identity.x];
     Object object = objects[corner.w];
@@ -182,13 +166,48 @@ void main() {
     vec2 range = vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
     range = max(range, vec2(frame.eye.w));
     float height = dot(facing, p0 - eye);
+
+    // The piece inside the pixel: its corners are those of the pixel that are inside, and the ends of the edges' parts in it.
     float near = 1.0e30;
     float far = 0.0;
-    for (uint i = 0u; i < piece_count; i++) {
-        float depth = depth_at(origin + piece[i], facing, height, range);
-        near = min(near, depth);
-        far = max(far, depth);
+    vec2 middle = vec2(0.0);
+    float corner_count = 0.0;
+    for (uint i = 0u; i < 4u; i++) {
+        float inside = i < 2u ? (i == 0u ? corners_inside.x : corners_inside.y) : (i == 2u ? corners_inside.z : corners_inside.w);
+        if (inside >= 0.0) {
+            vec2 place = vec2(float(i & 1u), float(i >> 1u));
+            float depth = depth_at(origin + place, facing, height, range);
+            near = min(near, depth);
+            far = max(far, depth);
+            middle += place;
+            corner_count += 1.0;
+        }
     }
+    float coverage = 1.0;
+    if (!is_full) {
+        float area = 0.0;
+        for (uint i = 0u; i < count; i++) {
+            vec2 a = corner_of(i) - origin;
+            vec2 b = corner_of(i + 1u == count ? 0u : i + 1u) - origin;
+            area += area_under(a, b);
+            vec2 part = part_inside(a, b);
+            if (part.x <= part.y) {
+                for (uint end = 0u; end < 2u; end++) {
+                    vec2 place = clamp(mix(a, b, end == 0u ? part.x : part.y), vec2(0.0), vec2(1.0));
+                    float depth = depth_at(origin + place, facing, height, range);
+                    near = min(near, depth);
+                    far = max(far, depth);
+                    middle += place;
+                    corner_count += 1.0;
+                }
+            }
+        }
+        coverage = clamp(turn >= 0.0 ? area : -area, 0.0, 1.0);
+        if (coverage <= 0.0 || corner_count == 0.0) {
+            return;
+        }
+    }
+    middle /= corner_count;
     if (near > frame.forward.w) {
         return;
     }

@@ -6,6 +6,5 @@
 #include "gas/volume.glsl"
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
-#include "gas/object.glsl"
 #include "gas/shadow-table.glsl"
 #include "gas/attenuation.glsl"

@@ -7,6 +7,5 @@
 #include "gas/density.glsl"
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
-#include "gas/object.glsl"
 #include "gas/shadow-traced.glsl"
 #include "gas/attenuation.glsl"

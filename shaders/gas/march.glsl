@@ -57,101 +57,110 @@ float phase(uint v, float cosine) {
 Section march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
     float scale = length(ray);
     vec3 direction = ray / scale;
-    float middle = 0.5 * (extent.x + extent.y);
-    float step_m = 1.0e30;
-    bool is_in[MAX_VOLUMES];
-    float previous[MAX_VOLUMES];
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
     vec3 up = cross(side, direction);
     vec3 entry = frame.eye.xyz + ray * extent.x;
-    float previous_m = 0.0;
-    uint evaluations = 0u;
+    float middle = 0.5 * (extent.x + extent.y);
+    float step_m = 1.0e30;
+    bool is_in[MAX_VOLUMES];
+    float previous[MAX_VOLUMES]; // densities, for the normals of solids
+    bool has_solid = false;
     for (uint v = 0u; v < frame.counts.w; v++) {
-        is_in[v] = spans[v].x <= middle && middle <= spans[v].y;
         previous[v] = 0.0;
+        is_in[v] = spans[v].x <= middle && middle <= spans[v].y;
         if (is_in[v]) {
             step_m = min(step_m, volumes[v].profile.w);
-            if (volumes[v].profile.z > 0.0) {
-                previous[v] = volume_density(v, entry);
-                evaluations++;
-            }
+            has_solid = has_solid || volumes[v].profile.z > 0.0;
         }
     }
+    float early = has_solid ? max(frame.sampling.w, 1.0 - SOLID_OPACITY) : frame.sampling.w;
     float length_m = (extent.y - extent.x) * scale;
+    uint evaluations = 0u;
+    uint increments = 0u;
     vec3 color = vec3(0.0);
     float transparency = 1.0;
-    uint number = first_number;
-    bool has_solid = false;
-    for (float from = 0.0; from < length_m; from += step_m) {
+    float previous_m = 0.0;
+    // A solid's march begins with the density at its entry, which nothing is added for.
+    bool is_entry = has_solid;
+    float from = 0.0;
+    while (from < length_m) {
         float increment = min(step_m, length_m - from);
-        float at_m = from + increment * random(pixel, number);
-        number++;
+        float at_m = is_entry ? 0.0 : from + increment * random(pixel, first_number + increments);
         vec3 point = entry + direction * at_m;
-        float extinctions[MAX_VOLUMES];
+        float densities[MAX_VOLUMES];
+        float asides[MAX_VOLUMES];
+        float aboves[MAX_VOLUMES];
         float extinction = 0.0;
         float densest = 0.0;
         for (uint v = 0u; v < frame.counts.w; v++) {
-            extinctions[v] = 0.0;
+            densities[v] = 0.0;
             if (is_in[v]) {
-                float density = volume_density(v, point);
-                evaluations++;
-                densest = max(densest, density);
-                extinctions[v] = volumes[v].optics.x * density;
-                extinction += extinctions[v];
+                // At the point, and for a solid in two directions orthogonal to the ray.
+                float apart = 0.25 * volumes[v].profile.w;
+                uint count = volumes[v].profile.z > 0.0 ? 3u : 1u;
+                for (uint i = 0u; i < count; i++) {
+                    vec3 offset = i == 0u ? vec3(0.0) : (i == 1u ? side : up) * apart;
+                    float density = volume_density(v, point + offset);
+                    if (i == 0u) {
+                        densities[v] = density;
+                    } else if (i == 1u) {
+                        asides[v] = density;
+                    } else {
+                        aboves[v] = density;
+                    }
+                }
+                evaluations += count;
+                densest = max(densest, densities[v]);
+                extinction += volumes[v].optics.x * densities[v];
             }
         }
-        if (extinction > 0.0) {
-            vec3 shadowed[MAX_LIGHTS];
-            vec4 ways[MAX_LIGHTS];
+        if (extinction > 0.0 && !is_entry) {
+            vec3 emission = vec3(0.0);
             for (uint l = 0u; l < frame.counts.z; l++) {
-                ways[l] = towards_light(l, point);
+                vec4 way = towards_light(l, point);
                 // For patchy gas, shadows are not computed where it is thinner than a threshold.
                 float depth = densest >= frame.sampling.z ? optical_depth_to(l, point) : 0.0;
-                shadowed[l] = irradiance(l, ways[l].w) * exp(-depth);
-            }
-            vec3 emission = vec3(0.0);
-            for (uint v = 0u; v < frame.counts.w; v++) {
-                if (extinctions[v] > 0.0) {
-                    vec3 light = frame.ambient.xyz;
-                    if (volumes[v].profile.z > 0.0) {
-                        has_solid = true;
-                        float apart = 0.25 * volumes[v].profile.w;
-                        float here = extinctions[v] / volumes[v].optics.x;
-                        float along = (here - previous[v]) / max(at_m - previous_m, 1.0e-3 * step_m);
-                        float aside = (volume_density(v, point + side * apart) - here) / apart;
-                        float above = (volume_density(v, point + up * apart) - here) / apart;
-                        evaluations += 2u;
-                        vec3 rise = direction * along + side * aside + up * above;
-                        vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -direction;
-                        for (uint l = 0u; l < frame.counts.z; l++) {
-                            light += shadowed[l] * max(dot(normal, ways[l].xyz), 0.0);
+                vec3 light = irradiance(l, way.w) * exp(-depth);
+                for (uint v = 0u; v < frame.counts.w; v++) {
+                    if (densities[v] > 0.0) {
+                        float share = PI * phase(v, dot(way.xyz, direction));
+                        if (volumes[v].profile.z > 0.0) {
+                            float apart = 0.25 * volumes[v].profile.w;
+                            float along = (densities[v] - previous[v]) / max(at_m - previous_m, 1.0e-3 * step_m);
+                            float aside = (asides[v] - densities[v]) / apart;
+                            float above = (aboves[v] - densities[v]) / apart;
+                            vec3 rise = direction * along + side * aside + up * above;
+                            vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -direction;
+                            share = max(dot(normal, way.xyz), 0.0);
                         }
-                    } else {
-                        for (uint l = 0u; l < frame.counts.z; l++) {
-                            light += shadowed[l] * (PI * phase(v, dot(ways[l].xyz, direction)));
-                        }
+                        emission += volumes[v].optics.x * densities[v] * volumes[v].optics.yzw * light * share;
                     }
-                    emission += extinctions[v] * volumes[v].optics.yzw * light;
                 }
+            }
+            for (uint v = 0u; v < frame.counts.w; v++) {
+                emission += volumes[v].optics.x * densities[v] * volumes[v].optics.yzw * frame.ambient.xyz;
             }
             float passed = exp(-extinction * increment);
             color += emission / extinction * (transparency * (1.0 - passed));
             transparency *= passed;
         }
         for (uint v = 0u; v < frame.counts.w; v++) {
-            if (volumes[v].profile.z > 0.0) {
-                previous[v] = extinctions[v] / volumes[v].optics.x;
-            }
+            previous[v] = densities[v];
         }
         previous_m = at_m;
-        float early = has_solid ? max(frame.sampling.w, 1.0 - SOLID_OPACITY) : frame.sampling.w;
+        if (is_entry) {
+            is_entry = false;
+            continue;
+        }
+        increments++;
+        from = float(increments) * step_m;
         if (before * transparency < early) {
             break;
         }
     }
     Section section;
     section.extent = vec4(extent, transparency, float(evaluations));
-    section.color = vec4(color, float(number - first_number));
+    section.color = vec4(color, float(increments));
     return section;
 }
 

@@ -23,12 +23,17 @@ float noise(vec3 p) {
     return mix(mix(x00, x10, s.y), mix(x01, x11, s.y), s.z);
 }
 
-// Octaves while the scale exceeds pixel_size, which is a constant of the scene: the same gas from everywhere.
-float turbulence(vec3 p) {
+// Noise, or turbulence: octaves while the scale exceeds pixel_size, which is a constant of the scene, so that the gas is the same from
+// everywhere.
+float fractal(vec3 p, bool is_noise) {
     float sum = 0.0;
     float frequency = 1.0;
     for (float scale = 1.0; scale > frame.sampling.y; scale *= 0.5) {
-        sum += abs(noise(p * frequency)) * scale;
+        float value = noise(p * frequency);
+        if (is_noise) {
+            return value;
+        }
+        sum += abs(value) * scale;
         frequency *= 2.0;
     }
     return sum;

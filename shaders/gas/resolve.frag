@@ -48,7 +48,6 @@ layout(push_constant, std430) uniform Shading {
 layout(location = 0) out vec4 radiance;
 
 const uint FULL = 0xffffffffu;
-const uint SUBPIXELS = 32u;
 
 // Light that a fragment sends to the eye, per opacity. The highlight is Phong's.
 vec3 shaded(uint f, vec3 ray) {
@@ -82,87 +81,61 @@ void main() {
     vec3 ray = ray_direction(vec2(place) + 0.5);
     uvec4 mine = pixels[pixel];
     vec3 color = vec3(0.0);
-    // One transparency while every mask was full, then one for each sub-pixel.
-    float whole = 1.0;
-    float parts[SUBPIXELS];
-    bool is_split = false;
-    uint fragment = heads[pixel];
-    uint section = 0u;
-    while (fragment != NONE || section < mine.w) {
-        uvec4 link = uvec4(NONE, 0u, 0u, 0u);
-        float depth = 1.0e30;
-        if (fragment != NONE) {
-            link = links[fragment];
-            depth = mean_depth(link);
-        }
-        if (section < mine.w) {
-            vec4 extent = sections[mine.x + section].extent;
-            if (0.5 * (extent.x + extent.y) < depth) {
-                vec3 gas = sections[mine.x + section].color.xyz;
-                if (is_split) {
-                    float left = 0.0;
-                    for (uint i = 0u; i < SUBPIXELS; i++) {
-                        left += parts[i];
-                        parts[i] *= extent.z;
-                    }
-                    color += gas * (left / float(SUBPIXELS));
-                } else {
-                    color += gas * whole;
-                    whole *= extent.z;
+    float opacity = 0.0;
+    // Sub-pixels that all masks treat alike are composited together: the group of the lowest that is left shrinks to those on
+    // its side of every mask that it meets.
+    uint remaining = FULL;
+    while (remaining != 0u) {
+        uint bit = remaining & (~remaining + 1u);
+        uint group = remaining;
+        vec3 group_color = vec3(0.0);
+        float left = 1.0;
+        uint fragment = heads[pixel];
+        uint section = 0u;
+        while ((fragment != NONE || section < mine.w) && left > 0.0) {
+            uvec4 link = uvec4(NONE, 0u, 0u, 0u);
+            float depth = 1.0e30;
+            if (fragment != NONE) {
+                link = links[fragment];
+                depth = mean_depth(link);
+            }
+            if (section < mine.w) {
+                Section gas = sections[mine.x + section];
+                if (0.5 * (gas.extent.x + gas.extent.y) < depth) {
+                    group_color += gas.color.xyz * left;
+                    left *= gas.extent.z;
+                    section++;
+                    continue;
                 }
-                section++;
+            }
+            if ((link.y & bit) == 0u) {
+                group &= ~link.y;
+                fragment = link.x;
                 continue;
             }
-        }
-        if (link.y != FULL && !is_split) {
-            for (uint i = 0u; i < SUBPIXELS; i++) {
-                parts[i] = whole;
-            }
-            is_split = true;
-        }
-        float opacity = opacity_of(colors[fragment]);
-        // What of this fragment, where both are, shows its neighbour instead.
-        uint both = 0u; // sub-pixels
-        float share = 0.0;
-        if (link.x != NONE) {
-            uvec4 next = links[link.x];
-            if (surfaces[link.x].y != surfaces[fragment].y) {
-                both = link.y & next.y;
-                share = share_behind(link, next) * opacity_of(colors[link.x]);
-            }
-        }
-        float seen = 0.0;
-        float seen_in_both = 0.0;
-        if (is_split) {
-            for (uint i = 0u; i < SUBPIXELS; i++) {
-                uint bit = 1u << i;
-                if ((link.y & bit) != 0u) {
-                    float part = parts[i] / float(SUBPIXELS);
-                    seen += part;
-                    seen_in_both += (both & bit) != 0u ? part : 0.0;
-                    parts[i] *= 1.0 - opacity;
+            group &= link.y;
+            // The share of this fragment that shows its neighbour instead.
+            float share = 0.0;
+            if (link.x != NONE) {
+                uvec4 next = links[link.x];
+                if ((next.y & bit) != 0u && surfaces[link.x].y != surfaces[fragment].y) {
+                    share = share_behind(link, next) * opacity_of(colors[link.x]);
+                    group &= share > 0.0 ? next.y : FULL;
                 }
             }
-        } else {
-            seen = whole;
-            seen_in_both = whole * (float(bitCount(both)) / float(SUBPIXELS));
-            whole *= 1.0 - opacity;
-        }
-        if (seen > 0.0) {
-            float others = seen_in_both * share;
-            color += shaded(fragment, ray) * (opacity * (seen - others));
-            if (others > 0.0) {
-                color += shaded(link.x, ray) * (opacity * others);
+            float taken = left * opacity_of(colors[fragment]);
+            uint count = share > 0.0 ? 2u : 1u;
+            for (uint i = 0u; i < count; i++) {
+                float part = i == 0u ? 1.0 - share : share;
+                group_color += shaded(i == 0u ? fragment : link.x, ray) * (taken * part);
             }
+            left *= 1.0 - opacity_of(colors[fragment]);
+            fragment = link.x;
         }
-        fragment = link.x;
+        float size = float(bitCount(group)) / 32.0;
+        color += (group_color + frame.background.xyz * left) * size;
+        opacity += (1.0 - left) * size;
+        remaining &= ~group;
     }
-    float left = whole;
-    if (is_split) {
-        left = 0.0;
-        for (uint i = 0u; i < SUBPIXELS; i++) {
-            left += parts[i] / float(SUBPIXELS);
-        }
-    }
-    radiance = vec4(color + frame.background.xyz * left, 1.0 - left);
+    radiance = vec4(color, opacity);
 }
