@@ -31,6 +31,8 @@ enum Name {
     Figure2,
     /// Section 5's claim: time by the screen's size
     Screen,
+    /// Steps of each ray by samples a side of the map; a heat map of each
+    Steps,
     /// Bilinear and bicubic interpolation at both levels of detail: time, and the pictures
     Interpolation,
 }
@@ -39,7 +41,7 @@ impl Name {
     /// What it sweeps; nothing for a figure.
     fn axis(self) -> Option<Axis> {
         match self {
-            Name::Table1 => Some(Axis::Map),
+            Name::Table1 | Name::Steps => Some(Axis::Map),
             Name::Screen => Some(Axis::Screen),
             Name::Interpolation => Some(Axis::Interpolation),
             Name::Figure1 | Name::Figure2 => None,
@@ -87,7 +89,12 @@ impl ExperimentArgs for Experiments {
         let variants = resolve(&self.variant);
         match name.axis() {
             None => self.draw(&publication, name, setup, &variants),
-            Some(axis) => self.sweep(&publication, axis, &setup, &variants),
+            // Every variant takes the same steps; the paper's second application stands for all.
+            Some(axis) if name == Name::Steps => {
+                let points = self.sweep(&publication, axis, &setup, &[Variant::GpuCompute])?;
+                self.heat_maps(&publication, &points)
+            }
+            Some(axis) => self.sweep(&publication, axis, &setup, &variants).map(drop),
         }
     }
 }
@@ -147,7 +154,7 @@ impl Experiments {
         axis: Axis,
         setup: &Setup,
         variants: &[Variant],
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<Point<Setup>>, Failure> {
         let counts = |default: &[u32]| if self.counts.is_empty() { default.to_vec() } else { self.counts.clone() };
         let points = match axis {
             Axis::Map => table::by_map(setup, &counts(&table::SIDES), variants),
@@ -170,7 +177,17 @@ impl Experiments {
             }
         }
         machine.check_validation()?;
-        swept.stopped.map_or(Ok(()), |error| Err(error.into()))
+        swept.stopped.map_or(Ok(points), |error| Err(error.into()))
+    }
+
+    fn heat_maps(&self, publication: &Publication<'_>, points: &[Point<Setup>]) -> Result<(), Failure> {
+        let mut machine = self.machine()?;
+        for point in points {
+            let heat = figures::heat_map(&mut machine, &point.study)?;
+            publication.drawing(&format!("-{}.png", point.label), &heat)?;
+        }
+        machine.check_validation()?;
+        Ok(())
     }
 }
 

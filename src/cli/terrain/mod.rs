@@ -72,6 +72,27 @@ enum LodWord {
     Exact,
 }
 
+/// The surface between the samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum InterpolationWord {
+    /// Eq. 7
+    Bilinear,
+    /// Catmull-Rom
+    Bicubic,
+}
+
+fn parse_base(text: &str) -> Result<Base, String> {
+    match text.split_once(':') {
+        None if text == "plane" => Ok(Base::Plane),
+        None if text == "earth" => Ok(Base::EARTH),
+        Some(("ellipsoid", axes)) => {
+            parse_numbers::<2>(axes).map(|[equatorial_m, polar_m]| Base::Ellipsoid { equatorial_m, polar_m })
+        }
+        Some(("cylinder", radius)) => parse_finite(radius).map(|radius_m| Base::Cylinder { radius_m }),
+        _ => Err("give plane, earth, ellipsoid:EQUATORIAL,POLAR or cylinder:RADIUS".to_owned()),
+    }
+}
+
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Scene")]
 pub struct TerrainArgs {
@@ -98,6 +119,13 @@ pub struct TerrainArgs {
     /// How far a ray is followed [default: pixel]
     #[arg(long, value_enum)]
     lod: Option<LodWord>,
+    /// The surface between the samples [default: bilinear]
+    #[arg(long, value_enum)]
+    interpolation: Option<InterpolationWord>,
+    /// Base surface that heights are added to: plane, earth (WGS84), ellipsoid:EQUATORIAL,POLAR or cylinder:RADIUS, semi-axes
+    /// and radius in metres, 1 to 100000000; the cylinder's axis runs north and south [default: plane]
+    #[arg(long, value_name = "BASE", value_parser = parse_base)]
+    base: Option<Base>,
     /// Height at which the base surface lies, -1000000 to 1000000 metres [default: the maps' minimum]
     #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     base_level: Option<f32>,
@@ -139,7 +167,13 @@ impl PaperArgs for TerrainArgs {
             p.interpolation = Interpolation::Bilinear;
             setup.preset = Some(preset.word().to_owned());
         }
-        p.base = Base::Plane;
+        p.base = self.base.unwrap_or(p.base);
+        if let Some(interpolation) = self.interpolation {
+            p.interpolation = match interpolation {
+                InterpolationWord::Bilinear => Interpolation::Bilinear,
+                InterpolationWord::Bicubic => Interpolation::Bicubic,
+            };
+        }
         if let Some(lod) = self.lod {
             p.lod = match lod {
                 LodWord::Pixel => Lod::Pixel,

@@ -16,7 +16,7 @@ use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::papers::ParameterError;
-use crate::papers::terrain::{MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
+use crate::papers::terrain::{Base, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
 use crate::scene::{HeightMap, HeightMapSource, volcano};
 
 /// What a user set up.
@@ -110,6 +110,9 @@ impl Study for Setup {
     /// Checks the parameters and loads the maps.
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
+        for placed in &self.maps {
+            self.parameters.validate_placement(&placed.placement)?;
+        }
         let input = |placed: &PlacedMap| -> Result<MapInput, Error> {
             Ok(MapInput { map: Arc::new(self.load_map(&placed.source)?), placement: placed.placement })
         };
@@ -157,13 +160,18 @@ impl Study for Setup {
             View::Top => json!("top"),
             View::Camera(camera) => json!([camera.eye.to_array(), camera.target.to_array()]),
         };
+        let base = match p.base {
+            Base::Plane => json!("plane"),
+            Base::Ellipsoid { equatorial_m, polar_m } => json!({"ellipsoid": [equatorial_m, polar_m]}),
+            Base::Cylinder { radius_m } => json!({"cylinder": radius_m}),
+        };
         let entries = [
             ("resolution", json!(first)),
             ("maps", json!(maps)),
             ("exaggeration", json!(self.exaggeration)),
             ("lod", json!(p.lod.word())),
             ("interpolation", json!(p.interpolation.word())),
-            ("base", json!(p.base.word())),
+            ("base", base),
             ("base_level", json!(p.base_level_m)),
             ("camera", view),
             ("sun", json!([p.sun.azimuth_rad.to_degrees(), p.sun.elevation_rad.to_degrees()])),
@@ -177,14 +185,26 @@ impl Study for Setup {
         format!("{}, {} samples a side", maps.join(" + "), self.resolution)
     }
 
-    fn findings(&self, _: &mut Machine, measured: &mut [(Built<Self>, Measurement)]) -> Result<Vec<Findings>, Error> {
+    fn findings(
+        &self,
+        machine: &mut Machine,
+        measured: &mut [(Built<Self>, Measurement)],
+    ) -> Result<Vec<Findings>, Error> {
         let rays = f64::from(self.parameters.width) * f64::from(self.parameters.height);
-        let findings = measured.iter().map(|(_, measurement)| {
+        let mut findings = Vec::new();
+        for (built, measurement) in measured {
             let frame_ms = median(&measurement.frame_ms).filter(|&ms| ms > 0.0);
-            let entries = [("mrays_per_s", json!(frame_ms.map(|ms| rays / ms / 1e3)))];
+            let census = figures::census(machine, &mut built.paper)?;
+            // A rasterised grid has no steps.
+            let steps = (built.variant != Variant::Mesh).then(|| census.steps_per_ray());
+            let entries = [
+                ("mrays_per_s", json!(frame_ms.map(|ms| rays / ms / 1e3))),
+                ("steps_per_ray", json!(steps)),
+                ("hit_share", json!(census.hit_share())),
+            ];
             let results = entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-            Findings { results, warnings: Vec::new() }
-        });
-        Ok(findings.collect())
+            findings.push(Findings { results, warnings: Vec::new() });
+        }
+        Ok(findings)
     }
 }

@@ -93,14 +93,6 @@ pub enum Base {
 impl Base {
     /// The Earth's, WGS84.
     pub const EARTH: Base = Base::Ellipsoid { equatorial_m: 6_378_137.0, polar_m: 6_356_752.5 };
-
-    pub fn word(self) -> &'static str {
-        match self {
-            Base::Plane => "plane",
-            Base::Ellipsoid { .. } => "ellipsoid",
-            Base::Cylinder { .. } => "cylinder",
-        }
-    }
 }
 
 /// Where the sun stands.
