@@ -16,7 +16,7 @@ pub(super) enum Unit {
     Metres(f64),
 }
 
-/// Steps of a degree or more are taken for metres where nothing names the unit.
+/// Steps of this size or more are taken for metres where nothing names the unit.
 const COARSEST_DEG: f64 = 0.1;
 
 /// Where a raster lies in map coordinates of an unnamed unit: the centre of its north-west sample, and the steps east and

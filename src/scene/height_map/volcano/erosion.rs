@@ -36,6 +36,11 @@ pub(super) fn eroded_m(noise: Noise, place: Vec2, slope: Vec2) -> f32 {
     height_m
 }
 
+/// How far a patch's centre strays from its cell's, and the patch's radius, in cells. No patch reaches beyond the
+/// neighbouring cells, and one reaches every place: sqrt(2) (0.5 + 0.3) < 1.2 = 1.5 - 0.3.
+const STRAY: f32 = 0.3;
+const RADIUS: f32 = 1.2;
+
 /// Waves of length 1 along `across`, a unit vector, and how they change along it.
 fn waves(noise: Noise, octave: u32, place: Vec2, across: Vec2) -> (f32, f32) {
     let floor = place.floor();
@@ -44,10 +49,10 @@ fn waves(noise: Noise, octave: u32, place: Vec2, across: Vec2) -> (f32, f32) {
     for y in -1..=1 {
         for x in -1..=1 {
             let neighbour = IVec2::new(x, y);
-            let jitter = noise.cell(cell + neighbour + IVec2::splat(7_919 * octave as i32)) * 0.4;
+            let jitter = noise.cell(cell + neighbour + IVec2::splat(7_919 * octave as i32)) * STRAY;
             let offset = inside - (neighbour.as_vec2() + 0.5 + jitter);
-            let near = (1.0 - offset.length_squared() / 1.96).max(0.0);
-            let weight = near * near * near * near;
+            let near = (1.0 - offset.length_squared() / (RADIUS * RADIUS)).max(0.0);
+            let weight = near * near * near;
             let (sine, cosine) = sine_cosine(offset.dot(across));
             wave += weight * cosine;
             change -= weight * sine;
@@ -65,4 +70,32 @@ fn sine_cosine(turns: f32) -> (f32, f32) {
         arch * (0.775 + 0.225 * arch.abs())
     };
     (sine(turns), sine(turns + 0.25))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parabolas_are_close_to_sine_and_cosine() {
+        for step in -300..300 {
+            let turns = step as f32 / 97.0;
+            let (sine, cosine) = sine_cosine(turns);
+            let (true_sine, true_cosine) = (turns * std::f32::consts::TAU).sin_cos();
+            assert!((sine - true_sine).abs() < 0.0012 && (cosine - true_cosine).abs() < 0.0012, "{turns}");
+        }
+    }
+
+    #[test]
+    fn gullies_are_bounded_and_have_no_steps_from_patch_to_patch() {
+        let noise = Noise::new(3, 0);
+        let height_m = |step: i32| eroded_m(noise, Vec2::new(step as f32 * 0.25, 17.0), Vec2::new(-0.3, 0.5));
+        let most_m: f32 = (0..OCTAVES).map(|octave| DEEPEST_M * 0.45_f32.powi(octave as i32)).sum();
+        for step in -20_000..20_000 {
+            assert!(height_m(step).abs() <= most_m);
+            // A slope of two, over a quarter of a metre.
+            assert!((height_m(step + 1) - height_m(step)).abs() < 0.5, "{step}");
+        }
+        assert_eq!(eroded_m(noise, Vec2::new(1.0, 2.0), Vec2::ZERO), 0.0);
+    }
 }
