@@ -24,6 +24,7 @@ const vec3 DEEP_WATER = vec3(0.004, 0.030, 0.055); // light scattered back by de
 const int SURFACE_STEPS = 5; // Newton's method converges in three on waves of moderate slope
 const int SCENE_STEPS = 64;
 const int REFINEMENTS = 8;
+const float SAME_SURFACE = 0.02; // what neighbouring texels see may lie this share of the camera's distance apart
 
 vec3 sky(vec3 direction) {
     float height = clamp(direction.y, 0.0, 1.0);
@@ -42,24 +43,49 @@ vec3 unproject(mat4 inverse, vec2 ndc, float depth) {
     return point.xyz / point.w;
 }
 
-// Texel of the underwater textures where a point of the world is seen.
-ivec2 texel_of(vec3 point) {
+// Where a point of the world is seen in the underwater textures, in texels.
+vec2 place_of(vec3 point) {
     vec4 clip = view.underwater_view_projection * vec4(point, 1.0);
     vec2 uv = 0.5 * clip.xy / max(clip.w, 1.0e-6) + 0.5;
-    return ivec2(clamp(uv * view.size.zw, vec2(0.0), view.size.zw - 1.0));
+    return clamp(uv * view.size.zw, vec2(0.0), view.size.zw - 1.0);
+}
+
+// The point of the world that the underwater camera sees in a texel.
+vec3 seen_at(ivec2 texel, float depth) {
+    vec2 there = (vec2(texel) + 0.5) / view.size.zw * 2.0 - 1.0;
+    return unproject(view.underwater_inverse, there, depth);
 }
 
 // How far a point lies behind the surface that the underwater camera sees in its direction, metres; negative in front of it, and
 // where nothing is seen.
 float depth_behind(vec3 point) {
-    ivec2 texel = texel_of(point);
+    ivec2 texel = ivec2(place_of(point));
     float depth = texelFetch(sampler2D(underwater_depth, nearest), texel, 0).r;
     if (depth >= 1.0) {
         return -1.0;
     }
-    vec2 there = (vec2(texel) + 0.5) / view.size.zw * 2.0 - 1.0;
-    vec3 seen = unproject(view.underwater_inverse, there, depth);
-    return distance(point, view.underwater_eye.xyz) - distance(seen, view.underwater_eye.xyz);
+    return distance(point, view.underwater_eye.xyz) - distance(seen_at(texel, depth), view.underwater_eye.xyz);
+}
+
+// Light from a point: interpolated between the four nearest texels, but for those that see another surface.
+vec3 light_from(vec3 point) {
+    vec2 place = place_of(point);
+    vec2 base = floor(place - 0.5);
+    vec2 share = place - 0.5 - base;
+    float near_m = SAME_SURFACE * distance(point, view.underwater_eye.xyz);
+    vec3 light = vec3(0.0);
+    float total = 0.0;
+    for (int i = 0; i < 4; i++) {
+        vec2 corner = vec2(float(i & 1), float(i >> 1));
+        vec2 weights = mix(1.0 - share, share, corner);
+        ivec2 texel = ivec2(clamp(base + corner, vec2(0.0), view.size.zw - 1.0));
+        float depth = texelFetch(sampler2D(underwater_depth, nearest), texel, 0).r;
+        float weight = distance(point, seen_at(texel, depth)) <= near_m ? weights.x * weights.y : 0.0;
+        light += weight * texelFetch(sampler2D(underwater_color, nearest), texel, 0).rgb;
+        total += weight;
+    }
+    // What a ray came closest to is not where it ends: the texel in its direction stands for it.
+    return total > 0.0 ? light / total : texelFetch(sampler2D(underwater_color, nearest), ivec2(place), 0).rgb;
 }
 
 void main() {
@@ -92,7 +118,7 @@ void main() {
 
     // What the refracted ray hits: followed through the depth texture until it runs behind what is seen there. Far behind means
     // that it passes behind an object, which is no hit.
-    float reach = water.floor_depth_m / max(-refracted.y, 0.05) * 1.05;
+    float reach = max(water.floor_depth_m + surface.y - view.eye.w, 0.0) / max(-refracted.y, 0.05) * 1.05;
     float stride = reach / float(SCENE_STEPS);
     float travel = 0.0;
     float nearer = 0.0;
@@ -129,8 +155,7 @@ void main() {
     }
     vec3 below = DEEP_WATER;
     if (travel >= 0.0) {
-        ivec2 texel = texel_of(surface + refracted * travel);
-        vec3 lit = texelFetch(sampler2D(underwater_color, nearest), texel, 0).rgb;
+        vec3 lit = light_from(surface + refracted * travel);
         below = mix(DEEP_WATER, lit, exp(-water.absorption_per_m * travel));
     }
     float reflectance = fresnel(-dot(ray, normal), -dot(refracted, normal), water.eta);

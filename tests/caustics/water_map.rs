@@ -10,7 +10,7 @@ use fumarole::papers::Variant as _;
 use fumarole::papers::caustics::reference::{spherical_cap_focus, spherical_cap_vertex};
 use fumarole::papers::caustics::water::{LEVEL_M, waves};
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaterMap, WaveParameters};
-use fumarole::scene::{HeightMap, Light, Samples, shapes};
+use fumarole::scene::{Camera, HeightMap, Light, Samples, shapes};
 use glam::{DVec2, DVec3, Mat4, UVec2, Vec2, Vec3};
 
 use crate::common::gpu_test;
@@ -136,6 +136,24 @@ fn a_height_map_stands_still() {
             Drawing::of(device, Variant::LevelMap, &parameters, &[teapot()]).picture
         });
         assert_eq!(first, later);
+    });
+}
+
+/// Straight down through flat and clear water the floor has one colour, however high the water stands.
+#[test]
+fn the_floor_is_seen_through_water_high_above_its_level() {
+    gpu_test(|device| {
+        let camera = Camera {
+            eye: Vec3::Y * 6.0,
+            target: Vec3::NEG_Y * 3.0,
+            vertical_fov_rad: 0.1,
+            ..parameters(OVERHEAD).camera
+        };
+        let calm = Parameters { waves: FLAT, absorption_per_m: 0.0, camera, ..parameters(OVERHEAD) };
+        let high = under(map(UVec2::splat(2), DVec2::ONE, |_| 2.5), calm.clone());
+        let [calm, high] = [calm, high].map(|p| Drawing::of(device, Variant::LevelMap, &p, &[floor()]).picture);
+        let difference = compare(&calm, &high, None).unwrap();
+        assert!(difference.max < 0.5, "{difference:?}");
     });
 }
 
