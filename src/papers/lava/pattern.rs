@@ -87,19 +87,22 @@ impl Noise {
 
     fn texel(&self, column: u32, row: u32) -> [u8; 4] {
         let place = [column, row].map(|c| (c as f32 + 0.5) / SIZE as f32);
+        // Noise gathers around its mean: stretched, it fills the range.
+        let stretched = |value: f32, contrast: f32| (0.5 + contrast * (value - 0.5)).clamp(0.0, 1.0);
         // Plates do not break along straight lines.
-        let bend = |layer| 0.12 * (self.octaves(place, 4, 5, layer) - 0.5);
+        let bend = |layer| 0.16 * (self.octaves(place, 5, 6, layer) - 0.5);
         let bent = [place[0] + bend(10), place[1] + bend(20)];
+        let crust = stretched(self.octaves(place, 3, 7, 50), 2.0);
+        let grain = stretched(self.octaves(place, 32, 4, 60), 2.6);
         let crack = |width: f32, period, layer| {
             let t = (1.0 - self.border(bent, period, layer) / width).max(0.0);
             t * t
         };
-        let cracks = crack(0.3, PLATES, 30).max(0.45 * crack(0.3, 2 * PLATES, 40));
-        // Lighter and darker crust, grain and pits; where it is torn the rock is fresh and bright.
-        let crust = self.octaves(place, 3, 7, 50);
-        let grain = self.octaves(place, 20, 5, 60);
-        let crust = 0.12 + 0.9 * (crust - 0.25).max(0.0) * (0.3 + 1.2 * grain);
-        let value = (crust + (1.0 - crust) * cracks * (0.5 + 0.7 * grain)).min(1.0);
+        // Cracks gape here and are nearly closed there.
+        let cracks = crack(0.12 + 0.32 * grain, PLATES, 30).max(0.5 * crack(0.1 + 0.3 * crust, 2 * PLATES, 40));
+        // Lighter and darker crust, grainy; where it is torn the rock is fresh and bright.
+        let crust = 0.05 + (0.1 + 0.45 * crust * crust) * (0.25 + 1.5 * grain * grain);
+        let value = (crust + (1.0 - crust) * cracks).min(1.0);
         let [r, g, b] = [value, value * 0.97, value * 0.93].map(|v| (v * 255.0 + 0.5) as u8);
         [r, g, b, 255]
     }
