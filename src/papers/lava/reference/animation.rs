@@ -50,7 +50,7 @@ mod tests {
     #[test]
     fn a_particle_counts_in_every_cluster_that_it_reaches() {
         let planes = [0.1, 0.3, 0.5, 0.7, 0.9];
-        let found = clusters(&[0.0, 0.75, 0.8, 1.0, 1.1], &planes, 0.1);
+        let found = clusters(&[0.0, 0.7, 0.8, 1.0, 1.1], &planes, 0.15);
         assert_eq!(found, [vec![0, 1, 2], vec![2, 3]]);
     }
 }
