@@ -83,36 +83,45 @@ void main() {
     vec3 color = vec3(0.0);
     float opacity = 0.0;
     // Sub-pixels that all masks treat alike are composited together: the group of the lowest that is left shrinks to those on
-    // its side of every mask that it meets.
+    // its side of every mask that it meets. One loop goes through the lists of all groups, one after the other.
     uint remaining = FULL;
+    uint group = FULL;
+    vec3 group_color = vec3(0.0);
+    float left = 1.0;
+    uint fragment = heads[pixel];
+    uint section = 0u;
     while (remaining != 0u) {
         uint bit = remaining & (~remaining + 1u);
-        uint group = remaining;
-        vec3 group_color = vec3(0.0);
-        float left = 1.0;
-        uint fragment = heads[pixel];
-        uint section = 0u;
-        while ((fragment != NONE || section < mine.w) && left > 0.0) {
-            uvec4 link = uvec4(NONE, 0u, 0u, 0u);
-            float depth = 1.0e30;
-            if (fragment != NONE) {
-                link = links[fragment];
-                depth = mean_depth(link);
-            }
-            if (section < mine.w) {
-                Section gas = sections[mine.x + section];
-                if (0.5 * (gas.extent.x + gas.extent.y) < depth) {
-                    group_color += gas.color.xyz * left;
-                    left *= gas.extent.z;
-                    section++;
-                    continue;
-                }
-            }
-            if ((link.y & bit) == 0u) {
-                group &= ~link.y;
-                fragment = link.x;
-                continue;
-            }
+        float depth = 1.0e30;
+        uvec4 link = uvec4(NONE, 0u, 0u, 0u);
+        if (fragment != NONE) {
+            link = links[fragment];
+            depth = mean_depth(link);
+        }
+        bool is_gas = false;
+        Section gas;
+        if (section < mine.w) {
+            gas = sections[mine.x + section];
+            is_gas = 0.5 * (gas.extent.x + gas.extent.y) < depth;
+        }
+        if (left <= 0.0 || (fragment == NONE && !is_gas)) {
+            float size = float(bitCount(group)) / 32.0;
+            color += (group_color + frame.background.xyz * left) * size;
+            opacity += (1.0 - left) * size;
+            remaining &= ~group;
+            group = remaining;
+            group_color = vec3(0.0);
+            left = 1.0;
+            fragment = heads[pixel];
+            section = 0u;
+        } else if (is_gas) {
+            group_color += gas.color.xyz * left;
+            left *= gas.extent.z;
+            section++;
+        } else if ((link.y & bit) == 0u) {
+            group &= ~link.y;
+            fragment = link.x;
+        } else {
             group &= link.y;
             // The share of this fragment that shows its neighbour instead.
             float share = 0.0;
@@ -132,10 +141,6 @@ void main() {
             left *= 1.0 - opacity_of(colors[fragment]);
             fragment = link.x;
         }
-        float size = float(bitCount(group)) / 32.0;
-        color += (group_color + frame.background.xyz * left) * size;
-        opacity += (1.0 - left) * size;
-        remaining &= ~group;
     }
     radiance = vec4(color, opacity);
 }

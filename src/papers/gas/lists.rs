@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use ash::vk;
+use glam::{Vec2, Vec3};
+use half::f16;
 
 use super::blocks::Capacity;
 use super::geometry::Geometry;
@@ -49,6 +51,10 @@ pub struct Fragment {
     pub opacity: f32,
     pub object: u32,
     pub triangle: u32,
+    /// Linear RGB, as half floats hold it.
+    pub color: [f32; 3],
+    /// Of unit length, to the 16 bits that hold each half of it.
+    pub normal: [f32; 3],
 }
 
 impl Lists {
@@ -164,11 +170,14 @@ impl Lists {
         let (surfaces, colors) = (words(&self.surfaces)?, words(&self.colors)?);
         let fragment = |at: usize| -> Option<(Fragment, u32)> {
             let &[next, mask, near, far] = links.get(4 * at..4 * at + 4)? else { return None };
-            let &[_, object, triangle, coverage] = surfaces.get(4 * at..4 * at + 4)? else { return None };
-            let opacity = (colors.get(2 * at + 1)? >> 16) as f32 / 65535.0;
+            let &[normal, object, triangle, coverage] = surfaces.get(4 * at..4 * at + 4)? else { return None };
+            let &[red_green, blue_opacity] = colors.get(2 * at..2 * at + 2)? else { return None };
+            let opacity = (blue_opacity >> 16) as f32 / 65535.0;
+            let color = [red_green, red_green >> 16, blue_opacity].map(|c| f16::from_bits(c as u16).to_f32());
+            let normal = unpack_normal(normal).to_array();
             let depth_m = [near, far].map(f32::from_bits);
             let coverage = f32::from_bits(coverage);
-            Some((Fragment { mask, depth_m, coverage, opacity, object, triangle }, next))
+            Some((Fragment { mask, depth_m, coverage, opacity, object, triangle, color, normal }, next))
         };
         let list = |&head: &u32| {
             let mut next = head;
@@ -181,4 +190,13 @@ impl Lists {
         };
         Ok(heads.iter().take(self.pixel_count as usize).map(list).collect())
     }
+}
+
+/// The unit vector of an octahedral normal, 16 bits each way.
+fn unpack_normal(packed: u32) -> Vec3 {
+    let folded = [packed, packed >> 16].map(|half| (f32::from(half as u16 as i16) / 32767.0).max(-1.0));
+    let folded = Vec2::from(folded);
+    let z = 1.0 - folded.x.abs() - folded.y.abs();
+    let t = (-z).max(0.0);
+    (folded - folded.signum() * t).extend(z).normalize_or(Vec3::Y)
 }
