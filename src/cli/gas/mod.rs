@@ -170,7 +170,7 @@ impl GasArgs {
         set(&mut p.shadow_threshold, self.shadow_threshold);
         set(&mut p.early_end, self.early_end);
         for volume in &mut p.volumes {
-            set(&mut volume.texture.function, self.density.map(|word| function(word)));
+            set(&mut volume.texture.function, self.density.map(function));
             set(&mut volume.tau_per_m, self.tau);
             set(&mut volume.albedo, self.albedo.map(Vec3::splat));
             set(&mut volume.falloff, self.falloff);

@@ -99,7 +99,7 @@ mod tests {
         }
         assert!(parse("bandai.hgt", 2_884_802, std::io::empty()).unwrap_err().to_string().contains("N37E140.hgt"));
         assert_eq!(parse("N37E140.hgt", 2_884_802, [0; 9].as_slice()).unwrap_err().place.to_string(), "row 0: ");
-        let void = vec![0x80, 0].repeat(1_201 * 1_201);
+        let void = [0x80, 0].repeat(1_201 * 1_201);
         let fault = parse("N37E140.hgt", void.len() as u64, void.as_slice()).unwrap_err().to_string();
         assert!(fault.contains("all its samples are void"), "{fault}");
     }

@@ -276,7 +276,8 @@ fn tiffs_and_pngs_that_are_no_height_map_are_refused() {
     assert!(picture(::image::DynamicImage::new_rgb8(3, 3)).starts_with("IHDR: it is no grey picture"));
     assert!(picture(::image::DynamicImage::new_luma8(1, 9)).starts_with("IHDR: it has 1 x 9 samples"));
     assert!(picture(::image::DynamicImage::new_luma_a8(4, 4)).contains("all its samples are void"));
-    let tiff = |write: &dyn Fn(&mut tiff::encoder::TiffEncoder<&mut Cursor<Vec<u8>>>)| {
+    type Encoder<'a> = tiff::encoder::TiffEncoder<&'a mut Cursor<Vec<u8>>, tiff::encoder::TiffKindStandard>;
+    let tiff = |write: &dyn Fn(&mut Encoder<'_>)| {
         let mut bytes = Cursor::new(Vec::new());
         write(&mut tiff::encoder::TiffEncoder::new(&mut bytes).unwrap());
         parse("tif", bytes.into_inner())
