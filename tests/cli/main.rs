@@ -8,6 +8,7 @@ mod compare;
 mod devices;
 mod dumps;
 mod experiment;
+mod gas;
 mod interruption;
 mod lava;
 mod meshes;

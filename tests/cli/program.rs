@@ -42,6 +42,11 @@ pub fn lava(arguments: &str) -> Program {
 }
 
 /// As [`caustics`].
+pub fn gas(arguments: &str) -> Program {
+    Program::new(env!("CARGO_BIN_EXE_gas")).args(arguments)
+}
+
+/// As [`caustics`].
 pub fn terrain(arguments: &str) -> Program {
     Program::new(env!("CARGO_BIN_EXE_terrain")).args(arguments)
 }

@@ -140,8 +140,11 @@ impl PaperArgs for GasArgs {
     const BENCHED: &'static str = "no-volume,none,surfaces,table";
     const RENDERED: &'static str = "table";
 
+    /// Figure 8 at half its size.
     fn quick() -> Setup {
-        Setup { preset: None, ..Setup::of(Preset::Fig8) }
+        let mut setup = Setup { preset: None, ..Setup::of(Preset::Fig8) };
+        (setup.parameters.width, setup.parameters.height) = (180, 125);
+        setup
     }
 
     fn resolve(&self, process: u32) -> Result<Setup, Failure> {
