@@ -23,8 +23,7 @@ struct Segment {
 };
 
 // A quadric along a ray: a t^2 + 2 b t + c.
-vec3 along_ray(vec3 direction, vec2 squares, vec2 linear, float constant) {
-    vec3 eye = land.eye.xyz;
+vec3 along_ray(vec3 eye, vec3 direction, vec2 squares, vec2 linear, float constant) {
     float a = squares.x * dot(direction.xy, direction.xy) + squares.y * direction.z * direction.z;
     float b = squares.x * dot(eye.xy, direction.xy) + squares.y * eye.z * direction.z + dot(linear, direction.yz);
     float c = squares.x * dot(eye.xy, eye.xy) + squares.y * eye.z * eye.z + 2.0 * dot(linear, eye.yz) + constant;
@@ -33,7 +32,7 @@ vec3 along_ray(vec3 direction, vec2 squares, vec2 linear, float constant) {
 
 // Where the ray meets the base, and how much farther it must go to be below it without doubt.
 vec2 base_depth(vec3 direction) {
-    vec3 q = along_ray(direction, land.ground.xy, land.slope.zw, 0.0);
+    vec3 q = along_ray(land.eye.xyz, direction, land.ground.xy, land.slope.zw, 0.0);
     float discriminant = q.y * q.y - q.x * q.z;
     float root = sqrt(max(discriminant, 0.0));
     bool is_met = discriminant > 0.0 && q.y < 0.0;
@@ -46,8 +45,8 @@ vec2 base_place(vec3 direction, float depth_m) {
     return depth_m < NO_DEPTH ? on_map(land.eye.xyz + depth_m * direction, 1.0).xy : vec2(0.0);
 }
 
-Way way_of(vec3 direction, float limit_m) {
-    vec3 q = along_ray(direction, land.shell.xy, land.slope.xy, land.shell.z);
+Way way_of(vec3 eye, vec3 direction, float limit_m) {
+    vec3 q = along_ray(eye, direction, land.shell.xy, land.slope.xy, land.shell.z);
     float discriminant = q.y * q.y - q.x * q.z;
     float root = sqrt(max(discriminant, 0.0));
     float sum = q.y < 0.0 ? root - q.y : -q.y - root;
@@ -57,12 +56,12 @@ Way way_of(vec3 direction, float limit_m) {
     if (land.form.w == CYLINDER) {
         float low = -land.middle.z / land.steps.y;
         float high = (float(land.size.y - 1) - land.middle.z) / land.steps.y;
-        range = between(range, land.eye.z, direction.z, low, high);
+        range = between(range, eye.z, direction.z, low, high);
     }
     if (discriminant <= 0.0 || !(range.x < range.y)) {
         range = vec2(1.0, 0.0);
     }
-    vec3 from = land.eye.xyz + range.x * direction;
+    vec3 from = eye + range.x * direction;
     vec3 whole = (range.y - range.x) * direction;
     float cut = whole.x != 0.0 ? -from.x / whole.x : 0.0;
     bool is_behind = land.middle.x + from.y + cut * whole.y < 0.0;

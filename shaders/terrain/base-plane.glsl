@@ -30,12 +30,12 @@ vec2 base_place(vec3 direction, float depth_m) {
     return land.eye.xy + depth_m * direction.xy;
 }
 
-Way way_of(vec3 direction, float limit_m) {
+Way way_of(vec3 eye, vec3 direction, float limit_m) {
     vec2 all = vec2(0.0, limit_m);
     vec2 last = vec2(land.size.xy - 1);
-    vec2 u = between(all, land.eye.x, direction.x, 0.0, last.x);
-    vec2 v = between(all, land.eye.y, direction.y, 0.0, last.y);
-    vec2 h = between(all, land.eye.z, direction.z, land.bounds.x - land.margin.y, land.bounds.y + land.margin.y);
+    vec2 u = between(all, eye.x, direction.x, 0.0, last.x);
+    vec2 v = between(all, eye.y, direction.y, 0.0, last.y);
+    vec2 h = between(all, eye.z, direction.z, land.bounds.x - land.margin.y, land.bounds.y + land.margin.y);
     float near_m = max(max(u.x, v.x), h.x);
     float far_m = min(min(u.y, v.y), h.y);
     int side = direction.x > 0.0 ? WALL_WEST : WALL_EAST;
@@ -48,7 +48,7 @@ Way way_of(vec3 direction, float limit_m) {
     if (near_m <= 0.0) {
         side = INSIDE;
     }
-    return Way(near_m, far_m, side, land.eye.xyz + near_m * direction, (far_m - near_m) * direction);
+    return Way(near_m, far_m, side, eye + near_m * direction, (far_m - near_m) * direction);
 }
 
 // Halvings that come before everything else.

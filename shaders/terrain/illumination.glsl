@@ -1,21 +1,16 @@
-// The pass `illumination` of one pixel: Lambert's law under the sun and the sky, the ground's colour by height, haze by
-// distance. The paper names the pass and no model of light.
+// The pass `illumination` of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or from a draped
+// picture, haze by distance. The paper names the pass and no model of light.
 
-layout(set = 0, binding = 0, std140) uniform Light {
-    vec4 corner; // direction to the middle of pixel (0, 0), world, for 1 m of depth
-    vec4 across;
-    vec4 down;
-    vec4 sun; // direction to the sun; the strength of the sky's light
-    vec4 haze; // colour; share of the colour lost over 1 m, as an exponent
-    vec4 range; // lowest and highest height above the base, metres
-} light;
+#include "terrain/light.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D depth;
 layout(set = 0, binding = 2) uniform texture2D normal;
+layout(set = 0, binding = 4) uniform texture2D shadow; // a single texel where none are thrown
+layout(set = 0, binding = 5) uniform texture2D drape;
 
 // Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
 const vec3 TINTS[6] = vec3[](vec3(0.22, 0.30, 0.10), vec3(0.10, 0.20, 0.06), vec3(0.24, 0.20, 0.10),
-                             vec3(0.25, 0.17, 0.11), vec3(0.30, 0.26, 0.23), vec3(0.62, 0.60, 0.58));
+                             vec3(0.25, 0.17, 0.11), vec3(0.30, 0.26, 0.23), vec3(0.55, 0.53, 0.51));
 const vec3 ROCK = vec3(0.20, 0.17, 0.15);
 const vec3 BASE_TINT = vec3(0.17, 0.22, 0.12);
 
@@ -30,32 +25,39 @@ vec3 sky(vec3 direction) {
     return mix(light.haze.xyz, vec3(0.16, 0.34, 0.68), pow(up, 0.5));
 }
 
+// The draped picture, its corners on the map's, between its texels' middles.
+vec3 draped(vec2 place) {
+    vec2 size = vec2(textureSize(drape, 0));
+    vec2 texel = clamp(place / light.drape.xy * size - 0.5, vec2(0.0), size - 1.0);
+    ivec2 a = ivec2(texel);
+    ivec2 b = min(a + 1, ivec2(size) - 1);
+    vec2 part = texel - vec2(a);
+    vec3 north = mix(texelFetch(drape, a, 0).xyz, texelFetch(drape, ivec2(b.x, a.y), 0).xyz, part.x);
+    vec3 south = mix(texelFetch(drape, ivec2(a.x, b.y), 0).xyz, texelFetch(drape, b, 0).xyz, part.x);
+    return mix(north, south, part.y);
+}
+
 vec3 ground(int surface, vec3 facing, float share) {
     vec3 tint = surface == 1 ? BASE_TINT : tint_at(share);
     // Nothing grows on a cliff.
     return mix(ROCK, tint, smoothstep(0.45, 0.75, facing.y));
 }
 
-vec3 encoded(vec3 linear) {
-    vec3 c = clamp(linear, vec3(0.0), vec3(1.0));
-    vec3 low = 12.92 * c;
-    vec3 high = 1.055 * pow(max(c, vec3(1.0e-6)), vec3(1.0 / 2.4)) - 0.055;
-    return mix(high, low, vec3(lessThanEqual(c, vec3(0.0031308))));
-}
-
 vec4 color_of(ivec2 pixel) {
     vec4 hit = texelFetch(depth, pixel, 0);
     vec4 facing = texelFetch(normal, pixel, 0);
-    vec3 direction = light.corner.xyz + float(pixel.x) * light.across.xyz + float(pixel.y) * light.down.xyz;
+    float sunlit = texelFetch(shadow, min(pixel, textureSize(shadow, 0) - 1), 0).x;
+    vec3 direction = view_direction(vec2(pixel));
     int surface = int(hit.w) & 7;
+    int map = (int(hit.w) >> 8) & 15;
     vec3 color = sky(direction);
     if (surface != 0) {
         float share = (facing.w - light.range.x) / max(light.range.y - light.range.x, 1.0e-6);
-        float lit = max(dot(facing.xyz, light.sun.xyz), 0.0);
-        float open = light.sun.w * (0.5 + 0.5 * facing.y);
-        vec3 seen = ground(surface, facing.xyz, share) * (vec3(2.6, 2.45, 2.2) * lit + vec3(0.8, 0.95, 1.2) * open);
-        float kept = exp(-light.haze.w * hit.x * length(direction));
-        color = mix(light.haze.xyz, seen, kept);
+        vec3 albedo = ground(surface, facing.xyz, share);
+        if (light.drape.z > 0.0 && surface == 2 && map == 0) {
+            albedo = draped(hit.yz);
+        }
+        color = lit_color(albedo, facing.xyz, sunlit, hit.x * length(direction));
     }
     return vec4(encoded(color), 1.0);
 }

@@ -21,6 +21,7 @@ layout(set = 0, binding = 0, std140) uniform Land {
     vec4 east; // the frame's axes in the world: on a plane east, up, south; else east, off the axis, along it
     vec4 up;
     vec4 south;
+    vec4 sun; // the way to the sun in the map's frame, for 1 m; metres between nodes where they are farthest apart
 } land;
 
 layout(set = 0, binding = 1) uniform utexture2DArray levels;

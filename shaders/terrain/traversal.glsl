@@ -32,8 +32,8 @@ float highest_below(vec2 low, vec2 high, int shift) {
 }
 
 // The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
-Hit trace(vec3 direction, float limit_m, Hit before) {
-    Way way = way_of(direction, limit_m);
+Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
+    Way way = way_of(eye, direction, limit_m);
     Hit hit = before;
     int steps = 0;
     bool done = !(way.near_m < way.far_m);

@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use fumarole::experiment::picture::read_target;
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, Device, Mode, PassSample, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::papers::Paper;
-use fumarole::papers::terrain::{Hit, MapInput, Parameters, Terrain, Variant};
+use fumarole::papers::terrain::{Hit, Inputs, MapInput, Parameters, Terrain, Variant};
 
 pub struct Drawing {
     pub picture: Rgba8,
-    pub passes: Vec<PassSample>,
+    /// Names of the passes, in order.
+    pub passes: Vec<&'static str>,
     pub hits: Vec<Hit>,
     /// x, y, z, and the height above the base in metres.
     pub normals: Vec<[f32; 4]>,
@@ -19,7 +20,11 @@ pub struct Drawing {
 
 impl Drawing {
     pub fn of(device: &Arc<Device>, variant: Variant, parameters: &Parameters, maps: &[MapInput]) -> Self {
-        Self::compiled_by(Compiler::Glslang, device, variant, parameters, maps)
+        Self::with(device, variant, parameters, &Inputs { maps, ..Inputs::default() })
+    }
+
+    pub fn with(device: &Arc<Device>, variant: Variant, parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
+        Self::compiled_by(Compiler::Glslang, device, variant, parameters, inputs)
     }
 
     pub fn compiled_by(
@@ -27,14 +32,14 @@ impl Drawing {
         device: &Arc<Device>,
         variant: Variant,
         parameters: &Parameters,
-        maps: &[MapInput],
+        inputs: &Inputs<'_>,
     ) -> Self {
         parameters.validate().unwrap();
         let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
-        let mut paper = Terrain::new(&shaders, "test", variant, parameters, maps).unwrap();
+        let mut paper = Terrain::new(&shaders, "test", variant, parameters, inputs).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let sample = recorder.run(Mode::Plain, |frame| paper.record_picture(frame, 0)).unwrap();
-        let passes = sample.passes.clone();
+        let passes = sample.passes.iter().map(|pass| pass.info.name).collect();
         let picture = paper.picture();
         let pixels = read_image(device, picture).unwrap();
         let texels = |name: &str| {

@@ -1,9 +1,11 @@
 //! The paper `terrain` on the device: variant against variant, adversarial maps, extreme cameras, pictures.
 
+mod collisions;
 #[path = "../common/mod.rs"]
 mod common;
 mod drawing;
 mod land;
 mod pictures;
 mod pyramids;
+mod scenes;
 mod variants;

@@ -1,42 +1,43 @@
 //! The finished picture.
 
-use fumarole::image::write_png;
-use fumarole::papers::terrain::{Base, Interpolation, Lod, Parameters, Variant};
+use std::path::Path;
+
+use fumarole::image::golden::{self, Tolerance};
+use fumarole::papers::Variant as _;
+use fumarole::papers::terrain::{Lod, Parameters, Variant, View};
 
 use crate::common::gpu_test;
 use crate::drawing::Drawing;
 use crate::land::{alone, volcano};
 
+/// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
+const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
+
 #[test]
-fn look() {
+fn the_pictures_are_the_golden_ones() {
     gpu_test(|device| {
-        let default = Parameters::default();
-        let cases = [
-            (
-                "bicubic",
-                Variant::GpuCompute,
-                Parameters { interpolation: Interpolation::Bicubic, lod: Lod::Exact, ..default.clone() },
-            ),
-            (
-                "cylinder",
-                Variant::GpuCompute,
-                Parameters { base: Base::Cylinder { radius_m: 9000.0 }, ..default.clone() },
-            ),
-            (
-                "ellipsoid",
-                Variant::GpuCompute,
-                Parameters { base: Base::Ellipsoid { equatorial_m: 15000.0, polar_m: 11000.0 }, ..default.clone() },
-            ),
-            (
-                "ellipsoid-mesh",
-                Variant::Mesh,
-                Parameters { base: Base::Ellipsoid { equatorial_m: 15000.0, polar_m: 11000.0 }, ..default.clone() },
-            ),
-            ("mesh", Variant::Mesh, default.clone()),
-        ];
-        for (name, variant, parameters) in cases {
-            let drawing = Drawing::of(device, variant, &parameters, &alone(volcano(200)));
-            write_png(format!("/tmp/h4-{name}.png").as_ref(), &drawing.picture).unwrap();
+        for (name, view) in [("side", View::Side), ("top", View::Top)] {
+            for variant in [Variant::GpuCompute, Variant::Mesh] {
+                let parameters = Parameters { view, shadows: true, width: 128, height: 96, ..Parameters::default() };
+                let drawing = Drawing::of(device, variant, &parameters, &alone(volcano(100)));
+                let file = format!("tests/golden/terrain-{name}-{}.png", variant.word());
+                let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+                let output_dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
+                if let Err(error) = golden::check(&drawing.picture, &golden, TOLERANCE, output_dir) {
+                    panic!("{error}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn one_configuration_gives_one_picture() {
+    gpu_test(|device| {
+        for variant in Variant::ALL {
+            let parameters = Parameters { lod: Lod::Exact, width: 96, height: 64, ..Parameters::default() };
+            let of = || Drawing::of(device, *variant, &parameters, &alone(volcano(50))).picture;
+            assert_eq!(of().pixels(), of().pixels(), "{variant:?}");
         }
     });
 }

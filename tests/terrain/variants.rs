@@ -2,18 +2,18 @@
 
 use fumarole::gpu::Compiler;
 use fumarole::papers::Variant as _;
-use fumarole::papers::terrain::{Base, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
+use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
 
 use crate::common::gpu_test;
 use crate::drawing::{Drawing, differing};
 use crate::land::{adversaries, alone, volcano};
 
-fn small(view: View, lod: Lod) -> Parameters {
+pub fn small(view: View, lod: Lod) -> Parameters {
     Parameters { view, lod, width: 160, height: 120, ..Parameters::default() }
 }
 
 /// One in a thousand rays may pass a ridge on the other side by rounding.
-fn assert_agree(name: &str, a: &Drawing, b: &Drawing) {
+pub fn assert_agree(name: &str, a: &Drawing, b: &Drawing) {
     let differing = differing(a, b);
     assert!(differing * 1000 <= a.hits.len(), "{name}: {differing} of {} pixels differ", a.hits.len());
 }
@@ -88,7 +88,9 @@ fn both_compilers_draw_one_picture() {
         for lod in [Lod::Exact, Lod::Pixel] {
             for variant in [Variant::GpuCompute, Variant::GpuFragment] {
                 let of = |compiler| {
-                    Drawing::compiled_by(compiler, device, variant, &small(View::Side, lod), &alone(volcano(60)))
+                    let maps = alone(volcano(60));
+                    let inputs = Inputs { maps: &maps, ..Inputs::default() };
+                    Drawing::compiled_by(compiler, device, variant, &small(View::Side, lod), &inputs)
                 };
                 assert_agree(variant.word(), &of(Compiler::Glslang), &of(Compiler::Naga));
             }

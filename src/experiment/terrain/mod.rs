@@ -16,7 +16,7 @@ use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::papers::ParameterError;
-use crate::papers::terrain::{Base, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
+use crate::papers::terrain::{Base, Inputs, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
 use crate::scene::{HeightMap, HeightMapSource, volcano};
 
 /// What a user set up.
@@ -126,7 +126,8 @@ impl Study for Setup {
         scene: &Scene,
         variant: Variant,
     ) -> Result<Terrain, gpu::Error> {
-        Terrain::new(shaders, label, variant, &self.parameters, &scene.maps)
+        let inputs = Inputs { maps: &scene.maps, ..Inputs::default() };
+        Terrain::new(shaders, label, variant, &self.parameters, &inputs)
     }
 
     fn identity(&self) -> Identity {

@@ -28,6 +28,7 @@ host_block! {
         pub east: [f32; 4],
         pub up: [f32; 4],
         pub south: [f32; 4],
+        pub sun: [f32; 4],
     }
 }
 
@@ -39,6 +40,7 @@ host_block! {
         pub sun: [f32; 4],
         pub haze: [f32; 4],
         pub range: [f32; 4],
+        pub drape: [f32; 4],
     }
 }
 
@@ -61,14 +63,7 @@ fn pairs(a: DVec2, b: DVec2) -> [f32; 4] {
 
 impl LandBlock {
     /// Of the map that is number `index`; `rays` are the world's.
-    pub fn new(
-        ground: &Ground,
-        interpolation: Interpolation,
-        is_float: bool,
-        index: u32,
-        rays: &Rays,
-        near_m: f32,
-    ) -> Self {
+    pub fn new(ground: &Ground, parameters: &Parameters, is_float: bool, index: u32, rays: &Rays, near_m: f32) -> Self {
         let seen = rays.in_map(&ground.to_frame);
         let shape = ground.shape;
         let side = f64::from(shape.width.max(shape.height));
@@ -78,7 +73,7 @@ impl LandBlock {
             None => (seen.eye.x.abs().max(seen.eye.y.abs()), seen.eye.z.abs()),
             Some(_) => (2.0 * seen.eye.length() / spacing, seen.eye.length() / unit),
         };
-        let overshoot = match interpolation {
+        let overshoot = match parameters.interpolation {
             Interpolation::Bilinear => 0.0,
             Interpolation::Bicubic => (ground.highest - ground.lowest) * 9.0 / 32.0,
         };
@@ -106,6 +101,10 @@ impl LandBlock {
             east,
             up,
             south,
+            sun: four(
+                ground.to_frame.transform_vector3(parameters.sun.direction().as_dvec3()),
+                ground.spacing_m.max_element(),
+            ),
         };
         let Some(curve) = &ground.curve else { return flat };
         let (sine, cosine) = curve.latitude_rad.sin_cos();
@@ -123,14 +122,16 @@ impl LandBlock {
 }
 
 impl LightBlock {
-    pub fn new(parameters: &Parameters, rays: &Rays, range_m: (f64, f64)) -> Self {
+    /// `range_m` is the lowest and the highest above the base, `near_m` the near plane of what is rasterised. Nothing is draped.
+    pub fn new(parameters: &Parameters, rays: &Rays, range_m: (f64, f64), near_m: f32) -> Self {
         LightBlock {
             corner: four(rays.corner, 0.0),
             across: four(rays.across, 0.0),
             down: four(rays.down, 0.0),
             sun: parameters.sun.direction().extend(SKY).to_array(),
             haze: HAZE.extend(parameters.haze_per_km / 1000.0).to_array(),
-            range: [range_m.0 as f32, range_m.1 as f32, 0.0, 0.0],
+            range: [range_m.0 as f32, range_m.1 as f32, near_m, 0.0],
+            drape: [1.0, 1.0, 0.0, 0.0],
         }
     }
 }

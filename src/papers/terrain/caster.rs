@@ -8,23 +8,43 @@
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::blocks::LandBlock;
-use super::hit::{Hit, Surface};
+use super::hit::{Hit, NO_DEPTH, Surface};
 use super::parameters::{Interpolation, Lod};
 use super::pyramid::Texel;
 use super::relief::{Field, shift_for};
 use super::surface;
-use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of};
+use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of, eye};
 
 /// Halvings after which a segment is intersected whatever it touches.
 const DEEPEST: i32 = 23;
 /// How far a last segment may be from straight, in texels of the level that it is met at.
 const STRAIGHT: f32 = 2.5e-4;
 
+/// Where subdivision ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Footprint {
+    /// At the data, with the exact place.
+    Data,
+    /// At the level as large as a pixel, which grows with the depth.
+    Pixel,
+    /// At one level.
+    Level(i32),
+}
+
+impl From<Lod> for Footprint {
+    fn from(lod: Lod) -> Self {
+        match lod {
+            Lod::Exact => Footprint::Data,
+            Lod::Pixel => Footprint::Pixel,
+        }
+    }
+}
+
 /// Casts rays at one map.
 pub struct Caster<'a, T> {
     pub land: &'a LandBlock,
     pub field: Field<'a, T>,
-    pub lod: Lod,
+    pub footprint: Footprint,
     pub interpolation: Interpolation,
 }
 
@@ -76,15 +96,26 @@ impl<T: Texel> Caster<'_, T> {
             // Where the map lies in the base, the map is seen.
             limit_m = limit_m.min(base_m + slack_m);
         }
-        self.trace(direction, limit_m).unwrap_or(hit)
+        self.trace(eye(self.land), direction, limit_m).unwrap_or(hit)
+    }
+
+    /// Whether the map stands between what a pixel saw and the sun.
+    pub fn is_shadowed(&self, direction: Vec3, hit: &Hit) -> bool {
+        let shift = hit.shift.min(self.field.shape().top) as i32;
+        let sun = Vec3::from_slice(&self.land.sun);
+        // A texel away from the surface itself.
+        let away_m = self.land.sun[3] * (shift as f32).exp2() + 1e-5 * hit.depth_m;
+        let from = eye(self.land) + hit.depth_m * direction + away_m * sun;
+        let caster = Caster { footprint: Footprint::Level(shift), ..*self };
+        caster.trace(from, sun, NO_DEPTH).is_some()
     }
 
     /// The first place where a ray is not above the map's surface, before `limit_m`.
-    pub fn trace(&self, direction: Vec3, limit_m: f32) -> Option<Hit> {
+    pub fn trace(&self, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Hit> {
         if self.land.form[3] == 0 {
-            self.follow(&PlaneWay::new(self.land, direction, limit_m)?)
+            self.follow(&PlaneWay::new(self.land, eye, direction, limit_m)?)
         } else {
-            self.follow(&CurvedWay::new(self.land, direction, limit_m)?)
+            self.follow(&CurvedWay::new(self.land, eye, direction, limit_m)?)
         }
     }
 
@@ -137,9 +168,10 @@ impl<T: Texel> Caster<'_, T> {
 
     /// The level at which subdivision ends at a depth: the data's, or that of a pixel's footprint.
     fn finest_shift(&self, depth_m: f32) -> i32 {
-        match self.lod {
-            Lod::Exact => 0,
-            Lod::Pixel => {
+        match self.footprint {
+            Footprint::Data => 0,
+            Footprint::Level(shift) => shift,
+            Footprint::Pixel => {
                 let exponent = ((depth_m * self.land.eye[3]).to_bits() as i32 >> 23) - 127;
                 exponent.clamp(0, self.field.shape().top as i32)
             }
@@ -154,9 +186,11 @@ impl<T: Texel> Caster<'_, T> {
         }
         let near = segment.near.lerp(segment.far, over.near);
         let far = segment.near.lerp(segment.far, over.far);
-        let part = match self.lod {
-            Lod::Exact => surface::intersect(&self.field, self.interpolation, near, far, self.land.sundry[0]),
-            Lod::Pixel => self.intersect_footprint(near, far, self.finest_shift(segment.depth_m)),
+        let part = match self.footprint {
+            Footprint::Data => surface::intersect(&self.field, self.interpolation, near, far, self.land.sundry[0]),
+            Footprint::Pixel | Footprint::Level(_) => {
+                self.intersect_footprint(near, far, self.finest_shift(segment.depth_m))
+            }
         }?;
         let surface = if part > 0.0 { Surface::Terrain } else { over.surface };
         Some((over.near + part * (over.far - over.near), surface))

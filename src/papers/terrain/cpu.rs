@@ -7,14 +7,16 @@ use glam::Vec4;
 use rayon::prelude::*;
 
 use super::blocks::LandBlock;
-use super::caster::Caster;
+use super::caster::{Caster, Footprint};
+use super::drape::Drape;
 use super::hit::{Hit, NO_DEPTH, Surface};
-use super::parameters::{Interpolation, Lod, Parameters};
+use super::parameters::{Interpolation, Parameters};
 use super::pyramid::Texel;
 use super::relief::{Field, FieldWork, Relief};
-use super::scene::Seen;
+use super::scene::{Inputs, Seen};
 use super::shading::{color_of, normal_of};
-use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, Image, ImageDesc, ImageView, Load, Location};
+use super::stage::Stage;
+use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location};
 use crate::gpu::{Pass, PassInfo, ShaderLibrary};
 use crate::host_block;
 use crate::papers::Target;
@@ -30,13 +32,16 @@ const SKY: Hit = Hit { depth_m: NO_DEPTH, place: [0.0; 2], surface: Surface::Sky
 /// What the passes of the processor write, and how its picture gets to the device.
 pub struct Cpu {
     width: u32,
-    lod: Lod,
+    footprint: Footprint,
     interpolation: Interpolation,
     reliefs: Vec<Relief>,
+    drape: Option<Drape>,
     hits: Vec<Hit>,
     normals: Vec<Vec4>,
+    /// What is left of the sunlight; empty where no shadows are thrown.
+    sunlit: Vec<f32>,
     colors: Vec<[u8; 4]>,
-    infos: [Arc<PassInfo>; 3],
+    infos: [Arc<PassInfo>; 4],
     shown: Shown,
 }
 
@@ -46,6 +51,7 @@ struct Shown {
     normal: Arc<Buffer>,
     colors: Arc<Buffer>,
     picture: Arc<ImageView>,
+    found: Arc<ImageView>,
     show: Pass,
 }
 
@@ -56,7 +62,7 @@ impl Cpu {
         shaders: &ShaderLibrary,
         label: &str,
         parameters: &Parameters,
-        reliefs: Vec<Relief>,
+        inputs: &Inputs<'_>,
     ) -> Result<Self, Error> {
         let (width, height) = (parameters.width, parameters.height);
         let device = shaders.device();
@@ -67,25 +73,33 @@ impl Cpu {
             Buffer::new(device, desc.location(Location::Upload))
         };
         let colors = buffer("colors", 4)?;
-        let desc = ImageDesc::new_2d(format!("{label}/picture"), vk::Format::R8G8B8A8_UNORM, width, height);
-        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
+        let image =
+            |name: &str, format| Stage::Fragment.image(device, format!("{label}/{name}"), format, (width, height));
+        let picture = image("picture", vk::Format::R8G8B8A8_UNORM)?;
+        let found = image("depth", vk::Format::R32G32B32A32_SFLOAT)?;
+        let depth = buffer("depth", 16)?;
         let show = Pass::graphics("show", "4", "common/fullscreen.vert", "terrain/show.frag")
             .with("colors", &colors)
+            .with("depths", &depth)
             .constants::<Size>()
             .color(&picture, Load::Discard, Blend::Replace)
+            .color(&found, Load::Discard, Blend::Replace)
             .build(shaders)?;
-        let shown = Shown { depth: buffer("depth", 16)?, normal: buffer("normal", 16)?, colors, picture, show };
+        let shown = Shown { depth, normal: buffer("normal", 16)?, colors, picture, found, show };
         let infos = [
             PassInfo::host("depth", "3", &["land", "levels"], &["depth"]),
             PassInfo::host("normal", "4", &["land", "levels", "depth"], &["normal"]),
+            PassInfo::host("shadow", "2", &["land", "levels", "depth"], &["shadow"]),
             PassInfo::host("illumination", "4", &["light", "depth", "normal"], &["picture"]),
         ];
         let count = pixels as usize;
         Ok(Cpu {
             width,
-            lod: parameters.lod,
+            footprint: parameters.lod.into(),
             interpolation: parameters.interpolation,
-            reliefs,
+            reliefs: inputs.maps.iter().map(|input| Relief::new(&input.map, parameters.interpolation)).collect(),
+            drape: inputs.drape.cloned(),
+            sunlit: if parameters.shadows { vec![1.0; count] } else { Vec::new() },
             hits: vec![SKY; count],
             normals: vec![Vec4::ZERO; count],
             colors: vec![[0; 4]; count],
@@ -98,9 +112,11 @@ impl Cpu {
     pub fn record(&mut self, frame: &mut Frame<'_>, seen: &Seen) {
         let Cpu {
             width,
-            lod,
+            footprint,
             interpolation,
             ref reliefs,
+            ref drape,
+            ref mut sunlit,
             ref mut hits,
             ref mut normals,
             ref mut colors,
@@ -111,7 +127,7 @@ impl Cpu {
         frame.host(&infos[0], || {
             hits.par_iter_mut().for_each(|hit| *hit = SKY);
             for (relief, land) in maps() {
-                relief.with(Depths { land, lod, interpolation, width, hits });
+                relief.with(Depths { land, footprint, interpolation, width, hits });
             }
         });
         frame.host(&infos[1], || {
@@ -119,12 +135,22 @@ impl Cpu {
                 relief.with(Normals { land, interpolation, width, map: index as u32, hits, normals });
             }
         });
-        frame.host(&infos[2], || {
+        if !sunlit.is_empty() {
+            frame.host(&infos[2], || {
+                sunlit.par_iter_mut().for_each(|sunlit| *sunlit = 1.0);
+                for (relief, land) in maps() {
+                    relief.with(Shadows { land, interpolation, width, hits, sunlit });
+                }
+            });
+        }
+        frame.host(&infos[3], || {
             let rows = colors.par_chunks_mut(width as usize).enumerate();
             rows.for_each(|(y, row)| {
                 for (x, color) in row.iter_mut().enumerate() {
                     let pixel = y * width as usize + x;
-                    *color = color_of(&seen.light, (x as u32, y as u32), &hits[pixel], normals[pixel]);
+                    let sunlit = sunlit.get(pixel).copied().unwrap_or(1.0);
+                    let place = (x as u32, y as u32);
+                    *color = color_of(&seen.light, drape.as_ref(), place, &hits[pixel], normals[pixel], sunlit);
                 }
             });
         });
@@ -144,6 +170,11 @@ impl Cpu {
         })
     }
 
+    /// What [`Cpu::show`] wrote of the depths.
+    pub fn depth(&self) -> &Arc<ImageView> {
+        &self.shown.found
+    }
+
     pub fn picture(&self) -> &Arc<ImageView> {
         &self.shown.picture
     }
@@ -155,7 +186,7 @@ impl Cpu {
 
 struct Depths<'a> {
     land: &'a LandBlock,
-    lod: Lod,
+    footprint: Footprint,
     interpolation: Interpolation,
     width: u32,
     hits: &'a mut [Hit],
@@ -165,10 +196,35 @@ impl FieldWork for Depths<'_> {
     type Output = ();
 
     fn run<T: Texel>(self, field: Field<'_, T>) {
-        let caster = Caster { land: self.land, field, lod: self.lod, interpolation: self.interpolation };
+        let caster = Caster { land: self.land, field, footprint: self.footprint, interpolation: self.interpolation };
         self.hits.par_chunks_mut(self.width as usize).enumerate().for_each(|(y, row)| {
             for (x, hit) in row.iter_mut().enumerate() {
                 *hit = caster.find(caster.direction(x as u32, y as u32), *hit);
+            }
+        });
+    }
+}
+
+struct Shadows<'a> {
+    land: &'a LandBlock,
+    interpolation: Interpolation,
+    width: u32,
+    hits: &'a [Hit],
+    sunlit: &'a mut [f32],
+}
+
+impl FieldWork for Shadows<'_> {
+    type Output = ();
+
+    fn run<T: Texel>(self, field: Field<'_, T>) {
+        let width = self.width as usize;
+        let footprint = Footprint::Data;
+        let caster = Caster { land: self.land, field, footprint, interpolation: self.interpolation };
+        self.sunlit.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
+            for (x, (sunlit, hit)) in row.iter_mut().zip(hits).enumerate() {
+                if hit.surface != Surface::Sky && caster.is_shadowed(caster.direction(x as u32, y as u32), hit) {
+                    *sunlit = 0.0;
+                }
             }
         });
     }
@@ -188,7 +244,7 @@ impl FieldWork for Normals<'_> {
 
     fn run<T: Texel>(self, field: Field<'_, T>) {
         let width = self.width as usize;
-        let caster = Caster { land: self.land, field, lod: Lod::Exact, interpolation: self.interpolation };
+        let caster = Caster { land: self.land, field, footprint: Footprint::Data, interpolation: self.interpolation };
         self.normals.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
             for (x, (normal, hit)) in row.iter_mut().zip(hits).enumerate().filter(|(_, (_, hit))| hit.map == self.map) {
                 *normal = normal_of(&caster, caster.direction(x as u32, y as u32), hit);

@@ -1,10 +1,10 @@
-//! Section 4: normal and illumination on the device, whoever found the depth.
+//! Section 4: normal and illumination on the device, and shadows, whoever found the depth.
 
 use std::sync::Arc;
 
 use ash::vk;
 
-use super::parameters::Parameters;
+use super::parameters::{Base, Parameters};
 use super::scene::DeviceScene;
 use super::stage::Stage;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
@@ -17,6 +17,9 @@ pub struct Lighting {
     normal: Arc<ImageView>,
     pub picture: Arc<ImageView>,
     normal_passes: Vec<Pass>,
+    /// What the maps leave of the sunlight.
+    shadow: Option<Arc<ImageView>>,
+    shadow_passes: Vec<Pass>,
     illumination: Pass,
 }
 
@@ -49,26 +52,73 @@ impl Lighting {
             );
             normal_passes.push(pass.build(shaders)?);
         }
+        let base = if parameters.base == Base::Plane { "plane" } else { "curved" };
+        let program = format!("shadow-{base}-{}", parameters.interpolation.word());
+        let mut shadow_passes = Vec::new();
+        let mut shadow = scene.all_lit.clone();
+        if parameters.shadows {
+            let shadows = (0..scene.maps.len().min(2))
+                .map(|_| image("shadow", vk::Format::R32_SFLOAT))
+                .collect::<Result<Vec<_>, _>>()?;
+            for (map, target) in scene.maps.iter().zip(shadows.iter().cycle()) {
+                let pass = stage.say(
+                    ("shadow", "2"),
+                    &program,
+                    (target, Load::Discard),
+                    &[
+                        ("land", (&map.land).into()),
+                        ("levels", (&map.levels.view).into()),
+                        ("depth", depth.into()),
+                        ("prior", (&shadow).into()),
+                    ],
+                );
+                shadow_passes.push(pass.build(shaders)?);
+                shadow = target.clone();
+            }
+        }
         let illumination = stage.say(
             ("illumination", "4"),
             "illumination",
             (&picture, Load::Discard),
-            &[("light", (&scene.light).into()), ("depth", depth.into()), ("normal", (&normal).into())],
+            &[
+                ("light", (&scene.light).into()),
+                ("depth", depth.into()),
+                ("normal", (&normal).into()),
+                ("shadow", (&shadow).into()),
+                ("drape", (&scene.drape).into()),
+            ],
         );
         let illumination = illumination.build(shaders)?;
-        Ok(Lighting { stage, depth: depth.clone(), normal, picture, normal_passes, illumination })
+        let shadow = parameters.shadows.then_some(shadow);
+        Ok(Lighting {
+            stage,
+            depth: depth.clone(),
+            normal,
+            picture,
+            normal_passes,
+            shadow,
+            shadow_passes,
+            illumination,
+        })
     }
 
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        for pass in &self.normal_passes {
+        for pass in self.normal_passes.iter().chain(&self.shadow_passes) {
             self.stage.record(frame, pass, &self.normal)?;
         }
         self.stage.record(frame, &self.illumination, &self.picture)
     }
 
+    /// What the rays or the grids found.
+    pub fn depth(&self) -> &Arc<ImageView> {
+        &self.depth
+    }
+
     pub fn targets(&self) -> Vec<Target> {
-        vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal)]
+        let mut targets = vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal)];
+        targets.extend(self.shadow.iter().map(|shadow| Target::image("shadow", shadow)));
+        targets
     }
 }

@@ -1,18 +1,22 @@
 //! `terrain`: S. I. Vyatkin's terrain from a shape texture, ray-cast without triangles.
 //!
 //! ```text
-//! geometric-transformation (host) ─► depth ─► normal ─► illumination
+//! geometric-transformation (host) ─► depth ─► normal (─► shadow) ─► illumination (─► object-depth ─► objects)
+//! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow) ─► illumination (...)   (mesh)
 //! ```
 
 mod blocks;
 mod caster;
+mod collision;
 mod cpu;
 mod curve;
+mod drape;
 mod ground;
 mod hit;
 mod levels;
 mod lighting;
 mod mesh;
+mod objects;
 mod parameters;
 mod placement;
 mod pyramid;
@@ -27,20 +31,22 @@ mod way;
 
 use std::sync::Arc;
 
+pub use self::collision::{Collider, Contact};
 use self::cpu::Cpu;
+pub use self::drape::Drape;
 pub use self::ground::{Ground, Origin};
 pub use self::hit::{Hit, NO_DEPTH, Surface};
 pub use self::levels::Levels;
 use self::lighting::Lighting;
 pub use self::mesh::MESH_SIDE;
 use self::mesh::Mesh;
+use self::objects::Objects;
 pub use self::parameters::{Base, Interpolation, Lod, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
 use self::ray_cast::RayCast;
-pub use self::relief::Relief;
-pub use self::scene::MapInput;
 use self::scene::{DeviceScene, Scene};
+pub use self::scene::{Inputs, MapInput};
 use self::stage::Stage;
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, ShaderLibrary};
@@ -54,6 +60,7 @@ pub struct Terrain {
     scene: Scene,
     transformation: Arc<PassInfo>,
     technique: Technique,
+    objects: Option<Objects>,
 }
 
 enum Technique {
@@ -71,38 +78,51 @@ impl Terrain {
     /// Makes every resource and pass, and the maps' pyramids; `label` goes before the names of the resources.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a map that the device or the variant cannot hold, what the Vulkan layer answers. The caller has
-    /// validated `parameters`, and there is a map.
+    /// [`Error::Limit`] for too many maps and for a map that the device or the variant cannot hold, what the Vulkan layer
+    /// answers. The caller has validated `parameters`, and there is a map.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
         variant: Variant,
         parameters: &Parameters,
-        maps: &[MapInput],
+        inputs: &Inputs<'_>,
     ) -> Result<Self, Error> {
-        let scene = Scene::new(parameters, maps);
+        if inputs.maps.len() > Inputs::MAPS {
+            return Err(Error::Limit {
+                object: format!("{label}/maps"),
+                what: "number of maps",
+                wanted: inputs.maps.len() as u64,
+                limit: Inputs::MAPS as u64,
+            });
+        }
+        let scene = Scene::new(parameters, inputs);
         let technique = match variant {
-            Variant::Cpu => {
-                let reliefs = maps.iter().map(|input| Relief::new(&input.map, parameters.interpolation)).collect();
-                Technique::Cpu(Cpu::new(shaders, label, parameters, reliefs)?)
-            }
+            Variant::Cpu => Technique::Cpu(Cpu::new(shaders, label, parameters, inputs)?),
             Variant::GpuCompute | Variant::GpuFragment => {
                 let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
-                let device_scene = DeviceScene::new(shaders, label, parameters, maps)?;
+                let device_scene = DeviceScene::new(shaders, label, parameters, inputs)?;
                 let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
                 let lighting = Lighting::new(shaders, label, stage, parameters, &device_scene, &ray_cast.depth)?;
                 Technique::Device(device_scene, DepthMethod::RayCast(ray_cast), lighting)
             }
             Variant::Mesh => {
-                let device_scene = DeviceScene::new(shaders, label, parameters, maps)?;
+                let device_scene = DeviceScene::new(shaders, label, parameters, inputs)?;
                 let mesh = Mesh::new(shaders, label, parameters, &scene.grounds, &device_scene)?;
                 let lighting = Lighting::new(shaders, label, Stage::Fragment, parameters, &device_scene, &mesh.depth)?;
                 Technique::Device(device_scene, DepthMethod::Mesh(mesh), lighting)
             }
         };
+        let (depth, picture) = match &technique {
+            Technique::Cpu(cpu) => (cpu.depth(), cpu.picture()),
+            Technique::Device(_, _, lighting) => (lighting.depth(), &lighting.picture),
+        };
+        let objects = match inputs.objects {
+            [] => None,
+            meshes => Some(Objects::new(shaders, label, parameters, meshes, depth, picture)?),
+        };
         let reads = ["camera", "placement"];
         let transformation = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &["land", "light"]);
-        Ok(Terrain { parameters: parameters.clone(), scene, transformation, technique })
+        Ok(Terrain { parameters: parameters.clone(), scene, transformation, technique, objects })
     }
 }
 
@@ -113,6 +133,11 @@ impl Paper for Terrain {
             Technique::Cpu(cpu) => {
                 let seen = frame.host(&self.transformation, || scene.transform(parameters));
                 cpu.record(frame, &seen);
+                // Polygons are drawn by the device, so the processor's picture has to be there first.
+                if let Some(objects) = &self.objects {
+                    cpu.show(frame)?;
+                    objects.record(frame, &seen)?;
+                }
                 Ok(())
             }
             Technique::Device(device_scene, method, lighting) => {
@@ -124,7 +149,8 @@ impl Paper for Terrain {
                     DepthMethod::RayCast(ray_cast) => ray_cast.record(frame)?,
                     DepthMethod::Mesh(mesh) => mesh.record(frame, &scene.grounds, &seen)?,
                 }
-                lighting.record(frame)
+                lighting.record(frame)?;
+                self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame, &seen))
             }
         }
     }
@@ -132,8 +158,8 @@ impl Paper for Terrain {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         match &self.technique {
-            Technique::Cpu(cpu) => cpu.show(frame),
-            Technique::Device(..) => Ok(()),
+            Technique::Cpu(cpu) if self.objects.is_none() => cpu.show(frame),
+            _ => Ok(()),
         }
     }
 

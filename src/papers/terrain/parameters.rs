@@ -134,6 +134,8 @@ pub struct Parameters {
     pub base_level_m: Option<f32>,
     pub view: View,
     pub sun: Sun,
+    /// Whether the terrain stands in its own light; adds the pass `shadow`.
+    pub shadows: bool,
     /// Extinction by haze per kilometre, 0 to 1000.
     pub haze_per_km: f32,
     /// Size of the picture in pixels.
@@ -150,6 +152,7 @@ impl Default for Parameters {
             base_level_m: None,
             view: View::Side,
             sun: Sun { azimuth_rad: 300.0_f32.to_radians(), elevation_rad: 35.0_f32.to_radians() },
+            shadows: false,
             haze_per_km: 0.02,
             width: 800,
             height: 600,

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::hit::NO_DEPTH;
 use super::parameters::{Base, Parameters};
 use super::scene::DeviceScene;
 use super::stage::Stage;
-use crate::gpu::transfer::upload_rows;
-use crate::gpu::{Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
 
 /// The pass `depth`, once for each map.
 pub struct RayCast {
@@ -31,12 +29,6 @@ impl RayCast {
     ) -> Result<Self, Error> {
         let device = shaders.device();
         let format = vk::Format::R32G32B32A32_SFLOAT;
-        // Each map's pass reads what the maps before it found. Before the first is a single texel: nothing yet.
-        let nothing = ImageDesc::new_2d(format!("{label}/nothing"), format, 1, 1);
-        let nothing = Image::new(device, nothing.usage(vk::ImageUsageFlags::SAMPLED))?.view()?;
-        upload_rows(device, &nothing, (1, 1), |_, bytes| {
-            bytes.copy_from_slice(bytemuck::bytes_of(&[NO_DEPTH, 0.0, 0.0, 0.0]));
-        })?;
         let base = if parameters.base == Base::Plane { "plane" } else { "curved" };
         let (interpolation, lod) = (parameters.interpolation.word(), parameters.lod.word());
         let program = format!("depth-{base}-{interpolation}-{lod}");
@@ -45,7 +37,8 @@ impl RayCast {
             .map(|_| stage.image(device, format!("{label}/depth"), format, size))
             .collect::<Result<Vec<_>, _>>()?;
         let mut passes = Vec::new();
-        let mut depth = nothing;
+        // Each map's pass reads what the maps before it found.
+        let mut depth = scene.nothing.clone();
         for (map, target) in scene.maps.iter().zip(depths.iter().cycle()) {
             let pass = stage.say(
                 ("depth", "3"),

@@ -1,18 +1,22 @@
 //! The maps of a configuration in their places, and what the device's passes share of them.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use ash::vk;
 use glam::{DMat4, DVec4};
 
 use super::blocks::{LandBlock, LightBlock};
+use super::drape::Drape;
 use super::ground::{Ground, Origin};
+use super::hit::NO_DEPTH;
 use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters};
 use super::placement::{Extent, Placement, Rays};
 use super::pyramid::Bound;
-use crate::gpu::{Buffer, BufferDesc, Device, Error, Location, ShaderLibrary};
-use crate::scene::{Camera, HeightMap, Samples};
+use crate::gpu::transfer::upload_rows;
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location, ShaderLibrary};
+use crate::scene::{Camera, HeightMap, Mesh, Samples};
 
 /// A height map and its place.
 #[derive(Debug, Clone)]
@@ -21,19 +25,38 @@ pub struct MapInput {
     pub placement: Placement,
 }
 
+/// What a scene is made of.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Inputs<'a> {
+    /// At least one, at most [`Inputs::MAPS`].
+    pub maps: &'a [MapInput],
+    /// Polygon objects in the world, metres: x east, y up from the base, z south.
+    pub objects: &'a [Mesh],
+    pub drape: Option<&'a Drape>,
+}
+
+impl Inputs<'_> {
+    /// The most maps that a hit can tell apart.
+    pub const MAPS: usize = 16;
+}
+
 /// The maps' places over the base, and the box around all.
 pub struct Scene {
     pub grounds: Vec<Ground>,
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
     range_m: (f64, f64),
+    /// Columns and rows of the first map, less 1, and whether a picture is draped over it.
+    drape: [f32; 4],
     /// Of each map, whether its texels are the bits of floats.
     are_floats: Vec<bool>,
 }
 
 impl Scene {
     /// Of at least one map.
-    pub fn new(parameters: &Parameters, inputs: &[MapInput]) -> Self {
+    pub fn new(parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
+        let is_draped = f32::from(u8::from(inputs.drape.is_some()));
+        let inputs = inputs.maps;
         let maps = || inputs.iter().map(|input| &*input.map);
         let lowest_m = maps().map(|map| map.range_m().0).fold(f32::INFINITY, f32::min);
         let highest_m = maps().map(|map| map.range_m().1).fold(f32::NEG_INFINITY, f32::max);
@@ -45,22 +68,34 @@ impl Scene {
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
+            drape: match grounds.first().map(|ground| ground.shape) {
+                Some(shape) => [shape.width as f32 - 1.0, shape.height as f32 - 1.0, is_draped, 0.0],
+                None => [1.0, 1.0, 0.0, 0.0],
+            },
             grounds,
             are_floats: maps().map(|map| matches!(map.samples(), Samples::Float(_))).collect(),
         }
+    }
+
+    /// Every map as `rays` see it.
+    pub fn lands<'a>(
+        &'a self,
+        parameters: &'a Parameters,
+        rays: &'a Rays,
+        near_m: f32,
+    ) -> impl Iterator<Item = LandBlock> + 'a {
+        let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
+        maps.map(move |((ground, &is_float), index)| LandBlock::new(ground, parameters, is_float, index, rays, near_m))
     }
 
     /// The pass `geometric-transformation`: eq. 10 and 11 for every map. Only the base's matrix is touched.
     pub fn transform(&self, parameters: &Parameters) -> Seen {
         let camera = parameters.camera(&self.extent);
         let rays = Rays::new(&camera, parameters.width, parameters.height);
-        let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
-        let land = |((ground, &is_float), index)| {
-            LandBlock::new(ground, parameters.interpolation, is_float, index, &rays, camera.near_m)
-        };
+        let light = LightBlock::new(parameters, &rays, self.range_m, camera.near_m);
         Seen {
-            lands: maps.map(land).collect(),
-            light: LightBlock::new(parameters, &rays, self.range_m),
+            lands: self.lands(parameters, &rays, camera.near_m).collect(),
+            light: LightBlock { drape: self.drape, ..light },
             to_clip: to_clip(&camera, parameters.aspect()),
         }
     }
@@ -96,6 +131,10 @@ pub struct Map {
 pub struct DeviceScene {
     pub maps: Vec<Map>,
     pub light: Arc<Buffer>,
+    pub drape: Arc<ImageView>,
+    /// A single texel each: no map has been looked at; no shadow is thrown.
+    pub nothing: Arc<ImageView>,
+    pub all_lit: Arc<ImageView>,
 }
 
 impl DeviceScene {
@@ -105,7 +144,7 @@ impl DeviceScene {
         shaders: &ShaderLibrary,
         label: &str,
         parameters: &Parameters,
-        inputs: &[MapInput],
+        inputs: &Inputs<'_>,
     ) -> Result<Self, Error> {
         let bounds: &[Bound] = match parameters.interpolation {
             Interpolation::Bilinear => &[Bound::Highest],
@@ -119,8 +158,24 @@ impl DeviceScene {
                 land: block_buffer::<LandBlock>(device, &format!("{name}/land"))?,
             })
         };
-        let maps = inputs.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
-        Ok(DeviceScene { maps, light: block_buffer::<LightBlock>(device, &format!("{label}/light"))? })
+        let maps = inputs.maps.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
+        let single = |name: &str, format, texel: &[f32]| {
+            texels(device, &format!("{label}/{name}"), format, (1, 1), |_, bytes| {
+                bytes.copy_from_slice(bytemuck::cast_slice(texel));
+            })
+        };
+        let drape = inputs.drape.map_or_else(|| Cow::Owned(Drape::white()), Cow::Borrowed);
+        let srgb = vk::Format::R8G8B8A8_SRGB;
+        let drape = texels(device, &format!("{label}/drape"), srgb, drape.size(), |first_row, bytes| {
+            bytes.copy_from_slice(drape.rows_from(first_row, bytes.len()));
+        })?;
+        Ok(DeviceScene {
+            maps,
+            light: block_buffer::<LightBlock>(device, &format!("{label}/light"))?,
+            drape,
+            nothing: single("nothing", vk::Format::R32G32B32A32_SFLOAT, &[NO_DEPTH, 0.0, 0.0, 0.0])?,
+            all_lit: single("all-lit", vk::Format::R32_SFLOAT, &[1.0])?,
+        })
     }
 
     /// # Errors
@@ -133,7 +188,25 @@ impl DeviceScene {
     }
 }
 
-fn block_buffer<T>(device: &Arc<Device>, name: &str) -> Result<Arc<Buffer>, Error> {
+/// An image of texels that passes fetch.
+fn texels(
+    device: &Arc<Device>,
+    name: &str,
+    format: vk::Format,
+    size: (u32, u32),
+    fill: impl FnMut(u32, &mut [u8]),
+) -> Result<Arc<ImageView>, Error> {
+    let desc = ImageDesc::new_2d(name, format, size.0, size.1).usage(vk::ImageUsageFlags::SAMPLED);
+    let view = Image::new(device, desc)?.view()?;
+    upload_rows(device, &view, size, fill)?;
+    Ok(view)
+}
+
+/// A uniform block that the host writes.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn block_buffer<T>(device: &Arc<Device>, name: &str) -> Result<Arc<Buffer>, Error> {
     let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
     let desc = BufferDesc::new(name, size_of::<T>() as u64).usage(usage).location(Location::Upload);
     Buffer::new(device, desc)

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec3Swizzles, Vec4};
 
 use super::blocks::{LandBlock, LightBlock};
 use super::caster::Caster;
+use super::drape::Drape;
 use super::hit::{Hit, Surface};
 use super::pyramid::Texel;
 use super::surface;
@@ -16,13 +17,13 @@ const TINTS: [Vec3; 6] = [
     Vec3::new(0.24, 0.20, 0.10),
     Vec3::new(0.25, 0.17, 0.11),
     Vec3::new(0.30, 0.26, 0.23),
-    Vec3::new(0.62, 0.60, 0.58),
+    Vec3::new(0.55, 0.53, 0.51),
 ];
 const ROCK: Vec3 = Vec3::new(0.20, 0.17, 0.15);
 const BASE_TINT: Vec3 = Vec3::new(0.17, 0.22, 0.12);
 const ZENITH: Vec3 = Vec3::new(0.16, 0.34, 0.68);
-const SUNLIGHT: Vec3 = Vec3::new(2.6, 2.45, 2.2);
-const SKYLIGHT: Vec3 = Vec3::new(0.8, 0.95, 1.2);
+const SUNLIGHT: Vec3 = Vec3::new(2.0, 1.88, 1.7);
+const SKYLIGHT: Vec3 = Vec3::new(0.55, 0.68, 0.9);
 
 /// East, up and south where the map is at `place`, as directions of the map's frame, and metres between nodes there.
 struct Local {
@@ -92,22 +93,36 @@ pub fn normal_of<T: Texel>(caster: &Caster<'_, T>, direction: Vec3, hit: &Hit) -
     turned.normalize().extend(above_m)
 }
 
-/// The colour of a pixel, 8-bit sRGB: Lambert's law under the sun and the sky, the ground's colour by height, haze by distance.
-pub fn color_of(light: &LightBlock, (x, y): (u32, u32), hit: &Hit, facing: Vec4) -> [u8; 4] {
+/// The colour of a pixel, 8-bit sRGB: Lambert's law under the sun and the sky, the ground's colour by height or from a draped
+/// picture, haze by distance. `sunlit` is 0 in the shadow and 1 outside.
+pub fn color_of(
+    light: &LightBlock,
+    drape: Option<&Drape>,
+    (x, y): (u32, u32),
+    hit: &Hit,
+    facing: Vec4,
+    sunlit: f32,
+) -> [u8; 4] {
     let row = |v: &[f32; 4]| Vec3::from_slice(v);
     let direction = row(&light.corner) + x as f32 * row(&light.across) + y as f32 * row(&light.down);
     let normal = facing.truncate();
     let haze = row(&light.haze);
-    let color = match hit.surface {
-        Surface::Sky => haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt()),
-        surface => {
-            let [low, high, ..] = light.range;
-            let share = (facing.w - low) / (high - low).max(1e-6);
-            let lit = normal.dot(row(&light.sun)).max(0.0);
-            let open = light.sun[3] * (0.5 + 0.5 * normal.y);
-            let seen = ground(surface, normal, share) * (SUNLIGHT * lit + SKYLIGHT * open);
-            haze.lerp(seen, (-light.haze[3] * hit.depth_m * direction.length()).exp())
-        }
+    let color = if hit.surface == Surface::Sky {
+        haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt())
+    } else {
+        let [low, high, ..] = light.range;
+        let share = (facing.w - low) / (high - low).max(1e-6);
+        let [columns, rows, ..] = light.drape;
+        let albedo = match drape {
+            Some(drape) if hit.surface == Surface::Terrain && hit.map == 0 => {
+                drape.color(Vec2::from_array(hit.place) / Vec2::new(columns, rows))
+            }
+            _ => ground(hit.surface, normal, share),
+        };
+        let lit = sunlit * normal.dot(row(&light.sun)).max(0.0);
+        let open = light.sun[3] * (0.5 + 0.5 * normal.y);
+        let seen = albedo * (SUNLIGHT * lit + SKYLIGHT * open);
+        haze.lerp(seen, (-light.haze[3] * hit.depth_m * direction.length()).exp())
     };
     let [r, g, b] = color.to_array().map(encode);
     [r, g, b, 255]

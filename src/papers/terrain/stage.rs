@@ -21,8 +21,9 @@ impl Stage {
     }
 
     fn usage(self) -> vk::ImageUsageFlags {
+        // Polygons are drawn into what compute stages wrote.
         let written = match self {
-            Stage::Compute => vk::ImageUsageFlags::STORAGE,
+            Stage::Compute => vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::COLOR_ATTACHMENT,
             Stage::Fragment => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
         written | vk::ImageUsageFlags::SAMPLED

@@ -91,8 +91,8 @@ pub struct PlaneWay {
 }
 
 impl PlaneWay {
-    pub fn new(land: &LandBlock, direction: Vec3, limit_m: f32) -> Option<Self> {
-        let (all, eye, last) = (Vec2::new(0.0, limit_m), eye(land), last_node(land));
+    pub fn new(land: &LandBlock, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Self> {
+        let (all, last) = (Vec2::new(0.0, limit_m), last_node(land));
         let [low, high, ..] = land.bounds;
         let margin = land.margin[1];
         let u = between(all, eye.x, direction.x, 0.0, last.x);
@@ -150,8 +150,7 @@ struct AlongRay {
 }
 
 impl AlongRay {
-    fn new(land: &LandBlock, direction: Vec3, squares: Vec2, linear: Vec2, constant: f32) -> Self {
-        let eye = eye(land);
+    fn new(eye: Vec3, direction: Vec3, squares: Vec2, linear: Vec2, constant: f32) -> Self {
         let a = squares.x * direction.xy().length_squared() + squares.y * direction.z * direction.z;
         let b = squares.x * eye.xy().dot(direction.xy()) + squares.y * eye.z * direction.z + linear.dot(direction.yz());
         let bent = squares.x * eye.xy().length_squared() + squares.y * eye.z * eye.z;
@@ -165,7 +164,7 @@ impl AlongRay {
 impl<'a> CurvedWay<'a> {
     fn base_of(land: &LandBlock, direction: Vec3) -> (f32, f32, Vec2) {
         let [_, _, off, along] = land.slope;
-        let q = AlongRay::new(land, direction, Vec2::from_slice(&land.ground), Vec2::new(off, along), 0.0);
+        let q = AlongRay::new(eye(land), direction, Vec2::from_slice(&land.ground), Vec2::new(off, along), 0.0);
         let place = |depth_m: f32| on_map(land, eye(land) + depth_m * direction, 1.0).xy();
         if q.c <= 0.0 {
             return (0.0, 0.0, place(0.0));
@@ -179,9 +178,9 @@ impl<'a> CurvedWay<'a> {
         }
     }
 
-    pub fn new(land: &'a LandBlock, direction: Vec3, limit_m: f32) -> Option<Self> {
+    pub fn new(land: &'a LandBlock, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Self> {
         let [off, along, ..] = land.slope;
-        let q = AlongRay::new(land, direction, Vec2::from_slice(&land.shell), Vec2::new(off, along), land.shell[2]);
+        let q = AlongRay::new(eye, direction, Vec2::from_slice(&land.shell), Vec2::new(off, along), land.shell[2]);
         let root = q.root?;
         let sum = if q.b < 0.0 { root - q.b } else { -q.b - root };
         let a = q.c / if sum.abs() < 1e-30 { 1e-30 } else { sum };
@@ -190,12 +189,12 @@ impl<'a> CurvedWay<'a> {
         if is_cylinder(land) {
             let low = -land.middle[2] / land.steps[1];
             let high = (last_node(land).y - land.middle[2]) / land.steps[1];
-            range = between(range, eye(land).z, direction.z, low, high);
+            range = between(range, eye.z, direction.z, low, high);
         }
         if range.x >= range.y {
             return None;
         }
-        let from = eye(land) + range.x * direction;
+        let from = eye + range.x * direction;
         let whole = (range.y - range.x) * direction;
         let cut = if whole.x != 0.0 { -from.x / whole.x } else { 0.0 };
         let is_behind = land.middle[0] + from.y + cut * whole.y < 0.0;

@@ -1,0 +1,11 @@
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 3, r32f) uniform writeonly image2D shadow;
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= imageSize(shadow).x || pixel.y >= imageSize(shadow).y) {
+        return;
+    }
+    imageStore(shadow, pixel, vec4(lit_at(pixel)));
+}

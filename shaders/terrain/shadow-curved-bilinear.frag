@@ -1,0 +1,11 @@
+#version 450
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/land.glsl"
+#include "terrain/base-curved.glsl"
+#include "terrain/interpolation-bilinear.glsl"
+#include "terrain/leaf-shadow.glsl"
+#include "terrain/traversal.glsl"
+#include "terrain/shadow.glsl"
+#include "terrain/shadow-fragment.glsl"

@@ -1,0 +1,61 @@
+//! A picture over a map.
+
+use glam::{UVec2, Vec2, Vec3};
+
+use crate::papers::ParameterError;
+
+/// A picture over the first map, its corners on the map's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drape {
+    width: u32,
+    height: u32,
+    texels: Vec<[u8; 4]>,
+}
+
+impl Drape {
+    /// Of `width` x `height` texels, 8-bit sRGB with an opacity that is ignored, the north-west one first.
+    ///
+    /// # Errors
+    /// A side of 0, and a number of texels other than `width` times `height`.
+    pub fn new(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self, ParameterError> {
+        let is_whole = width > 0 && height > 0 && texels.len() as u64 == u64::from(width) * u64::from(height);
+        let value = format!("{width}x{height}");
+        ParameterError::check(is_whole, "--drape", value, "its texels do not fill a picture of that size")?;
+        Ok(Drape { width, height, texels })
+    }
+
+    /// A single white texel.
+    pub fn white() -> Self {
+        Drape { width: 1, height: 1, texels: vec![[255; 4]] }
+    }
+
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// That many bytes of whole rows.
+    pub fn rows_from(&self, first_row: u32, bytes: usize) -> &[u8] {
+        let rows = &self.texels[first_row as usize * self.width as usize..];
+        &bytemuck::cast_slice(rows)[..bytes]
+    }
+
+    /// Its colour at a place on the map, 0 to 1 from the west and from the north, linear.
+    pub fn color(&self, share: Vec2) -> Vec3 {
+        let size = UVec2::new(self.width, self.height);
+        let texel = (share * size.as_vec2() - 0.5).clamp(Vec2::ZERO, size.as_vec2() - 1.0);
+        let (a, part) = (texel.as_uvec2(), texel.fract());
+        let b = (a + 1).min(size - 1);
+        let at = |x: u32, y: u32| {
+            let texel = self.texels.get((y * self.width + x) as usize).copied().unwrap_or_default();
+            Vec3::from_array([texel[0], texel[1], texel[2]].map(decode))
+        };
+        let (north, south) = (at(a.x, a.y).lerp(at(b.x, a.y), part.x), at(a.x, b.y).lerp(at(b.x, b.y), part.x));
+        north.lerp(south, part.y)
+    }
+}
+
+/// sRGB to linear.
+fn decode(encoded: u8) -> f32 {
+    let c = f32::from(encoded) / 255.0;
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
