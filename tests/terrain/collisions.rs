@@ -35,7 +35,7 @@ fn segments_touch_where_small_steps_do() {
             let [x, y, z] = [(); 3].map(|()| f64::from(random.unit()));
             DVec3::new((x - 0.5) * 14_000.0, y * high, (z - 0.5) * 14_000.0)
         };
-        let (a, b) = (place(3000.0), place(1500.0));
+        let (a, b) = (place(3000.0), place(200.0));
         let is_inside = |part: f64| {
             let p = a.lerp(b, part);
             p.y <= height_m(p.x, p.z)

@@ -49,7 +49,7 @@ const ROUNDING: f64 = 1.0 / (1 << 21) as f64;
 /// How near a height counts as met where a root is approached, as a share of a cell.
 const MET: f64 = 2.5e-4;
 /// The haze's colour, linear: the sky at the horizon.
-const HAZE: Vec3 = Vec3::new(0.62, 0.72, 0.82);
+const HAZE: Vec3 = Vec3::new(0.42, 0.53, 0.66);
 /// The strength of the sky's light.
 const SKY: f32 = 0.45;
 
