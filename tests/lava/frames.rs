@@ -1,8 +1,11 @@
 //! Whole frames: pass order, replay, both ways to make splats, both compilers.
 
+use fumarole::gpu::bindings::Resource;
 use fumarole::gpu::{Compiler, Mode, PassKind, Recorder, ShaderLibrary};
 use fumarole::papers::Paper;
 use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
+use fumarole::scene::Camera;
+use glam::Vec3;
 
 use crate::common::gpu_test;
 use crate::scene::{draw, lava, parameters, texels};
@@ -119,6 +122,41 @@ fn both_compilers_draw_one_picture() {
             let has_geometry = pass.info.shaders.iter().any(|s| s.ends_with(".geom"));
             let expected = if has_geometry { Compiler::Glslang } else { Compiler::Naga };
             assert_eq!(pass.info.compiler, Some(expected), "{}", pass.info.name);
+        }
+    });
+}
+
+#[test]
+fn extreme_configurations_draw_finite_values() {
+    gpu_test(|device| {
+        let small = parameters();
+        let camera = |eye: Vec3, target: Vec3| Camera { eye, target, ..small.camera };
+        let cases = [
+            Parameters { particles: 1, density: [1; 3], splats: [1; 2], width: 1, height: 1, ..small.clone() },
+            Parameters { time_step_s: 1000.0, speed_m_s: 1000.0, ..small.clone() },
+            Parameters { radius_m: 1.0, splat_radius_m: 1.0, epsilon_m: 1000.0, ..small.clone() },
+            Parameters { border_m: 1000.0, ..small.clone() },
+            Parameters { radius_m: 1e-4, rho: Some(1e-30), ..small.clone() },
+            Parameters {
+                space_m: Vec3::new(1000.0, 1e-3, 1e-3),
+                radius_m: 1e-3,
+                splat_radius_m: 1e-3,
+                ..small.clone()
+            },
+            // From within the lava, and from below.
+            Parameters { camera: camera(Vec3::new(1.0, 0.4, 0.6), Vec3::new(2.0, 0.4, 0.6)), ..small.clone() },
+            Parameters { camera: camera(Vec3::new(1.0, -2.0, 0.6), Vec3::new(1.0, 0.0, 0.6)), ..small.clone() },
+        ];
+        for (case, parameters) in cases.into_iter().enumerate() {
+            let mut lava = lava(device, &parameters);
+            for number in [0, 1] {
+                draw(device, &mut lava, number);
+            }
+            for target in lava.targets().into_iter().filter(|t| t.name != "picture") {
+                let Resource::Image(view) = &target.resource else { panic!("{} is an image", target.name) };
+                let values: Vec<f32> = texels(device, view);
+                assert!(values.iter().all(|v| v.is_finite()), "case {case}: {}", target.name);
+            }
         }
     });
 }
