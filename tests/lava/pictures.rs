@@ -176,3 +176,22 @@ fn the_surface_is_closed_inside_the_border() {
         }
     });
 }
+
+/// Figure 8.5, its radii times three as the splats here are: the two smallest leave holes, the largest none.
+#[test]
+fn small_splats_leave_holes() {
+    gpu_test(|device| {
+        let holes = [0.005625, 0.013125, 0.024375, 0.061875].map(|splat_radius_m| {
+            let parameters = Parameters { camera: CAMERAS[3].1, splat_radius_m, ..reduced() };
+            let mut lava = lava(device, &parameters);
+            draw(device, &mut lava, 0);
+            let sums: Vec<[f32; 4]> = texels(device, lava.splatting().accumulated_colors());
+            let met = meets_the_surface(device, &lava, &parameters);
+            let inside = met.iter().filter(|&&m| m).count();
+            let holes = met.iter().zip(&sums).filter(|(met, sums)| **met && sums[3] == 0.0).count();
+            holes as f64 / inside as f64
+        });
+        println!("shares of holes: {holes:?}");
+        assert!(holes[0] > 0.5 && holes[1] > 0.1 && holes[2] < holes[1] && holes[3] == 0.0, "{holes:?}");
+    });
+}
