@@ -107,7 +107,7 @@ pub struct LavaArgs {
     /// Mean speed of the flow in metres a second, 0 to 1000 [default: 0.2]
     #[arg(long, value_name = "M/S", value_parser = parse_finite, allow_negative_numbers = true)]
     speed: Option<f32>,
-    /// The constant orange of section 7.2, linear red,green,blue, each 0 to 1000 [default: 2.6,0.75,0.09]
+    /// The constant orange of section 7.2 as the display takes it: red,green,blue, each 0 to 1000 [default: 2.5,1.2,0.28]
     #[arg(long, value_name = "R,G,B", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     color: Option<[f32; 3]>,
     /// Picture of the rock that is laid over the lava, PNG, at least 2 x 2 texels [default: the shipped one]
