@@ -42,10 +42,11 @@ impl Resolve {
         let device = shaders.device();
         let image = |name: &str, format, usage| {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
-            Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT | usage))?.view()
+            Image::new(device, desc.usage(usage))?.view()
         };
-        let radiance = image("radiance", vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED)?;
-        let picture = image("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::empty())?;
+        let stored = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+        let radiance = image("radiance", vk::Format::R32G32B32A32_SFLOAT, stored)?;
+        let picture = image("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
         // A binding needs a buffer where the variant has none; nothing reads it.
         let nothing = |name: &str| {
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -55,7 +56,7 @@ impl Resolve {
         let attenuations = march.and_then(|m| m.attenuations.clone());
         let shading = Shading { is_attenuated: attenuations.is_some().into() };
         let attenuations = attenuations.map_or_else(|| nothing("no attenuations"), Ok)?;
-        let resolve = Pass::graphics("resolve", "A-buffer", "common/fullscreen.vert", "gas/resolve.frag")
+        let resolve = Pass::compute("resolve", "A-buffer", "gas/resolve.comp")
             .with("frame", &geometry.frame)
             .with("Lights", &geometry.lights)
             .with("Objects", &geometry.objects)
@@ -66,8 +67,8 @@ impl Resolve {
             .with("Pixels", &lists.pixels)
             .with("Sections", &sections)
             .with("Attenuations", &attenuations)
+            .with("radiance", &radiance)
             .constants::<Shading>()
-            .color(&radiance, Load::Discard, Blend::Replace)
             .build(shaders)?;
         let view = Pass::graphics("view", "A-buffer", "common/fullscreen.vert", "gas/view.frag")
             .with("radiance", &radiance)
@@ -78,8 +79,8 @@ impl Resolve {
 
     /// Resolves the lists.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.resolve, |draw| {
-            draw.constants(&self.shading).vertices(3);
+        frame.compute(&self.resolve, |dispatch| {
+            dispatch.constants(&self.shading).threads(self.picture.width(), self.picture.height(), 1);
         })
     }
 

@@ -3,6 +3,11 @@
 // Section "Combining A-buffer and volume rendering techniques": the list of surface fragments and the list of sections, both sorted, are
 // merged and blended front to back by their masks, as compositing 32 sub-pixels would. Only what is visible is shaded. Where the depth ranges
 // of neighbours of two objects overlap they intersect: by Carpenter's estimate a share of the front one's area shows the other.
+//
+// A compute stage: in a fragment stage lavapipe runs the lanes beside the picture as well, whose reads give 0, and a list of zeros
+// has no end.
+
+layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gas/frame.glsl"
 #include "gas/light.glsl"
@@ -45,7 +50,7 @@ layout(push_constant, std430) uniform Shading {
     uint is_attenuated; // whether light-attenuation has run
 } shading;
 
-layout(location = 0) out vec4 radiance;
+layout(set = 0, binding = 17, rgba32f) uniform writeonly image2D radiance;
 
 const uint FULL = 0xffffffffu;
 
@@ -76,7 +81,10 @@ vec3 shaded(uint f, vec3 ray) {
 }
 
 void main() {
-    uvec2 place = uvec2(gl_FragCoord.xy);
+    uvec2 place = gl_GlobalInvocationID.xy;
+    if (place.x >= frame.counts.x || place.y >= frame.counts.y) {
+        return;
+    }
     uint pixel = place.y * frame.counts.x + place.x;
     vec3 ray = ray_direction(vec2(place) + 0.5);
     uvec4 mine = pixels[pixel];
@@ -142,5 +150,5 @@ void main() {
             fragment = link.x;
         }
     }
-    radiance = vec4(color, opacity);
+    imageStore(radiance, ivec2(place), vec4(color, opacity));
 }
