@@ -12,6 +12,7 @@ mod lists;
 mod march;
 pub mod model;
 pub mod parameters;
+pub mod reference;
 mod resolve;
 pub mod scenes;
 mod tables;

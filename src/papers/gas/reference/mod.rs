@@ -1,0 +1,7 @@
+//! The oracle: what each pass computes, in double precision, from the paper's equations.
+
+pub mod coverage;
+pub mod density;
+pub mod noise;
+pub mod phase;
+pub mod shadow_table;

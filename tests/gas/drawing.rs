@@ -1,0 +1,64 @@
+//! One frame of the paper on the device, with what it drew read back.
+
+use std::sync::Arc;
+
+use fumarole::experiment::picture::read_target;
+use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
+use fumarole::image::Samples;
+use fumarole::papers::Paper;
+use fumarole::papers::gas::model::Object;
+use fumarole::papers::gas::{Capacity, Fragment, Gas, Parameters, Variant};
+
+pub struct Drawing {
+    /// Of each pixel, four floats.
+    pub radiance: Vec<f32>,
+    /// Of each pixel, sorted.
+    pub lists: Vec<Vec<Fragment>>,
+    pub demand: Capacity,
+    targets: Vec<(String, Vec<f32>)>,
+}
+
+impl Drawing {
+    pub fn of(device: &Arc<Device>, variant: Variant, parameters: &Parameters, objects: &[Object]) -> Self {
+        Self::frame(device, Compiler::Glslang, variant, parameters, objects, 0)
+    }
+
+    pub fn frame(
+        device: &Arc<Device>,
+        compiler: Compiler,
+        variant: Variant,
+        parameters: &Parameters,
+        objects: &[Object],
+        number: u32,
+    ) -> Self {
+        parameters.validate().unwrap();
+        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
+        let mut gas = Gas::new(&shaders, "test", variant, parameters, objects, None).unwrap();
+        let mut recorder = Recorder::new(device).unwrap();
+        recorder.run(Mode::Plain, |frame| gas.record_picture(frame, number)).unwrap();
+        while !gas.settle(&shaders).unwrap() {
+            recorder.run(Mode::Plain, |frame| gas.record_picture(frame, number)).unwrap();
+        }
+        let targets: Vec<(String, Vec<f32>)> = gas
+            .targets()
+            .into_iter()
+            .filter(|t| t.name != "picture" && t.name != "light-attenuations")
+            .map(|t| match read_target(device, &t).unwrap().samples() {
+                Samples::F32(values) => (t.name.clone(), values.clone()),
+                _ => panic!("{} holds no floats", t.name),
+            })
+            .collect();
+        let radiance = targets.iter().find(|(n, _)| n == "radiance").unwrap().1.clone();
+        Drawing { radiance, lists: gas.fragments(&shaders).unwrap(), demand: gas.demand(&shaders).unwrap(), targets }
+    }
+
+    /// The values of a target of `--dump`.
+    pub fn target(&self, name: &str) -> &[f32] {
+        &self.targets.iter().find(|(n, _)| n == name).unwrap().1
+    }
+
+    /// Red of a pixel.
+    pub fn red(&self, pixel: usize) -> f64 {
+        f64::from(self.radiance[4 * pixel])
+    }
+}

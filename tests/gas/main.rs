@@ -1,0 +1,10 @@
+//! The paper `gas` on the device: against its oracle, closed forms and laws.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod density;
+mod drawing;
+mod lists;
+mod scenes;
+mod slab;
+mod tables;

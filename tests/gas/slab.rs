@@ -1,0 +1,153 @@
+//! Boxes of constant density against closed forms.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use fumarole::gpu::Device;
+use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture, Volume};
+use fumarole::papers::gas::parameters::{DEFAULT_PHASE, default_volume};
+use fumarole::papers::gas::reference::phase::phase;
+use fumarole::papers::gas::{Parameters, Variant};
+use fumarole::scene::{Camera, Light, shapes};
+use glam::{DVec3, Mat4, UVec2, Vec2, Vec3};
+
+use crate::common::gpu_test;
+use crate::drawing::Drawing;
+
+const WIDTH: u32 = 30;
+const HEIGHT: u32 = 20;
+
+/// Looks along -Z at a box from z = -1 to 1 that fills the picture.
+fn parameters(density: f32) -> Parameters {
+    let texture = SolidTexture { function: DensityFunction::Constant, opaque: density, ..default_volume().texture };
+    Parameters {
+        volumes: vec![Volume { half_extent_m: Vec3::new(9.0, 9.0, 1.0), texture, tau_per_m: 0.7, ..default_volume() }],
+        lights: vec![Light::Parallel { direction: Vec3::new(-0.3, -1.0, -0.4), intensity: Vec3::ONE }],
+        ambient: Vec3::ZERO,
+        background: Vec3::ONE,
+        camera: Camera { eye: Vec3::Z * 5.0, target: Vec3::ZERO, ..Parameters::default().camera },
+        early_end: 0.0,
+        steps: 16,
+        width: WIDTH,
+        height: HEIGHT,
+        ..Parameters::default()
+    }
+}
+
+/// A pane across the view at depth z, white, opaque or not.
+fn pane(z_m: f32, opacity: f32) -> Object {
+    let turn = Mat4::from_translation(Vec3::Z * z_m) * Mat4::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let mesh = shapes::plane(Vec2::splat(30.0), UVec2::ONE).transformed(&turn);
+    Object { opacity, ..Object::new(mesh, Vec3::ZERO) }
+}
+
+/// The ray of a pixel, of depth 1.
+fn ray(parameters: &Parameters, pixel: usize) -> DVec3 {
+    let pixel_size = (f64::from(parameters.camera.vertical_fov_rad) / 2.0).tan() / (f64::from(HEIGHT) / 2.0);
+    let x = (pixel as u32 % WIDTH) as f64 + 0.5 - f64::from(WIDTH) / 2.0;
+    let y = (pixel as u32 / WIDTH) as f64 + 0.5 - f64::from(HEIGHT) / 2.0;
+    DVec3::new(x * pixel_size, -y * pixel_size, -1.0)
+}
+
+/// Transmittance of the whole box, and the gas's brightness at transmittance 0, in one pixel.
+fn closed_form(parameters: &Parameters, pixel: usize) -> (f64, f64) {
+    let volume = parameters.volumes[0];
+    let ray = ray(parameters, pixel);
+    let depth = f64::from(volume.tau_per_m) * f64::from(volume.texture.opaque) * 2.0 * ray.length();
+    let Light::Parallel { direction, .. } = parameters.lights[0] else { unreachable!() };
+    let cosine = (-direction.as_dvec3().normalize()).dot(ray.normalize());
+    ((-depth).exp(), 0.3 * PI * phase(&DEFAULT_PHASE, cosine))
+}
+
+fn draw(device: &Arc<Device>, parameters: &Parameters, objects: &[Object]) -> Drawing {
+    Drawing::of(device, Variant::None, parameters, objects)
+}
+
+#[test]
+fn opacity_and_brightness_are_exact_for_every_step_and_section() {
+    gpu_test(|device| {
+        for (steps, panes) in [(16, 0), (7, 0), (100, 0), (16, 1), (16, 4)] {
+            let parameters = Parameters { steps, ..parameters(1.0) };
+            // Panes of almost no opacity cut the gas into sections.
+            let panes: Vec<Object> = (0..panes).map(|i| pane(-0.71 + 0.4 * i as f32, 1.6e-5)).collect();
+            let drawing = draw(device, &parameters, &panes);
+            assert!(drawing.lists.iter().all(|l| l.len() == panes.len()));
+            for pixel in 0..(WIDTH * HEIGHT) as usize {
+                let (passed, brightness) = closed_form(&parameters, pixel);
+                let expected = passed + brightness * (1.0 - passed);
+                let found = drawing.red(pixel);
+                let slack = 1e-4 + 2e-5 * panes.len() as f64;
+                assert!((found - expected).abs() < slack, "{steps}, {}: {found} for {expected}", panes.len());
+            }
+        }
+    });
+}
+
+#[test]
+fn a_pane_in_front_inside_and_behind_is_composited() {
+    gpu_test(|device| {
+        let opacity = 0.4;
+        for (z_m, share_before) in [(2.0, 0.0), (0.3, 0.35), (-3.0, 1.0)] {
+            let parameters = parameters(1.0);
+            let drawing = draw(device, &parameters, &[pane(z_m, opacity)]);
+            for pixel in 0..(WIDTH * HEIGHT) as usize {
+                let (passed, brightness) = closed_form(&parameters, pixel);
+                let before = passed.powf(share_before);
+                let after = passed.powf(1.0 - share_before);
+                let glass = 1.0 - f64::from(opacity);
+                let expected = brightness * (1.0 - before) + before * glass * (brightness * (1.0 - after) + after);
+                assert!((drawing.red(pixel) - expected).abs() < 2e-4, "{z_m}: {} for {expected}", drawing.red(pixel));
+            }
+        }
+    });
+}
+
+#[test]
+fn a_solid_slab_follows_its_formula() {
+    gpu_test(|device| {
+        let mut parameters = parameters(0.3);
+        parameters.volumes[0].is_solid = true;
+        parameters.volumes[0].albedo = Vec3::ZERO;
+        let drawing = draw(device, &parameters, &[]);
+        for pixel in 0..(WIDTH * HEIGHT) as usize {
+            let length = 2.0 * ray(&parameters, pixel).length();
+            let expected = (1.0 - f64::from(0.3_f32)).powf(f64::from(0.7_f32) * length);
+            assert!((drawing.red(pixel) - expected).abs() < 1e-4);
+        }
+    });
+}
+
+#[test]
+fn gases_that_overlap_add_up() {
+    gpu_test(|device| {
+        let once = draw(device, &parameters(1.0), &[]);
+        let mut halves = parameters(0.5);
+        halves.volumes.push(halves.volumes[0]);
+        let twice = draw(device, &halves, &[]);
+        for (a, b) in once.radiance.iter().zip(&twice.radiance) {
+            assert!((a - b).abs() < 1e-5);
+        }
+    });
+}
+
+#[test]
+fn no_density_is_no_volume_bit_for_bit() {
+    gpu_test(|device| {
+        let objects = [pane(0.4, 0.5), Object::new(shapes::teapot(), Vec3::new(0.8, 0.5, 0.2))];
+        let parameters = parameters(0.0);
+        let without = Drawing::of(device, Variant::NoVolume, &parameters, &objects);
+        for variant in [Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table] {
+            let with = Drawing::of(device, variant, &parameters, &objects);
+            assert!(with.demand.sections > 0 && with.radiance == without.radiance, "{variant:?}");
+        }
+    });
+}
+
+#[test]
+fn nothing_is_evaluated_behind_an_opaque_wall() {
+    gpu_test(|device| {
+        let drawing = draw(device, &parameters(1.0), &[pane(2.0, 1.0)]);
+        assert_eq!(drawing.demand.sections, 0);
+        assert!(drawing.radiance.chunks_exact(4).all(|p| p[3] == 1.0));
+    });
+}

@@ -1,0 +1,131 @@
+//! The shadow table against the oracle's sequential one, and against rays traced in double precision.
+
+use fumarole::papers::gas::model::{DensityFunction, SolidTexture, Volume};
+use fumarole::papers::gas::parameters::default_volume;
+use fumarole::papers::gas::reference::density::Medium;
+use fumarole::papers::gas::reference::shadow_table::{place, shadow_table};
+use fumarole::papers::gas::{Parameters, Variant};
+use fumarole::scene::Light;
+use glam::{DVec3, IVec3, Vec3};
+
+use crate::common::gpu_test;
+use crate::drawing::Drawing;
+
+fn point(x: f32, y: f32, z: f32) -> Light {
+    Light::Point { position: Vec3::new(x, y, z), intensity: Vec3::ONE }
+}
+
+fn parallel(x: f32, y: f32, z: f32) -> Light {
+    Light::Parallel { direction: Vec3::new(x, y, z), intensity: Vec3::ONE }
+}
+
+/// At infinity (also along an axis and a diagonal), outside, on a node, on a face, inside.
+fn lights() -> Vec<Light> {
+    vec![
+        parallel(-0.3, -1.0, -0.45),
+        parallel(0.0, -1.0, 0.0),
+        parallel(1.0, 1.0, 1.0),
+        point(3.0, 6.0, 3.0),
+        point(-1.7, 0.3, 0.2),
+        point(0.0, 0.0, 0.0),
+        point(1.0, 0.1, 0.3),
+        point(0.31, -0.42, 0.53),
+    ]
+}
+
+fn parameters(volume: Volume, lights: &[Light], table_size: u32) -> Parameters {
+    let lights = lights.to_vec();
+    Parameters { volumes: vec![volume], lights, table_size, width: 8, height: 8, steps: 4, ..Parameters::default() }
+}
+
+fn constant() -> Volume {
+    let texture = SolidTexture { function: DensityFunction::Constant, ..default_volume().texture };
+    Volume { half_extent_m: Vec3::new(1.0, 0.9, 1.2), texture, ..default_volume() }
+}
+
+fn turbulent() -> Volume {
+    let texture = SolidTexture { scale_per_m: 1.5, ..default_volume().texture };
+    Volume { texture, ..default_volume() }
+}
+
+/// The order of wavefronts is right: every entry is what one finds by computing each after those that it reads.
+#[test]
+fn the_devices_table_is_the_sequential_one() {
+    gpu_test(|device| {
+        for (volume, lights) in [turbulent(), constant()]
+            .iter()
+            .flat_map(|v| lights().chunks(4).map(|l| (*v, l.to_vec())).collect::<Vec<_>>())
+        {
+            let size = 17;
+            let parameters = parameters(volume, &lights, size);
+            let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
+            let densities: Vec<f64> = drawing.target("density-table").iter().map(|&d| f64::from(d)).collect();
+            let tables = drawing.target("shadow-table").chunks_exact(densities.len());
+            for (table, light) in tables.zip(&lights) {
+                let expected = shadow_table(&densities, &volume, light, size);
+                let worst = table.iter().zip(&expected).map(|(&a, b)| (f64::from(a) - b).abs()).fold(0.0, f64::max);
+                assert!(worst < 1e-4, "{light:?}: {worst}");
+                assert!(expected.iter().any(|&s| s > 0.1), "{light:?}");
+            }
+        }
+    });
+}
+
+/// Along an axis the interpolation is exact, whatever the distance.
+#[test]
+fn a_constant_density_is_exact() {
+    gpu_test(|device| {
+        let (volume, size) = (constant(), 64);
+        let drawing = Drawing::of(device, Variant::Table, &parameters(volume, &[parallel(0.0, -1.0, 0.0)], size), &[]);
+        for (i, &sum) in drawing.target("shadow-table").iter().enumerate() {
+            let row = i / 64 % 64;
+            let expected = 1.8 * (63 - row) as f32 / 63.0;
+            assert!((sum - expected).abs() < 1e-4, "{i}: {sum} for {expected}");
+        }
+    });
+}
+
+/// Below 0.03 mean error in transmittance at 64 entries a side.
+#[test]
+fn the_table_is_near_traced_rays() {
+    gpu_test(|device| {
+        let volume = turbulent();
+        for lights in lights().chunks(4) {
+            let parameters = parameters(volume, lights, 64);
+            let drawing = Drawing::of(device, Variant::Table, &parameters, &[]);
+            let medium = Medium::new(&parameters, 0);
+            for (table, light) in drawing.target("shadow-table").chunks_exact(64 * 64 * 64).zip(lights) {
+                let (mut sum, mut count) = (0.0, 0);
+                for i in (0..table.len()).step_by(1013) {
+                    let i32s = i as i32;
+                    let from = place(&volume, 64, IVec3::new(i32s % 64, i32s / 64 % 64, i32s / 4096));
+                    let to = end_of_ray(&volume, from, light);
+                    let expected = (-medium.optical_depth(&volume, from, to, 200)).exp();
+                    let found = (-f64::from(volume.tau_per_m) * f64::from(table[i])).exp();
+                    sum += (found - expected).abs();
+                    count += 1;
+                }
+                let mean = sum / f64::from(count);
+                assert!(mean < 0.03, "{light:?}: {mean}");
+            }
+        }
+    });
+}
+
+/// Where the ray from a point inside the box to the light leaves the box, or the light itself.
+fn end_of_ray(volume: &Volume, from: DVec3, light: &Light) -> DVec3 {
+    let (way, length) = match *light {
+        Light::Parallel { direction, .. } => (-direction.as_dvec3().normalize(), f64::INFINITY),
+        Light::Point { position, .. } => {
+            let way = position.as_dvec3() - from;
+            (way.normalize_or_zero(), way.length())
+        }
+    };
+    let half = volume.half_extent_m.as_dvec3();
+    let local = from - volume.center.as_dvec3();
+    let to_side = |axis: usize| match way[axis] {
+        0.0 => f64::INFINITY,
+        w => ((half[axis] * w.signum() - local[axis]) / w).max(0.0),
+    };
+    from + way * (0..3).map(to_side).fold(length, f64::min)
+}
