@@ -237,7 +237,8 @@ void main() {
         opacity *= clamp(gas_density(uint(object.detail.z), point + object.offset.xyz), 0.0, 1.0);
     }
     if (mask == 0u) {
-        opacity *= min(coverage * 32.0, 1.0);
+        // Never opaque: it does not cover the sub-pixel whole, so that no tracing may end at it.
+        opacity *= min(coverage * 32.0, 0.99);
         uvec2 nearest = min(uvec2(middle * vec2(4.0, 8.0)), uvec2(3u, 7u));
         mask = 1u << (nearest.y * 4u + nearest.x);
     }

@@ -71,7 +71,8 @@ fn opacity_and_brightness_are_exact_for_every_step_and_section() {
             // Panes of almost no opacity cut the gas into sections.
             let panes: Vec<Object> = (0..panes).map(|i| pane(-0.71 + 0.4 * i as f32, 1.6e-5)).collect();
             let drawing = draw(device, &parameters, &panes);
-            assert!(drawing.lists.iter().all(|l| l.len() == panes.len()));
+            // On the panes' diagonals there are two triangles a pane.
+            assert!(drawing.lists.iter().all(|l| (panes.len()..=2 * panes.len()).contains(&l.len())));
             for pixel in 0..(WIDTH * HEIGHT) as usize {
                 let (passed, brightness) = closed_form(&parameters, pixel);
                 let expected = passed + brightness * (1.0 - passed);

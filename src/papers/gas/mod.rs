@@ -8,6 +8,8 @@
 
 mod blocks;
 mod geometry;
+#[cfg(test)]
+mod layouts;
 mod lists;
 mod march;
 pub mod model;

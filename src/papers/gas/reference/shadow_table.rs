@@ -78,7 +78,8 @@ impl Table<'_> {
         // Metres to the planes of the neighbours, and the nearest of them.
         let to_plane = |axis: usize| if way[axis] == 0.0 { f64::INFINITY } else { spacing[axis] / way[axis].abs() };
         let step = (0..3).map(to_plane).fold(f64::INFINITY, f64::min);
-        if distance <= step {
+        // Where both are equal but for rounding the light lies on the plane: directly as well.
+        if distance <= step * (1.0 + 1e-9) {
             return self.densities[at] * distance;
         }
         let pierced = (entry.as_dvec3() + way * step / spacing).clamp(DVec3::ZERO, DVec3::splat(f64::from(n - 1)));

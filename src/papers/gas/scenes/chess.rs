@@ -83,7 +83,7 @@ fn parameters(volumes: Vec<Volume>) -> Parameters {
     Parameters {
         volumes,
         lights: vec![Light::Parallel { direction: Vec3::new(-0.45, -1.0, -0.35), intensity: Vec3::splat(0.95) }],
-        ambient: Vec3::new(0.20, 0.21, 0.24),
+        ambient: Vec3::new(0.30, 0.31, 0.34),
         background: Vec3::new(0.03, 0.04, 0.07),
         camera: Camera {
             eye: Vec3::new(1.0, 2.5, 7.4),

@@ -32,8 +32,8 @@ fn room() -> Vec<Object> {
     let tiles = Checker { color: Vec3::new(0.16, 0.12, 0.10), edge_m: 0.8 };
     let mut objects = vec![
         Object { checker: Some(tiles), ..floor(Vec2::splat(16.0), 0.0, Vec3::new(0.42, 0.36, 0.30)) },
-        block(Vec3::new(-8.0, 0.0, -3.2), Vec3::new(8.0, 5.0, -3.0), Vec3::new(0.50, 0.44, 0.38)),
-        block(Vec3::new(-4.2, 0.0, -3.0), Vec3::new(-4.0, 5.0, 6.0), Vec3::new(0.42, 0.40, 0.42)),
+        block(Vec3::new(-8.0, 0.0, -3.2), Vec3::new(8.0, 5.0, -3.0), Vec3::new(0.24, 0.17, 0.15)),
+        block(Vec3::new(-4.2, 0.0, -3.0), Vec3::new(-4.0, 5.0, 6.0), Vec3::new(0.22, 0.19, 0.20)),
         pedestal(),
     ];
     objects.extend(painting(Vec3::new(-2.3, 2.1, -3.0), Vec2::new(0.75, 0.55), Vec3::new(0.55, 0.12, 0.10)));
@@ -63,7 +63,7 @@ fn parameters(volume: Volume) -> Parameters {
     Parameters {
         volumes: vec![volume],
         lights: vec![Light::Point { position, intensity: Vec3::splat(position.length_squared() * 0.8) }],
-        ambient: Vec3::splat(0.2),
+        ambient: Vec3::splat(0.32),
         camera: Camera {
             eye: Vec3::new(1.2, 2.0, 6.2),
             target: Vec3::new(0.0, 1.45, 0.0),
@@ -87,12 +87,12 @@ pub fn scene() -> Scene {
         falloff: 0.45,
         texture: SolidTexture {
             function: DensityFunction::Turbulence,
-            opaque: 1.9,
+            opaque: 2.2,
             power: 3.0,
             scale_per_m: 2.4,
             offset: Vec3::new(3.1, 0.7, 5.9),
         },
-        tau_per_m: 12.0,
+        tau_per_m: 14.0,
         ..default_volume()
     });
     let objects = room().into_iter().chain(rods()).collect();
