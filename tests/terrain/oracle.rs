@@ -1,0 +1,134 @@
+//! The device against the oracle, ray by ray: random maps, random cameras, every base and interpolation.
+
+use std::sync::Arc;
+
+use fumarole::gpu::Device;
+use fumarole::papers::Variant as _;
+use fumarole::papers::terrain::{Base, Interpolation, Rays, Variant};
+use fumarole::scene::random::Random;
+
+use crate::common::gpu_test;
+use crate::drawing::Drawing;
+use crate::land::adversaries;
+use crate::verdict::{Judge, Tally};
+use crate::world::{Relief, Stand, World, random_map};
+
+const THOUSANDTH: f64 = 1e-3;
+const VARIANTS: [Variant; 3] = [Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment];
+const STANDS: [Stand; 7] =
+    [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Under, Stand::Down, Stand::Up, Stand::Far(4.0)];
+
+/// What one variant did over many pictures.
+struct Trial {
+    variant: Variant,
+    tally: Tally,
+}
+
+/// All variants, and the pictures so far.
+struct Trials<'a> {
+    device: &'a Arc<Device>,
+    trials: [Trial; 3],
+    size: (u32, u32),
+}
+
+impl<'a> Trials<'a> {
+    fn new(device: &'a Arc<Device>, size: (u32, u32)) -> Self {
+        let trials = VARIANTS.map(|variant| Trial { variant, tally: Tally::default() });
+        Trials { device, trials, size }
+    }
+
+    fn draw(&mut self, world: &World, stand: Stand, random: &mut Random, tolerance_cells: f64) {
+        let camera = world.camera(stand, random);
+        let parameters = world.parameters(camera, self.size);
+        let rays = Rays::new(&camera, self.size.0, self.size.1);
+        let judge = Judge::new(world, &rays, self.size, tolerance_cells);
+        for trial in &mut self.trials {
+            let drawing = Drawing::of(self.device, trial.variant, &parameters, &world.maps);
+            let mut tally = judge.tally(&drawing);
+            let place = format!("{} {stand:?} {}", world.name, trial.variant.word());
+            if std::env::var_os("SHOW").is_some() {
+                println!(
+                    "{place}: elsewhere {} wrong {} residual {:.1e} seen {:?}",
+                    tally.elsewhere,
+                    tally.wrong.len(),
+                    tally.residual_cells,
+                    tally.seen
+                );
+            }
+            tally.wrong = tally.wrong.iter().take(3).map(|reason| format!("{place}: {reason}")).collect();
+            trial.tally.add(tally);
+        }
+    }
+
+    /// No ray is wrong, less than one in a thousand ends elsewhere by a hair, and every kind of `kinds` was seen.
+    fn assert(&self, kinds: [bool; 5]) {
+        for Trial { variant, tally } in &self.trials {
+            println!("{}: {tally:?}", variant.word());
+        }
+        for Trial { variant, tally } in &self.trials {
+            let word = variant.word();
+            assert!(tally.wrong.is_empty(), "{word}:\n{}", tally.wrong.join("\n"));
+            assert!(tally.elsewhere * 1000 < tally.rays, "{word}: {} of {}", tally.elsewhere, tally.rays);
+            let is_seen = tally.seen.iter().zip(kinds).all(|(&seen, wanted)| !wanted || seen * 200 > tally.rays);
+            assert!(is_seen, "{word} saw too little: {:?}", tally.seen);
+        }
+    }
+}
+
+/// Maps by chance over a base, each from several of the stands in turn.
+fn assert_random(base: Base, interpolation: Interpolation, seed: u64, worlds: usize, stands: usize) {
+    gpu_test(|device| {
+        let mut random = Random::new(seed);
+        let mut trials = Trials::new(device, (48, 36));
+        let mut stand = 0;
+        for number in 0..worlds {
+            let relief = [Relief::Waves, Relief::Noise, Relief::Terraces][number % 3];
+            let side = |random: &mut Random| random.range(2.0, 150.0) as u32 | 1;
+            let size = (side(&mut random), side(&mut random) ^ 1);
+            let amplitude_cells = random.range(0.5, 6.0);
+            let map = random_map(&mut random, relief, size, amplitude_cells);
+            let (low, high) = map.range_m();
+            let level = [None, Some(low - 0.3 * (high - low)), Some(low + 0.4 * (high - low))][number / 2 % 3];
+            let name = format!("{number} {relief:?} {size:?} {level:?}");
+            let world = World::alone(&name, base, interpolation, level, map);
+            for _ in 0..stands {
+                trials.draw(&world, STANDS[stand % STANDS.len()], &mut random, THOUSANDTH);
+                stand += 1;
+            }
+        }
+        trials.assert([true; 5]);
+    });
+}
+
+#[test]
+fn bilinear_maps_on_a_plane() {
+    assert_random(Base::Plane, Interpolation::Bilinear, 1, 7, 3);
+}
+
+#[test]
+fn bicubic_maps_on_a_plane() {
+    assert_random(Base::Plane, Interpolation::Bicubic, 2, 7, 2);
+}
+
+#[test]
+fn adversarial_maps() {
+    gpu_test(|device| {
+        for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+            let mut random = Random::new(3);
+            let mut trials = Trials::new(device, (49, 37));
+            for (number, (name, map)) in adversaries().into_iter().enumerate() {
+                let world = World::alone(name, Base::Plane, interpolation, None, map);
+                for stand in [STANDS[number % STANDS.len()], Stand::Above] {
+                    trials.draw(&world, stand, &mut random, THOUSANDTH);
+                }
+            }
+            trials.assert([false, true, true, true, false]);
+        }
+    });
+}
+
+/// Wound around a cylinder and an ellipsoid so small that maps reach far around them.
+#[test]
+fn maps_on_curved_bases() {
+    assert_random(Base::Cylinder { radius_m: 900.0 }, Interpolation::Bilinear, 4, 4, 2);
+}
