@@ -73,7 +73,8 @@ mat4 bezier(mat4 p) {
 
 // Where a line that moves by `way` from `from` inside the cell first touches its surface, as a part of `way`; -1 where it does
 // not. Along a line the surface is of the sixth degree. Its Bezier points bound it, so the line is free up to where their hull
-// meets it; what is left is restricted and bounded anew. This approaches the first root from the near side and misses none.
+// meets it; what is left is restricted and bounded anew. This approaches the first root from the near side and misses none. The hull's
+// lower edge may start at any point above, not only at the first.
 float touch(ivec2 cell, vec3 from, vec3 way) {
     mat4 values = values_around(0, cell);
     float reference = values[1].y;
@@ -91,10 +92,14 @@ float touch(ivec2 cell, vec3 from, vec3 way) {
                           above + 5.0 * rise - 0.5 * (c[2].w + c[3].z), above + 6.0 * rise - c[3].w);
     float start = 0.0;
     bool is_done = g[0] <= 0.0;
-    for (int i = 0; i < 40 && !is_done; i++) {
+    for (int step = 0; step < 40 && !is_done; step++) {
         float free = 2.0;
         for (int k = 1; k < 7; k++) {
-            free = g[k] <= 0.0 ? min(free, float(k) / 6.0 * g[0] / (g[0] - g[k])) : free;
+            for (int i = 0; i < k; i++) {
+                bool is_edge = g[i] > 0.0 && g[k] <= 0.0;
+                float fall = is_edge ? g[i] - g[k] : 1.0;
+                free = is_edge ? min(free, (float(i) + float(k - i) * g[i] / fall) / 6.0) : free;
+            }
         }
         if (free > 1.0) {
             start = -1.0;

@@ -198,7 +198,7 @@ fn bezier(p: Mat4) -> Mat4 {
 
 /// As [`touch_bilinear`]. Along a line the surface is of the sixth degree. Its Bezier points bound it, so the line is free up
 /// to where their hull meets it; what is left is restricted and bounded anew. This approaches the first root from the near
-/// side and misses none.
+/// side and misses none. The hull's lower edge may start at any point above, not only at the first.
 fn touch_bicubic(mut values: Mat4, from: Vec3, way: Vec3, met: f32) -> Option<f32> {
     let reference = values.y_axis.y;
     for row in 0..4 {
@@ -221,8 +221,9 @@ fn touch_bicubic(mut values: Mat4, from: Vec3, way: Vec3, met: f32) -> Option<f3
     }
     let mut start = 0.0;
     for _ in 0..40 {
-        let hull = g.iter().enumerate().skip(1).filter(|(_, point)| **point <= 0.0);
-        let free = hull.map(|(k, point)| k as f32 / 6.0 * g[0] / (g[0] - point)).reduce(f32::min)?;
+        let edges = (1..7).flat_map(|k| (0..k).map(move |i| (i, k))).filter(|&(i, k)| g[i] > 0.0 && g[k] <= 0.0);
+        let meets = edges.map(|(i, k)| (i as f32 + (k - i) as f32 * g[i] / (g[i] - g[k])) / 6.0);
+        let free = meets.reduce(f32::min)?;
         for j in 1..7 {
             for k in 0..7 - j {
                 g[k] += (g[k + 1] - g[k]) * free;
