@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use fumarole::gpu::Device;
 use fumarole::papers::Variant as _;
-use fumarole::papers::terrain::{Base, Interpolation, Rays, Variant};
+use fumarole::papers::terrain::{Base, Interpolation, MapInput, Placement, Rays, Variant};
 use fumarole::scene::random::Random;
+use glam::DVec2;
 
 use crate::common::gpu_test;
 use crate::drawing::Drawing;
@@ -127,8 +128,84 @@ fn adversarial_maps() {
     });
 }
 
-/// Wound around a cylinder and an ellipsoid so small that maps reach far around them.
 #[test]
-fn maps_on_curved_bases() {
-    assert_random(Base::Cylinder { radius_m: 900.0 }, Interpolation::Bilinear, 4, 4, 2);
+fn maps_around_a_cylinder() {
+    let base = Base::Cylinder { radius_m: 900.0 };
+    assert_random(base, Interpolation::Bilinear, 4, 4, 2);
+    assert_random(base, Interpolation::Bicubic, 5, 3, 2);
+}
+
+#[test]
+fn maps_on_flat_and_long_ellipsoids() {
+    let flat = Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 };
+    assert_random(flat, Interpolation::Bilinear, 6, 4, 2);
+    let long = Base::Ellipsoid { equatorial_m: 2000.0, polar_m: 2600.0 };
+    assert_random(long, Interpolation::Bicubic, 7, 4, 2);
+}
+
+/// Pictures of few pixels, of much land.
+#[test]
+fn large_maps() {
+    gpu_test(|device| {
+        let mut random = Random::new(8);
+        let mut trials = Trials::new(device, (32, 24));
+        for (relief, interpolation) in
+            [(Relief::Waves, Interpolation::Bilinear), (Relief::Noise, Interpolation::Bicubic)]
+        {
+            let map = random_map(&mut random, relief, (1024, 1024), 12.0);
+            let world = World::alone("1024", Base::Plane, interpolation, None, map);
+            for stand in [Stand::Above, Stand::Beside, Stand::Hovering] {
+                trials.draw(&world, stand, &mut random, THOUSANDTH);
+            }
+        }
+        trials.assert([true, true, true, false, false]);
+    });
+}
+
+/// Maps that overlap, touch and stand apart, of different cells, in steps and floats.
+#[test]
+fn several_maps_united() {
+    gpu_test(|device| {
+        for (seed, base) in [(9, Base::Plane), (10, Base::Cylinder { radius_m: 4000.0 }), (11, Base::EARTH)] {
+            let mut random = Random::new(seed);
+            let mut trials = Trials::new(device, (48, 36));
+            let mut place = |width: u32, height: u32, spacing_m: f64, x: f64, z: f64| {
+                let relief = if width % 2 == 0 { Relief::Waves } else { Relief::Noise };
+                let map = random_map(&mut random, relief, (width, height), 3.0);
+                let factor = (spacing_m / map.spacing_m().x) as f32;
+                let map = map.with_exaggeration(factor).unwrap().with_spacing_m(DVec2::splat(spacing_m)).unwrap();
+                MapInput {
+                    map: Arc::new(map),
+                    placement: Placement { center_m: DVec2::new(x, z), ..Placement::default() },
+                }
+            };
+            let maps = vec![
+                place(64, 48, 10.0, 0.0, 0.0),
+                place(33, 65, 7.0, 427.0, 0.0),
+                place(20, 31, 16.0, -200.0, 180.0),
+                place(9, 10, 25.0, 100.0, -900.0),
+            ];
+            let world = World::new("united", base, Interpolation::Bilinear, None, maps);
+            for stand in [Stand::Above, Stand::Beside, Stand::Far(6.0)] {
+                trials.draw(&world, stand, &mut random, THOUSANDTH);
+            }
+            trials.assert([false, true, true, true, false]);
+        }
+    });
+}
+
+#[test]
+fn a_turned_map() {
+    gpu_test(|device| {
+        let mut random = Random::new(12);
+        let mut trials = Trials::new(device, (48, 36));
+        let map = random_map(&mut random, Relief::Waves, (41, 24), 4.0);
+        let placement = Placement { turn_rad: 0.7, ..Placement::default() };
+        let input = MapInput { map: Arc::new(map), placement };
+        let world = World::new("turned", Base::Plane, Interpolation::Bilinear, None, vec![input]);
+        for stand in [Stand::Above, Stand::Beside] {
+            trials.draw(&world, stand, &mut random, THOUSANDTH);
+        }
+        trials.assert([false, true, true, true, false]);
+    });
 }
