@@ -54,8 +54,9 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     float b = sum / q.x;
     vec2 range = vec2(max(0.0, min(a, b)), min(limit_m, max(a, b)));
     if (land.form.w == CYLINDER) {
-        float low = -land.middle.z / land.steps.y;
-        float high = (float(land.size.y - 1) - land.middle.z) / land.steps.y;
+        // From a little outside, so that a ray is seen to come in through the wall.
+        float low = -(land.middle.z + land.margin.x) / land.steps.y;
+        float high = (float(land.size.y - 1) - land.middle.z + land.margin.x) / land.steps.y;
         range = between(range, eye.z, direction.z, low, high);
     }
     if (discriminant <= 0.0 || !(range.x < range.y)) {

@@ -77,7 +77,9 @@ impl LandBlock {
             Interpolation::Bilinear => 0.0,
             Interpolation::Bicubic => (ground.highest - ground.lowest) * 9.0 / 32.0,
         };
-        let bounds = [ground.lowest - overshoot, ground.highest + overshoot, ground.base, unit];
+        // The ground is solid down to the base, so a ray may meet it below its lowest sample.
+        let lowest = (ground.lowest - overshoot).min(ground.base);
+        let bounds = [lowest, ground.highest + overshoot, ground.base, unit];
         let height = bounds[0].abs().max(bounds[1].abs()).max(ground.base.abs()).max(above);
         let (axis_u, axis_v) = shape.axis();
         let kind = ground.curve.as_ref().map_or(0, |curve| if curve.is_cylinder { 1 } else { 2 });

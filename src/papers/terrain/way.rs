@@ -187,8 +187,10 @@ impl<'a> CurvedWay<'a> {
         let b = sum / q.a;
         let mut range = Vec2::new(a.min(b).max(0.0), a.max(b).min(limit_m));
         if is_cylinder(land) {
-            let low = -land.middle[2] / land.steps[1];
-            let high = (last_node(land).y - land.middle[2]) / land.steps[1];
+            // From a little outside, so that a ray is seen to come in through the wall.
+            let outside = land.margin[0];
+            let low = -(land.middle[2] + outside) / land.steps[1];
+            let high = (last_node(land).y - land.middle[2] + outside) / land.steps[1];
             range = between(range, eye.z, direction.z, low, high);
         }
         if range.x >= range.y {
