@@ -42,7 +42,8 @@ vec2 base_depth(vec3 direction) {
 }
 
 vec2 base_place(vec3 direction, float depth_m) {
-    return depth_m < NO_DEPTH ? on_map(land.eye.xyz + depth_m * direction, 1.0).xy : vec2(0.0);
+    vec3 point = land.eye.xyz + depth_m * direction;
+    return depth_m < NO_DEPTH ? on_map(point, point.x).xy : vec2(0.0);
 }
 
 Way way_of(vec3 eye, vec3 direction, float limit_m) {
@@ -106,7 +107,7 @@ Segment segment_of(Way way, float start, float size) {
 
 // Whether the camera stands in the mountain. 0 where it does not.
 int entered(Way way, float height) {
-    vec3 eye = on_map(way.from, 1.0);
+    vec3 eye = on_map(way.from, way.from.x);
     bool is_over = eye.x >= 0.0 && eye.y >= 0.0 && eye.x <= float(land.size.x - 1) && eye.y <= float(land.size.y - 1);
     return way.near_m <= 0.0 && is_over && eye.z <= height ? INSIDE : 0;
 }

@@ -165,7 +165,10 @@ impl<'a> CurvedWay<'a> {
     fn base_of(land: &LandBlock, direction: Vec3) -> (f32, f32, Vec2) {
         let [_, _, off, along] = land.slope;
         let q = AlongRay::new(eye(land), direction, Vec2::from_slice(&land.ground), Vec2::new(off, along), 0.0);
-        let place = |depth_m: f32| on_map(land, eye(land) + depth_m * direction, 1.0).xy();
+        let place = |depth_m: f32| {
+            let point = eye(land) + depth_m * direction;
+            on_map(land, point, point.x).xy()
+        };
         if q.c <= 0.0 {
             return (0.0, 0.0, place(0.0));
         }
@@ -252,7 +255,7 @@ impl Way for CurvedWay<'_> {
     }
 
     fn entered(&self, height: f32) -> Option<Surface> {
-        let eye = on_map(self.land, self.from, 1.0);
+        let eye = on_map(self.land, self.from, self.from.x);
         let last = last_node(self.land);
         let is_over = eye.xy().cmpge(Vec2::ZERO).all() && eye.xy().cmple(last).all();
         (self.near_m <= 0.0 && is_over && eye.z <= height).then_some(Surface::Inside)
