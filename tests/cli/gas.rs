@@ -16,7 +16,7 @@ fn the_passes_follow_the_shadowing() {
         found["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap().to_owned()).collect()
     };
     let surfaces = ["empty-lists", "fragments", "sort"];
-    let joined = |middle: &[&str]| [&surfaces[..], middle, &["resolve"]].concat();
+    let joined = |middle: &[&'static str]| [&surfaces[..], middle, &["resolve"]].concat();
     assert_eq!(names("no-volume"), joined(&[]));
     assert_eq!(names("none"), joined(&["volume"]));
     assert_eq!(names("surfaces"), joined(&["volume", "light-attenuation"]));

@@ -116,7 +116,7 @@ pub struct GasArgs {
     /// The scene's frame that frame 0 shows [default: one in which there is gas]
     #[arg(long, value_name = "N")]
     first_frame: Option<u32>,
-    /// Frames of the scene from one frame to the next [default: 1]
+    /// Frames of the scene from one frame to the next; 0 holds the first [default: 0]
     #[arg(long, value_name = "N")]
     frame_step: Option<u32>,
     /// Camera: eye and target, x,y,z,x,y,z in metres [default: the scene's]

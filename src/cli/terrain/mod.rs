@@ -4,6 +4,7 @@ mod experiment;
 
 use std::convert::Infallible;
 use std::f32::consts::FRAC_PI_4;
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use glam::{DVec2, Vec3};
@@ -14,7 +15,7 @@ use super::options::{Size, parse_finite, parse_numbers, parse_size};
 use super::paper::PaperArgs;
 use crate::experiment::terrain::{PlacedMap, Setup, figures};
 use crate::papers::terrain::{Base, Interpolation, Lod, Parameters, Placement, Sun, View};
-use crate::scene::{Camera, HeightMapSource};
+use crate::scene::{Camera, HeightMapSource, MeshSource};
 
 /// Where the picture is seen from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,6 +108,16 @@ pub struct TerrainArgs {
     /// [default: 0,0,0]
     #[arg(long, value_name = "EAST,SOUTH,DEGREES", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     place: Vec<[f32; 3]>,
+    /// Polygon mesh in the maps' frame, metres (x east, y up from the base, z south): teapot, sphere, box, bunny, plane, or an
+    /// OBJ, PLY, STL, glTF or GLB file; repeatable
+    #[arg(long, value_name = "SHAPE|FILE")]
+    object: Vec<MeshSource>,
+    /// Picture over the first map in place of the colour ramp, PNG, north up
+    #[arg(long, value_name = "FILE.png")]
+    drape: Option<PathBuf>,
+    /// Shadows of the terrain, by rays towards the sun
+    #[arg(long)]
+    shadows: bool,
     /// Samples a side of the synthetic volcano, 2 to 16384 [default: 1024]
     #[arg(long, value_name = "N")]
     resolution: Option<u32>,
@@ -184,6 +195,7 @@ impl PaperArgs for TerrainArgs {
         if let Some([azimuth, elevation]) = self.sun {
             p.sun = Sun { azimuth_rad: azimuth.to_radians(), elevation_rad: elevation.to_radians() };
         }
+        p.shadows = self.shadows;
         p.haze_per_km = self.haze.unwrap_or(p.haze_per_km);
         match self.camera {
             None => {}
@@ -219,6 +231,8 @@ impl PaperArgs for TerrainArgs {
                 turn_rad: f64::from(*degrees).to_radians(),
             };
         }
+        setup.objects.clone_from(&self.object);
+        setup.drape.clone_from(&self.drape);
         let has_volcano = setup.maps.iter().any(|placed| placed.source == HeightMapSource::Volcano);
         if let (Some(resolution), false) = (self.resolution, has_volcano) {
             let message =

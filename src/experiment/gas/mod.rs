@@ -32,10 +32,11 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// A figure's scene with its numbers, in a frame in which there is gas.
+    /// A figure's scene with its numbers, held in a frame in which there is gas.
     pub fn of(scene: Preset) -> Self {
         let mut parameters = scene.scene().parameters;
         parameters.first_frame = scene.bench_frame();
+        parameters.frame_step = 0;
         Setup { parameters, scene, objects: Vec::new(), preset: Some(scene.word().to_owned()), process: 0 }
     }
 }

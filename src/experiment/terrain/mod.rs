@@ -3,6 +3,7 @@
 pub mod figures;
 pub mod table;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -15,9 +16,10 @@ use super::measure::Measurement;
 use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::image::read_png;
 use crate::papers::ParameterError;
-use crate::papers::terrain::{Base, Inputs, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
-use crate::scene::{HeightMap, HeightMapSource, volcano};
+use crate::papers::terrain::{Base, Drape, Inputs, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
+use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
 
 /// What a user set up.
 #[derive(Debug, Clone)]
@@ -25,6 +27,10 @@ pub struct Setup {
     pub parameters: Parameters,
     /// At least one.
     pub maps: Vec<PlacedMap>,
+    /// Polygon objects in the maps' frame, metres: x east, y up from the base, z south.
+    pub objects: Vec<MeshSource>,
+    /// PNG over the first map, in place of the colour ramp.
+    pub drape: Option<PathBuf>,
     /// Samples a side of the synthetic volcano.
     pub resolution: u32,
     /// Metres between samples, in place of what a map says of itself.
@@ -51,6 +57,8 @@ impl Default for Setup {
         Setup {
             parameters: Parameters::default(),
             maps: vec![PlacedMap { source: HeightMapSource::Volcano, placement: Placement::default() }],
+            objects: Vec::new(),
+            drape: None,
             resolution: HeightMapSource::VOLCANO_SIDE,
             spacing_m: None,
             exaggeration: 1.0,
@@ -61,9 +69,11 @@ impl Default for Setup {
     }
 }
 
-/// A setup with its maps loaded.
+/// A setup with its maps, objects and drape loaded.
 pub struct Scene {
     pub maps: Vec<MapInput>,
+    pub objects: Vec<Mesh>,
+    pub drape: Option<Drape>,
 }
 
 impl Setup {
@@ -73,6 +83,8 @@ impl Setup {
     /// [`Error::Parameter`].
     pub fn check(&self) -> Result<(), Error> {
         self.parameters.validate()?;
+        let count = self.maps.len();
+        ParameterError::check(count <= Inputs::MAPS, "--map", count, "are too many; at most 16 are united")?;
         let check = |good, name, value: f64, range| ParameterError::check(good, name, value, range);
         let sides = HeightMap::SIDE;
         let range = format!("must be {} to {} samples a side", sides.start(), sides.end());
@@ -107,7 +119,7 @@ impl Study for Setup {
     type Scene = Scene;
     type Paper = Terrain;
 
-    /// Checks the parameters and loads the maps.
+    /// Checks the parameters and loads the maps, the objects and the drape.
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
         for placed in &self.maps {
@@ -116,7 +128,16 @@ impl Study for Setup {
         let input = |placed: &PlacedMap| -> Result<MapInput, Error> {
             Ok(MapInput { map: Arc::new(self.load_map(&placed.source)?), placement: placed.placement })
         };
-        Ok(Scene { maps: self.maps.iter().map(input).collect::<Result<_, _>>()? })
+        let drape = self.drape.as_ref().map(|path| -> Result<Drape, Error> {
+            let picture = read_png(path)?;
+            let texels = picture.pixels().as_chunks().0.to_vec();
+            Ok(Drape::new(picture.width(), picture.height(), texels)?)
+        });
+        Ok(Scene {
+            maps: self.maps.iter().map(input).collect::<Result<_, _>>()?,
+            objects: self.objects.iter().map(|source| source.load()).collect::<Result<_, _>>()?,
+            drape: drape.transpose()?,
+        })
     }
 
     fn make(
@@ -126,7 +147,7 @@ impl Study for Setup {
         scene: &Scene,
         variant: Variant,
     ) -> Result<Terrain, gpu::Error> {
-        let inputs = Inputs { maps: &scene.maps, ..Inputs::default() };
+        let inputs = Inputs { maps: &scene.maps, objects: &scene.objects, drape: scene.drape.as_ref() };
         Terrain::new(shaders, label, variant, &self.parameters, &inputs)
     }
 
@@ -170,6 +191,9 @@ impl Study for Setup {
             ("resolution", json!(first)),
             ("maps", json!(maps)),
             ("exaggeration", json!(self.exaggeration)),
+            ("object", json!(self.objects.iter().map(ToString::to_string).collect::<Vec<_>>())),
+            ("drape", json!(self.drape.as_ref().map(|path| path.display().to_string()))),
+            ("shadows", json!(p.shadows)),
             ("lod", json!(p.lod.word())),
             ("interpolation", json!(p.interpolation.word())),
             ("base", base),
