@@ -1,5 +1,6 @@
 //! The device against the oracle, ray by ray: random maps, random cameras, every base and interpolation.
 
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
@@ -87,11 +88,12 @@ impl<'a> Trials<'a> {
 fn assert_random(base: Base, interpolation: Interpolation, seed: u64, worlds: usize, stands: usize) {
     gpu_test(|device| {
         let mut random = Random::new(seed);
-        let mut trials = Trials::new(device, (48, 36));
+        let (size, longest) = if base == Base::Plane { ((48, 36), 300.0) } else { ((28, 21), 80.0) };
+        let mut trials = Trials::new(device, size);
         let mut stand = 0;
         for number in 0..worlds {
             let relief = [Relief::Waves, Relief::Noise, Relief::Terraces][number % 3];
-            let side = |random: &mut Random| random.range(2.0, 150.0) as u32 | 1;
+            let side = |random: &mut Random| random.range(2.0, longest) as u32 | 1;
             let size = (side(&mut random), side(&mut random) ^ 1);
             let amplitude_cells = random.range(0.5, 6.0);
             let map = random_map(&mut random, relief, size, amplitude_cells);
@@ -150,6 +152,35 @@ fn maps_on_flat_and_long_ellipsoids() {
     assert_random(long, Interpolation::Bicubic, 7, 4, 2);
 }
 
+/// Maps once around, which meet themselves at a seam, and from pole to pole.
+#[test]
+fn whole_turns_and_poles() {
+    gpu_test(|device| {
+        let (a, b) = (400.0, 300.0);
+        let round = Base::Cylinder { radius_m: 300.0 };
+        let whole = Base::Ellipsoid { equatorial_m: a, polar_m: b };
+        let (a, b) = (f64::from(a), f64::from(b));
+        let cases = [
+            (round, (61, 30), DVec2::new(TAU * 300.0 / 60.0, 25.0)),
+            (whole, (41, 21), DVec2::new(TAU * a / 40.0, PI * b * b / a / 20.0)),
+        ];
+        for (seed, (base, size, spacing_m)) in (16..).zip(cases) {
+            for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+                let mut random = Random::new(seed);
+                let mut trials = Trials::new(device, (28, 21));
+                let map = random_map(&mut random, Relief::Waves, size, 1.5);
+                let factor = (spacing_m.x / map.spacing_m().x) as f32;
+                let map = map.with_exaggeration(factor).unwrap().with_spacing_m(spacing_m).unwrap();
+                let world = World::alone("whole", base, interpolation, None, map);
+                for stand in [Stand::Above, Stand::Above, Stand::Hovering, Stand::Under, Stand::Far(3.0)] {
+                    trials.draw(&world, stand, &mut random);
+                }
+                trials.assert([true, false, true, false, true]);
+            }
+        }
+    });
+}
+
 /// Pictures of few pixels, of much land.
 #[test]
 fn large_maps() {
@@ -173,9 +204,12 @@ fn large_maps() {
 #[test]
 fn several_maps_united() {
     gpu_test(|device| {
-        for (seed, base) in [(9, Base::Plane), (10, Base::Cylinder { radius_m: 4000.0 }), (11, Base::EARTH)] {
+        let curved = (28, 21);
+        for (seed, base, size) in
+            [(9, Base::Plane, (48, 36)), (10, Base::Cylinder { radius_m: 4000.0 }, curved), (11, Base::EARTH, curved)]
+        {
             let mut random = Random::new(seed);
-            let mut trials = Trials::new(device, (48, 36));
+            let mut trials = Trials::new(device, size);
             let mut place = |width: u32, height: u32, spacing_m: f64, x: f64, z: f64| {
                 let relief = if width % 2 == 0 { Relief::Waves } else { Relief::Noise };
                 let map = random_map(&mut random, relief, (width, height), 3.0);
