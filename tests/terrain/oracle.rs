@@ -199,7 +199,7 @@ fn several_maps_united() {
             let mut random = Random::new(seed);
             let mut trials = Trials::new(device, (48, 36));
             let mut place = |width: u32, height: u32, spacing_m: f64, x: f64, z: f64| {
-                let relief = if width % 2 == 0 { Relief::Waves } else { Relief::Noise };
+                let relief = if width.is_multiple_of(2) { Relief::Waves } else { Relief::Noise };
                 let map = random_map(&mut random, relief, (width, height), 3.0);
                 let factor = (spacing_m / map.spacing_m().x) as f32;
                 let map = map.with_exaggeration(factor).unwrap().with_spacing_m(DVec2::splat(spacing_m)).unwrap();
