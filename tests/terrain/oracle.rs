@@ -158,7 +158,7 @@ fn whole_turns_and_poles() {
         for (seed, (base, size, spacing_m)) in (16..).zip(cases) {
             for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
                 let mut random = Random::new(seed);
-                let mut trials = Trials::new(device, (48, 36));
+                let mut trials = Trials::new(device, (32, 24));
                 let map = random_map(&mut random, Relief::Waves, size, 1.5);
                 let factor = (spacing_m.x / map.spacing_m().x) as f32;
                 let map = map.with_exaggeration(factor).unwrap().with_spacing_m(spacing_m).unwrap();

@@ -107,12 +107,18 @@ impl<'a> Judge<'a> {
         let t = f64::from(hit.depth_m) * look.stretch;
         let point = look.ray.at(t);
         let map = terrain.maps.get(hit.map as usize).ok_or("no such map")?;
-        let around = Around::new(terrain, map, point, self.tolerance_m);
+        // At the seam of a whole turn the device's own side counts.
+        let toward = map.origin[0] + f64::from(hit.place[0]) * map.spacing[0];
+        let around = Around::new(terrain, map, point, toward, self.tolerance_m);
         // A camera below the base is in the ground, and the device calls that the base.
         let is_start = hit.depth_m == 0.0;
+        // Where a whole turn meets itself at another height, device and oracle call the cliff between a surface.
+        let is_whole_turn = terrain.base.turns() && map.end()[0] - map.origin[0] > TAU * (1.0 - 1e-6);
+        let is_seam = is_whole_turn && around.beside_m[0].abs() <= self.tolerance_m && around.above_m < 0.0;
         let residual_m = match hit.surface {
             Surface::Sky | Surface::Base if is_start => around.h.max(0.0),
             Surface::Sky | Surface::Base => around.h.abs(),
+            Surface::Terrain if is_seam => around.wall_residual_m(0),
             Surface::Terrain => around.above_m.abs().max(around.beside_m[0]).max(around.beside_m[1]),
             Surface::WallWest | Surface::WallEast => around.wall_residual_m(0),
             Surface::WallNorth | Surface::WallSouth => around.wall_residual_m(1),
@@ -124,7 +130,7 @@ impl<'a> Judge<'a> {
         }
         self.assert_free(look, t)?;
         let is_same = look.expected.is_some_and(|expected| self.is_same(look, &expected, hit, t));
-        if is_same && hit.surface != Surface::Inside && !is_start {
+        if is_same && !is_seam && hit.surface != Surface::Inside && !is_start {
             self.assert_normal(look, hit, map, &around, normal)?;
         }
         Ok((is_same, residual_m))
@@ -169,7 +175,10 @@ impl<'a> Judge<'a> {
 
     fn depth_m(&self, point: DVec3) -> f64 {
         let terrain = &self.world.terrain;
-        let in_map = terrain.maps.iter().map(|map| -Around::new(terrain, map, point, self.tolerance_m).outside_m());
+        let in_map = terrain.maps.iter().map(|map| {
+            let middle = (map.origin[0] + map.end()[0]) / 2.0;
+            -Around::new(terrain, map, point, middle, self.tolerance_m).outside_m()
+        });
         in_map.fold(-terrain.base.place(point).h, f64::max)
     }
 
@@ -231,12 +240,13 @@ struct Around {
 }
 
 impl Around {
-    fn new(terrain: &Terrain, map: &Grid, point: DVec3, tolerance_m: f64) -> Self {
+    /// Of the turns about the axis, that of the angle next to `toward` is taken.
+    fn new(terrain: &Terrain, map: &Grid, point: DVec3, toward: f64, tolerance_m: f64) -> Self {
         let place = terrain.base.place(point);
         let middle = [0, 1].map(|axis| (map.origin[axis] + map.end()[axis]) / 2.0);
         let mut uv = place.uv;
         if terrain.base.turns() {
-            uv[0] -= TAU * ((uv[0] - middle[0]) / TAU).round();
+            uv[0] -= TAU * ((uv[0] - toward) / TAU).round();
         }
         let scales = terrain.base.frame(Place { uv, h: place.h.max(0.0) }).scales;
         let beside_m = [0, 1].map(|axis| {
