@@ -59,7 +59,7 @@ fn a_table_without_times_is_written_and_printed() {
     let out = folder();
     let program = caustics("experiment memory --counts 3,5 --mesh box --out .").inside(out.path());
     let ended = program.args(SMALL).on_test_device().run().succeeded();
-    assert_eq!(entries(out.path()), ["caustics-memory.csv", "caustics-memory.json"]);
+    assert_eq!(entries(out.path()), ["caustics-memory.csv", "caustics-memory.json", "caustics-memory.svg"]);
     let rows = read_json(&out.path().join("caustics-memory.json"))["table"]["rows"].as_array().unwrap().len();
     let csv = fs::read_to_string(out.path().join("caustics-memory.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + rows);

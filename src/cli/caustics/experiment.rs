@@ -22,6 +22,7 @@ use crate::experiment::study::Study;
 use crate::experiment::{self, limits, picture};
 use crate::papers::Variant as _;
 use crate::papers::caustics::{NEEDS, Parameters, Variant};
+use crate::report::plot::PlotError;
 use crate::scene::MeshSource;
 
 /// The tables and figures that are reproduced.
@@ -152,21 +153,25 @@ impl Experiment<'_> {
             Name::Table53 => self.sweep(NORMAL_AGAINST_SMART),
             Name::Table52 => {
                 let facts = slicing::polygon_counts(setup, meshes)?;
-                self.publication.facts(&self.machine, &facts)
+                let plot = facts.bars("triangles", &["triangles", "thesis"]);
+                self.publish(&facts, plot)
             }
             Name::Table54 => {
                 let facts = slicing::actual_planes(machine, setup, meshes, counts)?;
-                self.publication.facts(&self.machine, &facts)
+                let plot = facts.lines("specified", "planes drawn", &["fitted", "kept", "thesis"]);
+                self.publish(&facts, plot)
             }
             Name::Table55 => {
                 self.look_plainly();
                 let Experiment { setup, meshes, counts, machine, .. } = self;
                 let facts = slicing::intensity_difference(machine, setup, meshes, counts)?;
-                self.publication.facts(&self.machine, &facts)
+                let plot = facts.lines("planes", "mean Luv difference", &["fitted mean", "kept mean", "thesis"]);
+                self.publish(&facts, plot)
             }
             Name::Memory => {
                 let facts = slicing::memory(machine, setup, meshes, counts)?;
-                self.publication.facts(&self.machine, &facts)
+                let plot = facts.lines("planes", "maps, bytes", &["maps, bytes"]);
+                self.publish(&facts, plot)
             }
             Name::DepthProfile => self.depth_profiles(),
             Name::Figure513 => self.picture_pairs(),
@@ -176,6 +181,13 @@ impl Experiment<'_> {
                 self.pictures()
             }
         }
+    }
+
+    /// A table without times, and its plot.
+    fn publish(&self, facts: &Facts, plot: Result<String, PlotError>) -> Result<(), Failure> {
+        let svg = plot.map_err(experiment::Error::from)?;
+        self.publication.save(&self.publication.file(".svg"), svg.as_bytes())?;
+        self.publication.facts(&self.machine, facts)
     }
 
     /// Pictures that are compared show the receiver itself, not the water's surface above it.
@@ -237,8 +249,9 @@ impl Experiment<'_> {
             rows.push(vec![json!(name), json!(d.mean), json!(d.p99), json!(d.max), json!(d.pixels)]);
         }
         let columns = &["mesh", "mean", "p99", "max", "pixels"];
-        self.publication
-            .facts(&self.machine, &Facts { title: "Figure 5-13: Luv difference of the picture pair", columns, rows })
+        let facts = Facts { title: "Figure 5-13: Luv difference of the picture pair", columns, rows };
+        let plot = facts.bars("Luv difference", &["mean", "p99"]);
+        self.publish(&facts, plot)
     }
 
     fn pictures(&mut self) -> Result<(), Failure> {
