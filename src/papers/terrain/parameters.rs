@@ -234,8 +234,9 @@ impl Parameters {
         let (eye, target, up) = match self.view {
             View::Camera(camera) => return camera,
             View::Side => {
-                let eye = DVec3::new(center.x, extent.high.y + 0.12 * reach, extent.high.z + 0.28 * reach);
-                let target = DVec3::new(center.x, center.y - 0.4 * size.y, center.z);
+                // So near that of a broad map nine rays in ten meet it.
+                let eye = DVec3::new(center.x, extent.high.y + 0.109 * reach, center.z + 0.45 * reach);
+                let target = DVec3::new(center.x, extent.low.y, center.z + 0.1 * reach);
                 (eye, target, Vec3::Y)
             }
             View::Top => {
