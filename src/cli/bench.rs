@@ -5,15 +5,15 @@ use std::path::Path;
 use clap::Args;
 
 use super::failure::Failure;
-use super::options::{MachineArgs, MeasureArgs, OutputArgs};
+use super::options::{CommonArgs, MeasureArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, VariantOf, VariantWord, resolve, variant_words};
 use super::processes;
 use super::watch::watched;
 use crate::experiment::bench::{Bench, Loaded, build, load};
 use crate::experiment::machine::Machine;
+use crate::experiment::picture;
 use crate::experiment::study::Study;
-use crate::experiment::{limits, picture};
 use crate::report::Record;
 use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
@@ -26,11 +26,7 @@ pub struct BenchArgs<P: PaperArgs> {
     #[command(flatten)]
     scene: P,
     #[command(flatten)]
-    machine: MachineArgs,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    common: CommonArgs,
 }
 
 /// Frames and repetitions of a bench that names none.
@@ -38,20 +34,20 @@ const FRAMES: u32 = 10;
 const REPEAT: u32 = 3;
 
 pub fn run<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(), Failure> {
-    outcome::check(&arguments.output)?;
-    if arguments.measure.processes > 1 {
-        let output = &arguments.output;
-        let record = processes::run(arguments.measure.processes, output.quiet)?;
+    let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = &arguments.common;
+    outcome::check(output)?;
+    if *processes > 1 {
+        let record = processes::run(*processes, output.quiet)?;
         // The first process has written the picture and the trace.
         output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
     let (record, traces) = measure(arguments)?;
-    outcome::publish(&arguments.output, &record, &traces)
+    outcome::publish(output, &record, &traces)
 }
 
 fn measure<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(Record, Vec<TraceRun>), Failure> {
-    let BenchArgs { scene, machine, measure, output, .. } = arguments;
+    let BenchArgs { scene, common: CommonArgs { machine, measure, output }, .. } = arguments;
     let study = scene.resolve(measure.process)?;
     let variants = resolve(&arguments.variant);
     let schedule = measure.schedule(FRAMES, REPEAT);
@@ -61,7 +57,7 @@ fn measure<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(Record, Vec<TraceR
     if output.json_to_stdout() {
         outcome::say_device(output, &machine);
     }
-    let limits = if measure.no_limits { None } else { Some(limits::measure(&mut machine)?) };
+    let limits = measure.limits(&mut machine)?;
     let bench = Bench { study: &study, loaded: &loaded, variants: &variants, schedule, limits: limits.as_ref() };
     let measured = watched(output.quiet, P::Study::PAPER, |watch| bench.measure(&mut machine, watch))?;
     let (mut runs, traces): (Vec<Run>, Vec<TraceRun>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();

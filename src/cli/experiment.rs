@@ -1,19 +1,87 @@
-//! What the verb `experiment` does for every paper: the list of names, and the files and tables that are published.
+//! What the verb `experiment` does for every paper: the list of names, the machine, the sweep, and the files and tables that
+//! are published.
 
+use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::failure::Failure;
-use super::options::{MeasureArgs, OutputArgs};
+use super::options::{CommonArgs, OutputArgs};
 use super::outcome;
+use super::watch::watched;
 use crate::experiment::facts::Facts;
 use crate::experiment::machine::Machine;
+use crate::experiment::study::Study;
+use crate::experiment::sweep::{Plan, Point, Swept};
 use crate::image::{self, Raster, Rgba8, write_png};
 use crate::report::output::check_writable;
 use crate::report::record::Run;
 use crate::report::{Record, csv};
+
+/// Which experiment is wanted.
+#[derive(Debug, Clone, Args)]
+pub struct NameArgs<N: ValueEnum + Send + Sync + 'static> {
+    /// Table or figure of the paper
+    #[arg(value_enum, required_unless_present = "list")]
+    name: Option<N>,
+    /// List the experiments
+    #[arg(long)]
+    list: bool,
+}
+
+/// The options of a paper's verb `experiment`, and what each of its experiments does.
+pub trait ExperimentArgs: Args + Debug + 'static {
+    type Study: Study;
+    /// The tables and figures that are reproduced, with one line on each.
+    type Name: ValueEnum + Send + Sync + 'static;
+
+    /// Frames at each point of a sweep that names none.
+    const FRAMES: u32;
+    /// Repetitions at each point of a sweep that names none.
+    const REPEAT: u32;
+
+    fn asked(&self) -> &NameArgs<Self::Name>;
+
+    fn common(&self) -> &CommonArgs;
+
+    /// Options that other verbs know and this experiment would not heed: whether each was given, and what to say then.
+    fn unsuited(&self, name: Self::Name) -> Vec<(bool, &'static str)>;
+
+    /// Reproduces the table or figure.
+    fn perform(&self, name: Self::Name, publication: &Publication<'_>) -> Result<(), Failure>;
+
+    /// What was typed: the list, or one experiment after a look at its options and files.
+    fn run(&self) -> Result<(), Failure> {
+        let (Some(name), false) = (&self.asked().name, self.asked().list) else { return list::<Self::Name>() };
+        let publication = Publication { output: &self.common().output, paper: Self::Study::PAPER, name: word(name) };
+        refuse(self.common(), &self.unsuited(name.clone()))?;
+        publication.check()?;
+        self.perform(name.clone(), &publication)
+    }
+
+    /// Opens the machine and says which it is.
+    fn open(&self) -> Result<Machine, Failure> {
+        let machine = Machine::open(&self.common().machine.resolve(), Self::Study::NEEDS)?;
+        outcome::say_device(&self.common().output, &machine);
+        Ok(machine)
+    }
+
+    /// Measures the points under a progress bar.
+    fn sweep(
+        &self,
+        publication: &Publication<'_>,
+        machine: &mut Machine,
+        points: &[Point<Self::Study>],
+    ) -> Result<Swept, Failure> {
+        let CommonArgs { measure, output, .. } = self.common();
+        let limits = measure.limits(machine)?;
+        let plan = Plan { schedule: measure.schedule(Self::FRAMES, Self::REPEAT), limits: limits.as_ref() };
+        let what = format!("{} {}", publication.paper, publication.name);
+        Ok(watched(output.quiet, &what, |watch| plan.measure(points, machine, watch))?)
+    }
+}
 
 /// The word of an experiment.
 pub fn word(name: &impl ValueEnum) -> String {
@@ -21,7 +89,7 @@ pub fn word(name: &impl ValueEnum) -> String {
 }
 
 /// Prints the experiments with one line on each.
-pub fn list<N: ValueEnum>() -> Result<(), Failure> {
+fn list<N: ValueEnum>() -> Result<(), Failure> {
     let line = |name: &N| {
         let value = name.to_possible_value()?;
         Some(format!("{:14}{}\n", value.get_name(), value.get_help().map(ToString::to_string).unwrap_or_default()))
@@ -31,7 +99,8 @@ pub fn list<N: ValueEnum>() -> Result<(), Failure> {
 
 /// Fails for the first option that was given and would not be heeded: those of `unsuited`, and those that no experiment
 /// heeds.
-pub fn refuse(measure: &MeasureArgs, output: &OutputArgs, unsuited: &[(bool, &str)]) -> Result<(), Failure> {
+fn refuse(common: &CommonArgs, unsuited: &[(bool, &str)]) -> Result<(), Failure> {
+    let CommonArgs { measure, output, .. } = common;
     let never = [
         (measure.processes > 1, "--processes: an experiment runs in one process; bench takes several"),
         (output.trace.is_some(), "--trace: an experiment has no trace; bench writes one"),

@@ -5,9 +5,23 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use crate::experiment::machine::MachineOptions;
+use super::failure::Failure;
+use crate::experiment::limits;
+use crate::experiment::machine::{Machine, MachineOptions};
 use crate::experiment::measure::Schedule;
 use crate::gpu::Compiler;
+use crate::report::record::Limits;
+
+/// The options of a verb that measures.
+#[derive(Debug, Clone, Args)]
+pub struct CommonArgs {
+    #[command(flatten)]
+    pub machine: MachineArgs,
+    #[command(flatten)]
+    pub measure: MeasureArgs,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
 
 /// `--size 800x600` and its like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +130,7 @@ pub struct MeasureArgs {
     pub process: u32,
     /// Leave the device's own limits unmeasured
     #[arg(long)]
-    pub no_limits: bool,
+    no_limits: bool,
 }
 
 fn parse_seconds(text: &str) -> Result<f64, String> {
@@ -134,6 +148,11 @@ impl MeasureArgs {
             repeat: self.repeat.unwrap_or(repeat),
             min_time_s: self.min_time,
         }
+    }
+
+    /// Measures the device's own limits, unless they are to be left out.
+    pub fn limits(&self, machine: &mut Machine) -> Result<Option<Limits>, Failure> {
+        if self.no_limits { Ok(None) } else { Ok(Some(limits::measure(machine)?)) }
     }
 }
 

@@ -6,6 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use super::bench::{self, BenchArgs};
+use super::experiment::ExperimentArgs;
 use super::failure::Failure;
 use super::passes::{self, PassesArgs};
 use super::render::{self, RenderArgs};
@@ -16,7 +17,7 @@ use crate::papers::Variant;
 pub trait PaperArgs: Args + Clone + Debug + 'static {
     type Study: Study;
     /// The options of its verb `experiment`.
-    type Experiment: ExperimentArgs;
+    type Experiment: ExperimentArgs<Study = Self::Study>;
 
     /// One line on the paper.
     const ABOUT: &'static str;
@@ -33,11 +34,6 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
 
     /// What the main job measures, in the variants of [`PaperArgs::BENCHED`].
     fn quick() -> Self::Study;
-}
-
-/// The options of a verb `experiment`.
-pub trait ExperimentArgs: Args + Debug + 'static {
-    fn run(&self) -> Result<(), Failure>;
 }
 
 pub type VariantOf<P> = <<P as PaperArgs>::Study as Study>::Variant;

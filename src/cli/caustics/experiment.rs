@@ -4,11 +4,11 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::CausticsArgs;
-use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication};
 use crate::cli::failure::Failure;
-use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::cli::paper::{ExperimentArgs, PaperArgs};
+use crate::cli::paper::PaperArgs;
 use crate::cli::watch::watched;
 use crate::experiment::bench::build;
 use crate::experiment::caustics::slicing;
@@ -19,9 +19,9 @@ use crate::experiment::caustics::{self, NamedMesh, Setup};
 use crate::experiment::facts::Facts;
 use crate::experiment::machine::Machine;
 use crate::experiment::study::Study;
-use crate::experiment::{self, limits, picture};
+use crate::experiment::{self, picture};
 use crate::papers::Variant as _;
-use crate::papers::caustics::{NEEDS, Parameters, Variant};
+use crate::papers::caustics::{Parameters, Variant};
 use crate::report::plot::PlotError;
 use crate::scene::MeshSource;
 
@@ -63,12 +63,8 @@ impl Name {
 
 #[derive(Debug, Clone, Args)]
 pub struct Experiments {
-    /// Table or figure of the paper
-    #[arg(value_enum, required_unless_present = "list")]
-    name: Option<Name>,
-    /// List the experiments
-    #[arg(long)]
-    list: bool,
+    #[command(flatten)]
+    asked: NameArgs<Name>,
     /// Plane counts of a sweep, comma-separated [default: 3,11,31,101]
     #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
     counts: Vec<u32>,
@@ -78,22 +74,14 @@ pub struct Experiments {
     #[command(flatten)]
     scene: CausticsArgs,
     #[command(flatten)]
-    machine: MachineArgs,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    common: CommonArgs,
 }
-
-/// Frames and repetitions at each point of a sweep that names none.
-const FRAMES: u32 = 3;
-const REPEAT: u32 = 3;
 
 /// An experiment with its input resolved and its machine open.
 struct Experiment<'a> {
     arguments: &'a Experiments,
     name: Name,
-    publication: Publication<'a>,
+    publication: &'a Publication<'a>,
     setup: Setup,
     meshes: Vec<MeshSource>,
     counts: Vec<u32>,
@@ -101,39 +89,44 @@ struct Experiment<'a> {
 }
 
 impl ExperimentArgs for Experiments {
-    fn run(&self) -> Result<(), Failure> {
-        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
-        self.refuse_unsuited(name)?;
-        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
-        publication.check()?;
+    type Study = Setup;
+    type Name = Name;
+
+    const FRAMES: u32 = 3;
+    const REPEAT: u32 = 3;
+
+    fn asked(&self) -> &NameArgs<Name> {
+        &self.asked
+    }
+
+    fn common(&self) -> &CommonArgs {
+        &self.common
+    }
+
+    fn unsuited(&self, name: Name) -> Vec<(bool, &'static str)> {
+        let names_counts = !self.counts.is_empty() || self.step.is_some();
+        vec![
+            (name.sweeps() && self.scene.names_planes(), "--planes: this experiment sweeps them; give --counts"),
+            (!name.sweeps() && names_counts, "--counts, --step: this experiment has no sweep; give --planes"),
+        ]
+    }
+
+    fn perform(&self, name: Name, publication: &Publication<'_>) -> Result<(), Failure> {
         let counts = match self.step {
             Some(step) => (3..=101).step_by(step as usize).collect(),
             None if self.counts.is_empty() => vec![3, 11, 31, 101],
             None => self.counts.clone(),
         };
-        let mut setup = self.scene.resolve(self.measure.process)?;
+        let mut setup = self.scene.resolve(self.common.measure.process)?;
         setup.preset = Some(publication.name.clone());
         setup.parameters.validate().map_err(experiment::Error::from)?;
         let meshes = if self.scene.names_meshes() { setup.meshes.clone() } else { caustics::sample_meshes() };
         check_input(&setup, &meshes, &counts)?;
-        let machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
-        outcome::say_device(&self.output, &machine);
+        let machine = self.open()?;
         let mut experiment = Experiment { arguments: self, name, publication, setup, meshes, counts, machine };
         experiment.run()?;
         experiment.machine.check_validation()?;
         Ok(())
-    }
-}
-
-impl Experiments {
-    /// Options that other verbs know and this experiment would not heed.
-    fn refuse_unsuited(&self, name: Name) -> Result<(), Failure> {
-        let names_counts = !self.counts.is_empty() || self.step.is_some();
-        let unsuited = [
-            (name.sweeps() && self.scene.names_planes(), "--planes: this experiment sweeps them; give --counts"),
-            (!name.sweeps() && names_counts, "--counts, --step: this experiment has no sweep; give --planes"),
-        ];
-        refuse(&self.measure, &self.output, &unsuited)
     }
 }
 
@@ -198,14 +191,14 @@ impl Experiment<'_> {
     }
 
     fn sweep(&mut self, comparison: Comparison) -> Result<(), Failure> {
-        let Experiments { output, measure, .. } = self.arguments;
-        let limits = if measure.no_limits { None } else { Some(limits::measure(&mut self.machine)?) };
+        let CommonArgs { output, measure, .. } = self.arguments.common();
+        let limits = measure.limits(&mut self.machine)?;
         let sweep = Sweep {
             comparison,
             setup: self.setup.clone(),
             meshes: self.meshes.clone(),
             counts: self.counts.clone(),
-            schedule: measure.schedule(FRAMES, REPEAT),
+            schedule: measure.schedule(Experiments::FRAMES, Experiments::REPEAT),
             limits,
         };
         let what = format!("{} {}", Setup::PAPER, self.publication.name);

@@ -4,27 +4,24 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::GasArgs;
-use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication};
 use crate::cli::failure::Failure;
-use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::cli::paper::ExperimentArgs;
-use crate::cli::watch::watched;
 use crate::experiment::bench::{build, load};
 use crate::experiment::facts::Facts;
 use crate::experiment::gas::Setup;
 use crate::experiment::gas::tables::{Number, Outcome, Trade};
-use crate::experiment::machine::Machine;
+use crate::experiment::picture;
 use crate::experiment::study::Study;
-use crate::experiment::sweep::{Plan, Point, Swept};
-use crate::experiment::{limits, picture};
+use crate::experiment::sweep::Point;
+use crate::papers::gas::Variant;
 use crate::papers::gas::model::DensityFunction;
 use crate::papers::gas::scenes::Preset;
-use crate::papers::gas::{NEEDS, Variant};
 
 /// The tables and figures that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Name {
+pub enum Name {
     /// Table 1: times of figures 3 to 7, with and without the volume
     #[value(name = "1")]
     Table1,
@@ -43,53 +40,38 @@ enum Name {
 
 #[derive(Debug, Clone, Args)]
 pub struct Experiments {
-    /// Table or figure of the paper
-    #[arg(value_enum, required_unless_present = "list")]
-    name: Option<Name>,
-    /// List the experiments
-    #[arg(long)]
-    list: bool,
+    #[command(flatten)]
+    asked: NameArgs<Name>,
     /// Table sizes or steps of a sweep, comma-separated [default: 16,32,64,96,128, or 10,20,40,80,160]
     #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
     counts: Vec<u32>,
     #[command(flatten)]
     scene: GasArgs,
     #[command(flatten)]
-    machine: MachineArgs,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    common: CommonArgs,
 }
-
-/// Frames and repetitions at each point that names none.
-const FRAMES: u32 = 1;
-const REPEAT: u32 = 5;
 
 impl ExperimentArgs for Experiments {
-    fn run(&self) -> Result<(), Failure> {
-        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
-        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
-        self.refuse_unsuited(name)?;
-        publication.check()?;
-        match name {
-            Name::Table1 => self.table(&publication, Number::One),
-            Name::Table2 => self.table(&publication, Number::Two),
-            Name::TableSize => self.trade(&publication, Trade::TableSize, Variant::Table),
-            Name::Steps => self.trade(&publication, Trade::Steps, Variant::None),
-            Name::Noise => self.noise(&publication),
-            Name::Sequence => self.sequence(&publication),
-        }
-    }
-}
+    type Study = Setup;
+    type Name = Name;
 
-impl Experiments {
-    /// Options that other verbs know and this experiment would not heed.
-    fn refuse_unsuited(&self, name: Name) -> Result<(), Failure> {
+    const FRAMES: u32 = 1;
+    const REPEAT: u32 = 5;
+
+    fn asked(&self) -> &NameArgs<Name> {
+        &self.asked
+    }
+
+    fn common(&self) -> &CommonArgs {
+        &self.common
+    }
+
+    fn unsuited(&self, name: Name) -> Vec<(bool, &'static str)> {
         let has_counts = matches!(name, Name::TableSize | Name::Steps);
         let has_scenes = matches!(name, Name::Table1 | Name::Table2 | Name::Sequence);
         let is_pictures = name == Name::Sequence;
-        let unsuited = [
+        let output = &self.common.output;
+        vec![
             (!has_counts && !self.counts.is_empty(), "--counts: this experiment has none"),
             (has_scenes && self.scene.names_scene(), "--preset: this experiment has its own scenes"),
             (
@@ -99,30 +81,24 @@ impl Experiments {
             (name == Name::Steps && self.scene.steps.is_some(), "--steps: this experiment sweeps them; give --counts"),
             (name == Name::Noise && self.scene.density.is_some(), "--density: this experiment compares two"),
             (is_pictures && self.scene.first_frame.is_some(), "--first-frame: the strips have the paper's frames"),
-            (is_pictures && self.output.json.is_some(), "--json: a strip is pictures; `1` has a record"),
-            (is_pictures && self.output.csv.is_some(), "--csv: a strip is pictures; `1` has rows"),
-        ];
-        refuse(&self.measure, &self.output, &unsuited)
+            (is_pictures && output.json.is_some(), "--json: a strip is pictures; `1` has a record"),
+            (is_pictures && output.csv.is_some(), "--csv: a strip is pictures; `1` has rows"),
+        ]
     }
 
-    fn open(&self) -> Result<Machine, Failure> {
-        let machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
-        outcome::say_device(&self.output, &machine);
-        Ok(machine)
+    fn perform(&self, name: Name, publication: &Publication<'_>) -> Result<(), Failure> {
+        match name {
+            Name::Table1 => self.table(publication, Number::One),
+            Name::Table2 => self.table(publication, Number::Two),
+            Name::TableSize => self.trade(publication, Trade::TableSize, Variant::Table),
+            Name::Steps => self.trade(publication, Trade::Steps, Variant::None),
+            Name::Noise => self.noise(publication),
+            Name::Sequence => self.sequence(publication),
+        }
     }
+}
 
-    fn sweep(
-        &self,
-        publication: &Publication<'_>,
-        machine: &mut Machine,
-        points: &[Point<Setup>],
-    ) -> Result<Swept, Failure> {
-        let limits = if self.measure.no_limits { None } else { Some(limits::measure(machine)?) };
-        let plan = Plan { schedule: self.measure.schedule(FRAMES, REPEAT), limits: limits.as_ref() };
-        let what = format!("{} {}", Setup::PAPER, publication.name);
-        Ok(watched(self.output.quiet, &what, |watch| plan.measure(points, machine, watch))?)
-    }
-
+impl Experiments {
     fn table(&self, publication: &Publication<'_>, number: Number) -> Result<(), Failure> {
         let points = number.points(&|setup| self.scene.over(setup));
         points.iter().try_for_each(|point| load(&point.study).map(drop))?;

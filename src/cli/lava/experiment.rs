@@ -3,24 +3,19 @@
 use clap::{Args, ValueEnum};
 
 use super::LavaArgs;
-use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication, word};
 use crate::cli::failure::Failure;
-use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::cli::paper::ExperimentArgs;
-use crate::cli::watch::watched;
 use crate::experiment::lava::figures::{Drawn, Figure};
 use crate::experiment::lava::scaling::{self, Axis};
 use crate::experiment::lava::{Setup, results};
-use crate::experiment::limits;
 use crate::experiment::machine::Machine;
-use crate::experiment::study::Study;
-use crate::experiment::sweep::{Plan, Point, Swept};
-use crate::papers::lava::NEEDS;
+use crate::experiment::sweep::{Point, Swept};
 
 /// The figures and tables that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Name {
+pub enum Name {
     /// Figure 4.1: the position and the velocity texture
     #[value(name = "fig-4.1")]
     Fig41,
@@ -77,41 +72,44 @@ enum Name {
 
 #[derive(Debug, Clone, Args)]
 pub struct Experiments {
-    /// Table or figure of the paper
-    #[arg(value_enum, required_unless_present = "list")]
-    name: Option<Name>,
-    /// List the experiments
-    #[arg(long)]
-    list: bool,
+    #[command(flatten)]
+    asked: NameArgs<Name>,
     /// Frame of a figure's pictures and textures, 0 to 100000
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     frame: u32,
     #[command(flatten)]
     scene: LavaArgs,
     #[command(flatten)]
-    machine: MachineArgs,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    common: CommonArgs,
 }
 
-/// Frames and repetitions at each point that names none.
-const FRAMES: u32 = 3;
-const REPEAT: u32 = 3;
-
 impl ExperimentArgs for Experiments {
-    fn run(&self) -> Result<(), Failure> {
-        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
-        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
+    type Study = Setup;
+    type Name = Name;
+
+    const FRAMES: u32 = 3;
+    const REPEAT: u32 = 3;
+
+    fn asked(&self) -> &NameArgs<Name> {
+        &self.asked
+    }
+
+    fn common(&self) -> &CommonArgs {
+        &self.common
+    }
+
+    fn unsuited(&self, name: Name) -> Vec<(bool, &'static str)> {
+        let is_figure = Figure::named(&word(&name)).is_some();
+        let output = &self.common.output;
+        vec![
+            (!is_figure && self.frame > 0, "--frame: this experiment measures frames from 0 on; give --frames"),
+            (is_figure && output.json.is_some(), "--json: a figure is pictures; `results` has a record"),
+            (is_figure && output.csv.is_some(), "--csv: a figure is pictures; `results` has rows"),
+        ]
+    }
+
+    fn perform(&self, name: Name, publication: &Publication<'_>) -> Result<(), Failure> {
         let figure = Figure::named(&publication.name);
-        let unsuited = [
-            (figure.is_none() && self.frame > 0, "--frame: this experiment measures frames from 0 on; give --frames"),
-            (figure.is_some() && self.output.json.is_some(), "--json: a figure is pictures; `results` has a record"),
-            (figure.is_some() && self.output.csv.is_some(), "--csv: a figure is pictures; `results` has rows"),
-        ];
-        refuse(&self.measure, &self.output, &unsuited)?;
-        publication.check()?;
         let setup = match figure {
             Some(figure) => self.scene.over(figure.parameters(), Some(&publication.name)),
             None => self.scene.over(self.scene.preset_parameters(), Some(&publication.name)),
@@ -122,13 +120,12 @@ impl ExperimentArgs for Experiments {
             _ => vec![Point::single(&publication.name, setup.clone())],
         };
         scaling::check(&points)?;
-        let mut machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
-        outcome::say_device(&self.output, &machine);
+        let mut machine = self.open()?;
         match figure {
-            Some(figure) => self.draw(&publication, &mut machine, figure, &setup)?,
+            Some(figure) => self.draw(publication, &mut machine, figure, &setup)?,
             None => {
-                let swept = self.sweep(&publication, &mut machine, &points)?;
-                self.publish(&publication, &machine, name, swept)?;
+                let swept = self.sweep(publication, &mut machine, &points)?;
+                self.publish(publication, &machine, name, swept)?;
             }
         }
         machine.check_validation()?;
@@ -152,18 +149,6 @@ impl Experiments {
             }
         }
         Ok(())
-    }
-
-    fn sweep(
-        &self,
-        publication: &Publication<'_>,
-        machine: &mut Machine,
-        points: &[Point<Setup>],
-    ) -> Result<Swept, Failure> {
-        let limits = if self.measure.no_limits { None } else { Some(limits::measure(machine)?) };
-        let plan = Plan { schedule: self.measure.schedule(FRAMES, REPEAT), limits: limits.as_ref() };
-        let what = format!("{} {}", Setup::PAPER, publication.name);
-        Ok(watched(self.output.quiet, &what, |watch| plan.measure(points, machine, watch))?)
     }
 
     fn publish(

@@ -3,23 +3,20 @@
 use clap::{Args, ValueEnum};
 
 use super::TerrainArgs;
-use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication};
 use crate::cli::failure::Failure;
-use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
+use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::cli::paper::{ExperimentArgs, PaperArgs, VariantWord, resolve, variant_words};
-use crate::cli::watch::watched;
-use crate::experiment::limits;
-use crate::experiment::machine::Machine;
+use crate::cli::paper::{PaperArgs, VariantWord, resolve, variant_words};
 use crate::experiment::study::Study;
-use crate::experiment::sweep::{Plan, Point};
+use crate::experiment::sweep::Point;
 use crate::experiment::terrain::table::{self, Axis, Outcome};
 use crate::experiment::terrain::{Setup, figures};
-use crate::papers::terrain::{NEEDS, Variant, View};
+use crate::papers::terrain::{Variant, View};
 
 /// The figures and tables that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Name {
+pub enum Name {
     /// Table 1: time by samples a side of the map, all variants
     #[value(name = "1")]
     Table1,
@@ -51,12 +48,8 @@ impl Name {
 
 #[derive(Debug, Clone, Args)]
 pub struct Experiments {
-    /// Table or figure of the paper
-    #[arg(value_enum, required_unless_present = "list")]
-    name: Option<Name>,
-    /// List the experiments
-    #[arg(long)]
-    list: bool,
+    #[command(flatten)]
+    asked: NameArgs<Name>,
     /// Samples a side in table 1, or widths of the screen in pixels, comma-separated
     /// [default: 128,256,512,1024,2048,4096,8192,16384, or 200,400,800,1200,1600]
     #[arg(long, value_name = "N,N,..", value_delimiter = ',')]
@@ -67,62 +60,56 @@ pub struct Experiments {
     #[command(flatten)]
     scene: TerrainArgs,
     #[command(flatten)]
-    machine: MachineArgs,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    common: CommonArgs,
 }
 
-/// Frames and repetitions at each point that names none.
-const FRAMES: u32 = 3;
-const REPEAT: u32 = 3;
-
 impl ExperimentArgs for Experiments {
-    fn run(&self) -> Result<(), Failure> {
-        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
-        let publication = Publication { output: &self.output, paper: Setup::PAPER, name: word(&name) };
-        self.refuse_unsuited(name)?;
-        publication.check()?;
-        let mut setup = self.scene.resolve(self.measure.process)?;
+    type Study = Setup;
+    type Name = Name;
+
+    const FRAMES: u32 = 3;
+    const REPEAT: u32 = 3;
+
+    fn asked(&self) -> &NameArgs<Name> {
+        &self.asked
+    }
+
+    fn common(&self) -> &CommonArgs {
+        &self.common
+    }
+
+    fn unsuited(&self, name: Name) -> Vec<(bool, &'static str)> {
+        let axis = name.axis();
+        let has_counts = matches!(axis, Some(Axis::Map | Axis::Screen));
+        let is_table = axis == Some(Axis::Map);
+        let (scene, output) = (&self.scene, &self.common.output);
+        vec![
+            (!has_counts && !self.counts.is_empty(), "--counts: this experiment has none"),
+            (is_table && scene.names_maps(), "--map: table 1 takes the synthetic volcano, which has any size"),
+            (is_table && scene.names_resolution(), "--resolution: table 1 sweeps it; give --counts"),
+            (axis == Some(Axis::Screen) && scene.names_size(), "--size: this experiment sweeps it; give --counts"),
+            (axis.is_none() && output.json.is_some(), "--json: a figure is a picture; `1` has a record"),
+            (axis.is_none() && output.csv.is_some(), "--csv: a figure is a picture; `1` has rows"),
+        ]
+    }
+
+    fn perform(&self, name: Name, publication: &Publication<'_>) -> Result<(), Failure> {
+        let mut setup = self.scene.resolve(self.common.measure.process)?;
         setup.preset = Some(publication.name.clone());
         let variants = resolve(&self.variant);
         match name.axis() {
-            None => self.draw(&publication, name, setup, &variants),
+            None => self.draw(publication, name, setup, &variants),
             // Every variant takes the same steps; the paper's second application stands for all.
             Some(axis) if name == Name::Steps => {
-                let points = self.sweep(&publication, axis, &setup, &[Variant::GpuCompute])?;
-                self.heat_maps(&publication, &points)
+                let points = self.tabulate(publication, axis, &setup, &[Variant::GpuCompute])?;
+                self.heat_maps(publication, &points)
             }
-            Some(axis) => self.sweep(&publication, axis, &setup, &variants).map(drop),
+            Some(axis) => self.tabulate(publication, axis, &setup, &variants).map(drop),
         }
     }
 }
 
 impl Experiments {
-    /// Options that other verbs know and this experiment would not heed.
-    fn refuse_unsuited(&self, name: Name) -> Result<(), Failure> {
-        let axis = name.axis();
-        let has_counts = matches!(axis, Some(Axis::Map | Axis::Screen));
-        let is_table = axis == Some(Axis::Map);
-        let scene = &self.scene;
-        let unsuited = [
-            (!has_counts && !self.counts.is_empty(), "--counts: this experiment has none"),
-            (is_table && scene.names_maps(), "--map: table 1 takes the synthetic volcano, which has any size"),
-            (is_table && scene.names_resolution(), "--resolution: table 1 sweeps it; give --counts"),
-            (axis == Some(Axis::Screen) && scene.names_size(), "--size: this experiment sweeps it; give --counts"),
-            (axis.is_none() && self.output.json.is_some(), "--json: a figure is a picture; `1` has a record"),
-            (axis.is_none() && self.output.csv.is_some(), "--csv: a figure is a picture; `1` has rows"),
-        ];
-        refuse(&self.measure, &self.output, &unsuited)
-    }
-
-    fn machine(&self) -> Result<Machine, Failure> {
-        let machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
-        outcome::say_device(&self.output, &machine);
-        Ok(machine)
-    }
-
     fn draw(
         &self,
         publication: &Publication<'_>,
@@ -142,13 +129,14 @@ impl Experiments {
             _ => Variant::GpuCompute,
         };
         setup.load()?;
-        let mut machine = self.machine()?;
+        let mut machine = self.open()?;
         let picture = figures::draw(&mut machine, &setup, variant)?;
         machine.check_validation()?;
         publication.picture(".png", &picture)
     }
 
-    fn sweep(
+    /// Measures and publishes a sweep along the axis.
+    fn tabulate(
         &self,
         publication: &Publication<'_>,
         axis: Axis,
@@ -162,11 +150,8 @@ impl Experiments {
             Axis::Interpolation => table::by_interpolation(setup, variants),
         };
         check(&points)?;
-        let mut machine = self.machine()?;
-        let limits = if self.measure.no_limits { None } else { Some(limits::measure(&mut machine)?) };
-        let plan = Plan { schedule: self.measure.schedule(FRAMES, REPEAT), limits: limits.as_ref() };
-        let what = format!("{} {}", Setup::PAPER, publication.name);
-        let swept = watched(self.output.quiet, &what, |watch| plan.measure(&points, &mut machine, watch))?;
+        let mut machine = self.open()?;
+        let swept = self.sweep(publication, &mut machine, &points)?;
         let outcome = Outcome::new(axis, swept.rows);
         let (table, plots) = (outcome.render(outcome::style()), [(".svg".to_owned(), outcome.plot()?)]);
         publication.runs(&machine, outcome.into_runs(), table, &plots)?;
@@ -181,7 +166,7 @@ impl Experiments {
     }
 
     fn heat_maps(&self, publication: &Publication<'_>, points: &[Point<Setup>]) -> Result<(), Failure> {
-        let mut machine = self.machine()?;
+        let mut machine = self.open()?;
         for point in points {
             let heat = figures::heat_map(&mut machine, &point.study)?;
             publication.drawing(&format!("-{}.png", point.label), &heat)?;
