@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
+use glam::Vec3;
 
 use super::failure::Failure;
 use crate::experiment::limits;
@@ -50,6 +51,11 @@ pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
     values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
 }
 
+/// A camera's eye and its target, `x,y,z,x,y,z`.
+pub fn parse_eye_and_target(text: &str) -> Result<[Vec3; 2], String> {
+    parse_numbers(text).map(|[ex, ey, ez, tx, ty, tz]| [Vec3::new(ex, ey, ez), Vec3::new(tx, ty, tz)])
+}
+
 /// `100x24x24` and its like: exactly `N` numbers.
 pub fn parse_extents<T: FromStr, const N: usize>(text: &str) -> Result<[T; N], String> {
     let number = |part: &str| part.trim().parse::<T>().map_err(|_| format!("{part:?} is not such a number"));
@@ -67,6 +73,13 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
     match number.trim().parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value * scale),
         _ => Err(format!("{text:?} is not a share: give 5% or 0.05")),
+    }
+}
+
+/// What was typed wins over a preset or default.
+pub fn set<T>(target: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *target = value;
     }
 }
 

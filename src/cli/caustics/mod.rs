@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use self::experiment::Experiments;
 use super::failure::Failure;
-use super::options::{Size, parse_finite, parse_numbers, parse_size};
+use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
 use crate::experiment::Error;
 use crate::experiment::caustics::{Setup, water_map};
@@ -27,14 +27,16 @@ enum PlacementWord {
 enum CameraWord {
     Above,
     Below,
-    At([f32; 6]),
+    At([Vec3; 2]),
 }
 
 fn parse_camera(text: &str) -> Result<CameraWord, String> {
     match text {
         "above" => Ok(CameraWord::Above),
         "below" => Ok(CameraWord::Below),
-        _ => parse_numbers::<6>(text).map(CameraWord::At).map_err(|e| format!("above, below, or eye and target: {e}")),
+        _ => {
+            parse_eye_and_target(text).map(CameraWord::At).map_err(|e| format!("above, below, or eye and target: {e}"))
+        }
     }
 }
 
@@ -197,11 +199,7 @@ impl PaperArgs for CausticsArgs {
         p.camera = match self.camera.unwrap_or(CameraWord::Above) {
             CameraWord::Above => Parameters::camera_above(p.water_depth_m),
             CameraWord::Below => Parameters::camera_below(p.water_depth_m),
-            CameraWord::At([ex, ey, ez, tx, ty, tz]) => Camera {
-                eye: Vec3::new(ex, ey, ez),
-                target: Vec3::new(tx, ty, tz),
-                ..Parameters::camera_above(p.water_depth_m)
-            },
+            CameraWord::At([eye, target]) => Camera { eye, target, ..Parameters::camera_above(p.water_depth_m) },
         };
         if let Some(size) = self.size {
             (p.width, p.height) = (size.width, size.height);
@@ -240,11 +238,5 @@ impl CausticsArgs {
     /// Whether a mesh was named.
     pub fn names_meshes(&self) -> bool {
         !self.mesh.is_empty()
-    }
-}
-
-fn set<T: Copy>(target: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *target = value;
     }
 }

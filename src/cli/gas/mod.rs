@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use self::experiment::Experiments;
 use super::failure::Failure;
-use super::options::{Size, parse_finite, parse_numbers, parse_size};
+use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
 use crate::experiment::gas::Setup;
 use crate::papers::gas::model::{DensityFunction, HenyeyGreenstein};
@@ -120,8 +120,8 @@ pub struct GasArgs {
     #[arg(long, value_name = "N")]
     frame_step: Option<u32>,
     /// Camera: eye and target, x,y,z,x,y,z in metres [default: the scene's]
-    #[arg(long, value_name = "EYE,TARGET", value_parser = parse_numbers::<6>, allow_hyphen_values = true)]
-    camera: Option<[f32; 6]>,
+    #[arg(long, value_name = "EYE,TARGET", value_parser = parse_eye_and_target, allow_hyphen_values = true)]
+    camera: Option<[Vec3; 2]>,
     /// Size of the picture in pixels [default: the figure's]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<Size>,
@@ -194,8 +194,8 @@ impl GasArgs {
         set(&mut p.ambient, self.ambient.map(Vec3::from));
         set(&mut p.first_frame, self.first_frame);
         set(&mut p.frame_step, self.frame_step);
-        if let Some([ex, ey, ez, tx, ty, tz]) = self.camera {
-            (p.camera.eye, p.camera.target) = (Vec3::new(ex, ey, ez), Vec3::new(tx, ty, tz));
+        if let Some([eye, target]) = self.camera {
+            (p.camera.eye, p.camera.target) = (eye, target);
         }
         if let Some(size) = self.size {
             (p.width, p.height) = (size.width, size.height);
@@ -211,11 +211,5 @@ fn function(word: DensityWord) -> DensityFunction {
         DensityWord::Constant => DensityFunction::Constant,
         DensityWord::Turbulence => DensityFunction::Turbulence,
         DensityWord::Clouds => DensityFunction::Clouds { frequency: 4.0 },
-    }
-}
-
-fn set<T>(target: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *target = value;
     }
 }

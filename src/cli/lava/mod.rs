@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use self::experiment::Experiments;
 use super::failure::Failure;
-use super::options::{Size, parse_extents, parse_finite, parse_numbers, parse_size};
+use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
 use crate::experiment::lava::Setup;
 use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading};
@@ -20,7 +20,7 @@ use crate::scene::Camera;
 enum CameraWord {
     /// Index of a figure's camera.
     Figure(usize),
-    At([f32; 6]),
+    At([Vec3; 2]),
 }
 
 fn parse_camera(text: &str) -> Result<CameraWord, String> {
@@ -28,7 +28,7 @@ fn parse_camera(text: &str) -> Result<CameraWord, String> {
         return Ok(CameraWord::Figure(figure));
     }
     let figures = CAMERAS.map(|(name, _)| name).join(", ");
-    parse_numbers::<6>(text).map(CameraWord::At).map_err(|e| format!("{figures}, or eye and target: {e}"))
+    parse_eye_and_target(text).map(CameraWord::At).map_err(|e| format!("{figures}, or eye and target: {e}"))
 }
 
 /// Figures and tables of the thesis.
@@ -186,9 +186,7 @@ impl LavaArgs {
         match self.camera {
             None => {}
             Some(CameraWord::Figure(figure)) => p.camera = CAMERAS[figure].1,
-            Some(CameraWord::At([ex, ey, ez, tx, ty, tz])) => {
-                p.camera = Camera { eye: Vec3::new(ex, ey, ez), target: Vec3::new(tx, ty, tz), ..CAMERAS[0].1 };
-            }
+            Some(CameraWord::At([eye, target])) => p.camera = Camera { eye, target, ..CAMERAS[0].1 },
         }
         if let Some(size) = self.size {
             (p.width, p.height) = (size.width, size.height);
@@ -196,11 +194,5 @@ impl LavaArgs {
         set(&mut p.seed, self.seed);
         set(&mut p.time_step_s, self.time_step);
         Setup { parameters: p, rock: self.rock.clone(), preset: preset.map(str::to_owned), process: 0 }
-    }
-}
-
-fn set<T>(target: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *target = value;
     }
 }

@@ -11,7 +11,7 @@ use glam::{DVec2, Vec3};
 
 use self::experiment::Experiments;
 use super::failure::Failure;
-use super::options::{Size, parse_finite, parse_numbers, parse_size};
+use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size};
 use super::paper::PaperArgs;
 use crate::experiment::terrain::{PlacedMap, Setup, figures};
 use crate::papers::terrain::{Base, Interpolation, Lod, Parameters, Placement, Sun, View};
@@ -22,14 +22,14 @@ use crate::scene::{Camera, HeightMapSource, MeshSource};
 enum CameraWord {
     Side,
     Top,
-    At([f32; 6]),
+    At([Vec3; 2]),
 }
 
 fn parse_camera(text: &str) -> Result<CameraWord, String> {
     match text {
         "side" => Ok(CameraWord::Side),
         "top" => Ok(CameraWord::Top),
-        _ => parse_numbers::<6>(text).map(CameraWord::At).map_err(|e| format!("side, top, or eye and target: {e}")),
+        _ => parse_eye_and_target(text).map(CameraWord::At).map_err(|e| format!("side, top, or eye and target: {e}")),
     }
 }
 
@@ -201,10 +201,10 @@ impl PaperArgs for TerrainArgs {
             None => {}
             Some(CameraWord::Side) => p.view = View::Side,
             Some(CameraWord::Top) => p.view = View::Top,
-            Some(CameraWord::At([ex, ey, ez, tx, ty, tz])) => {
+            Some(CameraWord::At([eye, target])) => {
                 p.view = View::Camera(Camera {
-                    eye: Vec3::new(ex, ey, ez),
-                    target: Vec3::new(tx, ty, tz),
+                    eye,
+                    target,
                     up: Vec3::Y,
                     vertical_fov_rad: FRAC_PI_4,
                     near_m: 1.0,
