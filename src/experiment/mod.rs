@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod caustics;
 pub mod compare;
+mod config;
 mod error;
 pub mod facts;
 pub mod gas;

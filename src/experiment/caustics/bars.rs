@@ -4,6 +4,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::experiment::compare::{Ratio, ratio_within_process};
+use crate::experiment::config::entries;
 use crate::experiment::statistics::median;
 use crate::papers::Variant as _;
 use crate::papers::caustics::Variant;
@@ -183,10 +184,6 @@ impl AgainstNormal {
             ("smart_bar", json!(self.verdict.map(Verdict::word))),
         ])
     }
-}
-
-fn entries<const N: usize>(entries: [(&str, Value); N]) -> Map<String, Value> {
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// The bars of a sweep as tables; nothing where it compares neither.

@@ -12,13 +12,14 @@ use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
+use super::config::{self, entries};
 use super::error::Error;
 use super::machine::Machine;
 use super::measure::Measurement;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, Mode, ShaderLibrary};
 use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
-use crate::scene::{Bounds, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
+use crate::scene::{Bounds, HeightMap, HeightMapSource, MeshSource, Samples, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
 /// over it.
@@ -131,13 +132,13 @@ impl Study for Setup {
         let p = &self.parameters;
         let meshes: Vec<String> = self.meshes.iter().map(MeshSource::to_string).collect();
         let triangles: usize = scene.receivers.iter().map(|r| r.mesh.triangle_count()).sum();
-        let lights: Vec<Value> = p.lights.iter().map(light_value).collect();
+        let lights: Vec<Value> = p.lights.iter().map(config::light).collect();
         let (placement, epsilon) = match p.smart.placement {
             SmartPlacement::Fitted { epsilon_m } => ("fitted", epsilon_m),
             SmartPlacement::Kept => ("kept", None),
         };
         let waves = if p.water_map.is_none() { Some(p.waves) } else { None };
-        let entries = [
+        entries([
             ("mesh", json!(meshes)),
             ("receiver_triangles", json!(triangles)),
             ("floor", json!(self.floor)),
@@ -157,10 +158,9 @@ impl Study for Setup {
             ("water_map", json!(p.water_map.as_ref().map(map_value))),
             ("lights", json!(lights)),
             ("ambient", json!(p.ambient.to_array())),
-            ("camera", json!([p.camera.eye.to_array(), p.camera.target.to_array()])),
+            ("camera", config::camera(&p.camera)),
             ("time_step", json!(p.time_step_s)),
-        ];
-        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        ])
     }
 }
 
@@ -214,17 +214,6 @@ fn map_value(map: &WaterMap) -> Value {
         "name": map.name(), "columns": heights.width(), "rows": heights.height(),
         "spacing": heights.spacing_m().to_array(), "lowest": low, "highest": high,
     })
-}
-
-fn light_value(light: &Light) -> Value {
-    match light {
-        Light::Parallel { direction, intensity } => {
-            json!({"direction": direction.to_array(), "intensity": intensity.to_array()})
-        }
-        Light::Point { position, intensity } => {
-            json!({"position": position.to_array(), "intensity": intensity.to_array()})
-        }
-    }
 }
 
 fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
@@ -296,14 +285,13 @@ fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -
     if planes == 0 {
         return Map::new();
     }
-    let entries = [
+    entries([
         ("planes_drawn", json!(planes)),
         ("caustics_map_floor_ms", json!(floor_ms)),
         ("caustics_map_over_floor", json!(time_ms.zip(floor_ms).map(|(time, floor)| time / floor))),
         ("intersection_triangles", json!(triangles)),
         ("intersection_triangles_per_s", json!(time_ms.map(|ms| triangles as f64 / ms * 1e3))),
-    ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    ])
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use glam::Vec3;
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
+use super::config::{self, entries};
 use super::error::Error;
 use super::machine::Machine;
 use super::measure::Measurement;
@@ -16,7 +17,7 @@ use crate::papers::gas::model::Object;
 use crate::papers::gas::parameters::validate_object;
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant};
-use crate::scene::{Light, MeshSource};
+use crate::scene::MeshSource;
 
 /// What a user set up.
 #[derive(Debug, Clone)]
@@ -96,12 +97,12 @@ impl Study for Setup {
             })
             .collect();
         let objects: Vec<String> = self.objects.iter().map(ToString::to_string).collect();
-        let entries = [
+        entries([
             ("scene", json!(self.scene.word())),
             ("object", json!(objects)),
             ("triangles", json!(triangles)),
             ("volumes", json!(volumes)),
-            ("lights", json!(p.lights.iter().map(light_value).collect::<Vec<_>>())),
+            ("lights", json!(p.lights.iter().map(config::light).collect::<Vec<_>>())),
             ("ambient", json!(p.ambient.to_array())),
             ("background", json!(p.background.to_array())),
             ("steps", json!(p.steps)),
@@ -111,9 +112,8 @@ impl Study for Setup {
             ("early_end", json!(p.early_end)),
             ("first_frame", json!(p.first_frame)),
             ("frame_step", json!(p.frame_step)),
-            ("camera", json!([p.camera.eye.to_array(), p.camera.target.to_array()])),
-        ];
-        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+            ("camera", config::camera(&p.camera)),
+        ])
     }
 
     fn summary(&self) -> String {
@@ -133,25 +133,13 @@ impl Study for Setup {
                 passes.filter_map(|p| median(&p.gpu_ms)).sum::<f64>()
             };
             let surfaces_ms = gpu_ms(&["fragments", "sort", "resolve"]);
-            let entries = [
+            let results = entries([
                 ("fragments", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
                 ("surfaces_ms", json!(Some(surfaces_ms).filter(|&ms| ms > 0.0))),
-            ];
-            let results = entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+            ]);
             findings.push(Findings { results, warnings: built.paper.warnings(&machine.shaders) });
         }
         Ok(findings)
-    }
-}
-
-fn light_value(light: &Light) -> Value {
-    match light {
-        Light::Parallel { direction, intensity } => {
-            json!({"direction": direction.to_array(), "intensity": intensity.to_array()})
-        }
-        Light::Point { position, intensity } => {
-            json!({"position": position.to_array(), "intensity": intensity.to_array()})
-        }
     }
 }

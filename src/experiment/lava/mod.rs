@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
+use super::config::{self, entries};
 use super::error::Error;
 use super::machine::Machine;
 use super::measure::Measurement;
@@ -76,7 +77,7 @@ impl Study for Setup {
 
     fn config(&self, _: &Scene, _: &Lava) -> Map<String, Value> {
         let p = &self.parameters;
-        let entries = [
+        entries([
             ("space", json!(p.space_m.to_array())),
             ("particles", json!(p.particles)),
             ("radius", json!(p.radius_m)),
@@ -92,10 +93,9 @@ impl Study for Setup {
             ("rock_tile", json!(p.rock_tile_m)),
             ("shading", json!(p.shading.word())),
             ("geometry_stage", json!(p.geometry_stage)),
-            ("camera", json!([p.camera.eye.to_array(), p.camera.target.to_array()])),
+            ("camera", config::camera(&p.camera)),
             ("time_step", json!(p.time_step_s)),
-        ];
-        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        ])
     }
 
     fn summary(&self) -> String {
@@ -127,13 +127,12 @@ fn results(parameters: &Parameters, paper: &Lava, measurement: &Measurement) -> 
     let grid_points = parameters.density.iter().map(|&n| f64::from(n)).product::<f64>();
     let splats = parameters.splats.iter().map(|&n| f64::from(n)).product::<f64>();
     let frame_ms = median(&measurement.frame_ms);
-    let entries = [
+    entries([
         ("frames_per_s", json!(frame_ms.map(|ms| 1e3 / ms))),
         ("accepted_grid_points", json!(paper.isosurface().accepted().len())),
         ("density_range", json!(paper.isosurface().density_range())),
         ("particles_per_s", rate(particles, &["animate", "cluster", "density"])),
         ("grid_points_per_s", rate(grid_points, &["density", "extract"])),
         ("splats_per_s", rate(splats, &["visibility", "blending"])),
-    ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    ])
 }

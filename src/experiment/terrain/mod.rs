@@ -10,6 +10,7 @@ use glam::DVec2;
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
+use super::config::{self, entries};
 use super::error::Error;
 use super::machine::Machine;
 use super::measure::Measurement;
@@ -180,14 +181,14 @@ impl Study for Setup {
         let view = match p.view {
             View::Side => json!("side"),
             View::Top => json!("top"),
-            View::Camera(camera) => json!([camera.eye.to_array(), camera.target.to_array()]),
+            View::Camera(camera) => config::camera(&camera),
         };
         let base = match p.base {
             Base::Plane => json!("plane"),
             Base::Ellipsoid { equatorial_m, polar_m } => json!({"ellipsoid": [equatorial_m, polar_m]}),
             Base::Cylinder { radius_m } => json!({"cylinder": radius_m}),
         };
-        let entries = [
+        entries([
             ("resolution", json!(first)),
             ("maps", json!(maps)),
             ("exaggeration", json!(self.exaggeration)),
@@ -201,8 +202,7 @@ impl Study for Setup {
             ("camera", view),
             ("sun", json!([p.sun.azimuth_rad.to_degrees(), p.sun.elevation_rad.to_degrees()])),
             ("haze", json!(p.haze_per_km)),
-        ];
-        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        ])
     }
 
     fn summary(&self) -> String {
@@ -222,12 +222,11 @@ impl Study for Setup {
             let census = figures::census(machine, &mut built.paper)?;
             // A rasterised grid has no steps.
             let steps = (built.variant != Variant::Mesh).then(|| census.steps_per_ray());
-            let entries = [
+            let results = entries([
                 ("mrays_per_s", json!(frame_ms.map(|ms| rays / ms / 1e3))),
                 ("steps_per_ray", json!(steps)),
                 ("hit_share", json!(census.hit_share())),
-            ];
-            let results = entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+            ]);
             findings.push(Findings { results, warnings: Vec::new() });
         }
         Ok(findings)
