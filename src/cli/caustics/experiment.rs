@@ -9,11 +9,10 @@ use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
 use crate::cli::paper::PaperArgs;
-use crate::cli::watch::watched;
 use crate::experiment::bench::build;
 use crate::experiment::caustics::slicing;
 use crate::experiment::caustics::sweep::{
-    ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Sweep,
+    ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome,
 };
 use crate::experiment::caustics::{self, NamedMesh, Setup};
 use crate::experiment::facts::Facts;
@@ -191,22 +190,12 @@ impl Experiment<'_> {
     }
 
     fn sweep(&mut self, comparison: Comparison) -> Result<(), Failure> {
-        let CommonArgs { output, measure, .. } = self.arguments.common();
-        let limits = measure.limits(&mut self.machine)?;
-        let sweep = Sweep {
-            comparison,
-            setup: self.setup.clone(),
-            meshes: self.meshes.clone(),
-            counts: self.counts.clone(),
-            schedule: measure.schedule(Experiments::FRAMES, Experiments::REPEAT),
-            limits,
-        };
-        let what = format!("{} {}", Setup::PAPER, self.publication.name);
-        let found = watched(output.quiet, &what, |watch| sweep.run(&mut self.machine, watch))?;
-        let table = found.render(outcome::style());
-        let plots = found.plots()?;
-        self.publication.runs(&self.machine, found.runs, table, &plots)?;
-        found.stopped.map_or(Ok(()), |error| Err(error.into()))
+        let points = comparison.points(&self.setup, &self.meshes, &self.counts);
+        let swept = self.arguments.sweep(self.publication, &mut self.machine, &points)?;
+        let outcome = Outcome::new(comparison, &self.meshes, swept.rows);
+        let (table, plots) = (outcome.render(outcome::style()), outcome.plots()?);
+        self.publication.runs(&self.machine, outcome.into_runs(), table, &plots)?;
+        swept.stopped.map_or(Ok(()), |error| Err(error.into()))
     }
 
     fn depth_profiles(&mut self) -> Result<(), Failure> {

@@ -1,29 +1,24 @@
 //! Tables 5-1 and 5-3 and the appendix's curves: rendering time by number of planes, methods interleaved in one
 //! process.
 
-use std::sync::atomic::Ordering;
-
 use serde_json::json;
 
 use super::bars::{self, Bars, LEAST_SAMPLES};
 use super::thesis::{TABLE_5_1, TABLE_5_3};
 use super::{NamedMesh, Setup};
-use crate::experiment::bench::{Bench, load};
 use crate::experiment::compare::{Ratio, ratio_within_process};
 use crate::experiment::error::Error;
-use crate::experiment::machine::Machine;
-use crate::experiment::measure::{Schedule, Watch};
+use crate::experiment::sweep::{self, Point};
 use crate::papers::Variant as _;
 use crate::papers::caustics::Variant;
 use crate::report::plot::{LineChart, Scale, Series};
-use crate::report::record::{ExperimentRow, Limits, Run};
+use crate::report::record::{ExperimentRow, Run};
 use crate::report::table::{Align, Style, Table};
 use crate::scene::MeshSource;
 
 /// What a sweep compares.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
-    pub preset: &'static str,
     pub title: &'static str,
     /// The method that ratios are taken against.
     pub base: Variant,
@@ -32,7 +27,6 @@ pub struct Comparison {
 
 /// Table 5-1 and figure 5-10.
 pub const LEVEL_MAP_AGAINST_VOLUMETRIC: Comparison = Comparison {
-    preset: "5-1",
     title: "Table 5-1: level map against volumetric",
     base: Variant::LevelMap,
     others: &[Variant::Volumetric],
@@ -40,7 +34,6 @@ pub const LEVEL_MAP_AGAINST_VOLUMETRIC: Comparison = Comparison {
 
 /// Table 5-3 and figure 5-11.
 pub const NORMAL_AGAINST_SMART: Comparison = Comparison {
-    preset: "5-3",
     title: "Table 5-3: normal against smart slicing",
     base: Variant::LevelMapSmart,
     others: &[Variant::LevelMap],
@@ -48,7 +41,6 @@ pub const NORMAL_AGAINST_SMART: Comparison = Comparison {
 
 /// The appendix's graphs.
 pub const ALL_THREE: Comparison = Comparison {
-    preset: "appendix",
     title: "Appendix: rendering time by number of planes",
     base: Variant::LevelMap,
     others: &[Variant::Volumetric, Variant::LevelMapSmart],
@@ -57,6 +49,18 @@ pub const ALL_THREE: Comparison = Comparison {
 impl Comparison {
     fn variants(&self) -> Vec<Variant> {
         std::iter::once(self.base).chain(self.others.iter().copied()).collect()
+    }
+
+    /// One point for each mesh and each count of planes, the methods interleaved.
+    pub fn points(&self, setup: &Setup, meshes: &[MeshSource], counts: &[u32]) -> Vec<Point<Setup>> {
+        let point = |mesh: &NamedMesh, planes: u32| {
+            let mut study = Setup { meshes: vec![mesh.source.clone()], ..setup.clone() };
+            study.parameters.planes = planes;
+            let x = f64::from(planes);
+            Point { label: mesh.name.clone(), x, study, variants: self.variants(), left_out: Vec::new() }
+        };
+        let meshes = NamedMesh::all(meshes);
+        meshes.iter().flat_map(|mesh| counts.iter().map(move |&planes| point(mesh, planes))).collect()
     }
 
     /// The thesis's seconds for a variant.
@@ -69,16 +73,6 @@ impl Comparison {
     fn thesis_ratio(&self, mesh: &str, variant: Variant, planes: u32) -> Option<f64> {
         Some(self.thesis(mesh, variant, planes)? / self.thesis(mesh, self.base, planes)?)
     }
-}
-
-/// A sweep over meshes and plane counts.
-pub struct Sweep {
-    pub comparison: Comparison,
-    pub setup: Setup,
-    pub meshes: Vec<MeshSource>,
-    pub counts: Vec<u32>,
-    pub schedule: Schedule,
-    pub limits: Option<Limits>,
 }
 
 /// One method at one count.
@@ -104,60 +98,12 @@ impl Row {
     }
 }
 
-/// What the sweep found.
+/// A sweep's rows with what they are compared with.
 pub struct Outcome {
     comparison: Comparison,
-    pub runs: Vec<Run>,
+    runs: Vec<Run>,
     rows: Vec<Row>,
     bars: Vec<Bars>,
-    /// What ended it before its last point; the rows before it are kept.
-    pub stopped: Option<Error>,
-}
-
-impl Sweep {
-    /// Measures every method, interleaved, at every count for every mesh. What fails after the first point ends the sweep,
-    /// which keeps its finished rows; so does Ctrl-C.
-    ///
-    /// # Errors
-    /// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`], [`Error::Interrupted`], before the first row.
-    pub fn run(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Outcome, Error> {
-        let mut outcome = Outcome {
-            comparison: self.comparison,
-            runs: Vec::new(),
-            rows: Vec::new(),
-            bars: Vec::new(),
-            stopped: None,
-        };
-        let variants = self.comparison.variants();
-        for mesh in &NamedMesh::all(&self.meshes) {
-            let mut setup = self.setup.clone();
-            setup.meshes = vec![mesh.source.clone()];
-            setup.preset = Some(self.comparison.preset.to_owned());
-            let loaded = match load(&setup) {
-                Ok(loaded) => loaded,
-                Err(error) => return outcome.ended_by(error),
-            };
-            for &planes in &self.counts {
-                setup.parameters.planes = planes;
-                let bench = Bench {
-                    study: &setup,
-                    loaded: &loaded,
-                    variants: &variants,
-                    schedule: self.schedule,
-                    limits: self.limits.as_ref(),
-                };
-                let measured = setup.parameters.validate().map_err(Error::from);
-                match measured.and_then(|()| bench.measure(machine, watch)) {
-                    Ok(runs) => outcome.add(mesh, planes, runs.into_iter().map(|r| r.run).collect()),
-                    Err(error) => return outcome.ended_by(error),
-                }
-                if watch.interrupted.load(Ordering::Relaxed) {
-                    return Ok(outcome);
-                }
-            }
-        }
-        Ok(outcome)
-    }
 }
 
 fn samples(run: &Run) -> &[f64] {
@@ -165,16 +111,25 @@ fn samples(run: &Run) -> &[f64] {
 }
 
 impl Outcome {
-    /// Keeps the rows that there are; without one nothing was found.
-    fn ended_by(mut self, error: Error) -> Result<Self, Error> {
-        if self.rows.is_empty() {
-            return Err(error);
+    /// Notes in every run's record its ratio to the base, beside the thesis's. The rows are those of
+    /// [`Comparison::points`] over `meshes`.
+    pub fn new(comparison: Comparison, meshes: &[MeshSource], rows: Vec<sweep::Row>) -> Self {
+        let meshes = NamedMesh::all(meshes);
+        let place = |row: sweep::Row| ((row.label, row.x as u32), row.run);
+        let (places, mut runs): (Vec<_>, Vec<_>) = rows.into_iter().map(place).unzip();
+        let mut outcome = Outcome { comparison, runs: Vec::new(), rows: Vec::new(), bars: Vec::new() };
+        let methods = comparison.variants().len();
+        for (places, runs) in places.chunks(methods).zip(runs.chunks_mut(methods)) {
+            let (name, planes) = &places[0];
+            if let Some(mesh) = meshes.iter().find(|mesh| mesh.name == *name) {
+                outcome.add(mesh, *planes, runs);
+            }
         }
-        self.stopped = Some(error).filter(|error| !matches!(error, Error::Interrupted));
-        Ok(self)
+        Outcome { runs, ..outcome }
     }
 
-    fn add(&mut self, mesh: &NamedMesh, planes: u32, mut runs: Vec<Run>) {
+    /// One mesh at one count: a run of each method, the base first.
+    fn add(&mut self, mesh: &NamedMesh, planes: u32, runs: &mut [Run]) {
         let base = runs.first().map(|run| samples(run).to_vec()).unwrap_or_default();
         for (index, (run, variant)) in runs.iter_mut().zip(self.comparison.variants()).enumerate() {
             let ratio = (index > 0).then(|| ratio_within_process(&base, samples(run))).flatten();
@@ -207,8 +162,12 @@ impl Outcome {
                 thesis,
             });
         }
-        self.bars.push(Bars::of(&mesh.name, planes, &mut runs));
-        self.runs.append(&mut runs);
+        self.bars.push(Bars::of(&mesh.name, planes, runs));
+    }
+
+    /// The runs, for the record.
+    pub fn into_runs(self) -> Vec<Run> {
+        self.runs
     }
 
     /// The table, ours beside the thesis's.
