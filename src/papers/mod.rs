@@ -3,12 +3,15 @@
 pub mod caustics;
 pub mod gas;
 pub mod lava;
+mod parameter;
 pub mod terrain;
 
 use std::sync::Arc;
 
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Buffer, Error, Frame, ImageView, ShaderLibrary};
+
+pub use parameter::{ParameterError, components};
 
 /// The methods that a paper compares.
 pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
@@ -17,31 +20,6 @@ pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
 
     /// The word that the command line and the record know it by.
     fn word(self) -> &'static str;
-}
-
-/// A parameter outside its range.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{name} {value}: {range}")]
-pub struct ParameterError {
-    /// The option that sets it.
-    pub name: &'static str,
-    /// As it was typed.
-    pub value: String,
-    /// What it must be.
-    pub range: String,
-}
-
-impl ParameterError {
-    /// Passes when `is_good`.
-    ///
-    /// # Errors
-    /// When it is not.
-    pub fn check(is_good: bool, name: &'static str, value: impl ToString, range: &str) -> Result<(), Self> {
-        if is_good {
-            return Ok(());
-        }
-        Err(ParameterError { name, value: value.to_string(), range: range.to_owned() })
-    }
 }
 
 /// A paper's method with its resources, ready to record frames.

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 pub use super::planes::SmartPlacement;
 use super::water_map::WaterMap;
-use crate::papers::ParameterError;
+use crate::papers::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
 /// The methods that the thesis compares.
@@ -139,11 +139,6 @@ fn validate_map(map: &WaterMap) -> Result<(), ParameterError> {
     )
 }
 
-/// As they are typed.
-fn components(vector: Vec3) -> String {
-    vector.to_array().map(|c| c.to_string()).join(",")
-}
-
 impl Parameters {
     /// Checks every range.
     ///
@@ -204,18 +199,8 @@ impl Parameters {
         }
         let step = self.time_step_s;
         ParameterError::check(step >= 0.0 && step.is_finite(), "--time-step", step, "must be at least 0 seconds")?;
-        ParameterError::check(
-            self.width >= 1 && self.height >= 1,
-            "--size",
-            format!("{}x{}", self.width, self.height),
-            "has no pixel",
-        )?;
-        let Camera { eye, target, .. } = self.camera;
-        self.camera.validate().map_err(|e| ParameterError {
-            name: "--camera",
-            value: [eye, target].map(components).join(","),
-            range: e.to_string(),
-        })
+        ParameterError::check_size(self.width, self.height)?;
+        ParameterError::check_camera(&self.camera)
     }
 
     fn validate_light(&self, light: &Light) -> Result<(), ParameterError> {

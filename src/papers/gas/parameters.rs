@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
-use crate::papers::ParameterError;
+use crate::papers::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
 /// How the gas is shadowed (section "Shadowing of the gas", figure 8).
@@ -134,11 +134,6 @@ pub fn default_volume() -> Volume {
     }
 }
 
-/// As they are typed.
-fn components(vector: Vec3) -> String {
-    vector.to_array().map(|c| c.to_string()).join(",")
-}
-
 fn is_color(color: Vec3, most: f32) -> bool {
     color.to_array().iter().all(|c| (0.0..=most).contains(c))
 }
@@ -196,14 +191,8 @@ impl Parameters {
             self.first_frame,
             "is too late; a scene has 16000000 frames",
         )?;
-        let size = format!("{}x{}", self.width, self.height);
-        ParameterError::check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
-        let Camera { eye, target, .. } = self.camera;
-        self.camera.validate().map_err(|e| ParameterError {
-            name: "--camera",
-            value: [eye, target].map(components).join(","),
-            range: e.to_string(),
-        })
+        ParameterError::check_size(self.width, self.height)?;
+        ParameterError::check_camera(&self.camera)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::papers::ParameterError;
+use crate::papers::{ParameterError, components};
 use crate::scene::Camera;
 
 /// The methods that are compared: the thesis has one.
@@ -171,11 +171,6 @@ const fn camera(eye: Vec3, target: Vec3) -> Camera {
     Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.75, near_m: 0.05, far_m: 20.0 }
 }
 
-/// As they are typed.
-fn components(vector: Vec3) -> String {
-    vector.to_array().map(|c| c.to_string()).join(",")
-}
-
 /// Above 0 and at most `highest`; not for NaN.
 fn is_positive(value: f32, highest: f32) -> bool {
     value > 0.0 && value <= highest
@@ -240,14 +235,8 @@ impl Parameters {
         ParameterError::check(is_positive(self.rock_tile_m, 1000.0), "--rock-tile", self.rock_tile_m, metres)?;
         let good = (0.0..=1000.0).contains(&self.time_step_s);
         ParameterError::check(good, "--time-step", self.time_step_s, "must be 0 to 1000 seconds")?;
-        let size = format!("{}x{}", self.width, self.height);
-        ParameterError::check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
-        let Camera { eye, target, .. } = self.camera;
-        self.camera.validate().map_err(|e| ParameterError {
-            name: "--camera",
-            value: [eye, target].map(components).join(","),
-            range: e.to_string(),
-        })
+        ParameterError::check_size(self.width, self.height)?;
+        ParameterError::check_camera(&self.camera)
     }
 
     /// The accepted density: the one given, or the mean of eq. 6.2 summed over particles that fill the space evenly,

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 
 use super::placement::{Extent, Placement};
-use crate::papers::{self, ParameterError};
+use crate::papers::{self, ParameterError, components};
 use crate::scene::Camera;
 
 /// The applications of section 4, and what a user would do without them.
@@ -194,17 +194,12 @@ impl Parameters {
         )?;
         let haze = self.haze_per_km;
         ParameterError::check((0.0..=1000.0).contains(&haze), "--haze", haze, "must be 0 to 1000 per kilometre")?;
-        let size = format!("{}x{}", self.width, self.height);
-        ParameterError::check(self.width >= 1 && self.height >= 1, "--size", size, "has no pixel")?;
+        ParameterError::check_size(self.width, self.height)?;
         let View::Camera(camera) = self.view else { return Ok(()) };
-        let place = [camera.eye, camera.target].map(|p| p.to_array().map(|c| c.to_string()).join(",")).join(",");
-        ParameterError::check(
-            camera.eye.abs().max_element() <= 1.0e8,
-            "--camera",
-            &place,
-            "must lie within 100000 km",
-        )?;
-        camera.validate().map_err(|e| ParameterError { name: "--camera", value: place, range: e.to_string() })
+        let place = [camera.eye, camera.target].map(components).join(",");
+        let is_near = camera.eye.abs().max_element() <= 1.0e8;
+        ParameterError::check(is_near, "--camera", place, "must lie within 100000 km")?;
+        ParameterError::check_camera(&camera)
     }
 
     /// Checks a map's place over the base.
