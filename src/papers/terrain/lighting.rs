@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::parameters::{Base, Parameters};
+use super::parameters::Parameters;
 use super::scene::DeviceScene;
 use super::stage::Stage;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
@@ -52,8 +52,7 @@ impl Lighting {
             );
             normal_passes.push(pass.build(shaders)?);
         }
-        let base = if parameters.base == Base::Plane { "plane" } else { "curved" };
-        let program = format!("shadow-{base}-{}", parameters.interpolation.word());
+        let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.word());
         let mut shadow_passes = Vec::new();
         let mut shadow = scene.all_lit.clone();
         if parameters.shadows {

@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::ground::Ground;
 use super::hit::{NO_DEPTH, Surface};
-use super::parameters::{Base, Parameters};
+use super::parameters::Parameters;
 use super::pyramid::Shape;
 use super::scene::{DeviceScene, Seen};
 use super::stage::Stage;
@@ -61,8 +61,7 @@ impl Mesh {
         let Some(first) = scene.maps.first() else {
             return Err(Error::Pass { pass: "mesh".into(), problem: "there is no map".into() });
         };
-        let kind = if parameters.base == Base::Plane { "plane" } else { "curved" };
-        let fragment = format!("terrain/mesh-base-{kind}.frag");
+        let fragment = format!("terrain/mesh-base-{}.frag", parameters.base.kind());
         let base = Pass::graphics("base", "2", "common/fullscreen.vert", &fragment)
             .with("land", &first.land)
             .with("levels", &first.levels.view)

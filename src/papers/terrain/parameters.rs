@@ -93,6 +93,14 @@ pub enum Base {
 impl Base {
     /// The Earth's, WGS84.
     pub const EARTH: Base = Base::Ellipsoid { equatorial_m: 6_378_137.0, polar_m: 6_356_752.5 };
+
+    /// What shaders call it in their names: rays stay straight over a plane alone.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Base::Plane => "plane",
+            Base::Ellipsoid { .. } | Base::Cylinder { .. } => "curved",
+        }
+    }
 }
 
 /// Where the sun stands.

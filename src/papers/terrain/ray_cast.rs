@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::parameters::{Base, Parameters};
+use super::parameters::Parameters;
 use super::scene::DeviceScene;
 use super::stage::Stage;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
@@ -29,9 +29,8 @@ impl RayCast {
     ) -> Result<Self, Error> {
         let device = shaders.device();
         let format = vk::Format::R32G32B32A32_SFLOAT;
-        let base = if parameters.base == Base::Plane { "plane" } else { "curved" };
-        let (interpolation, lod) = (parameters.interpolation.word(), parameters.lod.word());
-        let program = format!("depth-{base}-{interpolation}-{lod}");
+        let Parameters { base, interpolation, lod, .. } = parameters;
+        let program = format!("depth-{}-{}-{}", base.kind(), interpolation.word(), lod.word());
         let size = (parameters.width, parameters.height);
         let depths = (0..scene.maps.len().min(2))
             .map(|_| stage.image(device, format!("{label}/depth"), format, size))
