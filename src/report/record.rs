@@ -141,6 +141,17 @@ pub struct Run {
     pub image: Option<ImageFile>,
 }
 
+impl Run {
+    /// Times of the plain frames in milliseconds; none where nothing was measured.
+    pub fn frame_samples(&self) -> &[f64] {
+        self.frame_ms.as_ref().map_or(&[], |frame| &frame.samples)
+    }
+
+    pub fn median_frame_ms(&self) -> Option<f64> {
+        self.frame_ms.as_ref().map(|frame| frame.median)
+    }
+}
+
 /// One pass of the paper; a loop of draws is one pass with its number of calls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {

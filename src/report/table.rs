@@ -45,6 +45,16 @@ pub enum Align {
     Right,
 }
 
+/// A number in a cell, with `digits` after the point; an absent one leaves the cell empty.
+pub fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or(String::new(), |value| format!("{value:.digits$}"))
+}
+
+/// An interval of a ratio in a cell; an absent one leaves the cell empty.
+pub fn interval(ends: Option<[f64; 2]>) -> String {
+    ends.map_or(String::new(), |[low, high]| format!("{low:.3} to {high:.3}"))
+}
+
 /// Rows under a header. Cells are plain text without colour and without line breaks.
 #[derive(Clone, Debug)]
 pub struct Table {

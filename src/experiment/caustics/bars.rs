@@ -9,7 +9,7 @@ use crate::experiment::statistics::median;
 use crate::papers::Variant as _;
 use crate::papers::caustics::Variant;
 use crate::report::record::{Pass, Run};
-use crate::report::table::{Align, Style, Table};
+use crate::report::table::{Align, Style, Table, interval, number};
 
 /// Fewer samples a method say nothing of their noise.
 pub const LEAST_SAMPLES: usize = 5;
@@ -52,14 +52,6 @@ impl Measured {
         let Ratio { ratio, interval, .. } = ratio_within_process(base, over)?;
         let is_enough = over.len().min(base.len()) >= LEAST_SAMPLES;
         Some(Measured { ratio, interval: is_enough.then_some(interval) })
-    }
-
-    fn text(&self) -> String {
-        format!("{:.3}", self.ratio)
-    }
-
-    fn interval_text(&self) -> String {
-        self.interval.map_or(String::new(), |[low, high]| format!("{low:.3} to {high:.3}"))
     }
 }
 
@@ -108,16 +100,12 @@ impl Bars {
     }
 }
 
-fn samples(run: &Run) -> &[f64] {
-    run.frame_ms.as_ref().map_or(&[], |s| &s.samples)
-}
-
 fn pass<'a>(run: &'a Run, name: &str) -> Option<&'a Pass> {
     run.passes.iter().find(|pass| pass.name == name)
 }
 
 fn against_volumetric(planes: u32, level: &Run, volumetric: &Run) -> Option<AgainstVolumetric> {
-    let time = Measured::of(samples(level), samples(volumetric))?;
+    let time = Measured::of(level.frame_samples(), volumetric.frame_samples())?;
     let bytes = level.memory.device_bytes.zip(volumetric.memory.device_bytes);
     let has_less_memory = bytes.map(|(level, volumetric)| level < volumetric);
     let verdict = match (time.interval, has_less_memory) {
@@ -136,7 +124,7 @@ fn against_normal(planes: u32, level: &Run, smart: &Run) -> Option<AgainstNormal
         Some(&pass(run, "caustics-map")?.gpu_ms.as_ref()?.samples)
     }
     let caustics_map = gpu_ms(smart).zip(gpu_ms(level)).and_then(|(smart, level)| Measured::of(smart, level));
-    let cost = without_profiling(smart).and_then(|smart| Measured::of(&smart, samples(level)));
+    let cost = without_profiling(smart).and_then(|smart| Measured::of(&smart, level.frame_samples()));
     let verdict = match cost.and_then(|cost| cost.interval).map(|interval| interval.map(|end| end / share - 1.0)) {
         Some([low, high]) if low >= -FROM_SHARE && high <= FROM_SHARE => Verdict::Holds,
         Some([low, high]) if high < -FROM_SHARE || low > FROM_SHARE => Verdict::Missed,
@@ -152,7 +140,7 @@ fn without_profiling(smart: &Run) -> Option<Vec<f64>> {
     let wait = &pass(smart, "read-positions")?.wait_ms.as_ref()?.samples;
     let maps = ["position-diffuse-map", "position-map", "diffuse-map"].into_iter().filter_map(|name| pass(smart, name));
     let maps_ms: f64 = maps.map(|map| median(&map.gpu_ms.as_ref()?.samples)).sum::<Option<f64>>()?;
-    let frames = samples(smart);
+    let frames = smart.frame_samples();
     if frames.len() != profile.len() || frames.len() != wait.len() {
         return None;
     }
@@ -204,8 +192,8 @@ pub fn render(bars: &[Bars], style: Style) -> String {
             table.push(vec![
                 mesh.clone(),
                 planes.to_string(),
-                bar.time.text(),
-                bar.time.interval_text(),
+                number(Some(bar.time.ratio), 3),
+                interval(bar.time.interval),
                 bar.has_less_memory.map_or("", |less| if less { "yes" } else { "no" }).to_owned(),
                 verdict(bar.verdict),
             ]);
@@ -230,17 +218,15 @@ pub fn render(bars: &[Bars], style: Style) -> String {
         ]);
         for Bars { mesh, planes, against_normal, .. } in bars {
             let Some(bar) = against_normal else { continue };
-            let text = |m: Option<Measured>| m.map_or(String::new(), |m| m.text());
-            let interval = |m: Option<Measured>| m.map_or(String::new(), |m| m.interval_text());
             table.push(vec![
                 mesh.clone(),
                 planes.to_string(),
                 format!("{:.3}", bar.share),
-                text(bar.caustics_map),
-                interval(bar.caustics_map),
-                text(bar.cost),
-                interval(bar.cost),
-                bar.cost.map_or(String::new(), |m| format!("{:.3}", m.ratio / bar.share)),
+                number(bar.caustics_map.map(|m| m.ratio), 3),
+                interval(bar.caustics_map.and_then(|m| m.interval)),
+                number(bar.cost.map(|m| m.ratio), 3),
+                interval(bar.cost.and_then(|m| m.interval)),
+                number(bar.cost.map(|m| m.ratio / bar.share), 3),
                 verdict(bar.verdict),
             ]);
         }

@@ -13,7 +13,7 @@ use crate::papers::Variant as _;
 use crate::papers::caustics::Variant;
 use crate::report::plot::{LineChart, Scale, Series};
 use crate::report::record::{ExperimentRow, Run};
-use crate::report::table::{Align, Style, Table};
+use crate::report::table::{Align, Style, Table, interval, number};
 use crate::scene::MeshSource;
 
 /// What a sweep compares.
@@ -106,10 +106,6 @@ pub struct Outcome {
     bars: Vec<Bars>,
 }
 
-fn samples(run: &Run) -> &[f64] {
-    run.frame_ms.as_ref().map_or(&[], |s| &s.samples)
-}
-
 impl Outcome {
     /// Notes in every run's record its ratio to the base, beside the thesis's. The rows are those of
     /// [`Comparison::points`] over `meshes`.
@@ -130,9 +126,9 @@ impl Outcome {
 
     /// One mesh at one count: a run of each method, the base first.
     fn add(&mut self, mesh: &NamedMesh, planes: u32, runs: &mut [Run]) {
-        let base = runs.first().map(|run| samples(run).to_vec()).unwrap_or_default();
+        let base = runs.first().map(|run| run.frame_samples().to_vec()).unwrap_or_default();
         for (index, (run, variant)) in runs.iter_mut().zip(self.comparison.variants()).enumerate() {
-            let ratio = (index > 0).then(|| ratio_within_process(&base, samples(run))).flatten();
+            let ratio = (index > 0).then(|| ratio_within_process(&base, run.frame_samples())).flatten();
             let thesis = self.comparison.thesis_ratio(&mesh.model, variant, planes).filter(|_| index > 0);
             if let Some(ratio) = &ratio {
                 run.experiment = Some(ExperimentRow {
@@ -146,7 +142,7 @@ impl Outcome {
                     ours: Some(ratio.ratio),
                     ratio: thesis.map(|thesis| ratio.ratio / thesis),
                 });
-                let interval = Some(ratio.interval).filter(|_| samples(run).len() >= LEAST_SAMPLES);
+                let interval = Some(ratio.interval).filter(|_| run.frame_samples().len() >= LEAST_SAMPLES);
                 run.results.insert("ratio_interval".into(), json!(interval));
             }
             self.rows.push(Row {
@@ -155,8 +151,8 @@ impl Outcome {
                 planes,
                 variant,
                 drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()).unwrap_or(0),
-                frame_ms: run.frame_ms.as_ref().map_or(f64::NAN, |s| s.median),
-                samples: samples(run).len(),
+                frame_ms: run.median_frame_ms().unwrap_or(f64::NAN),
+                samples: run.frame_samples().len(),
                 device_bytes: run.memory.device_bytes.unwrap_or(0),
                 ratio,
                 thesis,
@@ -194,10 +190,10 @@ impl Outcome {
                 row.drawn.to_string(),
                 format!("{:.2}", row.frame_ms),
                 format!("{:.1}", row.device_bytes as f64 / f64::from(1 << 20)),
-                ratio.map_or(String::new(), |r| format!("{:.3}", r.ratio)),
-                row.interval().map_or(String::new(), |i| format!("{:.3} to {:.3}", i[0], i[1])),
+                number(ratio.map(|r| r.ratio), 3),
+                interval(row.interval()),
                 row.thesis.map_or(String::new(), |t| format!("{t:.2}{flag}")),
-                ratio.zip(row.thesis).map_or(String::new(), |(r, t)| format!("{:.2}", r.ratio / t)),
+                number(ratio.zip(row.thesis).map(|(r, t)| r.ratio / t), 2),
             ]);
         }
         let mut text = format!("{}\n{}", style.bold(self.comparison.title), table.render(style));

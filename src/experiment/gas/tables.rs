@@ -17,7 +17,7 @@ use crate::papers::gas::Variant;
 use crate::papers::gas::scenes::Preset;
 use crate::report::plot::{BarChart, BarSeries, LineChart, Scale, Series};
 use crate::report::record::{ExperimentRow, Run};
-use crate::report::table::{Align, Style, Table};
+use crate::report::table::{Align, Style, Table, interval, number};
 
 /// A row of one of the paper's tables: scene, variant, minutes on an HP 9000/370.
 type PaperRow = (Preset, Variant, f64);
@@ -100,10 +100,6 @@ pub struct Outcome {
     rows: Vec<Row>,
 }
 
-fn samples(run: &Run) -> &[f64] {
-    run.frame_ms.as_ref().map_or(&[], |s| &s.samples)
-}
-
 impl Outcome {
     /// Notes the ratio to the base row in every run's record, beside the paper's.
     pub fn new(number: Number, rows: Vec<Row>) -> Self {
@@ -126,7 +122,7 @@ impl Outcome {
     fn ratio(&self, row: &Row) -> Option<Ratio> {
         let (scene, variant, _) = self.number.base();
         let base = self.rows.iter().find(|r| r.label == scene.word() && r.run.variant == variant.word())?;
-        ratio_within_process(samples(&base.run), samples(&row.run))
+        ratio_within_process(base.run.frame_samples(), row.run.frame_samples())
     }
 
     fn paper_ratio(&self, row: &Row) -> Option<f64> {
@@ -151,16 +147,15 @@ impl Outcome {
             ("paper ratio", Align::Right),
             ("ours / paper", Align::Right),
         ]);
-        let number = |value: Option<f64>, digits: usize| value.map_or(String::new(), |v| format!("{v:.digits$}"));
         for row in &self.rows {
             let (ratio, paper) = (self.ratio(row), self.paper_ratio(row));
             table.push(vec![
                 row.label.clone(),
                 row.run.variant.clone(),
                 format!("{}x{}", row.run.width, row.run.height),
-                number(row.run.frame_ms.as_ref().map(|s| s.median), 1),
+                number(row.run.median_frame_ms(), 1),
                 number(ratio.as_ref().map(|r| r.ratio), 3),
-                ratio.as_ref().map_or(String::new(), |r| format!("{:.3} to {:.3}", r.interval[0], r.interval[1])),
+                interval(ratio.as_ref().map(|r| r.interval)),
                 number(self.number.minutes(row), 0),
                 number(paper, 3),
                 number(ratio.as_ref().zip(paper).map(|(r, p)| r.ratio / p), 2),
@@ -281,7 +276,7 @@ impl Trade {
             };
             table.push(vec![
                 json!(count),
-                json!(row.run.frame_ms.as_ref().map(|s| s.median)),
+                json!(row.run.median_frame_ms()),
                 json!(passes(&["density-table", "shadow-table"])),
                 json!(passes(&["volume"])),
                 json!(difference.mean),
@@ -301,7 +296,7 @@ impl Trade {
     /// # Errors
     /// [`Error::Plot`].
     pub fn plot(self, rows: &[Row]) -> Result<String, Error> {
-        let points = rows.iter().filter_map(|row| Some((row.x, row.run.frame_ms.as_ref()?.median))).collect();
+        let points = rows.iter().filter_map(|row| Some((row.x, row.run.median_frame_ms()?))).collect();
         let chart = LineChart {
             title: self.title().to_owned(),
             x_label: self.word().to_owned(),

@@ -10,7 +10,7 @@ const THESIS_FRAMES_PER_S: f64 = 20.0;
 
 /// Notes the thesis's figure beside ours.
 pub fn beside_the_thesis(run: &mut Run) {
-    let ours = run.frame_ms.as_ref().map(|s| 1e3 / s.median);
+    let ours = run.median_frame_ms().map(|ms| 1e3 / ms);
     run.experiment = Some(ExperimentRow {
         row: "frames per second".to_owned(),
         paper: Some(THESIS_FRAMES_PER_S),

@@ -107,7 +107,7 @@ fn curves(rows: &[&Row]) -> Vec<Curve> {
             add(&pass.name, "host", row.x, pass.host_ms.as_ref().map(|s| s.median));
             add(&pass.name, "wait", row.x, pass.wait_ms.as_ref().map(|s| s.median));
         }
-        add("frame", "host", row.x, row.run.frame_ms.as_ref().map(|s| s.median));
+        add("frame", "host", row.x, row.run.median_frame_ms());
     }
     curves
 }

@@ -11,7 +11,7 @@ use crate::papers::Variant as _;
 use crate::papers::terrain::{Interpolation, Lod, Variant};
 use crate::report::plot::{LineChart, Scale, Series};
 use crate::report::record::{ExperimentRow, Run};
-use crate::report::table::{Align, Style, Table};
+use crate::report::table::{Align, Style, Table, interval, number};
 
 /// Samples a side that are swept without others named: the paper's three, and on to where a map no longer fits elsewhere.
 pub const SIDES: [u32; 8] = [128, 256, 512, 1024, 2048, 4096, 8192, 16_384];
@@ -111,21 +111,13 @@ pub struct Outcome {
     rows: Vec<Row>,
 }
 
-fn samples(run: &Run) -> &[f64] {
-    run.frame_ms.as_ref().map_or(&[], |s| &s.samples)
-}
-
-fn median(run: &Run) -> Option<f64> {
-    run.frame_ms.as_ref().map(|s| s.median)
-}
-
 impl Outcome {
     /// Notes in every run's record how it grew since the first point, beside the paper's growth where it prints one.
     pub fn new(axis: Axis, mut rows: Vec<Row>) -> Self {
         let firsts: Vec<(String, f64, Option<f64>)> = rows
             .iter()
             .filter(|row| row.label == rows[0].label)
-            .map(|row| (row.run.variant.clone(), row.x, median(&row.run)))
+            .map(|row| (row.run.variant.clone(), row.x, row.run.median_frame_ms()))
             .collect();
         for row in &mut rows {
             let Some((variant, first_x, Some(first_ms))) =
@@ -133,7 +125,7 @@ impl Outcome {
             else {
                 continue;
             };
-            let ours = median(&row.run).map(|ms| ms / first_ms);
+            let ours = row.run.median_frame_ms().map(|ms| ms / first_ms);
             let paper_of = |x| paper_ms(variant, x).filter(|_| axis == Axis::Map);
             let paper = paper_of(row.x).zip(paper_of(*first_x)).map(|(ms, first)| ms / first);
             row.run.experiment = Some(ExperimentRow {
@@ -158,7 +150,7 @@ impl Outcome {
         if row.run.variant == cpu.run.variant {
             return None;
         }
-        ratio_within_process(samples(&cpu.run), samples(&row.run))
+        ratio_within_process(cpu.run.frame_samples(), row.run.frame_samples())
     }
 
     /// The runs, for the record.
@@ -185,7 +177,6 @@ impl Outcome {
         ]);
         for row in &self.rows {
             let run = &row.run;
-            let number = |value: Option<f64>, digits: usize| value.map_or(String::new(), |v| format!("{v:.digits$}"));
             let figure = |name: &str| run.results.get(name).and_then(Value::as_f64);
             let growth = run.experiment.as_ref();
             let against = self.against_cpu(row);
@@ -195,11 +186,11 @@ impl Outcome {
             table.push(vec![
                 row.label.clone(),
                 run.variant.clone(),
-                number(median(run), 2),
+                number(run.median_frame_ms(), 2),
                 number(growth.and_then(|g| g.ours), 2),
                 number(growth.and_then(|g| g.paper), 2),
                 number(against.as_ref().map(|r| r.ratio), 3),
-                against.as_ref().map_or(String::new(), |r| format!("{:.3} to {:.3}", r.interval[0], r.interval[1])),
+                interval(against.as_ref().map(|r| r.interval)),
                 number(paper, 3),
                 number(figure("mrays_per_s"), 2),
                 number(figure("steps_per_ray"), 1),
@@ -227,10 +218,10 @@ impl Outcome {
             let points = |of: &dyn Fn(&Row) -> Option<f64>| -> Vec<(f64, f64)> {
                 rows.iter().filter_map(|row| Some((row.x, of(row)?))).collect()
             };
-            let first_ms = rows.first().and_then(|row| median(&row.run));
+            let first_ms = rows.first().and_then(|row| row.run.median_frame_ms());
             series.push(Series {
                 name: variant.word().to_owned(),
-                points: points(&|row| median(&row.run)),
+                points: points(&|row| row.run.median_frame_ms()),
                 reference: false,
             });
             series.push(Series {
