@@ -115,6 +115,10 @@ impl Buffer {
         self.desc.size_bytes
     }
 
+    pub(crate) fn usage(&self) -> vk::BufferUsageFlags {
+        self.desc.usage
+    }
+
     /// The whole buffer as a view.
     pub fn view(self: &Arc<Self>) -> BufferView {
         BufferView { buffer: self.clone(), range: 0..self.desc.size_bytes }

@@ -4,7 +4,7 @@ use ash::vk;
 use bytemuck::Pod;
 
 use super::device::Device;
-use super::pass::Inner;
+use super::pass::{Body, Inner};
 
 /// The draws of one pass.
 pub struct Draw<'a> {
@@ -61,6 +61,19 @@ impl Draw<'_> {
         self.calls += 1;
         // SAFETY: as above; the index buffer was checked when it was filled.
         unsafe { self.device.raw.cmd_draw_indexed(self.commands, count, 1, 0, 0, 0) };
+        self
+    }
+
+    /// Draws what the pass's [indirect](super::pass::PassBuilder::indirect) buffer says; nothing without one.
+    pub fn indices_indirect(&mut self) -> &mut Self {
+        let Body::Graphics { indirect: Some(view), .. } = &self.inner.body else { return self };
+        self.calls += 1;
+        let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
+        // SAFETY: as above; the build of the pass checked that the buffer holds one command and may be used so, and its
+        // barrier made the command visible.
+        unsafe {
+            self.device.raw.cmd_draw_indexed_indirect(self.commands, view.buffer.raw, view.range.start, 1, stride)
+        };
         self
     }
 }

@@ -102,7 +102,8 @@ impl Frame<'_> {
     /// # Errors
     /// [`Error::ReadBeforeWrite`].
     pub fn graphics(&mut self, pass: &Pass, body: impl FnOnce(&mut Draw<'_>)) -> Result<(), Error> {
-        let Body::Graphics { render_pass, framebuffer, extent, clears, vertices, indices } = &pass.inner.body else {
+        let Body::Graphics { render_pass, framebuffer, extent, clears, vertices, indices, .. } = &pass.inner.body
+        else {
             return Err(not_a(pass, "graphics"));
         };
         self.envelope(pass, |device, commands| {

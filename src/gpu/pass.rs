@@ -22,11 +22,11 @@ use crate::shader_build::HostBlock;
 /// A built pass of the device. Cloning shares it.
 #[derive(Clone)]
 pub struct Pass {
+    info: Arc<PassInfo>,
     pub(crate) inner: Arc<Inner>,
 }
 
 pub(crate) struct Inner {
-    pub info: Arc<PassInfo>,
     /// `None` for a copy.
     pub pipeline: Option<Arc<Pipeline>>,
     /// The pipeline of the draws that come first in turn, where there are such.
@@ -45,6 +45,7 @@ pub(crate) enum Body {
         clears: Vec<vk::ClearValue>,
         vertices: Option<BufferView>,
         indices: Option<BufferView>,
+        indirect: Option<BufferView>,
     },
     Compute,
     Copy {
@@ -64,6 +65,7 @@ struct Sentence {
     vertices: Option<BufferView>,
     vertex_rate: vk::VertexInputRate,
     indices: Option<BufferView>,
+    indirect: Option<BufferView>,
     topology: Topology,
     counting: Option<(String, DepthTest)>,
 }
@@ -113,8 +115,8 @@ impl Pass {
         });
         let sentence = Self::builder(name, section, Vec::new()).sentence;
         Pass {
+            info,
             inner: Arc::new(Inner {
-                info,
                 pipeline: None,
                 counting: None,
                 bindings: None,
@@ -136,6 +138,7 @@ impl Pass {
                 vertices: None,
                 vertex_rate: vk::VertexInputRate::VERTEX,
                 indices: None,
+                indirect: None,
                 topology: Topology::default(),
                 counting: None,
             },
@@ -145,13 +148,33 @@ impl Pass {
     }
 
     pub fn info(&self) -> &Arc<PassInfo> {
-        &self.inner.info
+        &self.info
     }
 
     /// Threads of a workgroup, for a compute pass.
     pub(crate) fn local_size(&self) -> [u32; 3] {
         let module = self.inner.pipeline.as_ref().and_then(|p| p.program.modules.first());
         module.and_then(|m| m.interface.local_size).unwrap_or([1, 1, 1])
+    }
+
+    /// Several passes that are one to the paper: recorded one after the other, with their barriers between them, under one
+    /// name, and described together. The compiler is naga only where all of them run naga's binaries.
+    pub fn steps<const N: usize>(steps: [Pass; N]) -> [Pass; N] {
+        let Some(mut whole) = steps.first().map(|first| PassInfo::clone(first.info())) else { return steps };
+        let add = |names: &mut Vec<String>, more: &[String]| {
+            names.extend(more.iter().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>());
+        };
+        for step in &steps[1..] {
+            let info = step.info();
+            add(&mut whole.shaders, &info.shaders);
+            add(&mut whole.reads, &info.reads);
+            add(&mut whole.writes, &info.writes);
+            if whole.compiler != info.compiler {
+                whole.compiler = Some(Compiler::Glslang);
+            }
+        }
+        let whole = Arc::new(whole);
+        steps.map(|step| Pass { info: whole.clone(), ..step })
     }
 
     /// The same pass, with the same pipeline, about other resources.
@@ -196,6 +219,13 @@ impl PassBuilder {
     /// The index buffer, of 32-bit indices.
     pub fn indices(mut self, buffer: &Arc<Buffer>) -> Self {
         self.sentence.indices = Some(buffer.view());
+        self
+    }
+
+    /// The buffer that [`Draw::indices_indirect`](super::Draw::indices_indirect) takes its parameters from: a
+    /// `VkDrawIndexedIndirectCommand` at its start.
+    pub fn indirect(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.sentence.indirect = Some(buffer.view());
         self
     }
 
@@ -379,12 +409,25 @@ fn finish(
                 clears: sentence.targets.clear_values(),
                 vertices: sentence.vertices.clone(),
                 indices: sentence.indices.clone(),
+                indirect: sentence.indirect.clone(),
             }
         }
     };
     check_conflicts(sentence.name, &uses)?;
+    if let Some(parameters) = &sentence.indirect {
+        let wanted = size_of::<vk::DrawIndexedIndirectCommand>() as u64;
+        let bytes = parameters.range.end - parameters.range.start;
+        if bytes < wanted || !parameters.buffer.usage().contains(vk::BufferUsageFlags::INDIRECT_BUFFER) {
+            let name = parameters.buffer.name();
+            return Err(Error::Pass {
+                pass: sentence.name.into(),
+                problem: format!("{name} is no indirect buffer of {wanted} bytes"),
+            });
+        }
+    }
     let info = Arc::new(describe(&sentence, &pipeline.program, &uses));
-    Ok(Pass { inner: Arc::new(Inner { info, pipeline: Some(pipeline), counting, bindings, uses, body, sentence }) })
+    let inner = Inner { pipeline: Some(pipeline), counting, bindings, uses, body, sentence };
+    Ok(Pass { info, inner: Arc::new(inner) })
 }
 
 fn add_fixed_function_uses(sentence: &Sentence, uses: &mut Vec<Use>) {
@@ -394,6 +437,9 @@ fn add_fixed_function_uses(sentence: &Sentence, uses: &mut Vec<Use>) {
     }
     if let Some(indices) = &sentence.indices {
         add(indices.into(), Access::IndexRead, false);
+    }
+    if let Some(parameters) = &sentence.indirect {
+        add(parameters.into(), Access::IndirectRead, false);
     }
     for (target, _) in &sentence.targets.colors {
         add((&target.view).into(), Access::ColorTarget, target.load != Load::Keep);

@@ -38,6 +38,27 @@ pub fn upload(
     Ok(buffer)
 }
 
+/// Copies buffers, each into one of its own size at least, in one submission.
+///
+/// # Errors
+/// [`Error::ReadBeforeWrite`] when nothing has written a source; what Vulkan answers.
+pub fn copy_buffers(device: &Arc<Device>, pairs: &[(&Arc<Buffer>, &Arc<Buffer>)]) -> Result<(), Error> {
+    let uses: Vec<Use> = pairs
+        .iter()
+        .flat_map(|&(from, to)| {
+            [
+                Use { resource: from.into(), access: Access::CopySource, discard: false },
+                Use { resource: to.into(), access: Access::CopyDestination, discard: true },
+            ]
+        })
+        .collect();
+    once(device, "copy", &uses, |raw, commands| {
+        for (from, to) in pairs {
+            record_copy(raw, commands, &Resource::from(*from), to);
+        }
+    })
+}
+
 /// Bytes of the staging buffer that images are uploaded through, and of one row at least.
 const STRIP_BYTES: u64 = 8 << 20;
 

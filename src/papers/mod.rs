@@ -1,5 +1,6 @@
 //! The papers, one folder each. They know no command line, no window and no file.
 
+pub mod burning;
 pub mod caustics;
 pub mod gas;
 pub mod lava;

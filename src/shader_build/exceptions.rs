@@ -5,6 +5,10 @@ use super::{CompiledShader, Error, Stage};
 /// Vertex, fragment and compute shaders outside naga's GLSL subset, each with the reason.
 /// Geometry shaders are excluded by their kind and do not belong here.
 pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
+    ("burning/block-weights.comp", "atomics: vertices are counted by block"),
+    ("burning/heat-boundary-triangles.comp", "an atomic: active triangles are counted"),
+    ("burning/heat-boundary-vertices.comp", "an atomic: active vertices are counted"),
+    ("burning/surface-removal-mark.comp", "an atomic: removed triangles are counted"),
     ("gas/fragments.frag", "atomics: fragments take their slots and their places in the lists"),
     ("gas/sort.comp", "an atomic: pixels reserve the slots of their sections"),
     ("lava/point.vert", "it feeds a geometry stage and writes no gl_Position, which naga demands"),

@@ -1,0 +1,67 @@
+#version 450
+
+// Eq. 4 and 5 and the algorithm after figure 3.6: a block turns by gamma rho pi / (N M) for each vertex that unbalanced it, and by its
+// neighbours' own change, -x times at the sides and +x times above and below. Printed, eq. 5 calls M epsilon. One thread a block
+// gathers; the total angle is clamped, for a free block (two or more sides without neighbours) less.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/grid.glsl"
+
+layout(set = 0, binding = 15, std430) readonly buffer Blocks {
+    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+};
+
+layout(set = 0, binding = 16, std430) readonly buffer OldRotations {
+    vec4 old_rotations[]; // pitch, yaw, roll
+};
+
+layout(set = 0, binding = 17, std430) buffer NewRotations {
+    vec4 new_rotations[];
+};
+
+const float PI = 3.14159265358979;
+const uint SIDES = 4u; // directions 0 to 3
+
+bool has_weight(uint block) {
+    return block != NONE && blocks[8u * min(block, constants.counts.w - 1u)] > 0;
+}
+
+vec3 own_change(uint block) {
+    ivec3 signs = ivec3(blocks[8u * block + 2u], blocks[8u * block + 3u], blocks[8u * block + 4u]);
+    if (signs == ivec3(0)) {
+        return vec3(0.0);
+    }
+    int neighbours = 0;
+    for (uint direction = 0u; direction < 6u; direction++) {
+        neighbours += has_weight(neighbour_of(block, direction)) ? 1 : 0;
+    }
+    float share = float(max(blocks[8u * block], 1)) * float(max(neighbours, 1));
+    return constants.rotation.x * constants.material.z * PI / share * vec3(signs);
+}
+
+void main() {
+    uint block = gl_GlobalInvocationID.x;
+    if (block >= constants.counts.w) {
+        return;
+    }
+    vec4 before = old_rotations[block];
+    if (blocks[8u * block] <= 0) {
+        new_rotations[block] = before;
+        return;
+    }
+    vec3 change = own_change(block);
+    uint free_sides = 0u;
+    for (uint direction = 0u; direction < 6u; direction++) {
+        uint neighbour = neighbour_of(block, direction);
+        if (neighbour != NONE) {
+            change += (direction < SIDES ? -1.0 : 1.0) * constants.rotation.y * own_change(neighbour);
+        }
+        if (direction < SIDES && !has_weight(neighbour)) {
+            free_sides++;
+        }
+    }
+    float most = free_sides >= 2u ? constants.rotation.w : constants.rotation.z;
+    new_rotations[block] = vec4(clamp(before.xyz + change, vec3(-most), vec3(most)), 0.0);
+}

@@ -1,0 +1,92 @@
+#version 450
+
+// Normals of the mapped mesh (appendix B: summed over triangles), weighted by area, gathered by draw vertex; and the colour of its
+// charring: the albedo fades from the initial boundary to the deformed area, and what has just reached combustion glows.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/clock.glsl"
+
+layout(set = 0, binding = 1, std430) readonly buffer Rest {
+    vec4 rest[]; // xyz, R
+};
+
+layout(set = 0, binding = 2, std430) readonly buffer Triangles {
+    uint triangles[];
+};
+
+layout(set = 0, binding = 6, std430) readonly buffer Welds {
+    uint welds[];
+};
+
+layout(set = 0, binding = 7, std430) readonly buffer CornerIncidenceOffsets {
+    uint corner_incidence_offsets[];
+};
+
+layout(set = 0, binding = 8, std430) readonly buffer CornerIncidence {
+    uint corner_incidence[]; // triangle * 4 + corner, ascending
+};
+
+layout(set = 0, binding = 13, std430) readonly buffer Removed {
+    uint removed[];
+};
+
+layout(set = 0, binding = 18, std430) readonly buffer Clock {
+    Counts clock;
+};
+
+layout(set = 0, binding = 19, std430) readonly buffer Mapped {
+    vec4 mapped[]; // position, L / L0
+};
+
+layout(set = 0, binding = 20, std430) buffer Normals {
+    vec4 normals[]; // unit vector, how charred
+};
+
+layout(set = 0, binding = 21, std430) buffer Colors {
+    vec4 colors[]; // linear RGB, glow
+};
+
+const vec3 CHAR = vec3(0.02);
+
+// The sum of (b - a) x (c - a) over the triangles that are still there, or over all of them.
+vec3 area_vectors(uint from, uint to, bool with_removed) {
+    vec3 sum = vec3(0.0);
+    for (uint i = from; i < to; i++) {
+        uint triangle = corner_incidence[i] / 4u;
+        if (with_removed || removed[triangle] == 0u) {
+            vec3 a = mapped[triangles[3u * triangle]].xyz;
+            vec3 b = mapped[triangles[3u * triangle + 1u]].xyz;
+            vec3 c = mapped[triangles[3u * triangle + 2u]].xyz;
+            sum += cross(b - a, c - a);
+        }
+    }
+    return sum;
+}
+
+void main() {
+    uint corner = gl_GlobalInvocationID.x;
+    if (corner >= constants.counts.z) {
+        return;
+    }
+    uint from = corner_incidence_offsets[corner];
+    uint to = corner_incidence_offsets[corner + 1u];
+    vec3 sum = area_vectors(from, to, false);
+    if (sum == vec3(0.0)) {
+        sum = area_vectors(from, to, true);
+    }
+    // The largest component first: squares of small areas would underflow.
+    float largest = max(abs(sum.x), max(abs(sum.y), abs(sum.z)));
+    vec3 normal = vec3(0.0, 1.0, 0.0);
+    if (largest > 0.0) {
+        normal = normalize(sum / largest);
+    }
+    float r = clock.radius;
+    float width = constants.boundary.y;
+    float distance_to_boundary = rest[welds[corner]].w;
+    float charred = clamp((r - distance_to_boundary) / (2.0 * width), 0.0, 1.0);
+    float glow = max(0.0, 1.0 - abs(distance_to_boundary - (r - width)) / (0.5 * width));
+    normals[corner] = vec4(normal, charred);
+    colors[corner] = vec4(mix(constants.albedo.rgb, CHAR, charred), glow);
+}

@@ -1,0 +1,73 @@
+#version 450
+
+// A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless its block is needed:
+// some neighbour with weight has no other neighbour with weight, and would come off.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/clock.glsl"
+#include "burning/grid.glsl"
+
+layout(set = 0, binding = 2, std430) readonly buffer Triangles {
+    uint triangles[];
+};
+
+layout(set = 0, binding = 10, std430) readonly buffer NewState {
+    vec4 new_state[]; // position, L left
+};
+
+layout(set = 0, binding = 13, std430) buffer Removed {
+    uint removed[];
+};
+
+layout(set = 0, binding = 14, std430) readonly buffer Cells {
+    uint cells[];
+};
+
+layout(set = 0, binding = 15, std430) readonly buffer Blocks {
+    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+};
+
+layout(set = 0, binding = 18, std430) buffer Clock {
+    Counts clock;
+};
+
+bool has_weight(uint block) {
+    return block != NONE && blocks[8u * min(block, constants.counts.w - 1u)] > 0;
+}
+
+bool is_needed(uint block) {
+    for (uint direction = 0u; direction < 6u; direction++) {
+        uint neighbour = neighbour_of(block, direction);
+        if (has_weight(neighbour)) {
+            bool has_other = false;
+            for (uint onward = 0u; onward < 6u; onward++) {
+                uint other = neighbour_of(neighbour, onward);
+                if (other != block && has_weight(other)) {
+                    has_other = true;
+                }
+            }
+            if (!has_other) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void main() {
+    uint triangle = gl_GlobalInvocationID.x;
+    if (triangle >= constants.counts.y || removed[triangle] == 1u) {
+        return;
+    }
+    uvec3 at = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);
+    if (new_state[at.x].w > 0.0 || new_state[at.y].w > 0.0 || new_state[at.z].w > 0.0) {
+        return;
+    }
+    if (constants.choices.y == 1u && is_needed(cells[at.x])) {
+        return;
+    }
+    removed[triangle] = 1u;
+    atomicAdd(clock.removed_triangles, 1u);
+}

@@ -1,0 +1,96 @@
+//! `draw`: the mesh as it burns.
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::Vec3;
+
+use super::framing::framing;
+use super::model::Model;
+use super::parameters::Parameters;
+use super::state::Buffers;
+use crate::gpu::transfer::upload;
+use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
+use crate::host_block;
+use crate::scene::Camera;
+
+host_block! {
+    /// `burning/view.glsl`
+    pub(super) struct ViewBlock {
+        view_projection: [f32; 16],
+        eye: [f32; 4],
+        to_light: [f32; 4],
+        mode: [u32; 4],
+    }
+}
+
+/// Where the light comes from, and its ambient share.
+const TO_LIGHT: Vec3 = Vec3::new(0.45, 0.75, 0.6);
+const AMBIENT: f32 = 0.35;
+/// Behind the object, linear RGB.
+const BACKGROUND: Load = Load::Clear([0.012, 0.014, 0.02, 1.0]);
+const FAR: Load = Load::Clear([1.0, 0.0, 0.0, 0.0]);
+
+/// The pass with its targets.
+pub struct Drawing {
+    pass: Pass,
+    pub camera: Camera,
+    pub view: Arc<Buffer>,
+    /// D32.
+    pub depth: Arc<ImageView>,
+    /// 8-bit sRGB.
+    pub picture: Arc<ImageView>,
+}
+
+impl Drawing {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        buffers: &Buffers,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let target = |name: &str, format, usage| {
+            let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
+            Image::new(device, desc.usage(usage | vk::ImageUsageFlags::SAMPLED))?.view()
+        };
+        let depth = target("depth", vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
+        let picture = target("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
+        let camera = parameters.camera.unwrap_or_else(|| framing(&model.bounds, parameters.aspect()));
+        let block = ViewBlock {
+            view_projection: (camera.projection(parameters.aspect()) * camera.view()).to_cols_array(),
+            eye: camera.eye.extend(1.0).to_array(),
+            to_light: TO_LIGHT.normalize().extend(AMBIENT).to_array(),
+            mode: [parameters.shading.mode(), 0, 0, 0],
+        };
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let view = upload(device, &format!("{label}/view"), usage, bytemuck::bytes_of(&block))?;
+        let pass = Pass::graphics("draw", "3.8", "burning/draw.vert", "burning/draw.frag")
+            .with("constants", &buffers.constants)
+            .with("view", &view)
+            .with("Rest", &buffers.rest)
+            .with("Welds", &buffers.welds)
+            .with("Labels", &buffers.labels)
+            .with("Cells", &buffers.cells)
+            .with("Mapped", &buffers.mapped)
+            .with("Normals", &buffers.normals)
+            .with("Colors", &buffers.colors)
+            .indices(&buffers.stream)
+            .indirect(&buffers.arguments)
+            .color(&picture, BACKGROUND, Blend::Replace)
+            .depth(&depth, FAR, DepthTest::LessWrite)
+            .build(shaders)?;
+        Ok(Drawing { pass, camera, view, depth, picture })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.graphics(&self.pass, |draw| {
+            draw.indices_indirect();
+        })
+    }
+}

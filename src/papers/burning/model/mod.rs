@@ -1,0 +1,146 @@
+//! What of the object is prepared on the host and uploaded once (3.7.4).
+
+mod blocks;
+mod boundary;
+mod count;
+mod incidence;
+mod lattice;
+mod weld;
+
+use glam::Vec3;
+
+use super::parameters::{Parameters, Variant};
+use crate::gpu::Error;
+use crate::scene::{Bounds, Mesh};
+
+pub use self::blocks::Grid;
+pub use self::count::with_triangles;
+pub use self::incidence::Incidence;
+pub use self::lattice::Lattice;
+pub use self::weld::Welded;
+
+/// A vertex is a simulated one, welded; a draw vertex one of the mesh as loaded.
+pub struct Model {
+    pub levels: u32,
+    pub lattice: Lattice,
+    /// Rest position and distance R to the boundary of each vertex.
+    pub rest: Vec<[f32; 4]>,
+    /// Vertices of the finest triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Finest triangles of each vertex.
+    pub incidence: Incidence,
+    /// Finest triangles of each draw vertex.
+    pub corner_incidence: Incidence,
+    /// Of the object at rest.
+    pub bounds: Bounds,
+    pub grid: Grid,
+    /// The block of each vertex at rest.
+    pub rest_cells: Vec<u32>,
+    /// For each block the vertex at rest nearest to its middle, [`NO_VERTEX`] without any: a base point of 6.3.4.
+    pub base_points: Vec<u32>,
+    /// Mean length of the finest triangles' edges at rest.
+    pub mean_edge: f32,
+    pub sources: Vec<Vec3>,
+    pub floor: f32,
+    /// Triangles of the mesh that were left out because two of their corners coincide.
+    pub degenerate: u32,
+}
+
+pub const NO_VERTEX: u32 = u32::MAX;
+
+impl Model {
+    /// Prepares a mesh for a variant. `largest_bytes` is what the device binds at most.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for more triangles than that holds.
+    pub fn new(mesh: &Mesh, variant: Variant, parameters: &Parameters, largest_bytes: u64) -> Result<Self, Error> {
+        let welded = Welded::new(mesh);
+        let degenerate = welded.degenerate;
+        let levels = parameters.levels.unwrap_or_else(|| own_levels(&welded, variant, parameters.edge));
+        let count = (welded.triangles.len() as u64) << (2 * levels);
+        // Three 32-bit indices a triangle are the longest list; an incidence holds a triangle's number times 4.
+        let limit = (largest_bytes / 12).min(1 << 30);
+        if count > limit {
+            return Err(Error::Limit {
+                object: format!("--levels {levels} of {} triangles", welded.triangles.len()),
+                what: "number of triangles",
+                wanted: count,
+                limit,
+            });
+        }
+        let lattice = Lattice::new(welded, levels);
+        let triangles: Vec<[u32; 3]> =
+            lattice.finest().iter().map(|t| t.map(|corner| lattice.welds[corner as usize])).collect();
+        let positions = &lattice.positions;
+        let bounds = Bounds::of_points(positions.iter().copied());
+        let grid = Grid::new(&bounds, parameters.blocks);
+        let sources = match &parameters.sources[..] {
+            [] => vec![ignition(positions, variant)],
+            given => given.to_vec(),
+        };
+        let seed = parameters.noise_seed();
+        let distance = |&p: &Vec3| p.extend(boundary::distance(p, &sources, parameters.psi, seed) as f32).to_array();
+        let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
+        Ok(Model {
+            levels,
+            rest: positions.iter().map(distance).collect(),
+            incidence: Incidence::new(positions.len(), &triangles),
+            corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
+            base_points: base_points(&grid, positions, &rest_cells),
+            mean_edge: mean_edge(positions, &triangles),
+            floor: parameters.floor.unwrap_or(bounds.min.y),
+            bounds,
+            grid,
+            rest_cells,
+            triangles,
+            sources,
+            degenerate,
+            lattice,
+        })
+    }
+
+    /// Triangles of the mesh before they are divided.
+    pub fn coarse_count(&self) -> u32 {
+        self.lattice.nodes[0].len() as u32
+    }
+}
+
+/// Low-poly models divide to five levels (4.4), shells are dense enough, and solids and melting objects divide until no edge
+/// at rest is longer than `edge`.
+fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
+    match variant {
+        Variant::Shell => 0,
+        Variant::LowPoly | Variant::FullySubdivided => 5,
+        Variant::Solid | Variant::Melting => {
+            let place = |corner: u32| welded.positions[corner as usize];
+            let lengths = welded.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+            let longest = lengths.map(|(a, b)| place(a).distance(place(b))).fold(0.0, f32::max);
+            (0..5).find(|&level| longest / (1 << level) as f32 <= edge).unwrap_or(5)
+        }
+    }
+}
+
+/// The lowest vertex, and the highest of what melts: it is to run down. Of several the first.
+fn ignition(positions: &[Vec3], variant: Variant) -> Vec3 {
+    let height = |p: &&Vec3| if variant == Variant::Melting { -p.y } else { p.y };
+    positions.iter().min_by(|a, b| height(a).total_cmp(&height(b))).copied().unwrap_or_default()
+}
+
+fn mean_edge(positions: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
+    let place = |vertex: u32| positions[vertex as usize].as_dvec3();
+    let around =
+        |&[a, b, c]: &[u32; 3]| place(a).distance(place(b)) + place(b).distance(place(c)) + place(c).distance(place(a));
+    (triangles.iter().map(around).sum::<f64>() / (3.0 * triangles.len().max(1) as f64)) as f32
+}
+
+fn base_points(grid: &Grid, positions: &[Vec3], rest_cells: &[u32]) -> Vec<u32> {
+    let mut nearest = vec![(f32::INFINITY, NO_VERTEX); grid.cell_count() as usize];
+    for ((vertex, &position), &cell) in (0..).zip(positions).zip(rest_cells) {
+        let distance = position.distance_squared(grid.midpoint(cell));
+        let best = &mut nearest[cell as usize];
+        if distance < best.0 {
+            *best = (distance, vertex);
+        }
+    }
+    nearest.into_iter().map(|(_, vertex)| vertex).collect()
+}

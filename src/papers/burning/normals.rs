@@ -1,0 +1,40 @@
+//! `normals` (appendix B), with the colour of charring.
+
+use super::model::Model;
+use super::state::Buffers;
+use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
+
+/// The pass.
+pub struct Normals {
+    pass: Pass,
+    draw_vertices: u32,
+}
+
+impl Normals {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<Self, Error> {
+        let pass = Pass::compute("normals", "B", "burning/normals.comp")
+            .with("constants", &buffers.constants)
+            .with("Rest", &buffers.rest)
+            .with("Triangles", &buffers.triangles)
+            .with("Welds", &buffers.welds)
+            .with("CornerIncidenceOffsets", &buffers.corner_incidence_offsets)
+            .with("CornerIncidence", &buffers.corner_incidence)
+            .with("Removed", &buffers.removed)
+            .with("Clock", &buffers.clock)
+            .with("Mapped", &buffers.mapped)
+            .with("Normals", &buffers.normals)
+            .with("Colors", &buffers.colors)
+            .build(shaders)?;
+        Ok(Normals { pass, draw_vertices: model.lattice.welds.len() as u32 })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.compute(&self.pass, |dispatch| {
+            dispatch.threads(self.draw_vertices, 1, 1);
+        })
+    }
+}

@@ -1,0 +1,107 @@
+//! `surface-removal` (3.5.4): consumed triangles leave the drawn stream, and the mesh is not rebuilt.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::model::Model;
+use super::parameters::Variant;
+use super::state::Buffers;
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    struct Groups {
+        count: u32,
+    }
+}
+
+/// Threads of a workgroup of the scan.
+const GROUP: u32 = 256;
+
+/// The steps of the pass.
+pub struct SurfaceRemoval {
+    /// For either turn of the states; without where nothing is removed.
+    mark: Option<[Pass; 2]>,
+    compaction: [Pass; 3],
+    triangles: u32,
+}
+
+impl SurfaceRemoval {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        variant: Variant,
+        buffers: &Buffers,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let step =
+            |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
+        let triangles = model.triangles.len() as u32;
+        let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(triangles.div_ceil(GROUP)));
+        let sums: Arc<Buffer> = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
+        let [a, b] = &buffers.states;
+        let mark_a = step("burning/surface-removal-mark.comp")
+            .with("Triangles", &buffers.triangles)
+            .with("NewState", a)
+            .with("Removed", &buffers.removed)
+            .with("Cells", &buffers.cells)
+            .with("Blocks", &buffers.blocks)
+            .with("Clock", &buffers.clock)
+            .build(shaders)?;
+        let mark_b = mark_a.again().with("NewState", b).build(shaders)?;
+        let count = step("burning/surface-removal-count.comp")
+            .with("Removed", &buffers.removed)
+            .with("GroupSums", &sums)
+            .build(shaders)?;
+        let scan = step("burning/surface-removal-scan.comp")
+            .constants::<Groups>()
+            .with("constants", &buffers.constants)
+            .with("Clock", &buffers.clock)
+            .with("Arguments", &buffers.arguments)
+            .with("GroupSums", &sums)
+            .build(shaders)?;
+        let scatter = step("burning/surface-removal-scatter.comp")
+            .with("Corners", &buffers.corners)
+            .with("Removed", &buffers.removed)
+            .with("Stream", &buffers.stream)
+            .with("GroupSums", &sums)
+            .build(shaders)?;
+        let [mark_a, mark_b, count, scan, scatter] = Pass::steps([mark_a, mark_b, count, scan, scatter]);
+        Ok(SurfaceRemoval {
+            mark: variant.removes().then_some([mark_a, mark_b]),
+            compaction: [count, scan, scatter],
+            triangles,
+        })
+    }
+
+    /// Marks what the tick that leaves its state in buffer `turn` has consumed.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn mark(&self, frame: &mut Frame<'_>, turn: usize) -> Result<(), Error> {
+        let Some(mark) = &self.mark else { return Ok(()) };
+        frame.compute(&mark[turn], |dispatch| {
+            dispatch.threads(self.triangles, 1, 1);
+        })
+    }
+
+    /// Makes the stream and its draw's parameters.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn compact(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        let [count, scan, scatter] = &self.compaction;
+        frame.compute(count, |dispatch| {
+            dispatch.threads(self.triangles, 1, 1);
+        })?;
+        frame.compute(scan, |dispatch| {
+            dispatch.constants(&Groups { count: self.triangles.div_ceil(GROUP) }).threads(1, 1, 1);
+        })?;
+        frame.compute(scatter, |dispatch| {
+            dispatch.threads(self.triangles, 1, 1);
+        })
+    }
+}

@@ -1,0 +1,272 @@
+//! The buffers of the paper: what never changes, what the ticks change, and what a frame makes of it.
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::Vec3;
+
+use super::model::Model;
+use super::parameters::{Material, Parameters, TICKS_PER_S, Variant};
+use crate::gpu::transfer::{copy_buffers, upload};
+use crate::gpu::{Buffer, BufferDesc, Device, Error, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    /// `burning/constants.glsl`
+    pub(super) struct Constants {
+        counts: [u32; 4],
+        grid: [u32; 4],
+        origin: [f32; 4],
+        cell_size: [f32; 4],
+        boundary: [f32; 4],
+        material: [f32; 4],
+        rotation: [f32; 4],
+        melting: [f32; 4],
+        albedo: [f32; 4],
+        choices: [u32; 4],
+        tree: [u32; 4],
+    }
+}
+
+host_block! {
+    /// What the device counts by itself (`burning/clock.glsl`).
+    #[derive(Default)]
+    pub struct Counts {
+        pub tick: u32,
+        /// Ticks in which the boundary grew.
+        pub growth_ticks: u32,
+        /// r of the boundary, diagonals.
+        pub radius: f32,
+        /// Vertices of the deformed area with some flammability left.
+        pub active_vertices: u32,
+        /// Finest triangles with such a vertex.
+        pub active_triangles: u32,
+        /// Vertices with some flammability left.
+        pub live_vertices: u32,
+        /// Live vertices of the combustion-ready area.
+        pub ready_vertices: u32,
+        pub removed_triangles: u32,
+        pub drawn_triangles: u32,
+        pub fire_particles: u32,
+        pub smoke_particles: u32,
+        pub pad: u32,
+    }
+}
+
+/// Standard gravity, diagonals a second squared: the object is taken for 1 m across.
+const GRAVITY: f64 = 9.81;
+
+const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
+
+/// Every buffer by the name that the shaders give it, in snake case. N vertices, T finest triangles, C draw vertices.
+pub struct Buffers {
+    pub(super) constants: Arc<Buffer>,
+    /// vec4\[N\]: rest position, R.
+    pub rest: Arc<Buffer>,
+    /// uint\[3T\]: vertices.
+    pub triangles: Arc<Buffer>,
+    /// uint\[N + 1\].
+    pub incidence_offsets: Arc<Buffer>,
+    /// uint\[3T\]: triangle * 4 + corner.
+    pub incidence: Arc<Buffer>,
+    /// uint\[3T\]: draw vertices.
+    pub corners: Arc<Buffer>,
+    /// uint\[C\]: vertex of each draw vertex.
+    pub welds: Arc<Buffer>,
+    /// uint\[C + 1\].
+    pub corner_incidence_offsets: Arc<Buffer>,
+    /// uint\[3T\]: triangle * 4 + corner.
+    pub corner_incidence: Arc<Buffer>,
+    /// uint\[blocks\].
+    pub base_points: Arc<Buffer>,
+    /// uint\[N\].
+    pub rest_cells: Arc<Buffer>,
+
+    /// vec4\[N\] twice, which take turns: position, L left. After tick t the newer one is that of index t % 2.
+    pub states: [Arc<Buffer>; 2],
+    /// uint\[N\]: area of the boundary, 0 to 4.
+    pub labels: Arc<Buffer>,
+    /// uint\[T\]: the highest of the three vertices'.
+    pub triangle_labels: Arc<Buffer>,
+    /// uint\[T\]: 1 where the triangle has left the stream.
+    pub removed: Arc<Buffer>,
+    /// uint\[N\]: block of the position.
+    pub cells: Arc<Buffer>,
+    /// int\[8 * blocks\]: live vertices, ready vertices, three sums of signs, combustion counter, two unused.
+    pub blocks: Arc<Buffer>,
+    /// vec4\[blocks\] twice, which take turns as the states do: pitch, yaw, roll in radians.
+    pub rotations: [Arc<Buffer>; 2],
+    /// vec4\[blocks\]: displacement of the base point in this tick, whether it is active.
+    pub base_displacements: Arc<Buffer>,
+    /// uint\[N\]: 1 where the vertex exists.
+    pub alive: Arc<Buffer>,
+    /// [`Counts`].
+    pub clock: Arc<Buffer>,
+
+    /// vec4\[N\]: position with the block's rotation, L / L0.
+    pub mapped: Arc<Buffer>,
+    /// vec4\[C\]: normal, how charred.
+    pub normals: Arc<Buffer>,
+    /// vec4\[C\]: linear RGB, glow.
+    pub colors: Arc<Buffer>,
+    /// uint\[3T\]: draw vertices of the drawn triangles, in order.
+    pub stream: Arc<Buffer>,
+    /// `VkDrawIndexedIndirectCommand`.
+    pub arguments: Arc<Buffer>,
+
+    /// What a restart copies: the contents of the buffers that a tick needs from the last one.
+    start: Vec<(Arc<Buffer>, Arc<Buffer>)>,
+}
+
+impl Buffers {
+    /// Uploads the model and makes the state before the first tick.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        variant: Variant,
+        parameters: &Parameters,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let name = |what: &str| format!("{label}/{what}");
+        let uploaded = |what: &str, bytes: &[u8]| upload(device, &name(what), STORAGE, bytes);
+        let empty = |what: &str, bytes: usize, usage| {
+            Buffer::new(device, BufferDesc::new(name(what), bytes as u64).usage(STORAGE | usage))
+        };
+        let plain = vk::BufferUsageFlags::empty();
+        let zeros = |what: &str, bytes: usize| uploaded(what, &vec![0; bytes]);
+        let vertices = model.rest.len();
+        let triangles = model.triangles.len();
+        let corners = model.lattice.welds.len();
+        let blocks = model.grid.cell_count() as usize;
+
+        let flammability = parameters.flammability as f32;
+        let before: Vec<[f32; 4]> = model.rest.iter().map(|&[x, y, z, _]| [x, y, z, flammability]).collect();
+        let alive = alive_at_rest(variant, model);
+        let mut counts = vec![[0_i32; 8]; blocks];
+        for (&cell, _) in model.rest_cells.iter().zip(&alive).filter(|&(_, &alive)| alive == 1) {
+            counts[cell as usize][0] += 1;
+        }
+        let block = constants(variant, parameters, model);
+        let mut buffers = Buffers {
+            constants: upload(
+                device,
+                &name("constants"),
+                vk::BufferUsageFlags::UNIFORM_BUFFER,
+                bytemuck::bytes_of(&block),
+            )?,
+            rest: uploaded("rest", bytemuck::cast_slice(&model.rest))?,
+            triangles: uploaded("triangles", bytemuck::cast_slice(&model.triangles))?,
+            incidence_offsets: uploaded("incidence-offsets", bytemuck::cast_slice(&model.incidence.offsets))?,
+            incidence: uploaded("incidence", bytemuck::cast_slice(&model.incidence.entries))?,
+            corners: uploaded("corners", bytemuck::cast_slice(model.lattice.finest()))?,
+            welds: uploaded("welds", bytemuck::cast_slice(&model.lattice.welds))?,
+            corner_incidence_offsets: uploaded(
+                "corner-incidence-offsets",
+                bytemuck::cast_slice(&model.corner_incidence.offsets),
+            )?,
+            corner_incidence: uploaded("corner-incidence", bytemuck::cast_slice(&model.corner_incidence.entries))?,
+            base_points: uploaded("base-points", bytemuck::cast_slice(&model.base_points))?,
+            rest_cells: uploaded("rest-cells", bytemuck::cast_slice(&model.rest_cells))?,
+            states: [
+                uploaded("state-a", bytemuck::cast_slice(&before))?,
+                uploaded("state-b", bytemuck::cast_slice(&before))?,
+            ],
+            labels: zeros("labels", 4 * vertices)?,
+            triangle_labels: zeros("triangle-labels", 4 * triangles)?,
+            removed: zeros("removed", 4 * triangles)?,
+            cells: uploaded("cells", bytemuck::cast_slice(&model.rest_cells))?,
+            blocks: uploaded("blocks", bytemuck::cast_slice(&counts))?,
+            rotations: [zeros("rotations-a", 16 * blocks)?, zeros("rotations-b", 16 * blocks)?],
+            base_displacements: zeros("base-displacements", 16 * blocks)?,
+            alive: uploaded("alive", bytemuck::cast_slice(&alive))?,
+            clock: zeros("clock", size_of::<Counts>())?,
+            mapped: empty("mapped", 16 * vertices, plain)?,
+            normals: empty("normals", 16 * corners, plain)?,
+            colors: empty("colors", 16 * corners, plain)?,
+            stream: empty("stream", 12 * triangles, vk::BufferUsageFlags::INDEX_BUFFER)?,
+            arguments: empty("arguments", 20, vk::BufferUsageFlags::INDIRECT_BUFFER)?,
+            start: Vec::new(),
+        };
+        let [state_a, state_b] = buffers.states.each_ref().map(Arc::clone);
+        let [rotations_a, rotations_b] = buffers.rotations.each_ref().map(Arc::clone);
+        let kept = [&buffers.labels, &buffers.triangle_labels, &buffers.removed, &buffers.cells, &buffers.blocks];
+        let more = [&buffers.base_displacements, &buffers.alive, &buffers.clock];
+        let mut kept: Vec<Arc<Buffer>> = kept.into_iter().chain(more).map(Arc::clone).collect();
+        kept.extend([state_a, state_b, rotations_a, rotations_b]);
+        for buffer in kept {
+            buffers.keep(shaders, &buffer)?;
+        }
+        Ok(buffers)
+    }
+
+    /// Lets a restart bring back what `buffer`, which a tick needs from the last one, holds at the start.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn keep(&mut self, shaders: &ShaderLibrary, buffer: &Arc<Buffer>) -> Result<(), Error> {
+        let desc = BufferDesc::new(format!("{} at the start", buffer.name()), buffer.size_bytes());
+        let start = Buffer::new(shaders.device(), desc)?;
+        copy_buffers(shaders.device(), &[(buffer, &start)])?;
+        self.start.push((buffer.clone(), start));
+        Ok(())
+    }
+
+    /// Makes what the buffers hold now the start.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn save(&self, device: &Arc<Device>) -> Result<(), Error> {
+        let pairs: Vec<_> = self.start.iter().map(|(now, start)| (now, start)).collect();
+        copy_buffers(device, &pairs)
+    }
+
+    /// Back to the start.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn restore(&self, device: &Arc<Device>) -> Result<(), Error> {
+        let pairs: Vec<_> = self.start.iter().map(|(now, start)| (start, now)).collect();
+        copy_buffers(device, &pairs)
+    }
+}
+
+/// Which vertices exist before the fire: all, but of a low-poly object only those of its coarse triangles.
+fn alive_at_rest(variant: Variant, model: &Model) -> Vec<u32> {
+    let is_refined = variant == Variant::LowPoly;
+    let mut alive = vec![u32::from(!is_refined); model.rest.len()];
+    for corner in model.lattice.nodes[0].as_flattened() {
+        alive[model.lattice.welds[*corner as usize] as usize] = 1;
+    }
+    alive
+}
+
+fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Constants {
+    let p = parameters;
+    let with = |v: Vec3, w: f32| v.extend(w).to_array();
+    let [bx, by, bz] = p.blocks;
+    let tick_s = 1.0 / TICKS_PER_S;
+    let fall = (f64::from(p.epsilon) * GRAVITY * tick_s * tick_s) as f32;
+    let highest_source = model.sources.iter().map(|s| s.y).fold(f32::NEG_INFINITY, f32::max);
+    let counts = [model.rest.len(), model.triangles.len(), model.lattice.welds.len(), model.base_points.len()];
+    Constants {
+        counts: counts.map(|count| count as u32),
+        grid: [bx, by, bz, variant as u32],
+        origin: with(model.grid.origin, model.floor),
+        cell_size: with(model.grid.cell_size, model.mean_edge),
+        boundary: [(f64::from(p.speed_per_s) * tick_s) as f32, p.width_of_areas, highest_source, p.flammability as f32],
+        material: [p.epsilon, p.beta, p.rho, p.phi],
+        rotation: [p.gamma, p.spread, GREATEST_ROTATION_RAD, GREATEST_FREE_ROTATION_RAD],
+        melting: [p.omega, p.chi, p.upsilon, p.retire_at],
+        albedo: with(p.albedo, fall),
+        choices: [p.active_limit, p.keep_connected.into(), p.noise_seed(), (p.material == Material::Wood).into()],
+        tree: [model.levels, model.coarse_count(), p.fire, p.smoke],
+    }
+}
+
+/// A block turns by 2 degrees at most (3.5.2: very minute), by 15 where two or more of its sides are free.
+const GREATEST_ROTATION_RAD: f32 = 2.0 * std::f32::consts::PI / 180.0;
+const GREATEST_FREE_ROTATION_RAD: f32 = 15.0 * std::f32::consts::PI / 180.0;
