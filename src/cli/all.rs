@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 use clap::{Args, Parser};
 
 use super::bench;
+use super::burning::BurningArgs;
 use super::caustics::CausticsArgs;
 use super::failure::Failure;
 use super::gas::GasArgs;
@@ -71,6 +72,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     measure::<GasArgs>(&mut machine, &output, &mut measured)?;
     measure::<CausticsArgs>(&mut machine, &output, &mut measured)?;
+    measure::<BurningArgs>(&mut machine, &output, &mut measured)?;
     measure::<TerrainArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::failure::Failure;
 use super::outcome;
 use crate::experiment::study::Study;
-use crate::experiment::{caustics, gas, lava, terrain};
+use crate::experiment::{burning, caustics, gas, lava, terrain};
 use crate::gpu::physical::BASELINE;
 use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
 
@@ -18,10 +18,11 @@ pub struct DevicesArgs {
 }
 
 /// What each paper needs beyond the baseline.
-const PAPERS: [(&str, &[Feature]); 4] = [
+const PAPERS: [(&str, &[Feature]); 5] = [
     (lava::Setup::PAPER, lava::Setup::NEEDS),
     (gas::Setup::PAPER, gas::Setup::NEEDS),
     (caustics::Setup::PAPER, caustics::Setup::NEEDS),
+    (burning::Setup::PAPER, burning::Setup::NEEDS),
     (terrain::Setup::PAPER, terrain::Setup::NEEDS),
 ];
 

@@ -2,6 +2,7 @@
 
 mod all;
 mod bench;
+mod burning;
 mod caustics;
 mod compare;
 mod devices;
@@ -22,6 +23,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use self::burning::BurningArgs;
 use self::caustics::CausticsArgs;
 use self::failure::Failure;
 use self::gas::GasArgs;
@@ -51,6 +53,8 @@ enum Command {
     Gas(PaperCommand<GasArgs>),
     /// Refractive water caustics with level maps (Tipprasert)
     Caustics(PaperCommand<CausticsArgs>),
+    /// Burning, deforming and melting meshes (Amarasinghe)
+    Burning(PaperCommand<BurningArgs>),
     /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
     Terrain(PaperCommand<TerrainArgs>),
 }
@@ -66,6 +70,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Lava(arguments)) => arguments.run(),
         Some(Command::Gas(arguments)) => arguments.run(),
         Some(Command::Caustics(arguments)) => arguments.run(),
+        Some(Command::Burning(arguments)) => arguments.run(),
         Some(Command::Terrain(arguments)) => arguments.run(),
     })
 }
@@ -83,6 +88,11 @@ pub fn gas() -> ExitCode {
 /// Runs the paper's own binary `caustics`.
 pub fn caustics() -> ExitCode {
     end(paper::binary::<CausticsArgs>())
+}
+
+/// Runs the paper's own binary `burning`.
+pub fn burning() -> ExitCode {
+    end(paper::binary::<BurningArgs>())
 }
 
 /// Runs the paper's own binary `terrain`.

@@ -132,6 +132,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     if written.is_empty() {
         return Err(Failure::Running("interrupted before a picture was written".into()));
     }
+    built.paper.warnings().iter().for_each(|warning| outcome::say(&format!("warning: {warning}")));
     written.iter().for_each(|path| outcome::wrote(&output, path));
     // Asked again: a paper may write its targets by turns.
     let targets = built.paper.targets();

@@ -1,6 +1,7 @@
 //! Experiments: presets named after the papers' tables and figures, the measured loop, statistics.
 
 pub mod bench;
+pub mod burning;
 pub mod caustics;
 pub mod compare;
 mod config;

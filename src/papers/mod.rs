@@ -55,6 +55,11 @@ pub trait Paper {
         Ok(true)
     }
 
+    /// What a user should know of the input and of the frames so far, one line each.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The finished picture, 8-bit sRGB.
     fn picture(&self) -> &Arc<ImageView>;
 

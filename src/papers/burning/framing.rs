@@ -9,17 +9,15 @@ const FILLED: f32 = 0.8;
 /// From the object to the eye.
 const TO_EYE: Vec3 = Vec3::new(0.45, 0.3, 1.0);
 
+/// A camera with the opening angle and the planes that suit an object of diagonal 1.
+pub fn seen_from(eye: Vec3, target: Vec3) -> Camera {
+    Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.6, near_m: 0.01, far_m: 100.0 }
+}
+
 /// A camera from in front and above at the distance from which the box fills the picture.
 pub fn framing(bounds: &Bounds, aspect: f32) -> Camera {
     let target = bounds.center();
-    let at = |distance: f32| Camera {
-        eye: target + TO_EYE.normalize() * distance,
-        target,
-        up: Vec3::Y,
-        vertical_fov_rad: 0.6,
-        near_m: 0.01,
-        far_m: 100.0,
-    };
+    let at = |distance: f32| seen_from(target + TO_EYE.normalize() * distance, target);
     let fits = |distance: f32| {
         let camera = at(distance);
         let projection = camera.projection(aspect) * camera.view();

@@ -38,6 +38,7 @@ use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::scene::{Camera, Mesh};
 
+pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
 pub use self::state::{Buffers, Counts};
 
@@ -47,7 +48,6 @@ pub const NEEDS: [Feature; 0] = [];
 /// The paper under one variant.
 pub struct Burning {
     device: Arc<Device>,
-    variant: Variant,
     parameters: Parameters,
     model: Model,
     buffers: Buffers,
@@ -89,7 +89,6 @@ impl Burning {
             removal: SurfaceRemoval::new(shaders, label, variant, &buffers, &model)?,
             normals: Normals::new(shaders, &buffers, &model)?,
             drawing: Drawing::new(shaders, label, parameters, &buffers, &model)?,
-            variant,
             parameters: parameters.clone(),
             model,
             buffers,
@@ -189,25 +188,6 @@ impl Burning {
         let bytes = read_buffer(&self.device, &self.buffers.clock)?;
         Ok(bytemuck::pod_read_unaligned(&bytes[..size_of::<Counts>()]))
     }
-
-    /// What a user should know of the object and of the fire so far.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.model.degenerate > 0 {
-            let count = self.model.degenerate;
-            warnings.push(format!("{count} triangles of the mesh have two corners in one place and are left out"));
-        }
-        let nearest = self.model.rest.iter().map(|r| r[3]).fold(f32::INFINITY, f32::min);
-        let radius = self.parameters.speed_per_s * (self.ticks() as f64 / TICKS_PER_S) as f32;
-        if self.ticks() > 0 && nearest > radius {
-            warnings.push(format!(
-                "nothing burns: the heat boundary has a radius of {radius} after {} ticks, and the object begins at \
-                 {nearest}; move --source nearer or burn longer",
-                self.ticks()
-            ));
-        }
-        warnings
-    }
 }
 
 impl Paper for Burning {
@@ -257,6 +237,24 @@ impl Paper for Burning {
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.model.degenerate > 0 {
+            let count = self.model.degenerate;
+            warnings.push(format!("{count} triangles of the mesh have two corners in one place and are left out"));
+        }
+        let nearest = self.model.rest.iter().map(|r| r[3]).fold(f32::INFINITY, f32::min);
+        let radius = self.parameters.speed_per_s * (self.ticks() as f64 / TICKS_PER_S) as f32;
+        if self.ticks() > 0 && nearest > radius {
+            warnings.push(format!(
+                "nothing burns: the heat boundary has a radius of {radius} after {} ticks, and the object begins at \
+                 {nearest}; move --source nearer or burn longer",
+                self.ticks()
+            ));
+        }
+        warnings
     }
 
     fn picture(&self) -> &Arc<ImageView> {

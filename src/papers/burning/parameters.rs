@@ -73,12 +73,10 @@ pub enum Shading {
     Blocks,
     /// Normals as colours.
     Normals,
-    /// Lit, with the edges of the drawn triangles (figures 4.1, 4.2).
-    Wire,
 }
 
 impl Shading {
-    pub const ALL: [Shading; 5] = [Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals, Shading::Wire];
+    pub const ALL: [Shading; 4] = [Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals];
 
     pub fn word(self) -> &'static str {
         match self {
@@ -86,7 +84,6 @@ impl Shading {
             Shading::Areas => "areas",
             Shading::Blocks => "blocks",
             Shading::Normals => "normals",
-            Shading::Wire => "wire",
         }
     }
 

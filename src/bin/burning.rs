@@ -1,0 +1,5 @@
+//! `burning`: the paper's own benchmark binary.
+
+fn main() -> std::process::ExitCode {
+    fumarole::cli::burning()
+}

@@ -1,0 +1,174 @@
+//! The experiments of the `burning` paper: what a user set up, what a run says of itself, the picture strips.
+
+pub mod strips;
+
+use serde_json::{Map, Value, json};
+
+use super::bench::Built;
+use super::error::Error;
+use super::machine::Machine;
+use super::measure::Measurement;
+use super::statistics::median;
+use super::study::{Findings, Identity, Study};
+use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::papers::Paper;
+use crate::papers::ParameterError;
+use crate::papers::burning::model::with_triangles;
+use crate::papers::burning::{Burning, NEEDS, Parameters, Variant};
+use crate::scene::{Mesh, MeshSource};
+
+/// What a user set up.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    pub parameters: Parameters,
+    /// What burns.
+    pub mesh: MeshSource,
+    /// Triangles that the mesh is simplified or subdivided to, 4 to 4,000,000; as it is, without.
+    pub triangles: Option<u32>,
+    pub preset: Option<String>,
+    /// Which of several fresh processes this is.
+    pub process: u32,
+}
+
+impl Default for Setup {
+    /// The scanned bunny.
+    fn default() -> Self {
+        let parameters = Parameters::default();
+        Setup { parameters, mesh: MeshSource::Bunny, triangles: None, preset: None, process: 0 }
+    }
+}
+
+/// A setup with its mesh loaded and brought to its count.
+pub struct Scene {
+    pub mesh: Mesh,
+}
+
+impl Setup {
+    /// Checks what needs no mesh.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`].
+    pub fn check(&self) -> Result<(), Error> {
+        self.parameters.validate()?;
+        let count = self.triangles.unwrap_or(4);
+        ParameterError::check((4..=4_000_000).contains(&count), "--triangles", count, "must be 4 to 4000000")?;
+        Ok(())
+    }
+}
+
+impl Study for Setup {
+    const PAPER: &'static str = "burning";
+    const NEEDS: &'static [Feature] = &NEEDS;
+
+    type Variant = Variant;
+    type Scene = Scene;
+    type Paper = Burning;
+
+    fn load(&self) -> Result<Scene, Error> {
+        self.check()?;
+        let mesh = self.mesh.load()?;
+        let mesh = match self.triangles {
+            Some(count) => with_triangles(&mesh, count as usize),
+            None => mesh,
+        };
+        Ok(Scene { mesh })
+    }
+
+    fn make(
+        &self,
+        shaders: &ShaderLibrary,
+        label: &str,
+        scene: &Scene,
+        variant: Variant,
+    ) -> Result<Burning, gpu::Error> {
+        Burning::new(shaders, label, variant, &self.parameters, &scene.mesh)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity {
+            preset: self.preset.clone(),
+            width: self.parameters.width,
+            height: self.parameters.height,
+            seed: self.parameters.seed,
+            process: self.process,
+        }
+    }
+
+    fn config(&self, scene: &Scene, paper: &Burning) -> Map<String, Value> {
+        let p = &self.parameters;
+        let model = paper.model();
+        let camera = paper.camera();
+        let sources: Vec<_> = model.sources.iter().map(|s| s.to_array()).collect();
+        let entries = [
+            ("mesh", json!(self.mesh.to_string())),
+            ("triangles", json!(scene.mesh.triangle_count())),
+            ("levels", json!(model.levels)),
+            ("edge", json!(p.edge)),
+            ("source", json!(sources)),
+            ("psi", json!(p.psi)),
+            ("speed", json!(p.speed_per_s)),
+            ("area_width", json!(p.width_of_areas)),
+            ("flammability", json!(p.flammability)),
+            ("epsilon", json!(p.epsilon)),
+            ("beta", json!(p.beta)),
+            ("rho", json!(p.rho)),
+            ("phi", json!(p.phi)),
+            ("gamma", json!(p.gamma)),
+            ("spread", json!(p.spread)),
+            ("omega", json!(p.omega)),
+            ("chi", json!(p.chi)),
+            ("upsilon", json!(p.upsilon)),
+            ("floor", json!(model.floor)),
+            ("retire_at", json!(p.retire_at)),
+            ("blocks", json!(p.blocks)),
+            ("active_limit", json!(p.active_limit)),
+            ("time_division", json!(p.time_division)),
+            ("keep_connected", json!(p.keep_connected)),
+            ("fire", json!(p.fire)),
+            ("smoke", json!(p.smoke)),
+            ("particle_radius", json!(p.particle_radius)),
+            ("lod", json!(p.level_of_detail)),
+            ("material", json!(p.material.word())),
+            ("albedo", json!(p.albedo.to_array())),
+            ("shading", json!(p.shading.word())),
+            ("camera", json!([camera.eye.to_array(), camera.target.to_array()])),
+            ("time_step", json!(p.time_step_s)),
+            ("first_frame", json!(p.first_frame)),
+        ];
+        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    fn summary(&self) -> String {
+        format!("{}, frame {}", self.mesh, self.parameters.first_frame)
+    }
+
+    fn findings(&self, _: &mut Machine, measured: &mut [(Built<Self>, Measurement)]) -> Result<Vec<Findings>, Error> {
+        let findings = measured.iter().map(|(built, measurement)| {
+            let warnings = built.paper.warnings();
+            Ok(Findings { results: results(&built.paper, measurement)?, warnings })
+        });
+        findings.collect()
+    }
+}
+
+/// What the device has counted by the last frame, and the frame rate.
+fn results(paper: &Burning, measurement: &Measurement) -> Result<Map<String, Value>, Error> {
+    let model = paper.model();
+    let counts = paper.counts()?;
+    let entries = [
+        ("frames_per_s", json!(median(&measurement.frame_ms).map(|ms| 1e3 / ms))),
+        ("ticks", json!(counts.tick)),
+        ("radius", json!(counts.radius)),
+        ("vertices", json!(model.rest.len())),
+        ("finest_triangles", json!(model.triangles.len())),
+        ("active_vertices", json!(counts.active_vertices)),
+        ("active_triangles", json!(counts.active_triangles)),
+        ("live_vertices", json!(counts.live_vertices)),
+        ("ready_vertices", json!(counts.ready_vertices)),
+        ("removed_triangles", json!(counts.removed_triangles)),
+        ("drawn_triangles", json!(counts.drawn_triangles)),
+        ("fire_particles", json!(counts.fire_particles)),
+        ("smoke_particles", json!(counts.smoke_particles)),
+    ];
+    Ok(entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
+}
