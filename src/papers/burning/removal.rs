@@ -58,7 +58,6 @@ impl SurfaceRemoval {
             .build(shaders)?;
         let scan = step("burning/surface-removal-scan.comp")
             .constants::<Groups>()
-            .with("constants", &buffers.constants)
             .with("Clock", &buffers.clock)
             .with("Arguments", &buffers.arguments)
             .with("GroupSums", &sums)
