@@ -3,30 +3,24 @@
 use clap::{Args, ValueEnum};
 
 use super::BurningArgs;
-use crate::cli::experiment::{Publication, list, refuse, word};
+use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication};
 use crate::cli::failure::Failure;
-use crate::cli::options::{MachineArgs, MeasureArgs, OutputArgs};
-use crate::cli::outcome;
-use crate::cli::paper::{ExperimentArgs, PaperArgs, variant_word};
+use crate::cli::options::CommonArgs;
+use crate::cli::paper::{PaperArgs, variant_word};
 use crate::experiment::burning::{Setup, strips};
-use crate::experiment::machine::Machine;
-use crate::papers::burning::{NEEDS, Variant};
+use crate::papers::burning::Variant;
 
 /// The figures that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Name {
+pub enum Name {
     /// Pictures of one object at several moments, side by side
     Sequence,
 }
 
 #[derive(Debug, Clone, Args)]
 pub struct Experiments {
-    /// Table or figure of the paper
-    #[arg(value_enum, required_unless_present = "list")]
-    name: Option<Name>,
-    /// List the experiments
-    #[arg(long)]
-    list: bool,
+    #[command(flatten)]
+    asked: NameArgs<Name>,
     /// Variant of a sequence
     #[arg(long, default_value = "shell", value_parser = variant_word::<Variant>())]
     variant: Variant,
@@ -37,28 +31,37 @@ pub struct Experiments {
     #[command(flatten)]
     scene: BurningArgs,
     #[command(flatten)]
-    machine: MachineArgs,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    common: CommonArgs,
 }
 
 impl ExperimentArgs for Experiments {
-    fn run(&self) -> Result<(), Failure> {
-        let (Some(name), false) = (self.name, self.list) else { return list::<Name>() };
-        let publication = Publication { output: &self.output, paper: "burning", name: word(&name) };
-        let unsuited = [
-            (self.output.json.is_some(), "--json: a sequence is a picture; bench has a record"),
-            (self.output.csv.is_some(), "--csv: a sequence is a picture; bench has rows"),
+    type Study = Setup;
+    type Name = Name;
+
+    const FRAMES: u32 = 3;
+    const REPEAT: u32 = 3;
+
+    fn asked(&self) -> &NameArgs<Name> {
+        &self.asked
+    }
+
+    fn common(&self) -> &CommonArgs {
+        &self.common
+    }
+
+    fn unsuited(&self, _: Name) -> Vec<(bool, &'static str)> {
+        let output = &self.common.output;
+        vec![
+            (output.json.is_some(), "--json: a sequence is a picture; bench has a record"),
+            (output.csv.is_some(), "--csv: a sequence is a picture; bench has rows"),
             (!self.moments.is_sorted_by(|a, b| a < b), "--moments: the frames must rise"),
-        ];
-        refuse(&self.measure, &self.output, &unsuited)?;
-        publication.check()?;
-        let setup: Setup = self.scene.resolve(self.measure.process)?;
+        ]
+    }
+
+    fn perform(&self, _: Name, publication: &Publication<'_>) -> Result<(), Failure> {
+        let setup: Setup = self.scene.resolve(self.common.measure.process)?;
         setup.check().map_err(Failure::from)?;
-        let mut machine = Machine::open(&self.machine.resolve(), &NEEDS)?;
-        outcome::say_device(&self.output, &machine);
+        let mut machine = self.open()?;
         let pictures = strips::draw(&mut machine, &setup, self.variant, &self.moments)?;
         machine.check_validation()?;
         publication
