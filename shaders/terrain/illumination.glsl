@@ -28,7 +28,7 @@ vec3 sky(vec3 direction) {
 // The draped picture, its corners on the map's, between its texels' middles.
 vec3 draped(vec2 place) {
     vec2 size = vec2(textureSize(drape, 0));
-    vec2 texel = clamp(place / light.drape.xy * size - 0.5, vec2(0.0), size - 1.0);
+    vec2 texel = clamp((place - vec2(light.drape.w, 0.0)) / light.drape.xy * size - 0.5, vec2(0.0), size - 1.0);
     ivec2 a = ivec2(texel);
     ivec2 b = min(a + 1, ivec2(size) - 1);
     vec2 part = texel - vec2(a);

@@ -7,7 +7,7 @@ layout(set = 0, binding = 0, std140) uniform Light {
     vec4 sun; // direction to the sun; the strength of the sky's light
     vec4 haze; // colour; share of the colour lost over 1 m, as an exponent
     vec4 range; // lowest and highest height above the base, metres; near plane of what is rasterised
-    vec4 drape; // columns and rows of the first map, less 1; whether a picture is draped over it
+    vec4 drape; // columns and rows of the first map's cells; whether a picture is draped over it; the column where it begins
 } light;
 
 vec3 view_direction(vec2 pixel) {

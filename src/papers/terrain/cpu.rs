@@ -13,13 +13,14 @@ use super::hit::{Hit, NO_DEPTH, Surface};
 use super::parameters::{Interpolation, Parameters};
 use super::pyramid::Texel;
 use super::relief::{Field, FieldWork, Relief};
-use super::scene::{Inputs, Seen};
+use super::scene::Seen;
 use super::shading::{color_of, normal_of};
 use super::stage::Stage;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location};
 use crate::gpu::{Pass, PassInfo, ShaderLibrary};
 use crate::host_block;
 use crate::papers::Target;
+use crate::scene::HeightMap;
 
 host_block! {
     struct Size {
@@ -62,7 +63,8 @@ impl Cpu {
         shaders: &ShaderLibrary,
         label: &str,
         parameters: &Parameters,
-        inputs: &Inputs<'_>,
+        maps: &[Arc<HeightMap>],
+        drape: Option<&Drape>,
     ) -> Result<Self, Error> {
         let (width, height) = (parameters.width, parameters.height);
         let device = shaders.device();
@@ -97,8 +99,8 @@ impl Cpu {
             width,
             footprint: parameters.lod.into(),
             interpolation: parameters.interpolation,
-            reliefs: inputs.maps.iter().map(|input| Relief::new(&input.map, parameters.interpolation)).collect(),
-            drape: inputs.drape.cloned(),
+            reliefs: maps.iter().map(|map| Relief::new(map, parameters.interpolation)).collect(),
+            drape: drape.cloned(),
             sunlit: if parameters.shadows { vec![1.0; count] } else { Vec::new() },
             hits: vec![SKY; count],
             normals: vec![Vec4::ZERO; count],

@@ -118,6 +118,91 @@ impl Curve {
         DVec3::new(off * s, off * c - self.off_m, along - self.along_m)
     }
 
+    /// The place in nodes of a point that is not below the base, and its height above it: Newton's method for the foot of the
+    /// normal.
+    pub fn place(&self, point: DVec3) -> (DVec2, f64) {
+        let off = point.y + self.off_m;
+        let longitude = point.x.atan2(off);
+        let radius = point.x.hypot(off);
+        let (along, height_m) = if self.is_cylinder {
+            (point.z, radius - self.a)
+        } else {
+            let (latitude, height_m) = self.above_meridian(DVec2::new(radius, point.z + self.along_m));
+            (latitude - self.latitude_rad, height_m)
+        };
+        (self.middle + DVec2::new(longitude, along) * self.steps, height_m)
+    }
+
+    /// Latitude and height of a point in the plane of a meridian: off the axis, along it.
+    fn above_meridian(&self, point: DVec2) -> (f64, f64) {
+        let e2 = self.squared_eccentricity;
+        let mut latitude = point.y.atan2(point.x * (1.0 - e2));
+        let mut height_m = 0.0;
+        for _ in 0..32 {
+            let (s, c) = latitude.sin_cos();
+            let (across, along) = Self::radii(self.a, self.b(), latitude);
+            let apart = point - DVec2::new(across * c, across * (1.0 - e2) * s);
+            height_m = apart.dot(DVec2::new(c, s));
+            let turn = apart.dot(DVec2::new(-s, c)) / (along + height_m).max(1e-6 * along);
+            latitude += turn;
+            if turn.abs() < 1e-16 {
+                break;
+            }
+        }
+        (latitude, height_m)
+    }
+
+    /// East, and away from the axis, at a longitude in nodes.
+    fn around(&self, column: f64) -> (DVec3, DVec3) {
+        let (s, c) = ((column - self.middle.x) / self.steps.x).sin_cos();
+        (DVec3::new(c, -s, 0.0), DVec3::new(s, c, 0.0))
+    }
+
+    /// The derivatives of [`Curve::point`] along u, v and h, for a node and for a metre.
+    pub fn axes(&self, place: DVec2, height_m: f64) -> [DVec3; 3] {
+        let (east, away) = self.around(place.x);
+        if self.is_cylinder {
+            return [east * ((self.a + height_m) / self.steps.x), DVec3::Z / self.steps.y, away];
+        }
+        let latitude = self.latitude_rad + (place.y - self.middle.y) / self.steps.y;
+        let (s, c) = latitude.sin_cos();
+        let (across, along) = Self::radii(self.a, self.b(), latitude);
+        let north = c * DVec3::Z - s * away;
+        let up = s * DVec3::Z + c * away;
+        [east * ((across + height_m) * c / self.steps.x), north * ((along + height_m) / self.steps.y), up]
+    }
+
+    /// Half of what the second derivatives of [`Curve::point`] can add up to: a turn by x and y radians around radii of
+    /// curvature that change along the meridian, while the height changes by `rise_m`.
+    pub fn bend_m(&self, reach: DVec2, rise_m: f64, height_m: f64) -> f64 {
+        let DVec2 { x, y } = (reach / self.steps).abs();
+        if self.is_cylinder {
+            return 0.5 * (self.a + height_m) * x * x + x * rise_m;
+        }
+        let largest_m = self.a.max(self.a * self.a / self.b()).max(self.b() * self.b() / self.a);
+        let radius_m = largest_m + height_m;
+        0.5 * (radius_m * (x + y).powi(2) + self.bend * largest_m * y * y) + (x + y) * rise_m
+    }
+
+    /// The nearest point to one of those below a column: its half-plane ends at the axis.
+    pub fn foot_on_column(&self, column: f64, point: DVec3) -> DVec3 {
+        let (_, away) = self.around(column);
+        let from_axis = point + DVec3::Y * self.off_m;
+        away * from_axis.dot(away).max(0.0) + DVec3::new(0.0, -self.off_m, point.z)
+    }
+
+    /// The nearest point to one of those above and below a row: on a cylinder they form a plane, on an ellipsoid a cone.
+    pub fn foot_on_row(&self, row: f64, point: DVec3) -> DVec3 {
+        let (place, _) = self.place(point);
+        let foot = DVec2::new(place.x, row);
+        let on_base = self.point(foot, 0.0);
+        if self.is_cylinder {
+            return DVec3::new(point.x, point.y, on_base.z);
+        }
+        let [_, _, up] = self.axes(foot, 0.0);
+        on_base + up * (point - on_base).dot(up)
+    }
+
     /// The base itself; near it the quadric is about the height in metres.
     pub fn ground(&self) -> Quadric {
         self.quadric(0.0)

@@ -1,6 +1,8 @@
 //! The geometric transformation (eq. 10 and 11): a map over its base surface, as rays see it. The base alone is transformed;
 //! heights never are.
 
+use std::f64::consts::TAU;
+
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 use super::curve::Curve;
@@ -55,7 +57,16 @@ pub struct Ground {
     pub highest: f64,
     pub base: f64,
     pub curve: Option<Curve>,
+    /// Whether the map's columns fill a whole turn, so that the first follows the last. `shape` then has two columns more on
+    /// each side, which repeat those of the other.
+    pub closes: bool,
 }
+
+/// Columns that are repeated on each side of a map that closes: what bicubic interpolation reads beyond a cell, and half a
+/// cell.
+pub const REPEATED: u32 = 2;
+/// How near to a whole turn the columns must come, in nodes.
+const WHOLE_TURN: f64 = 1e-3;
 
 impl Ground {
     /// `base_level_m` is the map's height at which the base lies.
@@ -78,6 +89,7 @@ impl Ground {
             highest: value(high_m.into()),
             base: value(base_level_m),
             curve: None,
+            closes: false,
         };
         let highest_m = (ground.highest - ground.base) * unit_m;
         let overshoot_m = (ground.highest - ground.lowest) * unit_m * 9.0 / 32.0;
@@ -130,7 +142,18 @@ impl Ground {
                 ground.set_axes();
             }
         }
+        ground.close();
         ground
+    }
+
+    fn close(&mut self) {
+        let Some(curve) = &mut self.curve else { return };
+        let columns = f64::from(self.shape.width);
+        self.closes = (TAU * curve.steps.x - columns).abs() < WHOLE_TURN;
+        if self.closes {
+            self.shape = Shape::new(self.shape.width + 2 * REPEATED, self.shape.height);
+            curve.middle.x += f64::from(REPEATED);
+        }
     }
 
     fn set_axes(&mut self) {

@@ -35,7 +35,7 @@ impl Surface {
 pub struct Hit {
     /// Along the view's axis, metres; [`NO_DEPTH`] for the sky.
     pub depth_m: f32,
-    /// u and v in nodes of the map.
+    /// u and v in nodes of the map; one that goes once round has two more on each side.
     pub place: [f32; 2],
     pub surface: Surface,
     /// The level that the surface was taken from, counted from the data.

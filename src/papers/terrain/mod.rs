@@ -16,8 +16,10 @@ mod hit;
 mod levels;
 mod lighting;
 mod mesh;
+mod nearest;
 mod objects;
 mod parameters;
+mod patch;
 mod placement;
 mod pyramid;
 mod ray_cast;
@@ -25,13 +27,14 @@ pub mod reference;
 mod relief;
 mod scene;
 mod shading;
+mod solid;
 mod stage;
 mod surface;
 mod way;
 
 use std::sync::Arc;
 
-pub use self::collision::{Collider, Contact};
+pub use self::collision::{Collider, Contact, Touch};
 use self::cpu::Cpu;
 pub use self::drape::Drape;
 pub use self::ground::{Ground, Origin};
@@ -97,16 +100,16 @@ impl Terrain {
         }
         let scene = Scene::new(parameters, inputs);
         let technique = match variant {
-            Variant::Cpu => Technique::Cpu(Cpu::new(shaders, label, parameters, inputs)?),
+            Variant::Cpu => Technique::Cpu(Cpu::new(shaders, label, parameters, &scene.maps, inputs.drape)?),
             Variant::GpuCompute | Variant::GpuFragment => {
                 let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
-                let device_scene = DeviceScene::new(shaders, label, parameters, inputs)?;
+                let device_scene = DeviceScene::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
                 let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
                 let lighting = Lighting::new(shaders, label, stage, parameters, &device_scene, &ray_cast.depth)?;
                 Technique::Device(device_scene, DepthMethod::RayCast(ray_cast), lighting)
             }
             Variant::Mesh => {
-                let device_scene = DeviceScene::new(shaders, label, parameters, inputs)?;
+                let device_scene = DeviceScene::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
                 let mesh = Mesh::new(shaders, label, parameters, &scene.grounds, &device_scene)?;
                 let lighting = Lighting::new(shaders, label, Stage::Fragment, parameters, &device_scene, &mesh.depth)?;
                 Technique::Device(device_scene, DepthMethod::Mesh(mesh), lighting)

@@ -8,7 +8,7 @@ use glam::{DMat4, DVec4};
 
 use super::blocks::{LandBlock, LightBlock};
 use super::drape::Drape;
-use super::ground::{Ground, Origin};
+use super::ground::{Ground, Origin, REPEATED};
 use super::hit::NO_DEPTH;
 use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters};
@@ -43,10 +43,12 @@ impl Inputs<'_> {
 /// The maps' places over the base, and the box around all.
 pub struct Scene {
     pub grounds: Vec<Ground>,
+    /// The maps as passes read them: those of a whole turn are closed.
+    pub maps: Vec<Arc<HeightMap>>,
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
     range_m: (f64, f64),
-    /// Columns and rows of the first map, less 1, and whether a picture is draped over it.
+    /// Columns and rows of the first map's cells, whether a picture is draped over it, and the column where that begins.
     drape: [f32; 4],
     /// Of each map, whether its texels are the bits of floats.
     are_floats: Vec<bool>,
@@ -65,13 +67,21 @@ impl Scene {
         let ground = |input: &MapInput| Ground::new(&input.map, input.placement, parameters.base, origin, base_level_m);
         let grounds: Vec<Ground> = inputs.iter().map(ground).collect();
         let start = Extent::of(std::iter::empty());
+        let closed = |(input, ground): (&MapInput, &Ground)| {
+            if ground.closes { Arc::new(input.map.closed()) } else { input.map.clone() }
+        };
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
-            drape: match grounds.first().map(|ground| ground.shape) {
-                Some(shape) => [shape.width as f32 - 1.0, shape.height as f32 - 1.0, is_draped, 0.0],
+            drape: match grounds.first() {
+                Some(Ground { shape, closes: true, .. }) => {
+                    let columns = shape.width - 2 * REPEATED;
+                    [columns as f32, shape.height as f32 - 1.0, is_draped, REPEATED as f32 - 0.5]
+                }
+                Some(Ground { shape, .. }) => [shape.width as f32 - 1.0, shape.height as f32 - 1.0, is_draped, 0.0],
                 None => [1.0, 1.0, 0.0, 0.0],
             },
+            maps: inputs.iter().zip(&grounds).map(closed).collect(),
             grounds,
             are_floats: maps().map(|map| matches!(map.samples(), Samples::Float(_))).collect(),
         }
@@ -144,27 +154,28 @@ impl DeviceScene {
         shaders: &ShaderLibrary,
         label: &str,
         parameters: &Parameters,
-        inputs: &Inputs<'_>,
+        maps: &[Arc<HeightMap>],
+        drape: Option<&Drape>,
     ) -> Result<Self, Error> {
         let bounds: &[Bound] = match parameters.interpolation {
             Interpolation::Bilinear => &[Bound::Highest],
             Interpolation::Bicubic => &[Bound::Highest, Bound::Lowest],
         };
         let device = shaders.device();
-        let map = |(index, input): (usize, &MapInput)| {
+        let map = |(index, map): (usize, &Arc<HeightMap>)| {
             let name = format!("{label}/map-{index}");
             Ok(Map {
-                levels: Levels::new(shaders, &name, &input.map, bounds)?,
+                levels: Levels::new(shaders, &name, map, bounds)?,
                 land: block_buffer::<LandBlock>(device, &format!("{name}/land"))?,
             })
         };
-        let maps = inputs.maps.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
+        let maps = maps.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
         let single = |name: &str, format, texel: &[f32]| {
             texels(device, &format!("{label}/{name}"), format, (1, 1), |_, bytes| {
                 bytes.copy_from_slice(bytemuck::cast_slice(texel));
             })
         };
-        let drape = inputs.drape.map_or_else(|| Cow::Owned(Drape::white()), Cow::Borrowed);
+        let drape = drape.map_or_else(|| Cow::Owned(Drape::white()), Cow::Borrowed);
         let srgb = vk::Format::R8G8B8A8_SRGB;
         let drape = texels(device, &format!("{label}/drape"), srgb, drape.size(), |first_row, bytes| {
             bytes.copy_from_slice(drape.rows_from(first_row, bytes.len()));

@@ -112,10 +112,10 @@ pub fn color_of(
     } else {
         let [low, high, ..] = light.range;
         let share = (facing.w - low) / (high - low).max(1e-6);
-        let [columns, rows, ..] = light.drape;
+        let [columns, rows, _, first] = light.drape;
         let albedo = match drape {
             Some(drape) if hit.surface == Surface::Terrain && hit.map == 0 => {
-                drape.color(Vec2::from_array(hit.place) / Vec2::new(columns, rows))
+                drape.color((Vec2::from_array(hit.place) - Vec2::new(first, 0.0)) / Vec2::new(columns, rows))
             }
             _ => ground(hit.surface, normal, share),
         };

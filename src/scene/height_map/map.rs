@@ -129,6 +129,24 @@ impl HeightMap {
         Ok(Self { samples, range_m, ..self })
     }
 
+    /// The map of a whole turn, whose first column follows its last: two columns more on each side, which repeat those of the
+    /// other. It lies in the same place; what it says of its place on the Earth is left out.
+    pub fn closed(&self) -> Self {
+        let width = self.width as usize;
+        let columns = || (width - 2..width).chain(0..width).chain(0..2);
+        let wider = |row: usize| columns().map(move |column| row * width + column);
+        let places = || (0..self.height as usize).flat_map(wider);
+        let samples = match &self.samples {
+            Samples::Steps { values, origin_m, step_m } => Samples::Steps {
+                values: places().map(|place| values[place]).collect(),
+                origin_m: *origin_m,
+                step_m: *step_m,
+            },
+            Samples::Float(heights) => Samples::Float(places().map(|place| heights[place]).collect()),
+        };
+        Self { width: self.width + 4, samples, geographic: None, ..*self }
+    }
+
     pub(super) fn with_geographic(self, geographic: Geographic) -> Self {
         Self { geographic: Some(geographic), ..self }
     }
@@ -215,6 +233,21 @@ mod tests {
             let high = wide.with_exaggeration(2.0).unwrap();
             assert_eq!((high.range_m(), high.spacing_m()), ((-2.0, 16.0), DVec2::new(3.0, 4.0)));
             assert_eq!([(0, 0), (1, 0), (0, 1), (1, 1)].map(|(c, r)| high.height_m(c, r)), [-2.0, 0.0, 2.0, 16.0]);
+        }
+    }
+
+    #[test]
+    fn a_closed_map_repeats_two_columns_on_each_side() {
+        let heights = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+        for map in [
+            HeightMap::new(3, 2, steps(&[0, 1, 2, 3, 4, 5], 0.0, 1.0)).unwrap(),
+            HeightMap::new(3, 2, Samples::Float(heights.to_vec())).unwrap(),
+        ] {
+            let closed = map.closed();
+            assert_eq!((closed.width(), closed.height(), closed.range_m()), (7, 2, (0.0, 5.0)));
+            let row = |row| (0..7).map(|column| closed.height_m(column, row)).collect::<Vec<_>>();
+            assert_eq!(row(0), [1.0, 2.0, 0.0, 1.0, 2.0, 0.0, 1.0]);
+            assert_eq!(row(1), [4.0, 5.0, 3.0, 4.0, 5.0, 3.0, 4.0]);
         }
     }
 

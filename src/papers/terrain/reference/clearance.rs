@@ -87,6 +87,9 @@ impl Neighbour<'_> {
         let beside = |axis: usize| {
             let half = (end[axis] - self.map.origin[axis]) / 2.0;
             let mut from_middle = place.uv[axis] - self.map.origin[axis] - half;
+            if axis == 0 && self.map.closes {
+                return f64::NEG_INFINITY;
+            }
             if axis == 0 && terrain.base.turns() {
                 from_middle -= TAU * (from_middle / TAU).round();
                 if half * 2.0 > TAU * (1.0 - 1e-9) {

@@ -22,6 +22,8 @@ pub struct Grid {
     pub origin: [f64; 2],
     /// From node to node along u and v, in the base's units; above 0.
     pub spacing: [f64; 2],
+    /// Whether the first column follows the last one along u: the map goes once round.
+    pub closes: bool,
     pub(super) range_m: [f64; 2],
 }
 
@@ -46,19 +48,30 @@ impl Grid {
         }
         let low = heights_m.iter().copied().fold(f64::INFINITY, f64::min);
         let high = heights_m.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Some(Grid { size, heights_m, origin, spacing, range_m: [low, high] })
+        Some(Grid { size, heights_m, origin, spacing, closes: false, range_m: [low, high] })
+    }
+
+    /// The same grid once round: its columns fill a whole turn.
+    pub fn closed(self) -> Grid {
+        Grid { closes: true, ..self }
+    }
+
+    /// Cells along u and v.
+    pub fn cells(&self) -> [usize; 2] {
+        [self.size[0] - usize::from(!self.closes), self.size[1] - 1]
     }
 
     /// The height of node (i, j); beyond the border the border's.
     pub fn node(&self, i: isize, j: isize) -> f64 {
-        let column = i.clamp(0, self.size[0] as isize - 1) as usize;
+        let columns = self.size[0] as isize;
+        let column = if self.closes { i.rem_euclid(columns) } else { i.clamp(0, columns - 1) } as usize;
         let row = j.clamp(0, self.size[1] as isize - 1) as usize;
         self.heights_m[row * self.size[0] + column]
     }
 
-    /// (u, v) of the last node.
+    /// (u, v) of the end of the last cell.
     pub fn end(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.origin[axis] + self.spacing[axis] * (self.size[axis] - 1) as f64)
+        [0, 1].map(|axis| self.origin[axis] + self.spacing[axis] * self.cells()[axis] as f64)
     }
 
     /// The lowest and the highest node.
@@ -78,14 +91,14 @@ impl Grid {
     /// Whether (u, v) is in the map's rectangle, borders included.
     pub fn contains(&self, uv: [f64; 2]) -> bool {
         let end = self.end();
-        (0..2).all(|axis| self.origin[axis] <= uv[axis] && uv[axis] <= end[axis])
+        (0..2).all(|axis| axis == 0 && self.closes || self.origin[axis] <= uv[axis] && uv[axis] <= end[axis])
     }
 
     /// The cell that holds (u, v), clamped into the grid.
     pub(super) fn cell(&self, uv: [f64; 2]) -> [usize; 2] {
         [0, 1].map(|axis| {
             let at = ((uv[axis] - self.origin[axis]) / self.spacing[axis]).floor();
-            (at.max(0.0) as usize).min(self.size[axis] - 2)
+            (at.max(0.0) as usize).min(self.cells()[axis] - 1)
         })
     }
 

@@ -200,8 +200,9 @@ impl Terrain {
             }
             (distance.abs() / map.spacing[axis], axes[axis] * outward)
         };
-        let sides = [0, 1].map(|axis| [side(axis, map.origin[axis], -1.0), side(axis, map.end()[axis], 1.0)]);
-        let nearest = sides.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+        let axes = if map.closes { 1..2 } else { 0..2 };
+        let sides = axes.map(|axis| [side(axis, map.origin[axis], -1.0), side(axis, map.end()[axis], 1.0)]);
+        let nearest = sides.flatten().min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map_or(DVec3::ZERO, |(_, normal)| normal)
     }
 }

@@ -32,11 +32,13 @@ pub(super) struct View {
 /// Every face of a map's solid above the base.
 pub(super) fn sheets<'a>(terrain: &Terrain, map: &'a Grid) -> impl Iterator<Item = (Part, Sheet<'a>)> {
     let (base, interpolation, level_m) = (terrain.base, terrain.interpolation, terrain.base_level_m);
-    let cells = (0..map.size[1] - 1).flat_map(|j| (0..map.size[0] - 1).map(move |i| [i, j]));
+    let [columns, rows] = map.cells();
+    let cells = (0..rows).flat_map(move |j| (0..columns).map(move |i| [i, j]));
     cells.flat_map(move |cell| {
-        let sides = [0, 1].into_iter().flat_map(move |axis| {
+        let first_axis = usize::from(map.closes);
+        let sides = (first_axis..2).flat_map(move |axis| {
             let first = (cell[axis] == 0).then_some(Some((axis, 0.0)));
-            let last = (cell[axis] == map.size[axis] - 2).then_some(Some((axis, 1.0)));
+            let last = (cell[axis] == map.cells()[axis] - 1).then_some(Some((axis, 1.0)));
             first.into_iter().chain(last)
         });
         [None].into_iter().chain(sides).map(move |wall| {
