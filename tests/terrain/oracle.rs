@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use fumarole::gpu::Device;
+use fumarole::gpu::{Compiler, Device};
 use fumarole::papers::Variant as _;
-use fumarole::papers::terrain::{Base, Interpolation, MapInput, Placement, Rays, Variant};
+use fumarole::papers::terrain::{Base, Inputs, Interpolation, MapInput, Placement, Rays, Variant};
 use fumarole::scene::Camera;
 use fumarole::scene::random::Random;
 use glam::{DVec2, DVec3, Vec3};
@@ -21,23 +21,34 @@ const VARIANTS: [Variant; 3] = [Variant::Cpu, Variant::GpuCompute, Variant::GpuF
 const STANDS: [Stand; 7] =
     [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Under, Stand::Down, Stand::Up, Stand::Far(4.0)];
 
-/// What one variant did over many pictures.
+/// What one variant, by one compiler's binaries, did over many pictures.
 struct Trial {
     variant: Variant,
+    compiler: Compiler,
     tally: Tally,
 }
 
 /// All variants, and the pictures so far.
 struct Trials<'a> {
     device: &'a Arc<Device>,
-    trials: [Trial; 3],
+    trials: Vec<Trial>,
     size: (u32, u32),
 }
 
 impl<'a> Trials<'a> {
     fn new(device: &'a Arc<Device>, size: (u32, u32)) -> Self {
-        let trials = VARIANTS.map(|variant| Trial { variant, tally: Tally::default() });
-        Trials { device, trials, size }
+        Self::compiled_by(device, size, &VARIANTS, &[Compiler::Glslang])
+    }
+
+    fn compiled_by(
+        device: &'a Arc<Device>,
+        size: (u32, u32),
+        variants: &[Variant],
+        compilers: &[Compiler],
+    ) -> Self {
+        let pairs = variants.iter().flat_map(|&variant| compilers.iter().map(move |&compiler| (variant, compiler)));
+        let trials = pairs.map(|(variant, compiler)| Trial { variant, compiler, tally: Tally::default() });
+        Trials { device, trials: trials.collect(), size }
     }
 
     fn draw(&mut self, world: &World, stand: Stand, random: &mut Random) {
@@ -49,16 +60,17 @@ impl<'a> Trials<'a> {
         let rays = Rays::new(&camera, self.size.0, self.size.1);
         let judge = Judge::new(world, &rays, self.size, tolerance_cells);
         for trial in &mut self.trials {
-            let drawing = Drawing::of(self.device, trial.variant, &parameters, &world.maps);
+            let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
+            let drawing = Drawing::compiled_by(trial.compiler, self.device, trial.variant, &parameters, &inputs);
             let mut tally = judge.tally(&drawing);
-            let place = format!("{} {stand} {}", world.name, trial.variant.word());
+            let place = format!("{} {stand} {} {:?}", world.name, trial.variant.word(), trial.compiler);
             tally.wrong = tally.wrong.iter().take(3).map(|reason| format!("{place}: {reason}")).collect();
             trial.tally.add(tally);
         }
     }
 
     fn assert_none_wrong(&self) {
-        for Trial { variant, tally } in &self.trials {
+        for Trial { variant, tally, .. } in &self.trials {
             assert!(tally.wrong.is_empty(), "{}:\n{}", variant.word(), tally.wrong.join("\n"));
         }
     }
@@ -66,7 +78,7 @@ impl<'a> Trials<'a> {
     /// No ray is wrong, less than one in a thousand ends elsewhere by a hair, and every kind of `kinds` was seen.
     fn assert(&self, kinds: [bool; 5]) {
         self.assert_none_wrong();
-        for Trial { variant, tally } in &self.trials {
+        for Trial { variant, tally, .. } in &self.trials {
             let word = variant.word();
             assert!(tally.elsewhere * 1000 < tally.rays, "{word}: {} of {}", tally.elsewhere, tally.rays);
             let is_seen = tally.seen.iter().zip(kinds).all(|(&seen, wanted)| !wanted || seen >= 20);
@@ -169,6 +181,61 @@ fn whole_turns_and_poles() {
                 trials.assert([true, false, true, false, true]);
             }
         }
+    });
+}
+
+/// Maps whose columns fill a whole turn: the cell between the last and the first is closed.
+#[test]
+fn maps_once_round_close_at_their_seam() {
+    gpu_test(|device| {
+        let (a, b) = (400.0, 300.0);
+        let round = Base::Cylinder { radius_m: 300.0 };
+        let whole = Base::Ellipsoid { equatorial_m: a, polar_m: b };
+        let (a, b) = (f64::from(a), f64::from(b));
+        let cases = [
+            (round, (60, 30), DVec2::new(TAU * 300.0 / 60.0, 25.0)),
+            (whole, (41, 21), DVec2::new(TAU * a / 41.0, PI * b * b / a / 20.0)),
+        ];
+        let mut trials = Trials::new(device, (32, 24));
+        for (seed, (base, size, spacing_m)) in (18..).zip(cases) {
+            for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+                let mut random = Random::new(seed);
+                let map = random_map(&mut random, Relief::Noise, size, 1.5);
+                let factor = (spacing_m.x / map.spacing_m().x) as f32;
+                let map = map.with_exaggeration(factor).unwrap().with_spacing_m(spacing_m).unwrap();
+                let world = World::alone("once round", base, interpolation, None, map);
+                assert!(world.terrain.maps[0].closes);
+                for stand in [Stand::Seam, Stand::Seam, Stand::Above, Stand::Far(3.0)] {
+                    trials.draw(&world, stand, &mut random);
+                }
+            }
+        }
+        trials.assert([true, false, true, false, false]);
+    });
+}
+
+/// What the other compiler made of the same shaders, on every base and interpolation.
+#[test]
+fn naga_s_binaries_meet_the_oracle() {
+    gpu_test(|device| {
+        let bases = [
+            Base::Plane,
+            Base::Cylinder { radius_m: 900.0 },
+            Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 },
+        ];
+        let variants = [Variant::GpuCompute, Variant::GpuFragment];
+        let mut trials = Trials::compiled_by(device, (48, 36), &variants, &[Compiler::Naga]);
+        for (seed, base) in (20..).zip(bases) {
+            for interpolation in [Interpolation::Bilinear, Interpolation::Bicubic] {
+                let mut random = Random::new(seed);
+                let map = random_map(&mut random, Relief::Waves, (61, 44), 4.0);
+                let world = World::alone("naga", base, interpolation, None, map);
+                for stand in [Stand::Above, Stand::Beside] {
+                    trials.draw(&world, stand, &mut random);
+                }
+            }
+        }
+        trials.assert([true, true, true, true, false]);
     });
 }
 

@@ -108,13 +108,14 @@ impl<'a> Judge<'a> {
         let point = look.ray.at(t);
         let map = terrain.maps.get(hit.map as usize).ok_or("no such map")?;
         // At the seam of a whole turn the device's own side counts.
-        let toward = map.origin[0] + f64::from(hit.place[0]) * map.spacing[0];
+        let repeated = if map.closes { 2.0 } else { 0.0 };
+        let toward = map.origin[0] + (f64::from(hit.place[0]) - repeated) * map.spacing[0];
         let around = Around::new(terrain, map, point, toward, self.tolerance_m);
         // A camera below the base is in the ground, and the device calls that the base.
         let is_start = hit.depth_m == 0.0;
         // Where a whole turn meets itself at another height, device and oracle call the cliff between a surface.
         let is_whole_turn = terrain.base.turns() && map.end()[0] - map.origin[0] > TAU * (1.0 - 1e-6);
-        let is_seam = is_whole_turn && around.beside_m[0].abs() <= self.tolerance_m && around.above_m < 0.0;
+        let is_seam = is_whole_turn && !map.closes && around.beside_m[0].abs() <= self.tolerance_m && around.above_m < 0.0;
         let residual_m = match hit.surface {
             Surface::Sky | Surface::Base if is_start => around.h.max(0.0),
             Surface::Sky | Surface::Base => around.h.abs(),
@@ -248,9 +249,15 @@ impl Around {
         if terrain.base.turns() {
             uv[0] -= TAU * ((uv[0] - toward) / TAU).round();
         }
+        if map.closes {
+            uv[0] = map.origin[0] + (uv[0] - map.origin[0]).rem_euclid(TAU);
+        }
         let scales = terrain.base.frame(Place { uv, h: place.h.max(0.0) }).scales;
         let beside_m = [0, 1].map(|axis| {
             let half = (map.end()[axis] - map.origin[axis]) / 2.0;
+            if axis == 0 && map.closes {
+                return f64::NEG_INFINITY;
+            }
             ((uv[axis] - middle[axis]).abs() - half) * scales[axis]
         });
         let step = scales.map(|scale| tolerance_m / scale);

@@ -1,5 +1,6 @@
 //! Maps over a base, for the device and for the oracle, and cameras that look at them.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fumarole::papers::terrain::reference::{self, Grid, Place};
@@ -69,7 +70,7 @@ impl World {
     }
 
     /// The world's point at a share of the first map's sides, at a height above the base.
-    fn point(&self, share: DVec2, h: f64) -> DVec3 {
+    pub fn point(&self, share: DVec2, h: f64) -> DVec3 {
         let p = self.terrain.base.point(Place { uv: self.uv(share), h });
         let back = match self.base {
             Base::Plane => DQuat::from_rotation_y(self.turn_rad) * p,
@@ -85,7 +86,7 @@ impl World {
     }
 
     /// The first map's height above the base at a share of its sides.
-    fn height_m(&self, share: DVec2) -> f64 {
+    pub fn height_m(&self, share: DVec2) -> f64 {
         self.terrain.height_above_base(&self.terrain.maps[0], self.uv(share)).max(0.0)
     }
 
@@ -95,9 +96,15 @@ impl World {
     }
 
     /// The first map's longer side, metres.
-    fn side_m(&self) -> f64 {
+    pub fn side_m(&self) -> f64 {
         let map = &self.terrain.maps[0];
         self.terrain.cell_m(map) * map.size[0].max(map.size[1]) as f64
+    }
+
+    /// The highest that the first map's surface can be above the base, metres.
+    pub fn top_m(&self) -> f64 {
+        let map = &self.terrain.maps[0];
+        (map.ceiling_m(self.terrain.interpolation) - self.terrain.base_level_m).max(0.0)
     }
 
     /// A camera of a kind, placed by chance.
@@ -107,8 +114,7 @@ impl World {
         let inside = share(random, 0.1, 0.9);
         let aim = share(random, 0.2, 0.8);
         let (cell_m, side_m) = (self.cell_m(), self.side_m());
-        let map = &self.terrain.maps[0];
-        let top_m = (map.ceiling_m(self.terrain.interpolation) - self.terrain.base_level_m).max(0.0);
+        let top_m = self.top_m();
         let aimed = self.point(aim, self.height_m(aim));
         let part = f64::from(random.range(0.2, 0.8));
         let mut fov_rad = random.range(0.6, 1.4);
@@ -125,6 +131,10 @@ impl World {
             Stand::Down => {
                 let eye = self.point(inside, top_m + part * side_m);
                 (eye, self.point(inside, -top_m - cell_m))
+            }
+            Stand::Seam => {
+                let edge = DVec2::new(f64::from(random.range(0.99, 1.01)), aim.y);
+                (self.point(edge, top_m + 6.0 * part * cell_m), self.point(DVec2::new(1.0, 0.5), 0.5 * top_m))
             }
             Stand::Up => {
                 let h = self.height_m(inside) + 0.3 * cell_m;
@@ -163,6 +173,8 @@ pub enum Stand {
     Down,
     /// From near the surface straight up.
     Up,
+    /// Low over the map's eastern edge, where one that goes once round closes.
+    Seam,
     /// That many times the map's side away.
     Far(f64),
 }
@@ -200,7 +212,9 @@ fn grid(base: Base, input: &MapInput) -> Grid {
     let half = DVec2::new((columns - 1) as f64, (rows - 1) as f64) / 2.0;
     let grid = |heights, center: DVec2, spacing: DVec2| {
         let origin = center - half * spacing;
-        Grid::new([columns, rows], heights, origin.to_array(), spacing.to_array()).unwrap()
+        let grid = Grid::new([columns, rows], heights, origin.to_array(), spacing.to_array()).unwrap();
+        let is_whole = base != Base::Plane && (columns as f64 * spacing.x - TAU).abs() < 1e-6;
+        if is_whole { grid.closed() } else { grid }
     };
     match base {
         Base::Plane => grid(heights, center_m, spacing_m),
