@@ -1,9 +1,11 @@
+#include "terrain/tile.glsl"
+
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 3, r32f) uniform writeonly image2D shadow;
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
     if (pixel.x >= imageSize(shadow).x || pixel.y >= imageSize(shadow).y) {
         return;
     }

@@ -1,5 +1,6 @@
 //! What the verbs need of a paper's command line; the verbs themselves are the same for all papers.
 
+use std::convert::Infallible;
 use std::fmt::Debug;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -18,6 +19,8 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     type Study: Study;
     /// The options of its verb `experiment`.
     type Experiment: ExperimentArgs<Study = Self::Study>;
+    /// The verbs that no other paper has.
+    type Own: OwnVerbs;
 
     /// One line on the paper.
     const ABOUT: &'static str;
@@ -34,6 +37,17 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
 
     /// What the main job measures, in the variants of [`PaperArgs::BENCHED`].
     fn quick() -> Self::Study;
+}
+
+/// A paper's own verbs; [`Infallible`] where there are none.
+pub trait OwnVerbs: Subcommand + Debug + 'static {
+    fn run(&self) -> Result<(), Failure>;
+}
+
+impl OwnVerbs for Infallible {
+    fn run(&self) -> Result<(), Failure> {
+        match *self {}
+    }
 }
 
 pub type VariantOf<P> = <<P as PaperArgs>::Study as Study>::Variant;
@@ -84,6 +98,8 @@ pub enum Verb<P: PaperArgs> {
     Experiment(Box<P::Experiment>),
     /// Write pictures and intermediate targets
     Render(Box<RenderArgs<P>>),
+    #[command(flatten)]
+    Own(P::Own),
 }
 
 /// A paper as a subcommand of `fumarole`.
@@ -100,6 +116,7 @@ impl<P: PaperArgs> PaperCommand<P> {
             Verb::Bench(arguments) => bench::run(arguments),
             Verb::Experiment(arguments) => arguments.run(),
             Verb::Render(arguments) => render::run(arguments),
+            Verb::Own(verb) => verb.run(),
         }
     }
 }

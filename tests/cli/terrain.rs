@@ -55,6 +55,94 @@ fn the_mesh_of_a_map_that_is_too_large_is_a_row_without_times() {
     assert!(ended.stdout.contains("the mesh stops at 4096"), "{}", ended.stdout);
 }
 
+/// One ramp for all sizes: only a ray that took the most steps is the lightest, and rays that met no map are black.
+#[test]
+fn steps_are_drawn_as_heat() {
+    let out = folder();
+    let ended = small("experiment steps --counts 64,512 --out .").args(ONCE).inside(out.path()).run().succeeded();
+    assert!(ended.stderr.contains("heat maps: black is no step"), "{}", ended.stderr);
+    let mut lightest = 0;
+    for side in [64, 512] {
+        let picture = image::open(out.path().join(format!("terrain-steps-{side}.png"))).unwrap().to_rgb8();
+        assert_eq!(picture.dimensions(), (64, 48));
+        let colors: std::collections::BTreeSet<[u8; 3]> = picture.pixels().map(|pixel| pixel.0).collect();
+        assert!(colors.contains(&[0, 0, 4]) && colors.len() > 8, "{side}: {colors:?}");
+        lightest += usize::from(colors.contains(&[252, 253, 191]));
+    }
+    assert!(lightest >= 1);
+}
+
+/// A height of 100 m over 3 x 3 samples of 10 m on a base at 0 m.
+const TABLE: &str = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n100 100 100\n100 100 100\n100 100 100\n";
+
+#[test]
+fn segments_and_spheres_meet_the_land() {
+    let out = folder();
+    file(&out, "table.asc", TABLE);
+    let bodies = "collide --map table.asc --base-level 0 --segment 1,200,2,1,0,2 --segment 1,200,2,1,150,2 \
+                  --segment -50,50,0,50,50,0 --sphere 0,104,0,5 --sphere 0,106,0,5 --sphere 200,3,0,4";
+    let record = terrain(bodies).arg("--json").inside(out.path()).run().succeeded().json();
+    let meets: Vec<_> = record["collisions"].as_array().unwrap().iter().map(|c| &c["meets"]).collect();
+    assert_eq!(meets.len(), 6);
+    for (meeting, surface, point, normal) in [
+        (meets[0], "terrain", [1.0, 100.0, 2.0], [0.0, 1.0, 0.0]),
+        (meets[2], "west wall", [-10.0, 50.0, 0.0], [-1.0, 0.0, 0.0]),
+        (meets[3], "terrain", [0.0, 100.0, 0.0], [0.0, 1.0, 0.0]),
+        (meets[5], "base", [200.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+    ] {
+        assert_eq!(meeting["surface"], surface, "{meeting}");
+        for (found, expected) in [("point", point), ("normal", normal)] {
+            for (axis, expected) in expected.into_iter().enumerate() {
+                assert!((meeting[found][axis].as_f64().unwrap() - expected).abs() < 1e-2, "{found} of {meeting}");
+            }
+        }
+    }
+    assert!((meets[0]["parameter"].as_f64().unwrap() - 0.5).abs() < 1e-5, "{}", meets[0]);
+    assert!(meets[0]["steps"].as_u64().unwrap() > 0);
+    assert!((meets[3]["distance_m"].as_f64().unwrap() - 4.0).abs() < 1e-6, "{}", meets[3]);
+    assert!(meets[1].is_null() && meets[4].is_null(), "{} {}", meets[1], meets[4]);
+    let lines = terrain(bodies).inside(out.path()).run().succeeded().stdout;
+    assert_eq!(lines.lines().filter(|line| line.contains("meets nothing")).count(), 2, "{lines}");
+    assert!(lines.contains("meets the terrain of map 0") && lines.contains("normal 0.0000"), "{lines}");
+}
+
+/// 36 columns of 10 degrees go once round: at 180 degrees, between the last column and the first, there is land.
+#[test]
+fn a_map_of_the_whole_earth_has_no_gap_at_its_seam() {
+    let out = folder();
+    let row = "1000 ".repeat(36);
+    let rows = format!("{row}\n").repeat(18);
+    file(&out, "world.asc", &format!("ncols 36\nnrows 18\nxllcorner -180\nyllcorner -90\ncellsize 10\n{rows}"));
+    file(&out, "world.prj", "GEOGCS[\"WGS 84\",UNIT[\"degree\",0.0174532925199433]]");
+    // From far beyond the antimeridian straight to the Earth's middle.
+    let record = terrain("collide --map world.asc --base earth --base-level 0 --json --segment")
+        .arg("0,-20000000,0,0,-6378137,0")
+        .inside(out.path())
+        .run()
+        .succeeded()
+        .json();
+    let meets = &record["collisions"][0]["meets"];
+    assert_eq!(meets["surface"], "terrain", "{record}");
+    let height_m = -meets["point"][1].as_f64().unwrap() - 2.0 * 6_378_137.0;
+    assert!((height_m - 1000.0).abs() < 50.0, "{height_m} m in {record}");
+}
+
+#[test]
+fn bodies_that_are_none_are_refused() {
+    for (body, parts) in [
+        ("--segment 1,2,3,1,2,3", &["--segment", "no length"][..]),
+        ("--sphere 1,2,3,0", &["--sphere", "radius"]),
+        ("--sphere 1,2,3,-4", &["--sphere", "radius"]),
+        ("--segment 1e9,0,0,0,0,0", &["--segment", "100000 km"]),
+        ("", &["--segment", "--sphere"]),
+    ] {
+        terrain("collide --resolution 16").args(body).run().refused(2, parts);
+    }
+    for body in ["--segment=nan,2,3,1,2,4", "--segment=1,2,3", "--sphere=1,2,3,inf", "--sphere=a,b,c,d", "--camera=top"] {
+        terrain("collide --resolution 16").arg(body).run().misused(&[body.split('=').next().unwrap()]);
+    }
+}
+
 #[test]
 fn figures_are_one_picture() {
     let out = folder();

@@ -212,7 +212,10 @@ fn spheres_touch_closed_and_united_maps() {
             let expected = world.terrain.sphere(world.moved(center), 1e6).unwrap();
             let touch = collider.sphere(center, 1e6).unwrap();
             let off_m = (touch.distance_m - expected.distance_m).abs();
-            assert!(off_m <= 2e-6 * world.cell_m(), "{}: {share}: {touch:?}, not {expected:?}", world.name);
+            let p = world.terrain.base.place(world.moved(touch.point));
+            let hh = world.terrain.height_above_base(&world.terrain.maps[0], p.uv);
+            let q = world.terrain.base.place(expected.point);
+            assert!(off_m <= 2e-6 * world.cell_m(), "{}: {share}: {touch:?}, not {expected:?} {p:?} {hh} {q:?}", world.name);
         }
     }
 }
@@ -243,6 +246,7 @@ fn what_lies_beside_touches_nothing() {
     // On the base beside the map, its bottom at the base: it touches; a hair higher it does not.
     let beside = DVec3::new(30_000.0, 5.0, 0.0);
     let touch = collider.sphere(beside, 5.0).unwrap();
-    assert_eq!((touch.surface, touch.distance_m, touch.point), (Surface::Base, 5.0, DVec3::new(30_000.0, 0.0, 0.0)));
+    assert_eq!((touch.surface, touch.distance_m), (Surface::Base, 5.0));
+    assert!(touch.point.distance(DVec3::new(30_000.0, 0.0, 0.0)) < 1e-9, "{touch:?}");
     assert_eq!(collider.sphere(beside + DVec3::Y * 1e-6, 5.0), None);
 }

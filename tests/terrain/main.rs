@@ -4,6 +4,7 @@ mod collisions;
 #[path = "../common/mod.rs"]
 mod common;
 mod drawing;
+mod footprint;
 mod land;
 mod oracle;
 mod pictures;

@@ -64,7 +64,9 @@ impl<'a> Trials<'a> {
             let drawing = Drawing::compiled_by(trial.compiler, self.device, trial.variant, &parameters, &inputs);
             let mut tally = judge.tally(&drawing);
             let place = format!("{} {stand} {} {:?}", world.name, trial.variant.word(), trial.compiler);
-            tally.wrong = tally.wrong.iter().take(3).map(|reason| format!("{place}: {reason}")).collect();
+            for reasons in [&mut tally.wrong, &mut tally.hairs] {
+                *reasons = reasons.iter().take(3).map(|reason| format!("{place}: {reason}")).collect();
+            }
             trial.tally.add(tally);
         }
     }
@@ -80,7 +82,8 @@ impl<'a> Trials<'a> {
         self.assert_none_wrong();
         for Trial { variant, tally, .. } in &self.trials {
             let word = variant.word();
-            assert!(tally.elsewhere * 1000 < tally.rays, "{word}: {} of {}", tally.elsewhere, tally.rays);
+            let hairs = tally.hairs.join("\n");
+            assert!(tally.elsewhere * 1000 < tally.rays, "{word}: {} of {}:\n{hairs}", tally.elsewhere, tally.rays);
             let is_seen = tally.seen.iter().zip(kinds).all(|(&seen, wanted)| !wanted || seen >= 20);
             assert!(is_seen, "{word} saw too little: {:?}", tally.seen);
         }

@@ -42,6 +42,8 @@ pub struct Tally {
     pub residual_cells: f64,
     /// What was wrong with the first few rays that were.
     pub wrong: Vec<String>,
+    /// What those saw that ended elsewhere.
+    pub hairs: Vec<String>,
 }
 
 impl Tally {
@@ -53,6 +55,7 @@ impl Tally {
         }
         self.residual_cells = self.residual_cells.max(other.residual_cells);
         self.wrong.extend(other.wrong);
+        self.hairs.extend(other.hairs);
     }
 }
 
@@ -75,15 +78,15 @@ impl<'a> Judge<'a> {
         let one = |(pixel, ((look, hit), normal)): (usize, ((&Look, &Hit), &[f32; 4]))| {
             let mut tally = Tally { rays: 1, ..Tally::default() };
             tally.seen[kind(hit.surface)] = 1;
+            let expected = look.expected.map(|e| (e.part, e.map, e.t / look.stretch));
+            let say = |what: &str| format!("pixel {pixel}: {what}; {hit:?} where the oracle has {expected:?}");
             match self.verdict(look, hit, *normal) {
-                Ok((is_same, residual_m)) => {
-                    tally.elsewhere = usize::from(!is_same);
-                    tally.residual_cells = residual_m / self.world.cell_m();
+                Ok((true, residual_m)) => tally.residual_cells = residual_m / self.world.cell_m(),
+                Ok((false, _)) => {
+                    tally.elsewhere = 1;
+                    tally.hairs.push(say("elsewhere"));
                 }
-                Err(reason) => {
-                    let expected = look.expected.map(|e| (e.part, e.map, e.t / look.stretch));
-                    tally.wrong.push(format!("pixel {pixel}: {reason}; {hit:?} where the oracle has {expected:?}"));
-                }
+                Err(reason) => tally.wrong.push(say(&reason)),
             }
             tally
         };

@@ -2,6 +2,8 @@
 
 mod experiment;
 
+use std::convert::Infallible;
+
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 
@@ -141,6 +143,7 @@ pub struct CausticsArgs {
 impl PaperArgs for CausticsArgs {
     type Study = Setup;
     type Experiment = Experiments;
+    type Own = Infallible;
 
     const ABOUT: &'static str = "Refractive water caustics with level maps (Tipprasert), pass by pass";
     // The stencil method takes seconds a frame without a GPU.

@@ -2,6 +2,8 @@
 
 mod experiment;
 
+use std::convert::Infallible;
+
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 
@@ -133,6 +135,7 @@ pub struct GasArgs {
 impl PaperArgs for GasArgs {
     type Study = Setup;
     type Experiment = Experiments;
+    type Own = Infallible;
 
     const ABOUT: &'static str =
         "Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent), pass by pass";

@@ -2,6 +2,7 @@
 
 mod experiment;
 
+use std::convert::Infallible;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
@@ -139,6 +140,7 @@ pub struct LavaArgs {
 impl PaperArgs for LavaArgs {
     type Study = Setup;
     type Experiment = Experiments;
+    type Own = Infallible;
 
     const ABOUT: &'static str = "Lava: particles to density to isosurface to splats (Unnthorsson), pass by pass";
     const BENCHED: &'static str = "paper";

@@ -167,9 +167,12 @@ impl Experiments {
 
     fn heat_maps(&self, publication: &Publication<'_>, points: &[Point<Setup>]) -> Result<(), Failure> {
         let mut machine = self.open()?;
-        for point in points {
-            let heat = figures::heat_map(&mut machine, &point.study)?;
-            publication.drawing(&format!("-{}.png", point.label), &heat)?;
+        let (most, pictures) = figures::heat_maps(&mut machine, points.iter().map(|point| &point.study))?;
+        for (point, picture) in points.iter().zip(&pictures) {
+            publication.picture(&format!("-{}.png", point.label), picture)?;
+        }
+        if !self.common.output.quiet {
+            outcome::say(&format!("heat maps: black is no step, nearly white {most} steps"));
         }
         machine.check_validation()?;
         Ok(())

@@ -6,7 +6,7 @@ use crate::experiment::error::Error;
 use crate::experiment::machine::Machine;
 use crate::experiment::picture;
 use crate::experiment::study::Study;
-use crate::image::{Raster, Rgba8, Samples};
+use crate::image::{Rgba8, Samples};
 use crate::papers::Paper;
 use crate::papers::terrain::{Hit, Surface, Terrain, Variant};
 
@@ -58,15 +58,45 @@ pub fn census(machine: &mut Machine, paper: &mut Terrain) -> Result<Census, Erro
     Ok(Census { hits })
 }
 
-/// Steps of each ray as a ramp from none to the most.
+/// Black for no step, by violet, red and yellow to nearly white for the most; sRGB, each as much lighter than the one before.
+const HEAT: [[f32; 3]; 6] = [
+    [0.0, 0.0, 4.0],
+    [59.0, 15.0, 112.0],
+    [140.0, 41.0, 129.0],
+    [222.0, 73.0, 104.0],
+    [254.0, 159.0, 109.0],
+    [252.0, 253.0, 191.0],
+];
+
+fn heat(share: f32) -> [u8; 4] {
+    let place = share.clamp(0.0, 1.0) * (HEAT.len() - 1) as f32;
+    let below = (place as usize).min(HEAT.len() - 2);
+    let part = place - below as f32;
+    let channel = |i: usize| (HEAT[below][i] + part * (HEAT[below + 1][i] - HEAT[below][i])).round() as u8;
+    [channel(0), channel(1), channel(2), 255]
+}
+
+/// Steps of each ray by heat, one picture for each setup. All share one ramp, from no step to the most that any ray took,
+/// which is given as well.
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Scene`], [`Error::Image`], [`Error::Parameter`].
-pub fn heat_map(machine: &mut Machine, setup: &Setup) -> Result<Raster, Error> {
-    let scene = setup.load()?;
-    let mut built = build(machine, setup, &scene, Variant::GpuCompute)?;
-    let census = census(machine, &mut built.paper)?;
-    let (width, height) = (setup.parameters.width, setup.parameters.height);
-    let steps: Vec<f32> = census.hits.iter().map(|hit| hit.steps as f32).collect();
-    Ok(Raster::image(width, height, 1, 1, steps)?)
+pub fn heat_maps<'a>(
+    machine: &mut Machine,
+    setups: impl Iterator<Item = &'a Setup>,
+) -> Result<(u32, Vec<Rgba8>), Error> {
+    let mut pictures = Vec::new();
+    let mut most = 1;
+    for setup in setups {
+        let scene = setup.load()?;
+        let mut built = build(machine, setup, &scene, Variant::GpuCompute)?;
+        let steps: Vec<u32> = census(machine, &mut built.paper)?.hits.iter().map(|hit| hit.steps).collect();
+        most = steps.iter().copied().fold(most, u32::max);
+        pictures.push((setup.parameters.width, setup.parameters.height, steps));
+    }
+    let draw = |(width, height, steps): (u32, u32, Vec<u32>)| {
+        let pixels = steps.iter().flat_map(|&steps| heat(steps as f32 / most as f32)).collect();
+        Ok(Rgba8::new(width, height, pixels)?)
+    };
+    Ok((most, pictures.into_iter().map(draw).collect::<Result<_, Error>>()?))
 }

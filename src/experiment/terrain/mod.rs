@@ -1,5 +1,6 @@
 //! The experiments of the `terrain` paper: what a user set up, what a run says of itself, the table and the figures.
 
+pub mod collisions;
 pub mod figures;
 pub mod table;
 

@@ -28,6 +28,20 @@ impl Surface {
         Surface::WallSouth,
         Surface::Inside,
     ];
+
+    /// As a record has it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Surface::Sky => "sky",
+            Surface::Base => "base",
+            Surface::Terrain => "terrain",
+            Surface::WallWest => "west wall",
+            Surface::WallEast => "east wall",
+            Surface::WallNorth => "north wall",
+            Surface::WallSouth => "south wall",
+            Surface::Inside => "inside",
+        }
+    }
 }
 
 /// A texel of the target `depth`.
