@@ -138,7 +138,8 @@ fn bodies_that_are_none_are_refused() {
     ] {
         terrain("collide --resolution 16").args(body).run().refused(2, parts);
     }
-    for body in ["--segment=nan,2,3,1,2,4", "--segment=1,2,3", "--sphere=1,2,3,inf", "--sphere=a,b,c,d", "--camera=top"] {
+    for body in ["--segment=nan,2,3,1,2,4", "--segment=1,2,3", "--sphere=1,2,3,inf", "--sphere=a,b,c,d", "--camera=top"]
+    {
         terrain("collide --resolution 16").arg(body).run().misused(&[body.split('=').next().unwrap()]);
     }
 }

@@ -1,15 +1,14 @@
 //! `--lod pixel` against the oracle, ray by ray.
 //!
-//! A ray that stops at the footprint of a pixel meets the surface through the maxima of texels as large as that. Whatever
-//! their shape, this is bound from both sides by the samples below the texels that were read: up to the place that is given
-//! the ray was nowhere below all samples of its footprint, and there it is not above all of them.
+//! A ray that stops at the footprint of a pixel meets the surface through the maxima of texels as large as that. Whatever its
+//! shape, this is bound from both sides by the samples that the texels cover: up to the place that is given the ray was nowhere
+//! below all samples of its footprint, and there it is not above all of them.
 
+use fumarole::gpu::Compiler;
 use fumarole::papers::terrain::reference::{Grid, Interpolation as Between, Ray};
 use fumarole::papers::terrain::{Base, Hit, Inputs, Interpolation, Lod, Parameters, Rays, Surface, Variant};
 use fumarole::scene::random::Random;
 use rayon::prelude::*;
-
-use fumarole::gpu::Compiler;
 
 use crate::common::gpu_test;
 use crate::drawing::Drawing;
@@ -104,6 +103,7 @@ fn a_pixel_s_height_is_that_of_its_footprint() {
                 let mut random = Random::new(seed);
                 let map = random_map(&mut random, Relief::Waves, (257, 180), 12.0);
                 let world = World::alone("footprint", base, interpolation, None, map);
+                let mut coarse = 0;
                 for stand in [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Far(3.0)] {
                     let camera = world.camera(stand, &mut random);
                     let rays = Rays::new(&camera, width, height);
@@ -122,17 +122,16 @@ fn a_pixel_s_height_is_that_of_its_footprint() {
                             fault(&world, &rays, &ray, direction.length(), hit)
                                 .map(|fault| format!("pixel {pixel}, {hit:?}: {fault}"))
                         };
-                        let faults: Vec<String> =
-                            drawing.hits.par_iter().enumerate().filter_map(judge).collect();
+                        let faults: Vec<String> = drawing.hits.par_iter().enumerate().filter_map(judge).collect();
                         let place = format!("{base:?} {interpolation:?} {stand:?} {variant:?} {compiler:?}");
                         let first: Vec<&String> = faults.iter().take(4).collect();
                         assert!(faults.is_empty(), "{place}: {} rays: {first:#?}", faults.len());
                         let met = drawing.hits.iter().filter(|hit| hit.surface == Surface::Terrain).count();
-                        let coarse = drawing.hits.iter().filter(|hit| hit.shift > 0).count();
-                        assert!(met > 100, "{place}: only {met} rays meet the map");
-                        assert!(coarse > 100 || matches!(stand, Stand::Hovering), "{place}: only {coarse} are coarse");
+                        assert!(met > 20, "{place}: only {met} rays meet the map");
+                        coarse += drawing.hits.iter().filter(|hit| hit.shift > 0).count();
                     }
                 }
+                assert!(coarse > 1000, "{base:?} {interpolation:?}: only {coarse} rays end above the data");
             }
         }
     });

@@ -118,7 +118,8 @@ impl<'a> Judge<'a> {
         let is_start = hit.depth_m == 0.0;
         // Where a whole turn meets itself at another height, device and oracle call the cliff between a surface.
         let is_whole_turn = terrain.base.turns() && map.end()[0] - map.origin[0] > TAU * (1.0 - 1e-6);
-        let is_seam = is_whole_turn && !map.closes && around.beside_m[0].abs() <= self.tolerance_m && around.above_m < 0.0;
+        let is_seam =
+            is_whole_turn && !map.closes && around.beside_m[0].abs() <= self.tolerance_m && around.above_m < 0.0;
         let residual_m = match hit.surface {
             Surface::Sky | Surface::Base if is_start => around.h.max(0.0),
             Surface::Sky | Surface::Base => around.h.abs(),

@@ -39,7 +39,7 @@ pub struct CollideArgs {
     #[command(flatten)]
     land: LandArgs,
     /// Write what was met as JSON; to standard output without a file
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-", help_heading = "Output")]
     json: Option<PathBuf>,
 }
 

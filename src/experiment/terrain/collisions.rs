@@ -16,8 +16,14 @@ const FAR_M: f64 = 1.0e8;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Body {
     /// A point that moves straight from one place to another.
-    Segment { from: DVec3, to: DVec3 },
-    Sphere { center: DVec3, radius_m: f64 },
+    Segment {
+        from: DVec3,
+        to: DVec3,
+    },
+    Sphere {
+        center: DVec3,
+        radius_m: f64,
+    },
 }
 
 /// What a body meets first.
@@ -47,9 +53,12 @@ impl Body {
     fn check(&self) -> Result<(), Error> {
         let (name, places, is_body, what) = match *self {
             Body::Segment { from, to } => ("--segment", vec![from, to], from != to, "has no length"),
-            Body::Sphere { center, radius_m } => {
-                ("--sphere", vec![center], radius_m > 0.0 && radius_m <= FAR_M, "needs a radius of more than 0 to 100000 km")
-            }
+            Body::Sphere { center, radius_m } => (
+                "--sphere",
+                vec![center],
+                radius_m > 0.0 && radius_m <= FAR_M,
+                "needs a radius of more than 0 to 100000 km",
+            ),
         };
         let value = self.to_string();
         ParameterError::check(is_body, name, &value, what)?;
@@ -136,7 +145,9 @@ impl Collision {
             Surface::Inside => "has its centre in the ground".to_owned(),
             surface => format!("meets the {} of map {}", surface.word(), m.map),
         };
-        let three = |v: DVec3, digits: usize| v.to_array().map(|c| format!("{c:.digits$}")).join(",");
+        // No minus before a zero.
+        let rounded = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
+        let three = |v: DVec3, digits: usize| v.to_array().map(|c| format!("{:.digits$}", rounded(c))).join(",");
         let place = match m.parameter {
             Some(parameter) => format!("parameter {parameter:.6}, {:.3} m from its start", m.distance_m),
             None => format!("{:.6} m from its centre", m.distance_m),

@@ -74,7 +74,8 @@ impl FieldWork for Search<'_> {
                 continue;
             }
             let quarters = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|quarter| 2 * number + IVec2::from(quarter));
-            let mut nearer: Vec<Block> = quarters.into_iter().filter_map(|q| self.block(&field, shift - 1, q)).collect();
+            let mut nearer: Vec<Block> =
+                quarters.into_iter().filter_map(|q| self.block(&field, shift - 1, q)).collect();
             nearer.sort_by(|a, b| b.at_least_m.total_cmp(&a.at_least_m));
             stack.extend(nearer);
         }
@@ -118,13 +119,17 @@ impl Search<'_> {
             (1, 0.0, Surface::WallNorth),
             (1, last.y, Surface::WallSouth),
         ];
-        for (axis, node, side) in sides {
+        let closes = self.solid.closes();
+        for (axis, node, side) in sides.into_iter().filter(|(axis, ..)| *axis == 1 || !closes) {
             let foot = self.solid.foot_on_edge(axis, node, self.center);
             let (mut place, height_m) = self.solid.place(foot);
             place[axis] = node;
             if self.height_at(field, place).is_some_and(|ground_m| (0.0..=ground_m).contains(&height_m)) {
                 self.offer(foot, side);
             }
+        }
+        if closes {
+            return;
         }
         for (column, row) in [(0.0, 0.0), (last.x, 0.0), (0.0, last.y), (last.x, last.y)] {
             let corner = DVec2::new(column, row);
@@ -141,10 +146,10 @@ impl Search<'_> {
 
     /// A block, if it may hold something nearer. What lies below the base is no nearer than the base itself.
     fn block<T: Texel>(&mut self, field: &Field<'_, T>, shift: i32, number: IVec2) -> Option<Block> {
-        let last = self.solid.last_node();
-        let low = (number << shift).as_dvec2();
+        let [first, last] = self.solid.span();
+        let low = (number << shift).as_dvec2().max(first);
         let high = ((number + 1) << shift).as_dvec2().min(last);
-        if low.cmpge(last).any() {
+        if low.cmpge(high).any() {
             return None;
         }
         self.best.steps += 1;
@@ -219,7 +224,8 @@ fn nearest_on_parallelogram(from: DVec3, along: [DVec3; 2]) -> (f64, DVec2) {
         DVec2::new(part(fa - ab, aa), -1.0),
         DVec2::new(part(fa + ab, aa), 1.0),
     ];
-    borders.map(|at| (length(at), at)).into_iter().fold((f64::INFINITY, DVec2::ZERO), |least, found| {
-        if found.0 < least.0 { found } else { least }
-    })
+    borders
+        .map(|at| (length(at), at))
+        .into_iter()
+        .fold((f64::INFINITY, DVec2::ZERO), |least, found| if found.0 < least.0 { found } else { least })
 }

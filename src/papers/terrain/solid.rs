@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::ground::Ground;
+use super::ground::{Ground, REPEATED};
 
 /// A ground in metres: on a plane east, south and up from the first sample; else as [`super::curve::Curve`] has it.
 #[derive(Clone, Copy)]
@@ -82,6 +82,17 @@ impl<'a> Solid<'a> {
     pub fn last_node(&self) -> DVec2 {
         let shape = self.ground.shape;
         DVec2::new(f64::from(shape.width - 1), f64::from(shape.height - 1))
+    }
+
+    /// Whether the map goes once round, and has no eastern and western side.
+    pub fn closes(&self) -> bool {
+        self.ground.closes
+    }
+
+    /// The corners of what is searched. Of a map that closes the outermost columns only serve those beside them.
+    pub fn span(&self) -> [DVec2; 2] {
+        let spare = if self.ground.closes { DVec2::X * f64::from(REPEATED - 1) } else { DVec2::ZERO };
+        [spare, self.last_node() - spare]
     }
 
     /// The point of the sheet below an edge, `axis` 0 for a column and 1 for a row, that is nearest to a point.

@@ -33,8 +33,8 @@ impl MapCoordinates {
     /// degrees are taken for degrees, as GTOPO30 has them, and all others for metres.
     pub(super) fn placed(&self, unit: Option<Unit>) -> Placement {
         let corner = self.north_west.filter(|corner| {
-            let south_east =
-                *corner + DVec2::new(1.0, -1.0) * self.step * DVec2::new(self.width.into(), self.height.into());
+            let cells = DVec2::new(self.width.into(), self.height.into()) - 1.0;
+            let south_east = *corner + DVec2::new(1.0, -1.0) * self.step * cells;
             corner.min(south_east).cmpge(DVec2::new(-360.0, -91.0)).all()
                 && corner.max(south_east).cmple(DVec2::new(360.0, 91.0)).all()
         });
