@@ -2,6 +2,8 @@
 
 mod experiment;
 
+use std::convert::Infallible;
+
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 
@@ -176,6 +178,7 @@ pub struct BurningArgs {
 impl PaperArgs for BurningArgs {
     type Study = Setup;
     type Experiment = Experiments;
+    type Own = Infallible;
 
     const ABOUT: &'static str =
         "Burning: heat, deformation, consumption and melting of meshes (Amarasinghe), pass by pass";
