@@ -111,6 +111,8 @@ mod tests {
         };
         let degrees = grid(139.99, 40.0, 1.0 / 120.0);
         assert!(matches!(degrees.placed(None), Placement::Degrees(place) if place.north_deg == 40.0));
+        let whole_earth = MapCoordinates { width: 36, height: 18, ..grid(-175.0, 85.0, 10.0) };
+        assert!(matches!(whole_earth.placed(Some(Unit::Degrees)), Placement::Degrees(_)));
         assert_eq!(degrees.placed(Some(Unit::Metres(2.0))), Placement::Metres(DVec2::splat(1.0 / 60.0)));
         for metres in [grid(500_000.0, 4_000_000.0, 30.0), grid(0.0, 50.0, 1.0), grid(10.0, 90.0, 20.0)] {
             assert_eq!(metres.placed(None), Placement::Metres(metres.step));
