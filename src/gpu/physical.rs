@@ -185,6 +185,13 @@ impl PhysicalDevice {
         self.features.contains(&feature)
     }
 
+    /// The device as if it lacked `feature`: opened, it does not enable it. What less capable devices get can be tried on
+    /// a more capable one.
+    pub fn without(mut self, feature: Feature) -> Self {
+        self.features.retain(|f| *f != feature);
+        self
+    }
+
     /// What of `needed`, and of the layer's own baseline, the device lacks; empty when it is capable.
     pub fn lacks(&self, needed: &[Feature]) -> Vec<&'static str> {
         let mut missing = Vec::new();

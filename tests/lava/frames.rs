@@ -1,9 +1,11 @@
 //! Whole frames: pass order, replay, both ways to make splats, both compilers.
 
 use fumarole::gpu::bindings::Resource;
-use fumarole::gpu::{Compiler, Mode, PassKind, Recorder, ShaderLibrary};
+use fumarole::gpu::{
+    Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder, ShaderLibrary,
+};
 use fumarole::papers::Paper;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
+use fumarole::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock};
 use fumarole::scene::Camera;
 use glam::Vec3;
 
@@ -96,6 +98,38 @@ fn instanced_quads_draw_what_the_geometry_stage_draws() {
     });
 }
 
+/// lavapipe has geometry stages, so it is opened as if it had none: no pass may ask for one.
+#[test]
+fn a_device_without_geometry_stages_draws_quads_and_says_so() {
+    gpu_test(|device| {
+        let parameters = parameters();
+        let mut with = lava(device, &parameters);
+        draw(device, &mut with, 0);
+        assert_eq!(with.warnings(), Vec::<String>::new());
+        let expected: Vec<u8> = texels(device, with.picture());
+
+        let instance = Instance::new(true).unwrap();
+        let same = |physical: &PhysicalDevice| physical.uuid == device.physical().uuid;
+        let physical = PhysicalDevice::enumerate(&instance).unwrap().into_iter().find(same).unwrap();
+        let lesser = Device::open(&instance, physical.without(Feature::GeometryShader)).unwrap();
+        assert_eq!(lesser.physical().lacks(&NEEDS), Vec::<&str>::new(), "it is capable of the paper");
+        let mut without = lava(&lesser, &parameters);
+        let sample = draw(&lesser, &mut without, 0);
+        for pass in ["accumulate-depths", "visibility", "blending"] {
+            let shaders = &sample.passes.iter().find(|p| p.info.name == pass).unwrap().info.shaders;
+            assert!(shaders.iter().any(|s| s.ends_with("quad.vert")), "{pass}: {shaders:?}");
+            assert!(!shaders.iter().any(|s| s.ends_with(".geom")), "{pass}: {shaders:?}");
+        }
+        let warnings = without.warnings();
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        assert!(warning.contains("no geometry stage") && warning.contains("instanced quads"), "{warning}");
+        let (worst, off) = difference(&expected, &texels(&lesser, without.picture()));
+        assert!(off <= 8, "{off} values differ, by {worst} at most");
+        drop((without, lesser));
+        assert_eq!(instance.take_messages().iter().map(ToString::to_string).collect::<Vec<_>>(), Vec::<String>::new());
+    });
+}
+
 #[test]
 fn both_compilers_draw_one_picture() {
     gpu_test(|device| {
@@ -103,7 +137,7 @@ fn both_compilers_draw_one_picture() {
             let parameters = Parameters { geometry_stage: false, ..parameters() };
             let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
             let particles = Particles::seeded(&parameters);
-            let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in()).unwrap();
+            let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in(), &[]).unwrap();
             let sample = draw(device, &mut lava, 1);
             let ran = sample.passes.iter().filter_map(|p| p.info.compiler);
             assert!(ran.clone().count() == 7 && ran.into_iter().all(|c| c == compiler));
@@ -116,7 +150,7 @@ fn both_compilers_draw_one_picture() {
         let parameters = parameters();
         let shaders = ShaderLibrary::new(device, Compiler::Naga, None).unwrap();
         let particles = Particles::seeded(&parameters);
-        let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in()).unwrap();
+        let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in(), &[]).unwrap();
         let sample = draw(device, &mut lava, 0);
         for pass in sample.passes.iter().filter(|p| p.info.compiler.is_some()) {
             let has_geometry = pass.info.shaders.iter().any(|s| s.ends_with(".geom"));

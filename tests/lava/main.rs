@@ -6,6 +6,7 @@ mod common;
 mod animation;
 mod density;
 mod frames;
+mod objects;
 mod pictures;
 mod refusals;
 mod scene;

@@ -66,7 +66,7 @@ fn points_larger_than_the_devices_are_refused_with_both_figures() {
             Parameters { space_m: Vec3::ONE, radius_m: 0.25, density: [columns, 4, 8], particles: 4, ..parameters() };
         parameters.validate().unwrap();
         let particles = Particles::seeded(&parameters);
-        let error = Lava::new(&shaders(device), "test", &parameters, &particles, Rock::built_in()).err().unwrap();
+        let error = Lava::new(&shaders(device), "test", &parameters, &particles, Rock::built_in(), &[]).err().unwrap();
         assert!(matches!(error, Error::Limit { .. }));
         let message = error.to_string();
         let size = parameters.point_size_px().ceil().to_string();

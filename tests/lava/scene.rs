@@ -36,7 +36,7 @@ pub fn lava(device: &Arc<Device>, parameters: &Parameters) -> Lava {
 
 pub fn lava_of(device: &Arc<Device>, parameters: &Parameters, particles: &Particles) -> Lava {
     parameters.validate().unwrap();
-    Lava::new(&shaders(device), "test", parameters, particles, Rock::built_in()).unwrap()
+    Lava::new(&shaders(device), "test", parameters, particles, Rock::built_in(), &[]).unwrap()
 }
 
 /// Draws frame `number`.

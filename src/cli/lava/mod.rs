@@ -14,7 +14,7 @@ use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, pa
 use super::paper::PaperArgs;
 use crate::experiment::lava::Setup;
 use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading};
-use crate::scene::Camera;
+use crate::scene::{Camera, MeshSource};
 
 /// Where the camera stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +117,10 @@ pub struct LavaArgs {
     /// Side of the square that the rock covers once in metres, above 0 and at most 1000 [default: 2]
     #[arg(long, value_name = "M", value_parser = parse_finite, allow_negative_numbers = true)]
     rock_tile: Option<f32>,
+    /// Polygon mesh in the simulation space, metres: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file;
+    /// repeatable
+    #[arg(long, value_name = "SHAPE|FILE")]
+    object: Vec<MeshSource>,
     /// What colours the splats [default: lava]
     #[arg(long, value_enum)]
     shading: Option<ShadingWord>,
@@ -147,7 +151,7 @@ impl PaperArgs for LavaArgs {
     const RENDERED: &'static str = "paper";
 
     fn quick() -> Setup {
-        Setup { parameters: Parameters::default(), rock: None, preset: None, process: 0 }
+        Setup { parameters: Parameters::default(), rock: None, objects: Vec::new(), preset: None, process: 0 }
     }
 
     fn resolve(&self, process: u32) -> Result<Setup, Failure> {
@@ -195,6 +199,12 @@ impl LavaArgs {
         }
         set(&mut p.seed, self.seed);
         set(&mut p.time_step_s, self.time_step);
-        Setup { parameters: p, rock: self.rock.clone(), preset: preset.map(str::to_owned), process: 0 }
+        Setup {
+            parameters: p,
+            rock: self.rock.clone(),
+            objects: self.object.clone(),
+            preset: preset.map(str::to_owned),
+            process: 0,
+        }
     }
 }

@@ -121,7 +121,7 @@ impl Figure {
                 Part::Shaded(shading) => setup.parameters.shading = shading,
                 Part::Splats(radius_m) => setup.parameters.splat_radius_m = radius_m,
             }
-            setup.parameters.validate()?;
+            setup.check()?;
             let mut built = build(machine, &setup, &scene, Variant::Paper)?;
             let picture = picture::render(machine, &mut built.paper, number)?;
             let targets = built.paper.targets();

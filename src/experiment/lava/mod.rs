@@ -18,7 +18,8 @@ use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::image::read_png;
-use crate::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Variant};
+use crate::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Shading, Variant};
+use crate::scene::{Mesh, MeshSource};
 
 /// What a user set up.
 #[derive(Debug, Clone)]
@@ -26,15 +27,35 @@ pub struct Setup {
     pub parameters: Parameters,
     /// PNG of the rock texture; the built-in one without.
     pub rock: Option<PathBuf>,
+    /// Polygon meshes in the simulation space, at their own size and place.
+    pub objects: Vec<MeshSource>,
     pub preset: Option<String>,
     /// Which of several fresh processes this is.
     pub process: u32,
 }
 
-/// A setup with its particles placed and its rock decoded.
+impl Setup {
+    /// Checks the parameters, and that what is drawn can be drawn together.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`], [`Error::Input`].
+    pub fn check(&self) -> Result<(), Error> {
+        self.parameters.validate()?;
+        match (self.objects.first(), self.parameters.shading) {
+            (Some(object), Shading::Particles) => {
+                let problem = "particles are points, without a surface that could hide it; choose another --shading";
+                Err(Error::Input(format!("--object {object}: {problem}")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A setup with its particles placed, its rock decoded and its objects loaded.
 pub struct Scene {
     pub particles: Particles,
     pub rock: Cow<'static, Rock>,
+    pub objects: Vec<Mesh>,
 }
 
 impl Study for Setup {
@@ -45,9 +66,10 @@ impl Study for Setup {
     type Scene = Scene;
     type Paper = Lava;
 
-    /// Checks the parameters, decodes the rock and places the particles. A rock that is no PNG is an [`Error::Image`].
+    /// Checks the parameters, decodes the rock, places the particles and loads the objects. A rock that is no PNG is an
+    /// [`Error::Image`].
     fn load(&self) -> Result<Scene, Error> {
-        self.parameters.validate()?;
+        self.check()?;
         let rock = match &self.rock {
             None => Cow::Borrowed(Rock::built_in()),
             Some(path) => {
@@ -58,11 +80,12 @@ impl Study for Setup {
                 Cow::Owned(rock)
             }
         };
-        Ok(Scene { particles: Particles::seeded(&self.parameters), rock })
+        let objects = self.objects.iter().map(MeshSource::load).collect::<Result<_, _>>()?;
+        Ok(Scene { particles: Particles::seeded(&self.parameters), rock, objects })
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, _: Variant) -> Result<Lava, gpu::Error> {
-        Lava::new(shaders, label, &self.parameters, &scene.particles, &scene.rock)
+        Lava::new(shaders, label, &self.parameters, &scene.particles, &scene.rock, &scene.objects)
     }
 
     fn identity(&self) -> Identity {
@@ -91,6 +114,7 @@ impl Study for Setup {
             ("color", json!(p.color.to_array())),
             ("rock", json!(self.rock.as_ref().map(|path| path.display().to_string()))),
             ("rock_tile", json!(p.rock_tile_m)),
+            ("object", json!(self.objects.iter().map(ToString::to_string).collect::<Vec<_>>())),
             ("shading", json!(p.shading.word())),
             ("geometry_stage", json!(p.geometry_stage)),
             ("camera", config::camera(&p.camera)),

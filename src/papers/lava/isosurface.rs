@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::animation::host_vertices;
 use super::clusters::Point;
+use super::floors::{EMPTY, FLOORS};
 use super::parameters::Parameters;
 use super::targets::{FLOATS, ZERO, desc, target};
 use crate::gpu::{
@@ -48,6 +49,7 @@ pub struct Isosurface {
     clusters: Vec<ClusterPasses>,
     extract: Arc<PassInfo>,
     accumulate_depths: Pass,
+    accumulate_floor: Pass,
     normal_height_pass: Pass,
     readback: Arc<Buffer>,
     /// Room for every grid point.
@@ -68,6 +70,8 @@ pub struct Isosurface {
 /// What differs from cluster to cluster.
 struct ClusterPasses {
     density: Pass,
+    /// The same points with an empty fragment stage.
+    density_floor: Pass,
     read_density: Pass,
     plane_heights_m: [f32; 4],
     /// Planes that are there, 1 to 4.
@@ -102,19 +106,25 @@ impl Isosurface {
         let mut clusters: Vec<ClusterPasses> = Vec::with_capacity(cluster_vertices.len());
         for (k, vertices) in (0..).zip(cluster_vertices) {
             let layer = layers.layer(k)?;
-            let density = match clusters.first() {
-                None => Pass::graphics("density", "6.1", "lava/density.vert", "lava/density.frag")
+            let points = |name, fragment| {
+                Pass::graphics(name, "6.1", "lava/density.vert", fragment)
                     .vertices::<Point>(vertices)
                     .topology(Topology::Points)
                     .constants::<DensityConstants>()
-                    .color(&layer, ZERO, Blend::Add)
-                    .build(shaders)?,
-                Some(first) => first.density.again().vertices(vertices).color(0, &layer, ZERO).build(shaders)?,
+            };
+            let again = |pass: &Pass, load| pass.again().vertices(vertices).color(0, &layer, load).build(shaders);
+            let (density, density_floor) = match clusters.first() {
+                None => (
+                    points("density", "lava/density.frag").color(&layer, ZERO, Blend::Add).build(shaders)?,
+                    points(FLOORS[0].1, EMPTY).color(&layer, Load::Keep, Blend::Masked).build(shaders)?,
+                ),
+                Some(first) => (again(&first.density, ZERO)?, again(&first.density_floor, Load::Keep)?),
             };
             let planes = (y - 4 * k).min(4);
             let height_m = |j: u32| if j < planes { parameters.plane_height_m(4 * k + j) } else { NO_PLANE_M };
             clusters.push(ClusterPasses {
                 density,
+                density_floor,
                 read_density: Pass::copy("read-density", "6.2", &layer, &readback),
                 plane_heights_m: [0, 1, 2, 3].map(height_m),
                 planes: planes as usize,
@@ -125,20 +135,24 @@ impl Isosurface {
         let vertices = host_vertices(shaders, name("isosurface"), points)?;
         let accumulated = target(shaders, name("accumulated-depths"), FLOATS, x, z)?;
         let normal_height = target(shaders, name("normal-height"), FLOATS, x, z)?;
-        let splats = |vertex, fragment| Pass::graphics("accumulate-depths", "6.3", vertex, fragment);
-        let accumulate = "lava/accumulate-depths.frag";
-        let splats = if instanced {
-            splats("lava/depth-splat-quad.vert", accumulate)
-                .instances::<Point>(&vertices)
-                .topology(Topology::TriangleStrip)
-        } else {
-            splats("lava/point.vert", accumulate)
-                .geometry("lava/depth-splat.geom")
-                .vertices::<Point>(&vertices)
-                .topology(Topology::Points)
+        let splats = |name, fragment| {
+            let splats = if instanced {
+                Pass::graphics(name, "6.3", "lava/depth-splat-quad.vert", fragment)
+                    .instances::<Point>(&vertices)
+                    .topology(Topology::TriangleStrip)
+            } else {
+                Pass::graphics(name, "6.3", "lava/point.vert", fragment)
+                    .geometry("lava/depth-splat.geom")
+                    .vertices::<Point>(&vertices)
+                    .topology(Topology::Points)
+            };
+            splats.constants::<DepthConstants>()
         };
-        let accumulate_depths =
-            splats.constants::<DepthConstants>().color(&accumulated, ZERO, Blend::Add).build(shaders)?;
+        let accumulate_depths = splats("accumulate-depths", "lava/accumulate-depths.frag")
+            .color(&accumulated, ZERO, Blend::Add)
+            .build(shaders)?;
+        let accumulate_floor =
+            splats(FLOORS[1].1, EMPTY).color(&accumulated, Load::Keep, Blend::Masked).build(shaders)?;
         let normal_height_pass =
             Pass::graphics("normal-height", "6.4", "common/fullscreen.vert", "lava/normal-height.frag")
                 .constants::<NormalConstants>()
@@ -152,6 +166,7 @@ impl Isosurface {
             clusters,
             extract: PassInfo::host("extract", "6.2", &[readback.name()], &[vertices.name()]),
             accumulate_depths,
+            accumulate_floor,
             normal_height_pass,
             readback,
             vertices,
@@ -189,11 +204,7 @@ impl Isosurface {
         self.accepted.clear();
         self.range = [f32::INFINITY, f32::NEG_INFINITY];
         for (passes, particles) in self.clusters.iter().zip(clusters) {
-            let plane_heights_m = passes.plane_heights_m;
-            let constants = DensityConstants { plane_heights_m, ..self.density_constants };
-            frame.graphics(&passes.density, |draw| {
-                draw.constants(&constants).vertices(particles.len() as u32);
-            })?;
+            self.draw_particles(frame, &passes.density, passes.plane_heights_m, particles)?;
             frame.copy(&passes.read_density)?;
             frame.wait_for(&passes.read_density)?;
             let Isosurface { grid, readback, accepted, range, vertices, .. } = self;
@@ -206,17 +217,47 @@ impl Isosurface {
                 vertices.write(offset_bytes, bytemuck::cast_slice(&accepted[before..]))
             })?;
         }
+        self.draw_accepted(frame, &self.accumulate_depths)?;
+        frame.graphics(&self.normal_height_pass, |draw| {
+            draw.constants(&self.normal_constants).vertices(3);
+        })
+    }
+
+    /// Draws the last frame's points with an empty fragment stage, as the passes of [`FLOORS`]. It changes no texture.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floors(&self, frame: &mut Frame<'_>, clusters: &[Vec<Point>]) -> Result<(), Error> {
+        for (passes, particles) in self.clusters.iter().zip(clusters) {
+            self.draw_particles(frame, &passes.density_floor, passes.plane_heights_m, particles)?;
+        }
+        self.draw_accepted(frame, &self.accumulate_floor)
+    }
+
+    /// The particles of a cluster.
+    fn draw_particles(
+        &self,
+        frame: &mut Frame<'_>,
+        pass: &Pass,
+        plane_heights_m: [f32; 4],
+        particles: &[Point],
+    ) -> Result<(), Error> {
+        let constants = DensityConstants { plane_heights_m, ..self.density_constants };
+        frame.graphics(pass, |draw| {
+            draw.constants(&constants).vertices(particles.len() as u32);
+        })
+    }
+
+    /// The accepted grid points as splats.
+    fn draw_accepted(&self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
         let points = self.accepted.len() as u32;
-        frame.graphics(&self.accumulate_depths, |draw| {
+        frame.graphics(pass, |draw| {
             draw.constants(&self.depth_constants);
             if self.instanced {
                 draw.instances(4, points)
             } else {
                 draw.vertices(points)
             };
-        })?;
-        frame.graphics(&self.normal_height_pass, |draw| {
-            draw.constants(&self.normal_constants).vertices(3);
         })
     }
 

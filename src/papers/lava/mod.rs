@@ -9,12 +9,16 @@
 //!   ┌─────────────────────────────────────────────┘
 //!   └─► visibility ─► blending ─► normalisation                                   (stage three, chapter 7)
 //! ```
+//!
+//! Where there are polygon objects, `objects` draws them into the picture after the thesis's last pass.
 
 mod animation;
 mod clusters;
+mod floors;
 mod isosurface;
 #[cfg(test)]
 mod layouts;
+mod objects;
 pub mod parameters;
 mod particles;
 mod pattern;
@@ -26,12 +30,15 @@ mod targets;
 
 use std::sync::Arc;
 
+use self::objects::Objects;
 use self::points::Points;
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::scene::Mesh;
 
 pub use self::animation::Animation;
 pub use self::clusters::{Clusters, Point};
+pub use self::floors::FLOORS;
 pub use self::isosurface::Isosurface;
 pub use self::parameters::{CAMERAS, Parameters, Preset, Shading, Variant};
 pub use self::particles::Particles;
@@ -48,13 +55,15 @@ pub struct Lava {
     animation: Animation,
     isosurface: Isosurface,
     splatting: Splatting,
+    objects: Option<Objects>,
     /// Where the picture shows particles instead of the surface.
     points: Option<Points>,
     lacks_geometry_stage: bool,
 }
 
 impl Lava {
-    /// Makes every resource and pass; `label` goes before the names of the resources.
+    /// Makes every resource and pass; `label` goes before the names of the resources. `objects` are valid meshes in the
+    /// simulation space, metres.
     ///
     /// # Errors
     /// What the Vulkan layer answers. The caller has validated `parameters` and `rock`; there is at least one particle.
@@ -64,17 +73,30 @@ impl Lava {
         parameters: &Parameters,
         particles: &Particles,
         rock: &Rock,
+        objects: &[Mesh],
     ) -> Result<Self, Error> {
         let has_geometry_stage = shaders.device().physical().has(Feature::GeometryShader);
         let instanced = !(parameters.geometry_stage && has_geometry_stage);
         let animation = Animation::new(shaders, label, parameters, particles)?;
         let isosurface = Isosurface::new(shaders, label, parameters, animation.vertices(), instanced)?;
         let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
+        let objects = match objects {
+            [] => None,
+            meshes => Some(Objects::new(shaders, label, parameters, meshes, &splatting)?),
+        };
         let points = (parameters.shading == Shading::Particles)
             .then(|| Points::new(shaders, &animation, &splatting))
             .transpose()?;
         let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
-        Ok(Lava { parameters: parameters.clone(), animation, isosurface, splatting, points, lacks_geometry_stage })
+        Ok(Lava {
+            parameters: parameters.clone(),
+            animation,
+            isosurface,
+            splatting,
+            objects,
+            points,
+            lacks_geometry_stage,
+        })
     }
 
     /// What a user should know of the device and of the last frame.
@@ -96,6 +118,16 @@ impl Lava {
             ));
         }
         warnings
+    }
+
+    /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what their
+    /// vertices and primitives cost alone. It changes no texture.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floors(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.isosurface.record_floors(frame, self.animation.clusters())?;
+        self.splatting.record_floor(frame)
     }
 
     /// Stage one.
@@ -144,7 +176,8 @@ impl Paper for Lava {
         }
         self.animation.record(frame)?;
         self.isosurface.record(frame, self.animation.clusters())?;
-        self.splatting.record(frame, self.drift_m(number))
+        self.splatting.record(frame, self.drift_m(number))?;
+        self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
     }
 
     /// The thesis's last pass is the picture, but where it shows particles.

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::floors::{EMPTY, FLOORS};
 use super::parameters::{Parameters, Shading};
 use super::rock::Rock;
 use super::targets::{DEPTH, FAR, FLOATS, ZERO, target};
 use crate::gpu::transfer::upload;
 use crate::gpu::{
-    Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary, Topology,
+    Blend, Buffer, DepthTest, Draw, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary, Topology,
 };
 use crate::host_block;
 
@@ -46,6 +47,7 @@ host_block! {
 pub struct Splatting {
     visibility_pass: Pass,
     blending: Pass,
+    splats_floor: Pass,
     normalisation: Pass,
     splats: u32,
     instanced: bool,
@@ -112,6 +114,9 @@ impl Splatting {
             .with("linear", &linear)
             .color(&accumulated, ZERO, Blend::Add)
             .build(shaders)?;
+        let splats_floor = splats(FLOORS[2].1, "7.1", EMPTY)
+            .color(&accumulated, Load::Keep, Blend::Masked)
+            .build(shaders)?;
         let normalisation = Pass::graphics("normalisation", "7.3", "common/fullscreen.vert", "lava/normalisation.frag")
             .with("accumulated_colors", &accumulated)
             .color(&picture, Load::Discard, Blend::Replace)
@@ -119,6 +124,7 @@ impl Splatting {
         Ok(Splatting {
             visibility_pass,
             blending,
+            splats_floor,
             normalisation,
             splats: places.len() as u32,
             instanced,
@@ -136,24 +142,30 @@ impl Splatting {
     /// What the Vulkan layer answers.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
         let constants = ShadingConstants { drift_m: [drift_m, 0.0], mode: self.shading.mode() };
-        frame.graphics(&self.visibility_pass, |draw| {
-            if self.instanced {
-                draw.instances(4, self.splats)
-            } else {
-                draw.vertices(self.splats)
-            };
-        })?;
+        frame.graphics(&self.visibility_pass, |draw| self.draw_splats(draw))?;
         frame.graphics(&self.blending, |draw| {
             draw.constants(&constants);
-            if self.instanced {
-                draw.instances(4, self.splats)
-            } else {
-                draw.vertices(self.splats)
-            };
+            self.draw_splats(draw);
         })?;
         frame.graphics(&self.normalisation, |draw| {
             draw.vertices(3);
         })
+    }
+
+    /// Draws the splats with an empty fragment stage, as the last pass of [`FLOORS`]. It changes no texture.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.graphics(&self.splats_floor, |draw| self.draw_splats(draw))
+    }
+
+    fn draw_splats(&self, draw: &mut Draw<'_>) {
+        if self.instanced {
+            draw.instances(4, self.splats)
+        } else {
+            draw.vertices(self.splats)
+        };
     }
 
     /// Eye-space depth of the nearest splat plus epsilon (eq. 7.1), as a share of [`depth_range_m`].

@@ -1,0 +1,31 @@
+#version 450
+
+// A polygon object where it is nearer than the lava: the depth texture of eq. 7.1 holds the nearest splat's depth plus
+// epsilon. The sky lights it from above and the lava's orange from below; faces are lit on both sides.
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "lava/scene.glsl"
+#include "lava/object.glsl"
+
+layout(set = 0, binding = 1) uniform texture2D visibility;
+
+layout(location = 0) in vec3 facing;
+layout(location = 1) in vec3 world_m;
+layout(location = 2) in float eye_depth_m;
+
+layout(location = 0) out vec4 color;
+
+const vec3 PAINT = vec3(0.55);
+const vec3 SKY = vec3(0.8, 0.9, 1.1);
+const float OF_THE_GLOW = 0.4;
+
+void main() {
+    float nearest = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).r;
+    if ((eye_depth_m + scene.epsilon_m) * scene.depth_per_m >= nearest) {
+        discard;
+    }
+    vec3 normal = facing / max(length(facing), 1.0e-20);
+    normal = dot(normal, world_m - object.eye_m) > 0.0 ? -normal : normal;
+    color = vec4(PAINT * mix(OF_THE_GLOW * scene.glow.rgb, SKY, 0.5 + 0.5 * normal.y), 1.0);
+}

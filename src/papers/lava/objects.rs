@@ -1,0 +1,90 @@
+//! Polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture without objects is
+//! the thesis's own.
+
+
+use ash::vk;
+
+use super::parameters::Parameters;
+use super::splatting::Splatting;
+use super::targets::{DEPTH, FAR};
+use crate::gpu::transfer::upload;
+use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, Load, Pass, ShaderLibrary};
+use crate::host_block;
+use crate::scene::Mesh;
+
+host_block! {
+    struct ObjectVertex {
+        position: [f32; 3],
+        normal: [f32; 3],
+    }
+}
+
+host_block! {
+    struct ObjectConstants {
+        eye_m: [f32; 3],
+    }
+}
+
+/// The pass `objects`, a call for each mesh.
+pub struct Objects {
+    /// Each with its number of indices.
+    passes: Vec<(Pass, u32)>,
+    constants: ObjectConstants,
+}
+
+impl Objects {
+    /// Draws over the picture what of `meshes`, metres in the simulation space, is nearer than the lava and each other.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        meshes: &[Mesh],
+        splatting: &Splatting,
+    ) -> Result<Self, Error> {
+        let device = shaders.device();
+        let desc = ImageDesc::new_2d(format!("{label}/object-depth"), DEPTH, parameters.width, parameters.height);
+        let depth = Image::new(device, desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()?;
+        let mut passes: Vec<(Pass, u32)> = Vec::with_capacity(meshes.len());
+        for mesh in meshes {
+            let buffer = |what: &str, usage, bytes: &[u8]| {
+                upload(device, &format!("{label}/{}/{what}", mesh.name), usage, bytes)
+            };
+            let pairs = mesh.positions.iter().zip(&mesh.normals);
+            let vertices: Vec<ObjectVertex> =
+                pairs.map(|(p, n)| ObjectVertex { position: p.to_array(), normal: n.to_array() }).collect();
+            let vertex_usage = vk::BufferUsageFlags::VERTEX_BUFFER;
+            let vertices = buffer("vertices", vertex_usage, bytemuck::cast_slice(&vertices))?;
+            let index_usage = vk::BufferUsageFlags::INDEX_BUFFER;
+            let indices = buffer("indices", index_usage, bytemuck::cast_slice(&mesh.indices))?;
+            let pass = match passes.first() {
+                None => Pass::graphics("objects", "", "lava/object.vert", "lava/object.frag")
+                    .vertices::<ObjectVertex>(&vertices)
+                    .indices(&indices)
+                    .constants::<ObjectConstants>()
+                    .with("scene", splatting.scene())
+                    .with("visibility", splatting.visibility())
+                    .color(splatting.picture(), Load::Keep, Blend::Replace)
+                    .depth(&depth, FAR, DepthTest::LessWrite)
+                    .build(shaders)?,
+                Some((first, _)) => {
+                    first.again().vertices(&vertices).indices(&indices).depth(&depth, Load::Keep).build(shaders)?
+                }
+            };
+            passes.push((pass, mesh.indices.len() as u32));
+        }
+        Ok(Objects { passes, constants: ObjectConstants { eye_m: parameters.camera.eye.to_array() } })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.passes.iter().try_for_each(|(pass, count)| {
+            frame.graphics(pass, |draw| {
+                draw.constants(&self.constants).indices(*count);
+            })
+        })
+    }
+}
