@@ -1,7 +1,8 @@
 #version 450
 
 // Eq. 6.3's quotient and the normals from finite differences of the heights (section 6.4). Near the borders the height
-// sinks to 0 and the normal turns upwards. Where nothing was accepted the height is 0.
+// sinks to 0 and the normal turns upwards; the differences are those of the heights that have sunk, so that splats lie
+// along the slope that is drawn. Where nothing was accepted the height is 0.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -15,9 +16,17 @@ layout(push_constant, std430) uniform Grid {
 
 layout(location = 0) out vec4 normal_height;
 
+// 1 inside, falling to 0 at the borders.
+float share_at(ivec2 column) {
+    vec2 place_m = (vec2(column) + 0.5) * grid.space_m / grid.columns;
+    vec2 to_border_m = min(place_m, grid.space_m - place_m);
+    float nearest_m = min(to_border_m.x, to_border_m.y);
+    return grid.border_m > 0.0 ? clamp(nearest_m / grid.border_m, 0.0, 1.0) : 1.0;
+}
+
 float height_at(ivec2 column) {
     vec4 sums = texelFetch(accumulated_depths, column, 0);
-    return sums.a > 0.0 ? sums.r / sums.a : 0.0;
+    return sums.a > 0.0 ? share_at(column) * sums.r / sums.a : 0.0;
 }
 
 // Height difference per metre along one axis: central, at the sides one-sided.
@@ -33,12 +42,8 @@ float slope(ivec2 column, ivec2 axis, float spacing_m) {
 void main() {
     ivec2 column = ivec2(gl_FragCoord.xy);
     vec2 spacing_m = grid.space_m / grid.columns;
-    vec2 place_m = gl_FragCoord.xy * spacing_m;
-    vec2 to_border_m = min(place_m, grid.space_m - place_m);
-    float nearest_m = min(to_border_m.x, to_border_m.y);
-    float t = grid.border_m > 0.0 ? clamp(nearest_m / grid.border_m, 0.0, 1.0) : 1.0;
-
     vec2 slopes = vec2(slope(column, ivec2(1, 0), spacing_m.x), slope(column, ivec2(0, 1), spacing_m.y));
     vec3 normal = normalize(vec3(-slopes.x, 1.0, -slopes.y));
-    normal_height = vec4(normalize(mix(vec3(0.0, 1.0, 0.0), normal, t)), height_at(column) * t);
+    vec3 turned = normalize(mix(vec3(0.0, 1.0, 0.0), normal, share_at(column)));
+    normal_height = vec4(turned, height_at(column));
 }

@@ -1,9 +1,7 @@
 //! Whole frames: pass order, replay, both ways to make splats, both compilers.
 
 use fumarole::gpu::bindings::Resource;
-use fumarole::gpu::{
-    Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder, ShaderLibrary,
-};
+use fumarole::gpu::{Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder, ShaderLibrary};
 use fumarole::papers::Paper;
 use fumarole::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock};
 use fumarole::scene::Camera;

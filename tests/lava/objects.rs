@@ -57,8 +57,7 @@ fn level() -> Parameters {
 
 fn picture(device: &Arc<Device>, parameters: &Parameters, objects: &[Mesh]) -> (Vec<[u8; 4]>, Vec<&'static str>) {
     let particles = Particles::seeded(parameters);
-    let mut lava =
-        Lava::new(&shaders(device), "test", parameters, &particles, Rock::built_in(), objects).unwrap();
+    let mut lava = Lava::new(&shaders(device), "test", parameters, &particles, Rock::built_in(), objects).unwrap();
     let passes = draw(device, &mut lava, 0).passes;
     assert_eq!(lava.isosurface().accepted().len(), 40 * 24);
     (texels(device, lava.picture()), passes.iter().map(|p| p.info.name).collect())

@@ -8,7 +8,8 @@ use fumarole::image::Rgba8;
 use fumarole::image::golden::{self, Tolerance};
 use fumarole::papers::Paper;
 use fumarole::papers::lava::{CAMERAS, Lava, Parameters, Shading};
-use glam::{Vec3, Vec4};
+use fumarole::scene::Camera;
+use glam::{Mat4, Vec3};
 
 use crate::common::gpu_test;
 use crate::scene::{clamped, draw, lava, texels};
@@ -25,48 +26,79 @@ fn reduced() -> Parameters {
     }
 }
 
-/// Whether the ray through each pixel meets the height field inside the border, at least a texel away from it.
-fn meets_the_surface(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<bool> {
-    let field: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
-    let [columns, _, rows] = parameters.density;
-    let space = parameters.space_m;
-    let height_at = |x: f32, z: f32| {
+/// The height field of a frame, as rays from the camera see it.
+struct HeightField<'a> {
+    parameters: &'a Parameters,
+    /// Heights of the columns, row after row.
+    heights: Vec<f32>,
+    to_world: Mat4,
+}
+
+impl<'a> HeightField<'a> {
+    fn new(device: &Arc<Device>, lava: &Lava, parameters: &'a Parameters) -> Self {
+        let texture: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
+        let camera = &parameters.camera;
+        let to_world = (camera.projection(parameters.aspect()) * camera.view()).inverse();
+        HeightField { parameters, heights: texture.iter().map(|t| t[3]).collect(), to_world }
+    }
+
+    fn height_m(&self, x: f32, z: f32) -> f32 {
+        let ([columns, _, rows], space) = (self.parameters.density, self.parameters.space_m);
         let (u, v) = (x / space.x * columns as f32 - 0.5, z / space.z * rows as f32 - 0.5);
         let at = |i: f32, k: f32| {
             let i = i.clamp(0.0, columns as f32 - 1.0) as usize;
-            field[k.clamp(0.0, rows as f32 - 1.0) as usize * columns as usize + i][3]
+            self.heights[k.clamp(0.0, rows as f32 - 1.0) as usize * columns as usize + i]
         };
         let (i, k, s, t) = (u.floor(), v.floor(), u - u.floor(), v - v.floor());
         let row = |k: f32| at(i, k) * (1.0 - s) + at(i + 1.0, k) * s;
         row(k) * (1.0 - t) + row(k + 1.0) * t
-    };
-    let camera = &parameters.camera;
-    let to_world = (camera.projection(parameters.aspect()) * camera.view()).inverse();
-    let pixels = (0..parameters.height).flat_map(|row| (0..parameters.width).map(move |column| (column, row)));
-    let met = |(column, row): (u32, u32)| {
-        let x = (column as f32 + 0.5) / parameters.width as f32 * 2.0 - 1.0;
-        let y = (row as f32 + 0.5) / parameters.height as f32 * 2.0 - 1.0;
-        let through: Vec4 = to_world * Vec4::new(x, y, 0.5, 1.0);
-        let ray = (through.truncate() / through.w - camera.eye).normalize();
-        // Steps of 2 mm from the top of the space down to its ground.
-        let first = ((space.y - camera.eye.y) / ray.y).max(0.0);
-        for step in 0..10_000 {
-            let place: Vec3 = camera.eye + ray * (first + 0.002 * step as f32);
-            if place.y < 0.0 || ray.y >= 0.0 {
-                return false;
-            }
-            let is_over = place.x >= 0.0 && place.x <= space.x && place.z >= 0.0 && place.z <= space.z;
-            if is_over && place.y <= height_at(place.x, place.z) {
-                let margin = parameters.border_m + 0.04;
-                return place.x > margin
-                    && place.x < space.x - margin
-                    && place.z > margin
-                    && place.z < space.z - margin;
-            }
+    }
+
+    /// Where the ray through a pixel meets the field from above, by steps of 2 mm through the space.
+    fn met(&self, column: u32, row: u32) -> Option<Vec3> {
+        let Parameters { width, height, space_m, camera, .. } = self.parameters;
+        let x = (column as f32 + 0.5) / *width as f32 * 2.0 - 1.0;
+        let y = (row as f32 + 0.5) / *height as f32 * 2.0 - 1.0;
+        let ray = (self.to_world.project_point3(Vec3::new(x, y, 0.5)) - camera.eye).normalize();
+        let (to_low, to_high) = (-camera.eye / ray, (*space_m - camera.eye) / ray);
+        let first = to_low.min(to_high).max_element().max(0.0);
+        let last = to_low.max(to_high).min_element();
+        let steps = ((last - first) / 0.002).max(0.0) as u32;
+        let places = (0..=steps).map(|step| camera.eye + ray * (first + 0.002 * step as f32));
+        if last < first {
+            return None;
         }
-        false
-    };
-    pixels.map(met).collect()
+        // Through its side one would look below it.
+        let mut was_above = false;
+        for place in places {
+            let is_above = place.y > self.height_m(place.x, place.z);
+            if was_above && !is_above {
+                return Some(place);
+            }
+            was_above |= is_above;
+        }
+        None
+    }
+
+    /// Whether a place is inside the border, at least a column away from it.
+    fn is_inside(&self, place: Vec3) -> bool {
+        let margin = self.parameters.border_m + 0.04;
+        let from_border = place.min(self.parameters.space_m - place);
+        from_border.x > margin && from_border.z > margin
+    }
+
+    /// Pixels that meet the field and those of them without weight: inside the border, and on its slope.
+    fn holes(&self, device: &Arc<Device>, lava: &Lava) -> [(u32, u32); 2] {
+        let sums: Vec<[f32; 4]> = texels(device, lava.splatting().accumulated_colors());
+        let mut counts = [(0, 0); 2];
+        for (at, sums) in (0..).zip(&sums) {
+            let Some(place) = self.met(at % self.parameters.width, at / self.parameters.width) else { continue };
+            let (met, holes) = &mut counts[usize::from(!self.is_inside(place))];
+            *met += 1;
+            *holes += u32::from(sums[3] == 0.0);
+        }
+        counts
+    }
 }
 
 fn picture(device: &Arc<Device>, parameters: &Parameters) -> Rgba8 {
@@ -159,21 +191,36 @@ fn particles_are_drawn_as_points() {
     });
 }
 
+/// Both sizes: what is inside the border is closed, and nearly all of the slope.
 #[test]
 fn the_surface_is_closed_inside_the_border() {
     gpu_test(|device| {
-        for (name, camera) in CAMERAS {
-            let parameters = Parameters { camera, ..reduced() };
-            let mut lava = lava(device, &parameters);
-            draw(device, &mut lava, 0);
-            let sums: Vec<[f32; 4]> = texels(device, lava.splatting().accumulated_colors());
-            let met = meets_the_surface(device, &lava, &parameters);
-            let inside = met.iter().filter(|&&m| m).count();
-            let holes = met.iter().zip(&sums).filter(|(met, sums)| **met && sums[3] == 0.0).count();
-            println!("{name}: {inside} pixels meet the surface inside the border, {holes} holes");
-            assert!(inside > 1500, "{name}: {inside}");
-            assert_eq!(holes, 0, "{name}: of {inside} pixels");
+        for parameters in [reduced(), Parameters::default()] {
+            for (name, camera) in CAMERAS {
+                let parameters = Parameters { camera, ..parameters.clone() };
+                let mut lava = lava(device, &parameters);
+                draw(device, &mut lava, 0);
+                let [inside, slope] = HeightField::new(device, &lava, &parameters).holes(device, &lava);
+                println!("{name}, {} splats: {inside:?} inside, {slope:?} on the slope", parameters.splats[0]);
+                assert!(inside.0 * 20 > parameters.width * parameters.height, "{name}: {inside:?}");
+                assert_eq!(inside.1, 0, "{name}: of {} pixels", inside.0);
+                assert!(slope.1 * 1000 < slope.0, "{name}: {slope:?}");
+            }
         }
+    });
+}
+
+/// From low down, where a slope of level splats would be a stair that one looks through.
+#[test]
+fn the_slope_at_the_border_holds_from_low_down() {
+    gpu_test(|device| {
+        let low = Camera { eye: Vec3::new(2.0, 0.9, 3.5), target: Vec3::new(2.0, 0.2, 0.5), ..CAMERAS[0].1 };
+        let parameters = Parameters { camera: low, splats: [600, 150], splat_radius_m: 0.020625, ..reduced() };
+        let mut lava = lava(device, &parameters);
+        draw(device, &mut lava, 0);
+        let [inside, slope] = HeightField::new(device, &lava, &parameters).holes(device, &lava);
+        println!("{inside:?} inside, {slope:?} on the slope");
+        assert!(slope.0 > 2000 && slope.1 * 50 < slope.0 && inside.1 == 0, "{inside:?} {slope:?}");
     });
 }
 
@@ -185,11 +232,8 @@ fn small_splats_leave_holes() {
             let parameters = Parameters { camera: CAMERAS[3].1, splat_radius_m, ..reduced() };
             let mut lava = lava(device, &parameters);
             draw(device, &mut lava, 0);
-            let sums: Vec<[f32; 4]> = texels(device, lava.splatting().accumulated_colors());
-            let met = meets_the_surface(device, &lava, &parameters);
-            let inside = met.iter().filter(|&&m| m).count();
-            let holes = met.iter().zip(&sums).filter(|(met, sums)| **met && sums[3] == 0.0).count();
-            holes as f64 / inside as f64
+            let [(met, holes), _] = HeightField::new(device, &lava, &parameters).holes(device, &lava);
+            f64::from(holes) / f64::from(met)
         });
         println!("shares of holes: {holes:?}");
         assert!(holes[0] > 0.5 && holes[1] > 0.1 && holes[2] < holes[1] && holes[3] == 0.0, "{holes:?}");

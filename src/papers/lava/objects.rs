@@ -1,7 +1,6 @@
 //! Polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture without objects is
 //! the thesis's own.
 
-
 use ash::vk;
 
 use super::parameters::Parameters;

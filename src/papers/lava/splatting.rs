@@ -10,7 +10,8 @@ use super::rock::Rock;
 use super::targets::{DEPTH, FAR, FLOATS, ZERO, target};
 use crate::gpu::transfer::upload;
 use crate::gpu::{
-    Blend, Buffer, DepthTest, Draw, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary, Topology,
+    Blend, Buffer, DepthTest, Draw, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary,
+    Topology,
 };
 use crate::host_block;
 
@@ -114,9 +115,8 @@ impl Splatting {
             .with("linear", &linear)
             .color(&accumulated, ZERO, Blend::Add)
             .build(shaders)?;
-        let splats_floor = splats(FLOORS[2].1, "7.1", EMPTY)
-            .color(&accumulated, Load::Keep, Blend::Masked)
-            .build(shaders)?;
+        let splats_floor =
+            splats(FLOORS[2].1, "7.1", EMPTY).color(&accumulated, Load::Keep, Blend::Masked).build(shaders)?;
         let normalisation = Pass::graphics("normalisation", "7.3", "common/fullscreen.vert", "lava/normalisation.frag")
             .with("accumulated_colors", &accumulated)
             .color(&picture, Load::Discard, Blend::Replace)

@@ -37,33 +37,35 @@ impl Surface {
         (0..grid.points[2]).flat_map(|k| (0..grid.points[0]).map(move |i| (i, k))).map(|(i, k)| column(i, k)).collect()
     }
 
-    /// Section 6.4 on the sums of eq. 6.3; the heights sink over `border`.
+    /// Section 6.4 on the sums of eq. 6.3; the heights sink over `border`, and normals are
+    /// those of the heights that have sunk, turned upwards.
     pub fn from_sums(grid: &Grid, sums: &[[f64; 2]], border: f64) -> Self {
         let [columns, _, rows] = grid.points;
-        let raw: Vec<f64> =
-            sums.iter().map(|[heights, weights]| if *weights > 0.0 { heights / weights } else { 0.0 }).collect();
-        let height = |i: usize, k: usize| raw[k * columns + i];
+        let texels = || (0..rows).flat_map(|k| (0..columns).map(move |i| (i, k)));
+        let share = |i: usize, k: usize| {
+            let place = grid.place([i, 0, k]);
+            let distances = [place.x, grid.space.x - place.x, place.z, grid.space.z - place.z];
+            let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
+            if border > 0.0 { (nearest / border).clamp(0.0, 1.0) } else { 1.0 }
+        };
+        let heights: Vec<f64> = texels()
+            .zip(sums)
+            .map(|((i, k), [heights, weights])| if *weights > 0.0 { heights / weights * share(i, k) } else { 0.0 })
+            .collect();
+        let height = |i: usize, k: usize| heights[k * columns + i];
         let difference = |after: f64, before: f64, steps: usize, spacing: f64| {
             if steps == 0 { 0.0 } else { (after - before) / (steps as f64 * spacing) }
         };
-        let mut surface = Surface { space: grid.space, columns, rows, heights: Vec::new(), normals: Vec::new() };
-        for k in 0..rows {
-            for i in 0..columns {
-                let (left, right) = (i.saturating_sub(1), (i + 1).min(columns - 1));
-                let (front, back) = (k.saturating_sub(1), (k + 1).min(rows - 1));
-                let along_x =
-                    difference(height(right, k), height(left, k), right - left, grid.space.x / columns as f64);
-                let along_z = difference(height(i, back), height(i, front), back - front, grid.space.z / rows as f64);
-                let place = grid.place([i, 0, k]);
-                let distances = [place.x, grid.space.x - place.x, place.z, grid.space.z - place.z];
-                let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
-                let t = if border > 0.0 { (nearest / border).clamp(0.0, 1.0) } else { 1.0 };
-                let normal = DVec3::new(-along_x, 1.0, -along_z).normalize();
-                surface.normals.push(DVec3::Y.lerp(normal, t).normalize());
-                surface.heights.push(height(i, k) * t);
-            }
-        }
-        surface
+        let normal = |(i, k): (usize, usize)| {
+            let (left, right) = (i.saturating_sub(1), (i + 1).min(columns - 1));
+            let (front, back) = (k.saturating_sub(1), (k + 1).min(rows - 1));
+            let along_x = difference(height(right, k), height(left, k), right - left, grid.space.x / columns as f64);
+            let along_z = difference(height(i, back), height(i, front), back - front, grid.space.z / rows as f64);
+            let normal = DVec3::new(-along_x, 1.0, -along_z).normalize();
+            DVec3::Y.lerp(normal, share(i, k)).normalize()
+        };
+        let normals = texels().map(normal).collect();
+        Surface { space: grid.space, columns, rows, heights, normals }
     }
 
     /// Height and unit normal at a place, bilinear between the columns' middles (section 7.1).
