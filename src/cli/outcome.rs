@@ -41,6 +41,13 @@ pub fn say_device(output: &OutputArgs, machine: &Machine) {
     }
 }
 
+/// Says what makes a picture doubtful.
+pub fn warn(output: &OutputArgs, warning: &str) {
+    if !output.quiet {
+        say(&format!("warning: {warning}"));
+    }
+}
+
 /// Fails before long work if a file could not be written after it.
 pub fn check(output: &OutputArgs) -> Result<(), Failure> {
     output.image.iter().try_for_each(|path| check_picture(path))?;

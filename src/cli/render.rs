@@ -118,6 +118,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     let bar = progress_bar(arguments.quiet, P::Study::PAPER);
     bar.set_length(u64::from(frames.end - frames.first));
     let mut written = Vec::new();
+    let mut warned = Vec::new();
     for number in frames.first..frames.end {
         if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
             break;
@@ -125,6 +126,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
         let rendered = picture::render(&mut machine, &mut built.paper, number)?;
         let path = picture_path(number);
         image::write_png(&path, &rendered)?;
+        warned = built.paper.warnings();
         bar.inc(1);
         written.push(path);
     }
@@ -134,6 +136,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     }
     built.paper.warnings().iter().for_each(|warning| outcome::say(&format!("warning: {warning}")));
     written.iter().for_each(|path| outcome::wrote(&output, path));
+    warned.iter().for_each(|warning| outcome::warn(&output, warning));
     // Asked again: a paper may write its targets by turns.
     let targets = built.paper.targets();
     for dump in &arguments.dump {

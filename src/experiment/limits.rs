@@ -19,6 +19,7 @@ const THREADS: u32 = 1 << 14;
 const FLOPS_PER_ITERATION: f64 = 64.0;
 /// A side of the target of fill and blend rates.
 const SIDE: u32 = 1024;
+const BYTES: vk::Format = vk::Format::R8G8B8A8_UNORM;
 
 host_block! {
     struct MultiplyAdd {
@@ -37,9 +38,20 @@ pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
     Ok(Limits {
         copy_gb_s: copy(recorder, shaders)?.map(|per_ms| per_ms * 1e-6),
         fma_gflops: multiply_add(recorder, shaders)?.map(|per_ms| per_ms * 1e-6),
-        fill_gpix_s: fill(recorder, shaders, Blend::Replace)?.map(|per_ms| per_ms * 1e-6),
-        blend_gpix_s: fill(recorder, shaders, Blend::Add)?.map(|per_ms| per_ms * 1e-6),
+        fill_gpix_s: fill(recorder, shaders, BYTES, Blend::Replace)?.map(|per_ms| per_ms * 1e-6),
+        blend_gpix_s: fill(recorder, shaders, BYTES, Blend::Add)?.map(|per_ms| per_ms * 1e-6),
     })
+}
+
+/// The additive blend rate of a target of four 32-bit floats, in 10^9 pixels a second; `None` without time stamps. The
+/// device must blend into such targets.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn float_blend_gpix_s(machine: &mut Machine) -> Result<Option<f64>, Error> {
+    let Machine { recorder, shaders, .. } = machine;
+    let per_ms = fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, Blend::Add)?;
+    Ok(per_ms.map(|per_ms| per_ms * 1e-6))
 }
 
 /// Runs `record` with a growing load and returns `amount` per millisecond at a load that lasts.
@@ -98,9 +110,13 @@ fn multiply_add(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Opti
     )
 }
 
-fn fill(recorder: &mut Recorder, shaders: &ShaderLibrary, blend: Blend) -> Result<Option<f64>, Error> {
-    let desc = ImageDesc::new_2d("limits/target", vk::Format::R8G8B8A8_UNORM, SIDE, SIDE)
-        .usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
+fn fill(
+    recorder: &mut Recorder,
+    shaders: &ShaderLibrary,
+    format: vk::Format,
+    blend: Blend,
+) -> Result<Option<f64>, Error> {
+    let desc = ImageDesc::new_2d("limits/target", format, SIDE, SIDE).usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
     let target = Image::new(shaders.device(), desc)?.view()?;
     let pass = Pass::graphics("fill", "", "common/fullscreen.vert", "limits/constant.frag")
         .color(&target, Load::Clear([0.0; 4]), blend)

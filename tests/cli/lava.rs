@@ -69,6 +69,38 @@ fn a_density_that_accepts_nothing_is_a_warning_with_the_range() {
     assert!(warnings.contains("no grid point was accepted") && warnings.contains("densities are"), "{warnings}");
 }
 
+/// What a record has as a warning, a picture has on standard error.
+#[test]
+fn a_picture_of_nothing_is_a_warning_too() {
+    let out = folder();
+    let ended = small("render --rho 1e6 --image flat.png").inside(out.path()).run().succeeded();
+    assert!(ended.stderr.contains("warning: no grid point was accepted"), "{}", ended.stderr);
+    let ended = small("experiment fig-8.1 --rho 1e6 --out .").inside(out.path()).run().succeeded();
+    assert!(ended.stderr.contains("warning: no grid point was accepted"), "{}", ended.stderr);
+}
+
+#[test]
+fn objects_stand_in_the_picture_and_in_the_record() {
+    let out = folder();
+    file(&out, "wall.obj", "v 1 0.2 0.5\nv 3 0.2 0.5\nv 3 1.5 0.5\nv 1 1.5 0.5\nf 1 2 3 4\n");
+    file(&out, "broken.obj", "v 0 0 0\nf 1 2 3\n");
+    let picture = |options: &str, name: &str| {
+        small("render --quiet").args(options).arg("--image").arg(name).inside(out.path()).run().succeeded();
+        fs::read(out.path().join(name)).unwrap()
+    };
+    let alone = picture("", "alone.png");
+    assert!(picture("", "again.png") == alone);
+    assert!(picture("--object wall.obj", "wall.png") != alone);
+    assert!(picture("--object wall.obj --object box", "both.png") != picture("--object wall.obj", "wall.png"));
+    let bench = small("bench --json --quiet --validate --object wall.obj").args(ONCE).inside(out.path());
+    let record = bench.run().succeeded().json();
+    assert_schema(&record);
+    let run = &record["runs"][0];
+    assert_eq!(run["config"]["object"], serde_json::json!(["wall.obj"]));
+    assert_eq!(names(&run["passes"]).last(), Some(&"objects"));
+    small("render --object broken.obj").inside(out.path()).run().refused(2, &["broken.obj", "line 2"]);
+}
+
 #[test]
 fn a_frame_is_the_same_alone_and_in_a_range() {
     let out = folder();
@@ -110,6 +142,27 @@ fn the_frame_rate_stands_beside_the_thesis_s() {
 }
 
 #[test]
+fn every_pass_has_a_floor_where_limits_are_measured() {
+    let out = folder();
+    let ended = small("experiment results --frames 2 --repeat 1 --out .").inside(out.path()).run().succeeded();
+    let record = read_json(&out.path().join("lava-results.json"));
+    assert_schema(&record);
+    let results = &record["runs"][0]["results"];
+    for pass in PASSES {
+        assert!(results["floors_ms"][pass].as_f64().unwrap() > 0.0, "{pass}: {results}");
+    }
+    assert!(ended.stdout.contains("of floor") && ended.stdout.contains("fragments"), "{}", ended.stdout);
+}
+
+#[test]
+fn options_that_a_figure_sets_itself_are_refused() {
+    let figure = |name: &str, option: &str| lava("experiment").arg(name).args(option).on_test_device().run();
+    figure("fig-8.5", "--splat-radius 0.01").refused(2, &["--splat-radius"]);
+    figure("fig-6.4", "--shading rock").refused(2, &["--shading"]);
+    figure("fig-5.2", "--object box").refused(2, &["--object box"]);
+}
+
+#[test]
 fn what_cannot_be_is_refused_by_its_option() {
     for (options, parts) in [
         ("--particles 0", &["--particles 0", "1 to 16777216"][..]),
@@ -117,6 +170,11 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--radius 1.5", &["--radius 1.5", "shortest side"]),
         ("--density 0x8x8", &["--density 0x8x8"]),
         ("--density 65536x1024x8", &["--density 65536x1024x8"]),
+        ("--density 20000x4x4 --radius 0.001", &["density", "20000", "limit of 16384"]),
+        ("--density 4x20000x4 --particles 10", &["density", "5000", "limit of 2048"]),
+        ("--size 20000x20", &["20000", "limit of 16384"]),
+        ("--object no-such.obj", &["no-such.obj"]),
+        ("--object box --shading particles", &["--object box", "--shading"]),
         ("--splats 0x10", &["--splats 0x10"]),
         ("--splat-radius 0", &["--splat-radius 0"]),
         ("--space 0x1x1", &["--space 0x1x1"]),
@@ -133,6 +191,10 @@ fn what_cannot_be_is_refused_by_its_option() {
             lava("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
         }
     }
+    for (option, value) in [("color", "nan,1,1"), ("camera", "nan,1,1,0,0,0"), ("density", "nanx1x1")] {
+        lava("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+    }
+    lava("bench --space nanx1x1").on_test_device().args(ONCE).run().refused(2, &["--space"]);
     for (option, value) in
         [("space", "1x1"), ("density", "4x4"), ("splats", "ax4"), ("color", "1,2"), ("camera", "fig-9")]
     {

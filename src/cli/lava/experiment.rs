@@ -7,7 +7,7 @@ use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication, word};
 use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::experiment::lava::figures::{Drawn, Figure};
+use crate::experiment::lava::figures::{Drawing, Drawn, Figure};
 use crate::experiment::lava::scaling::{self, Axis};
 use crate::experiment::lava::{Setup, results};
 use crate::experiment::machine::Machine;
@@ -105,6 +105,14 @@ impl ExperimentArgs for Experiments {
             (!is_figure && self.frame > 0, "--frame: this experiment measures frames from 0 on; give --frames"),
             (is_figure && output.json.is_some(), "--json: a figure is pictures; `results` has a record"),
             (is_figure && output.csv.is_some(), "--csv: a figure is pictures; `results` has rows"),
+            (
+                is_figure && name != Name::Fig85 && self.scene.shading.is_some(),
+                "--shading: the figure's parts have their own; render takes any",
+            ),
+            (
+                name == Name::Fig85 && self.scene.splat_radius.is_some(),
+                "--splat-radius: the figure's parts have their own; render takes any",
+            ),
         ]
     }
 
@@ -114,7 +122,7 @@ impl ExperimentArgs for Experiments {
             Some(figure) => self.scene.over(figure.parameters(), Some(&publication.name)),
             None => self.scene.over(self.scene.preset_parameters(), Some(&publication.name)),
         };
-        setup.parameters.validate().map_err(crate::experiment::Error::from)?;
+        setup.check()?;
         let points = match name {
             Name::Scaling => Axis::ALL.iter().flat_map(|axis| axis.points(&setup)).collect(),
             _ => vec![Point::single(&publication.name, setup.clone())],
@@ -141,13 +149,15 @@ impl Experiments {
         figure: Figure,
         setup: &Setup,
     ) -> Result<(), Failure> {
-        for (suffix, drawn) in figure.draw(machine, setup, self.frame)? {
+        let Drawing { parts, warnings } = figure.draw(machine, setup, self.frame)?;
+        for (suffix, drawn) in parts {
             let suffix = format!("{suffix}.png");
             match drawn {
                 Drawn::Picture(picture) => publication.picture(&suffix, &picture)?,
                 Drawn::Texture(texture) => publication.drawing(&suffix, &texture)?,
             }
         }
+        warnings.iter().for_each(|warning| outcome::warn(publication.output, warning));
         Ok(())
     }
 
@@ -172,7 +182,10 @@ impl Experiments {
             publication.save(&publication.file("-exponents.csv"), facts.csv().as_bytes())?;
             publication.runs(machine, runs, facts.render(outcome::style()), &plots)?;
         } else {
-            rows.iter_mut().for_each(|row| results::beside_the_thesis(&mut row.run));
+            for row in &mut rows {
+                results::beside_the_thesis(&mut row.run);
+                results::note_floors(&mut row.run);
+            }
             let table = rows.iter().map(|row| results::render(&row.run, outcome::style())).collect();
             let plots = rows.iter().map(|row| results::plot(&row.run)).collect::<Result<Vec<_>, _>>()?;
             let plots: Vec<_> = plots.into_iter().map(|svg| (".svg".to_owned(), svg)).collect();

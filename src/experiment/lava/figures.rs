@@ -92,6 +92,14 @@ pub enum Drawn {
     Texture(Raster),
 }
 
+/// A figure of one frame.
+pub struct Drawing {
+    /// Each with what its file is called.
+    pub parts: Vec<(&'static str, Drawn)>,
+    /// What makes it doubtful, one line each.
+    pub warnings: Vec<String>,
+}
+
 impl Figure {
     /// The figure of that name.
     pub fn named(name: &str) -> Option<Figure> {
@@ -107,13 +115,14 @@ impl Figure {
         parameters
     }
 
-    /// Draws the parts from frame `number` of `setup`, each with what its file is called.
+    /// Draws the parts from frame `number` of `setup`.
     ///
     /// # Errors
     /// [`Error::Gpu`], [`Error::Image`], [`Error::Parameter`], [`Error::Input`].
-    pub fn draw(&self, machine: &mut Machine, setup: &Setup, number: u32) -> Result<Vec<(&'static str, Drawn)>, Error> {
+    pub fn draw(&self, machine: &mut Machine, setup: &Setup, number: u32) -> Result<Drawing, Error> {
         let scene = setup.load()?;
-        let mut drawn = Vec::new();
+        let mut parts = Vec::new();
+        let mut warnings = Vec::new();
         for &(suffix, part) in self.parts {
             let mut setup = setup.clone();
             match part {
@@ -124,17 +133,20 @@ impl Figure {
             setup.check()?;
             let mut built = build(machine, &setup, &scene, Variant::Paper)?;
             let picture = picture::render(machine, &mut built.paper, number)?;
+            warnings.extend(built.paper.warnings());
             let targets = built.paper.targets();
             let texture = match part {
                 Part::Texture(name) => targets.iter().find(|t| t.name == name),
                 _ => None,
             };
-            drawn.push(match texture {
+            parts.push(match texture {
                 Some(target) => (suffix, Drawn::Texture(visible(picture::read_target(&machine.device, target)?)?)),
                 None => (suffix, Drawn::Picture(picture)),
             });
         }
-        Ok(drawn)
+        // The parts are of one frame.
+        warnings.dedup();
+        Ok(Drawing { parts, warnings })
     }
 }
 

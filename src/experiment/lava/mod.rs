@@ -1,6 +1,7 @@
 //! The experiments of the `lava` paper: what a user set up, what a run says of itself, the figures.
 
 pub mod figures;
+pub mod floors;
 pub mod results;
 pub mod scaling;
 
@@ -18,6 +19,7 @@ use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::image::read_png;
+use crate::papers::Paper;
 use crate::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Shading, Variant};
 use crate::scene::{Mesh, MeshSource};
 
@@ -127,12 +129,18 @@ impl Study for Setup {
         format!("{} particles, {} x {} splats", p.particles, p.splats[0], p.splats[1])
     }
 
-    fn findings(&self, _: &mut Machine, measured: &mut [(Built<Self>, Measurement)]) -> Result<Vec<Findings>, Error> {
-        let findings = measured.iter().map(|(built, measurement)| Findings {
-            results: results(&self.parameters, &built.paper, measurement),
-            warnings: built.paper.warnings(),
-        });
-        Ok(findings.collect())
+    fn findings(
+        &self,
+        machine: &mut Machine,
+        measured: &mut [(Built<Self>, Measurement)],
+    ) -> Result<Vec<Findings>, Error> {
+        let mut findings = Vec::with_capacity(measured.len());
+        for (built, measurement) in measured {
+            let mut results = results(&self.parameters, &built.paper, measurement);
+            results.extend(entries(floors::measure(machine, &built.paper)?));
+            findings.push(Findings { results, warnings: built.paper.warnings() });
+        }
+        Ok(findings)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Chapter 8: the frame rate beside the thesis's, and where a frame's time goes.
 
+use super::floors;
 use crate::experiment::error::Error;
 use crate::report::plot::{BarChart, BarSeries};
 use crate::report::record::{ExperimentRow, Run};
@@ -19,7 +20,17 @@ pub fn beside_the_thesis(run: &mut Run) {
     });
 }
 
-/// The table: passes with their times, then the frame rate beside the thesis's.
+/// Notes what each pass costs at least, by its name.
+pub fn note_floors(run: &mut Run) {
+    let floors: serde_json::Map<_, _> = run
+        .passes
+        .iter()
+        .filter_map(|pass| Some((pass.name.clone(), serde_json::json!(floors::floor_ms(run, pass)?))))
+        .collect();
+    run.results.insert("floors_ms".to_owned(), floors.into());
+}
+
+/// The table: passes with their times, their counted work and its floor, then the frame rate beside the thesis's.
 pub fn render(run: &Run, style: Style) -> String {
     let mut table = Table::new(&[
         ("pass", Align::Left),
@@ -28,11 +39,20 @@ pub fn render(run: &Run, style: Style) -> String {
         ("gpu ms", Align::Right),
         ("host ms", Align::Right),
         ("wait ms", Align::Right),
+        ("vertices", Align::Right),
+        ("fragments", Align::Right),
+        ("floor ms", Align::Right),
+        ("of floor", Align::Right),
     ]);
     let ms = |summary: &Option<crate::report::record::Summary>| {
         summary.as_ref().map_or(String::new(), |s| format!("{:.2}", s.median))
     };
+    let count = |count: Option<u64>| count.map_or(String::new(), |count| count.to_string());
     for pass in &run.passes {
+        let counts = pass.statistics.clone().unwrap_or_default();
+        let time_ms = pass.gpu_ms.as_ref().or(pass.host_ms.as_ref()).map(|s| s.median);
+        let floor_ms = floors::floor_ms(run, pass);
+        let share = time_ms.zip(floor_ms).filter(|(_, floor)| *floor > 0.0).map(|(time, floor)| time / floor);
         table.push(vec![
             pass.name.clone(),
             pass.section.clone().unwrap_or_default(),
@@ -40,6 +60,10 @@ pub fn render(run: &Run, style: Style) -> String {
             ms(&pass.gpu_ms),
             ms(&pass.host_ms),
             ms(&pass.wait_ms),
+            count(counts.vertices),
+            count(counts.fragments),
+            floor_ms.map_or(String::new(), |ms| format!("{ms:.2}")),
+            share.map_or(String::new(), |share| format!("{share:.1} x")),
         ]);
     }
     let ours = run.experiment.as_ref().and_then(|row| row.ours).unwrap_or(f64::NAN);

@@ -46,7 +46,7 @@ pub use self::rock::Rock;
 pub use self::splatting::{Splatting, depth_range_m};
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer. Without a geometry stage the splats
-/// are instanced quads, and [`Lava::warnings`] says so.
+/// are instanced quads, and [`Paper::warnings`] says so.
 pub const NEEDS: [Feature; 2] = [Feature::BlendRgba32Float, Feature::LargePoints];
 
 /// The paper with its resources.
@@ -97,27 +97,6 @@ impl Lava {
             points,
             lacks_geometry_stage,
         })
-    }
-
-    /// What a user should know of the device and of the last frame.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.lacks_geometry_stage {
-            warnings.push(
-                "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \
-                 `visibility` and `blending` are not the thesis's method's"
-                    .to_owned(),
-            );
-        }
-        if self.animation.steps() > 0 && self.isosurface.accepted().is_empty() {
-            let [lowest, highest] = self.isosurface.density_range();
-            warnings.push(format!(
-                "no grid point was accepted, so the surface is flat: --rho is {} and the densities are {lowest} to \
-                 {highest}",
-                self.parameters.rho()
-            ));
-        }
-        warnings
     }
 
     /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what their
@@ -187,6 +166,26 @@ impl Paper for Lava {
             Some(points) => points.record(frame, &self.animation),
             None => Ok(()),
         }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.lacks_geometry_stage {
+            warnings.push(
+                "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \
+                 `visibility` and `blending` are not the thesis's method's"
+                    .to_owned(),
+            );
+        }
+        if self.animation.steps() > 0 && self.isosurface.accepted().is_empty() {
+            let [lowest, highest] = self.isosurface.density_range();
+            warnings.push(format!(
+                "no grid point was accepted, so the surface is flat: --rho is {} and the densities are {lowest} to \
+                 {highest}",
+                self.parameters.rho()
+            ));
+        }
+        warnings
     }
 
     fn picture(&self) -> &Arc<ImageView> {
