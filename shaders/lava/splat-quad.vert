@@ -10,15 +10,13 @@
 layout(location = 0) in vec2 place;
 
 layout(location = 0) out vec2 disc;
-layout(location = 1) out vec3 world_m;
-layout(location = 2) out float eye_depth_m;
-layout(location = 3) flat out vec3 center_m;
+layout(location = 1) out float eye_depth_m;
+layout(location = 2) flat out vec3 center_m;
 
 void main() {
     Splat splat = splat_at(place);
     disc = vec2(float(gl_VertexIndex & 1), float(gl_VertexIndex >> 1)) * 2.0 - 1.0;
-    world_m = corner_of(splat, disc);
     center_m = splat.center_m;
-    gl_Position = scene.view_projection * vec4(world_m, 1.0);
+    gl_Position = scene.view_projection * vec4(corner_of(splat, disc), 1.0);
     eye_depth_m = gl_Position.w;
 }

@@ -14,16 +14,14 @@ layout(triangle_strip, max_vertices = 4) out;
 layout(location = 0) in vec2 place_m[];
 
 layout(location = 0) out vec2 disc;
-layout(location = 1) out vec3 world_m;
-layout(location = 2) out float eye_depth_m;
-layout(location = 3) flat out vec3 center_m;
+layout(location = 1) out float eye_depth_m;
+layout(location = 2) flat out vec3 center_m;
 
 void main() {
     Splat splat = splat_at(place_m[0]);
     for (int i = 0; i < 4; i++) {
         disc = vec2(float(i & 1), float(i >> 1)) * 2.0 - 1.0;
-        world_m = corner_of(splat, disc);
-        gl_Position = scene.view_projection * vec4(world_m, 1.0);
+        gl_Position = scene.view_projection * vec4(corner_of(splat, disc), 1.0);
         eye_depth_m = gl_Position.w;
         center_m = splat.center_m;
         EmitVertex();

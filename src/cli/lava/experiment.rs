@@ -122,7 +122,7 @@ impl ExperimentArgs for Experiments {
             Some(figure) => self.scene.over(figure.parameters(), Some(&publication.name)),
             None => self.scene.over(self.scene.preset_parameters(), Some(&publication.name)),
         };
-        setup.check()?;
+        figure.map_or_else(|| setup.check(), |figure| figure.check(&setup))?;
         let points = match name {
             Name::Scaling => Axis::ALL.iter().flat_map(|axis| axis.points(&setup)).collect(),
             _ => vec![Point::single(&publication.name, setup.clone())],

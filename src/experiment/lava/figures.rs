@@ -115,6 +115,27 @@ impl Figure {
         parameters
     }
 
+    /// What each part is drawn from.
+    fn setups<'a>(&self, setup: &'a Setup) -> impl Iterator<Item = Setup> + use<'a> {
+        self.parts.iter().map(move |(_, part)| {
+            let mut setup = setup.clone();
+            match *part {
+                Part::Texture(_) => {}
+                Part::Shaded(shading) => setup.parameters.shading = shading,
+                Part::Splats(radius_m) => setup.parameters.splat_radius_m = radius_m,
+            }
+            setup
+        })
+    }
+
+    /// Checks every part before the first is drawn.
+    ///
+    /// # Errors
+    /// As [`Setup::check`].
+    pub fn check(&self, setup: &Setup) -> Result<(), Error> {
+        self.setups(setup).try_for_each(|setup| setup.check())
+    }
+
     /// Draws the parts from frame `number` of `setup`.
     ///
     /// # Errors
@@ -123,13 +144,7 @@ impl Figure {
         let scene = setup.load()?;
         let mut parts = Vec::new();
         let mut warnings = Vec::new();
-        for &(suffix, part) in self.parts {
-            let mut setup = setup.clone();
-            match part {
-                Part::Texture(_) => {}
-                Part::Shaded(shading) => setup.parameters.shading = shading,
-                Part::Splats(radius_m) => setup.parameters.splat_radius_m = radius_m,
-            }
+        for (&(suffix, part), setup) in self.parts.iter().zip(self.setups(setup)) {
             setup.check()?;
             let mut built = build(machine, &setup, &scene, Variant::Paper)?;
             let picture = picture::render(machine, &mut built.paper, number)?;

@@ -41,6 +41,7 @@ pub fn render(run: &Run, style: Style) -> String {
         ("wait ms", Align::Right),
         ("vertices", Align::Right),
         ("fragments", Align::Right),
+        ("samples", Align::Right),
         ("floor ms", Align::Right),
         ("of floor", Align::Right),
     ]);
@@ -62,6 +63,7 @@ pub fn render(run: &Run, style: Style) -> String {
             ms(&pass.wait_ms),
             count(counts.vertices),
             count(counts.fragments),
+            count(counts.samples_passed),
             floor_ms.map_or(String::new(), |ms| format!("{ms:.2}")),
             share.map_or(String::new(), |share| format!("{share:.1} x")),
         ]);
