@@ -118,7 +118,6 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     let bar = progress_bar(arguments.quiet, P::Study::PAPER);
     bar.set_length(u64::from(frames.end - frames.first));
     let mut written = Vec::new();
-    let mut warned = Vec::new();
     for number in frames.first..frames.end {
         if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
             break;
@@ -126,7 +125,6 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
         let rendered = picture::render(&mut machine, &mut built.paper, number)?;
         let path = picture_path(number);
         image::write_png(&path, &rendered)?;
-        warned = built.paper.warnings();
         bar.inc(1);
         written.push(path);
     }
@@ -134,9 +132,8 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     if written.is_empty() {
         return Err(Failure::Running("interrupted before a picture was written".into()));
     }
-    built.paper.warnings().iter().for_each(|warning| outcome::say(&format!("warning: {warning}")));
+    built.paper.warnings().iter().for_each(|warning| outcome::warn(&output, warning));
     written.iter().for_each(|path| outcome::wrote(&output, path));
-    warned.iter().for_each(|warning| outcome::warn(&output, warning));
     // Asked again: a paper may write its targets by turns.
     let targets = built.paper.targets();
     for dump in &arguments.dump {
