@@ -3,13 +3,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 7, std430) readonly buffer Heads {
-    uint heads[];
-};
-
-layout(set = 0, binding = 8, std430) readonly buffer Links {
-    uvec4 links[];
-};
+#include "gas/nodes.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
     uvec4 surfaces[];
@@ -23,21 +17,18 @@ layout(set = 0, binding = 14, std430) buffer Attenuations {
     float attenuations[]; // of each fragment, for each light
 };
 
-layout(push_constant, std430) uniform Band {
-    uint first_row;
-    uint end_row;
-} band;
-
 void main() {
-    uvec2 place = gl_GlobalInvocationID.xy + uvec2(0u, band.first_row);
-    if (place.x >= frame.counts.x || place.y >= band.end_row) {
+    uvec2 place = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(place)) {
         return;
     }
     vec3 ray = ray_direction(vec2(place) + 0.5);
     uint covered = 0u;
     bool is_shown_through = false; // by the fragment before, which it intersects
-    for (uint f = heads[place.y * frame.counts.x + place.x]; f != NONE; f = links[f].x) {
+    uint f = fragment_at(heads[list_of(place)]);
+    while (f != NONE) {
         uvec4 link = links[f];
+        link.x = fragment_at(link.x);
         uvec4 surface = surfaces[f];
         if ((link.y & ~covered) != 0u || is_shown_through) {
             vec3 point = frame.eye.xyz + ray * mean_depth(link);
@@ -62,5 +53,6 @@ void main() {
         if (covered == 0xffffffffu && !is_shown_through) {
             break;
         }
+        f = link.x;
     }
 }

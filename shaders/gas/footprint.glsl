@@ -3,6 +3,7 @@
 // corners are whole pixels, and no sliver can turn inside out; pixels beside the triangle leave the fragment stage at once.
 
 #include "gas/frame.glsl"
+#include "gas/band.glsl"
 #include "gas/mesh.glsl"
 
 struct Footprint {
@@ -69,8 +70,8 @@ Footprint footprint_of(uint triangle) {
         low = min(low, last);
         high = max(high, last);
     }
-    low = max(floor(low), vec2(0.0));
-    high = min(ceil(high), vec2(frame.counts.xy));
+    low = max(floor(low), vec2(0.0, band.first_row));
+    high = min(ceil(high), vec2(frame.counts.x, band.end_row));
     bool turned_away = false;
     if (objects[corner.w].detail.y == 0.0) {
         vec2 a = polygon[1] - polygon[0];

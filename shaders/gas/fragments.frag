@@ -7,6 +7,7 @@
 // of their own, filled for visible fragments by light-attenuation.
 
 #include "gas/frame.glsl"
+#include "gas/band.glsl"
 #include "gas/mesh.glsl"
 #include "gas/volume.glsl"
 #include "gas/density.glsl"
@@ -29,7 +30,7 @@ layout(set = 0, binding = 10, std430) buffer Colors {
 };
 
 layout(set = 0, binding = 11, std430) buffer Counters {
-    uint counters[]; // fragments, sections; the most of both in a frame
+    uint counters[]; // fragments, sections; the most of both in a band
 };
 
 layout(location = 0) flat in vec4 corners_ab;
@@ -251,7 +252,7 @@ void main() {
     if (slot >= frame.limits.x) {
         return; // counted: the host grows the buffers and repeats the run
     }
-    uint next = atomicExchange(heads[uint(pixel.y) * frame.counts.x + uint(pixel.x)], slot);
+    uint next = atomicExchange(heads[list_of(uvec2(pixel))], slot);
     links[slot] = uvec4(next, mask, floatBitsToUint(near), floatBitsToUint(far));
     surfaces[slot] = uvec4(pack_normal(normalize(normal)), corner.w, identity.x, floatBitsToUint(coverage));
     colors[slot] = uvec2(packHalf2x16(color.xy), packHalf2x16(vec2(color.z, 0.0)) | (packed_opacity << 16u));

@@ -8,7 +8,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec4 row; // and to the one below
     vec4 to_column; // a point's offset from the eye times this, over its depth, is its column from the picture's middle
     vec4 to_row;
-    vec4 ambient; // linear RGB
+    vec4 ambient; // linear RGB; w: 1 where light-attenuation runs
     vec4 background; // linear RGB
     vec4 sampling; // frame number, pixel_size, density below which no shadow is computed, transparency of the early end
     uvec4 counts; // width, height, lights, volumes

@@ -3,9 +3,15 @@
 
 // What the volume rendering adds to a pixel's list: a section of gas, with a full mask.
 struct Section {
-    vec4 extent; // depth of its ends, transparency, density evaluations
-    vec4 color; // premultiplied; w: samples
+    uvec4 link; // depths of its ends and number of samples, as bits of floats; next
+    vec4 color; // premultiplied; w: transparency
 };
+
+const uint SECTION = 0x80000000u; // in a link: what follows is a section, not a fragment
+
+bool is_section(uint node) {
+    return (node & SECTION) != 0u; // also of the list's end
+}
 
 float mean_depth(uvec4 link) {
     return 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));

@@ -1,6 +1,6 @@
 // Section "Volume rendering". The viewer's ray goes through the volumes of a pixel up to the depth that `sort` found, cut at every
 // fragment and at every entry and exit of a volume (figure 1). Each section is marched in increments of the step, the last one scaled,
-// with a sample at a random place in each (Monte Carlo), and becomes a fragment with a full mask.
+// with a sample at a random place in each (Monte Carlo), and becomes a fragment with a full mask in its place of the pixel's list.
 //
 // - An increment adds T_before albedo (1 - exp(-tau rho dt)) sum(I_i phase), premultiplied. The text's sum adds I rho dt: tau is
 //   missing there, and this is its exact integral for constant density.
@@ -13,11 +13,11 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 7, std430) readonly buffer Heads {
+layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
 };
 
-layout(set = 0, binding = 8, std430) readonly buffer Links {
+layout(set = 0, binding = 8, std430) buffer Links {
     uvec4 links[];
 };
 
@@ -28,11 +28,6 @@ layout(set = 0, binding = 12, std430) buffer Pixels {
 layout(set = 0, binding = 13, std430) buffer Sections {
     Section sections[];
 };
-
-layout(push_constant, std430) uniform Band {
-    uint first_row;
-    uint end_row;
-} band;
 
 const float PI = 3.14159265;
 const float SOLID_OPACITY = 0.99; // of which no more is marched
@@ -53,8 +48,15 @@ float phase(uint v, float cosine) {
     return p.x * scattered(p.y, cosine) + p.z * scattered(p.w, cosine);
 }
 
+// What the march of a section finds.
+struct Gas {
+    vec4 color; // premultiplied; w: transparency
+    uint increments;
+    uint evaluations; // of the density
+};
+
 // One section of a pixel; the samples before it are counted so that every increment has its own random number.
-Section march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
+Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
     float scale = length(ray);
     vec3 direction = ray / scale;
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -158,19 +160,27 @@ Section march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float 
             break;
         }
     }
-    Section section;
-    section.extent = vec4(extent, transparency, float(evaluations));
-    section.color = vec4(color, float(increments));
-    return section;
+    return Gas(vec4(color, transparency), increments, evaluations);
+}
+
+void set_next(uint list, uint node, uint next) {
+    if (node == NONE) {
+        heads[list] = next;
+    } else if (is_section(node)) {
+        sections[node & ~SECTION].link.w = next;
+    } else {
+        links[node].x = next;
+    }
 }
 
 void main() {
-    uvec2 place = gl_GlobalInvocationID.xy + uvec2(0u, band.first_row);
-    if (place.x >= frame.counts.x || place.y >= band.end_row) {
+    uvec2 place = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(place)) {
         return;
     }
     uint pixel = place.y * frame.counts.x + place.x;
-    uvec4 mine = pixels[pixel];
+    uint list = list_of(place);
+    uvec4 mine = pixels[list];
     if (mine.y == 0u) {
         return;
     }
@@ -184,8 +194,10 @@ void main() {
             depth = min(depth, spans[v].x);
         }
     }
-    uint fragment = heads[pixel];
+    uint previous = NONE; // fragment or section, of the list's start
+    uint fragment = heads[list];
     uint used = 0u;
+    uint evaluations = 0u;
     uint number = 0u;
     float transparency = 1.0;
     while (depth < end && used < mine.y) {
@@ -197,6 +209,7 @@ void main() {
                 next = min(next, cut);
                 break;
             }
+            previous = fragment;
             fragment = link.x;
         }
         bool has_gas = false;
@@ -216,10 +229,15 @@ void main() {
             break;
         }
         if (has_gas) {
-            Section section = march(pixel, ray, spans, vec2(depth, next), transparency, number);
-            number += uint(section.color.w);
-            transparency *= section.extent.z;
-            sections[mine.x + used] = section;
+            Gas gas = march(pixel, ray, spans, vec2(depth, next), transparency, number);
+            number += gas.increments;
+            evaluations += gas.evaluations;
+            transparency *= gas.color.w;
+            uint slot = mine.x + used;
+            uvec3 extent = floatBitsToUint(vec3(depth, next, float(gas.increments)));
+            sections[slot] = Section(uvec4(extent, fragment), gas.color);
+            set_next(list, previous, slot | SECTION);
+            previous = slot | SECTION;
             used++;
             if (transparency < frame.sampling.w) {
                 break;
@@ -227,5 +245,5 @@ void main() {
         }
         depth = next;
     }
-    pixels[pixel].w = used;
+    pixels[list].w = evaluations;
 }

@@ -7,6 +7,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gas/frame.glsl"
+#include "gas/band.glsl"
 #include "gas/volume.glsl"
 #include "gas/lists.glsl"
 
@@ -31,7 +32,7 @@ layout(set = 0, binding = 11, std430) buffer Counters {
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
-    uvec4 pixels[]; // first section, sections reserved, depth of the end, sections used
+    uvec4 pixels[]; // first section, sections reserved, depth of the end, density evaluations
 };
 
 bool stands_before(uint a, uint b) {
@@ -97,11 +98,11 @@ uint sorted(uint unsorted) {
 }
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= frame.counts.x || pixel.y >= frame.counts.y) {
+    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(pixel)) {
         return;
     }
-    uint at = pixel.y * frame.counts.x + pixel.x;
+    uint at = list_of(pixel);
     uint head = sorted(heads[at]);
     heads[at] = head;
 

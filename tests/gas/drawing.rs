@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use fumarole::experiment::picture::read_target;
 use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
-use fumarole::image::Samples;
+use fumarole::gpu::transfer::read_image;
+use fumarole::image::{Rgba8, Samples};
 use fumarole::papers::Paper;
 use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::{Capacity, Fragment, Gas, Parameters, Variant};
+use glam::{DVec3, Vec3};
 
 pub struct Drawing {
     /// Of each pixel, four floats.
@@ -15,6 +17,9 @@ pub struct Drawing {
     /// Of each pixel, sorted.
     pub lists: Vec<Vec<Fragment>>,
     pub demand: Capacity,
+    /// Evaluations of the density along the viewer's rays.
+    pub evaluations: u64,
+    pub picture: Rgba8,
     targets: Vec<(String, Vec<f32>)>,
 }
 
@@ -49,12 +54,26 @@ impl Drawing {
             })
             .collect();
         let radiance = targets.iter().find(|(n, _)| n == "radiance").unwrap().1.clone();
-        Drawing { radiance, lists: gas.fragments(&shaders).unwrap(), demand: gas.demand(&shaders).unwrap(), targets }
+        let view = gas.picture();
+        let picture = Rgba8::new(view.width(), view.height(), read_image(device, view).unwrap()).unwrap();
+        Drawing {
+            radiance,
+            lists: gas.fragments(&shaders).unwrap(),
+            demand: gas.demand(&shaders).unwrap(),
+            evaluations: gas.evaluations(&shaders).unwrap(),
+            picture,
+            targets,
+        }
     }
 
     /// The values of a target of `--dump`.
     pub fn target(&self, name: &str) -> &[f32] {
         &self.targets.iter().find(|(n, _)| n == name).unwrap().1
+    }
+
+    /// Linear RGB of a pixel.
+    pub fn color(&self, pixel: usize) -> DVec3 {
+        Vec3::from_slice(&self.radiance[4 * pixel..4 * pixel + 3]).as_dvec3()
     }
 
     /// Red of a pixel.

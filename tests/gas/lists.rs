@@ -161,7 +161,7 @@ fn lists_that_overflow_grow() {
         let objects = [Object { opacity: 0.3, ..object(&triangles) }];
         let expected = Drawing::of(device, Variant::NoVolume, &parameters(), &objects);
         let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
-        let small = Capacity { fragments: 100, sections: 1 };
+        let small = Capacity { rows: HEIGHT, fragments: 100, sections: 1 };
         let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &parameters(), &objects, Some(small)).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut runs = 0;

@@ -5,6 +5,7 @@ mod common;
 mod density;
 mod drawing;
 mod lists;
+mod march;
 mod scenes;
 mod slab;
 mod tables;

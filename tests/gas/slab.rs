@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
-use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture, Volume};
+use fumarole::papers::gas::model::{DensityFunction, HenyeyGreenstein, Object, SolidTexture, Volume};
 use fumarole::papers::gas::parameters::{DEFAULT_PHASE, default_volume};
 use fumarole::papers::gas::reference::phase::phase;
 use fumarole::papers::gas::{Parameters, Variant};
@@ -147,8 +147,37 @@ fn no_density_is_no_volume_bit_for_bit() {
 #[test]
 fn nothing_is_evaluated_behind_an_opaque_wall() {
     gpu_test(|device| {
-        let drawing = draw(device, &parameters(1.0), &[pane(2.0, 1.0)]);
-        assert_eq!(drawing.demand.sections, 0);
+        let parameters = Parameters { steps: 90, ..parameters(1.0) };
+        let drawing = draw(device, &parameters, &[pane(2.0, 1.0)]);
+        assert_eq!((drawing.demand.sections, drawing.evaluations), (0, 0));
         assert!(drawing.radiance.chunks_exact(4).all(|p| p[3] == 1.0));
+        // One evaluation an increment of 0.2 m, as far as the wall.
+        for (wall_z_m, thickness_m) in [(-3.0, 2.0), (0.1, 0.9)] {
+            let drawing = draw(device, &parameters, &[pane(wall_z_m, 1.0)]);
+            let increments = |pixel| (thickness_m * ray(&parameters, pixel).length() / 0.2).ceil() as u64;
+            let expected: u64 = (0..(WIDTH * HEIGHT) as usize).map(increments).sum();
+            assert!(drawing.evaluations.abs_diff(expected) * 100 <= expected, "{} for {expected}", drawing.evaluations);
+        }
+    });
+}
+
+/// g > 0 scatters forwards: gas between the eye and the light is brighter than gas with the light behind the eye.
+#[test]
+fn gas_before_the_light_is_brighter_where_g_is_positive() {
+    gpu_test(|device| {
+        let lit = |towards_z: f32, g: f32| {
+            let mut parameters = parameters(1.0);
+            parameters.background = Vec3::ZERO;
+            let direction = Vec3::new(0.0, 0.0, towards_z);
+            parameters.lights = vec![Light::Parallel { direction, intensity: Vec3::ONE }];
+            parameters.volumes[0].phase = [HenyeyGreenstein { weight: 1.0, g }, HenyeyGreenstein { weight: 0.0, g: 0.0 }];
+            draw(device, &parameters, &[]).red((WIDTH * HEIGHT / 2 + WIDTH / 2) as usize)
+        };
+        for g in [-0.6_f64, 0.0, 0.5] {
+            // The two directions' ratio in the middle of the picture: ((1 + g) / (1 - g))^3.
+            let ratio = lit(1.0, g as f32) / lit(-1.0, g as f32);
+            let expected = ((1.0 + g) / (1.0 - g)).powi(3);
+            assert!((ratio / expected - 1.0).abs() < 0.01, "{g}: {ratio} for {expected}");
+        }
     });
 }

@@ -136,9 +136,10 @@ impl Study for Setup {
             let results = entries([
                 ("fragments", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
+                ("rows", json!(demand.rows)),
                 ("surfaces_ms", json!(Some(surfaces_ms).filter(|&ms| ms > 0.0))),
             ]);
-            findings.push(Findings { results, warnings: built.paper.warnings(&machine.shaders) });
+            findings.push(Findings { results, warnings: built.paper.warnings() });
         }
         Ok(findings)
     }

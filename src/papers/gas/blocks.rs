@@ -2,6 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
+use super::capacity::Capacity;
 use super::model::{DensityFunction, Object, Shape, SolidTexture, Volume};
 use super::parameters::Parameters;
 use crate::host_block;
@@ -65,11 +66,12 @@ host_block! {
 /// Random numbers of the fog's front (OFFSET_SIZE).
 pub const OFFSET_SIZE: usize = 64;
 
-/// Slots of the fragment and section buffers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Capacity {
-    pub fragments: u32,
-    pub sections: u32,
+/// What a variant makes of the scene's volumes.
+#[derive(Debug, Clone, Copy)]
+pub struct Gases {
+    pub volume_count: usize,
+    /// Whether `light-attenuation` runs.
+    pub are_shadowing: bool,
 }
 
 fn four(v: Vec3, w: f32) -> [f32; 4] {
@@ -77,8 +79,8 @@ fn four(v: Vec3, w: f32) -> [f32; 4] {
 }
 
 impl FrameBlock {
-    /// Of scene frame `number`, with `volume_count` volumes.
-    pub fn new(parameters: &Parameters, number: u32, volume_count: usize, capacity: Capacity) -> Self {
+    /// Of scene frame `number`.
+    pub fn new(parameters: &Parameters, number: u32, gas: Gases, capacity: Capacity) -> Self {
         let camera = &parameters.camera;
         let view = camera.view();
         let [right, up, back] = [0, 1, 2].map(|i| view.row(i).truncate());
@@ -91,10 +93,10 @@ impl FrameBlock {
             row: four(-up * pixel, 0.0),
             to_column: four(right / pixel, 0.0),
             to_row: four(-up / pixel, 0.0),
-            ambient: four(parameters.ambient, 0.0),
+            ambient: four(parameters.ambient, if gas.are_shadowing { 1.0 } else { 0.0 }),
             background: four(parameters.background, 0.0),
             sampling: [number as f32, parameters.pixel_size, parameters.shadow_threshold, parameters.early_end],
-            counts: [parameters.width, parameters.height, parameters.lights.len() as u32, volume_count as u32],
+            counts: [parameters.width, parameters.height, parameters.lights.len() as u32, gas.volume_count as u32],
             limits: [capacity.fragments, capacity.sections, parameters.table_size, parameters.noise_seed()],
         }
     }

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::blocks::{Capacity, FrameBlock, LightBlock, ObjectBlock, VertexBlock, VolumeBlock, offsets};
+use super::blocks::{FrameBlock, Gases, LightBlock, ObjectBlock, VertexBlock, VolumeBlock, offsets};
+use super::capacity::Capacity;
 use super::model::Object;
 use super::parameters::Parameters;
 use crate::gpu::transfer::upload;
@@ -37,7 +38,10 @@ impl Geometry {
     ) -> Result<Self, Error> {
         let device = shaders.device();
         let name = |name: &str| format!("{label}/{name}");
-        let storage = |what: &str, bytes: &[u8]| upload(device, &name(what), STORAGE, bytes);
+        // Scenes are small: what is beyond a limit is a mesh of the user's.
+        let storage = |what: &str, bytes: &[u8]| {
+            upload(device, &name(what), STORAGE, bytes).map_err(|error| error.set_by("--object"))
+        };
         let mut volumes: Vec<VolumeBlock> =
             parameters.volumes.iter().map(|v| VolumeBlock::of_volume(v, parameters.steps)).collect();
         volumes.extend(objects.iter().filter_map(|o| o.gas.as_ref()).map(VolumeBlock::of_texture));
@@ -78,14 +82,8 @@ impl Geometry {
     }
 
     /// Writes what depends on the scene's frame `number`; the device is idle.
-    pub fn write(
-        &self,
-        parameters: &Parameters,
-        number: u32,
-        volume_count: usize,
-        capacity: Capacity,
-    ) -> Result<(), Error> {
-        let block = FrameBlock::new(parameters, number, volume_count, capacity);
+    pub fn write(&self, parameters: &Parameters, number: u32, gas: Gases, capacity: Capacity) -> Result<(), Error> {
+        let block = FrameBlock::new(parameters, number, gas, capacity);
         self.frame.write(0, bytemuck::bytes_of(&block))?;
         let mut textures = parameters.volumes.len()..;
         let mut blocks: Vec<ObjectBlock> =

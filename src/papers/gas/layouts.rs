@@ -1,7 +1,7 @@
 //! Host structs against the blocks of buffers that hold them; push constants are checked when their pass is built.
 
 use super::blocks::{FrameBlock, LightBlock, ObjectBlock, VertexBlock, VolumeBlock};
-use super::lists::SECTION_BYTES;
+use super::capacity::{LINK_BYTES, PIXEL_BYTES, SECTION_BYTES};
 use crate::shader_build::{Block, EMBEDDED, HostBlock, Interface};
 
 fn block(shader: &str, name: &str) -> Block {
@@ -25,6 +25,12 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<LightBlock>("gas/volume-traced.comp", "Lights");
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
     check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
-    let sections = block("gas/resolve.comp", "Sections");
-    assert_eq!(sections.members[0].array_stride_bytes.map(u64::from), Some(SECTION_BYTES));
+    for (shader, name, bytes) in [
+        ("gas/resolve.comp", "Sections", SECTION_BYTES),
+        ("gas/sort.comp", "Links", LINK_BYTES),
+        ("gas/sort.comp", "Surfaces", LINK_BYTES),
+        ("gas/sort.comp", "Pixels", PIXEL_BYTES),
+    ] {
+        assert_eq!(block(shader, name).members[0].array_stride_bytes.map(u64::from), Some(bytes), "{name}");
+    }
 }

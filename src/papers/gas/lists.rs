@@ -6,16 +6,16 @@ use ash::vk;
 use glam::{Vec2, Vec3};
 use half::f16;
 
-use super::blocks::Capacity;
+use super::capacity::{Band, Capacity, LINK_BYTES, PIXEL_BYTES};
 use super::geometry::Geometry;
 use super::parameters::Parameters;
 use crate::gpu::transfer::{read_buffer, upload};
 use crate::gpu::{Buffer, BufferDesc, Error, Feature, Frame, Pass, ShaderLibrary, Topology};
 
-const LINK_BYTES: u64 = 16;
 const COLOR_BYTES: u64 = 8;
-const PIXEL_BYTES: u64 = 16;
-pub const SECTION_BYTES: u64 = 32;
+
+/// Of a link that leads to a section, see `lists.glsl`.
+const SECTION_LINK: u32 = 1 << 31;
 
 /// The section of the paper that these passes come from.
 const SECTION: &str = "A-buffer";
@@ -32,8 +32,7 @@ pub struct Lists {
     empty: Pass,
     fragments: Pass,
     sort: Pass,
-    pixel_count: u32,
-    size: (u32, u32),
+    width: u32,
     /// Vertices that the fragments pass draws.
     vertex_count: u32,
 }
@@ -68,7 +67,7 @@ impl Lists {
         capacity: Capacity,
     ) -> Result<Self, Error> {
         let device = shaders.device();
-        let pixel_count = parameters.width.saturating_mul(parameters.height);
+        let pixel_count = parameters.width.saturating_mul(capacity.rows);
         let buffer = |name: &str, count: u32, bytes: u64| {
             let desc = BufferDesc::new(format!("{label}/{name}"), u64::from(count) * bytes);
             Buffer::new(device, desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
@@ -84,8 +83,9 @@ impl Lists {
             .with("frame", &geometry.frame)
             .with("Heads", &heads)
             .with("Counters", &counters)
+            .constants::<Band>()
             .build(shaders)?;
-        let has_geometry_stage = device.physical().has(Feature::GeometryShader);
+        let has_geometry_stage = parameters.geometry_stage && device.physical().has(Feature::GeometryShader);
         let first = if has_geometry_stage {
             Pass::graphics("fragments", SECTION, "gas/fragments.vert", "gas/fragments.frag")
                 .geometry("gas/fragments.geom")
@@ -105,6 +105,7 @@ impl Lists {
             .with("Surfaces", &surfaces)
             .with("Colors", &colors)
             .with("Counters", &counters)
+            .constants::<Band>()
             .extent(parameters.width, parameters.height)
             .build(shaders)?;
         let sort = Pass::compute("sort", SECTION, "gas/sort.comp")
@@ -116,6 +117,7 @@ impl Lists {
             .with("Colors", &colors)
             .with("Counters", &counters)
             .with("Pixels", &pixels)
+            .constants::<Band>()
             .build(shaders)?;
         Ok(Lists {
             capacity,
@@ -128,26 +130,26 @@ impl Lists {
             empty,
             fragments,
             sort,
-            pixel_count,
-            size: (parameters.width, parameters.height),
+            width: parameters.width,
             vertex_count: geometry.triangle_count.saturating_mul(if has_geometry_stage { 1 } else { 6 }),
         })
     }
 
-    /// Makes the sorted lists of a frame.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+    /// Makes the sorted lists of a band.
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
         frame.compute(&self.empty, |dispatch| {
-            dispatch.threads(self.pixel_count, 1, 1);
+            dispatch.constants(&band).threads(self.width, band.rows(), 1);
         })?;
         frame.graphics(&self.fragments, |draw| {
-            draw.vertices(self.vertex_count);
+            draw.constants(&band).vertices(self.vertex_count);
         })?;
         frame.compute(&self.sort, |dispatch| {
-            dispatch.threads(self.size.0, self.size.1, 1);
+            dispatch.constants(&band).threads(self.width, band.rows(), 1);
         })
     }
 
-    /// The most fragments and sections that any frame has wanted; more than the capacity means a picture with gaps.
+    /// The most fragments and sections that any band of any frame has wanted; more than the capacity means a picture with
+    /// gaps.
     ///
     /// # Errors
     /// What Vulkan answers.
@@ -155,19 +157,40 @@ impl Lists {
         let bytes = read_buffer(shaders.device(), &self.counters)?;
         let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         let most = |a: usize, b: usize| counts.get(a).max(counts.get(b)).copied().unwrap_or(0);
-        Ok(Capacity { fragments: most(0, 2), sections: most(1, 3) })
+        Ok(Capacity { fragments: most(0, 2), sections: most(1, 3), ..self.capacity })
     }
 
-    /// The sorted lists of the last frame, pixel by pixel.
+    /// Evaluations of the density that `volume` has noted in the last band.
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
-    pub fn read(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<Fragment>>, Error> {
+    pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), &self.pixels)?);
+        Ok(words.chunks_exact(4).map(|pixel| u64::from(pixel[3])).sum())
+    }
+
+    /// The sorted fragments of the last band of the last frame, pixel by pixel; `sections` are those between them.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
+    pub fn read(
+        &self,
+        shaders: &ShaderLibrary,
+        sections: Option<&Arc<Buffer>>,
+    ) -> Result<Vec<Vec<Fragment>>, Error> {
         let words = |buffer: &Arc<Buffer>| -> Result<Vec<u32>, Error> {
             Ok(bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), buffer)?))
         };
         let (heads, links) = (words(&self.heads)?, words(&self.links)?);
         let (surfaces, colors) = (words(&self.surfaces)?, words(&self.colors)?);
+        let sections = sections.map_or_else(|| Ok(Vec::new()), words)?;
+        let fragment_at = |node: u32| {
+            let after = |&node: &u32| {
+                let section = (node != u32::MAX && node & SECTION_LINK != 0).then_some(node & !SECTION_LINK)?;
+                sections.get(8 * section as usize + 3).copied()
+            };
+            std::iter::successors(Some(node), after).last().unwrap_or(u32::MAX)
+        };
         let fragment = |at: usize| -> Option<(Fragment, u32)> {
             let &[next, mask, near, far] = links.get(4 * at..4 * at + 4)? else { return None };
             let &[normal, object, triangle, coverage] = surfaces.get(4 * at..4 * at + 4)? else { return None };
@@ -182,13 +205,13 @@ impl Lists {
         let list = |&head: &u32| {
             let mut next = head;
             std::iter::from_fn(|| {
-                let (found, after) = fragment(next as usize)?;
+                let (found, after) = fragment(fragment_at(next) as usize)?;
                 next = after;
                 Some(found)
             })
             .collect()
         };
-        Ok(heads.iter().take(self.pixel_count as usize).map(list).collect())
+        Ok(heads.iter().map(list).collect())
     }
 }
 

@@ -4,22 +4,12 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::capacity::{Band, SECTION_BYTES};
 use super::geometry::Geometry;
-use super::lists::{Lists, SECTION_BYTES};
+use super::lists::Lists;
 use super::parameters::{Parameters, Variant};
 use super::tables::Tables;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
-use crate::host_block;
-
-/// Rows of a dispatch: a slow variant's picture is made of many short dispatches, which no watchdog ends.
-const BAND_ROWS: u32 = 32;
-
-host_block! {
-    struct Band {
-        first_row: u32,
-        end_row: u32,
-    }
-}
 
 /// The passes that evaluate or look up the gas.
 pub struct March {
@@ -29,7 +19,7 @@ pub struct March {
     pub tables: Option<Tables>,
     volume: Pass,
     attenuation: Option<Pass>,
-    size: (u32, u32),
+    width: u32,
 }
 
 impl March {
@@ -87,6 +77,7 @@ impl March {
                 .with("Links", &lists.links)
                 .with("Surfaces", &lists.surfaces)
                 .with("Colors", &lists.colors)
+                .with("Sections", &sections)
                 .with("Attenuations", &values)
                 .constants::<Band>();
             pass = match &tables {
@@ -102,21 +93,19 @@ impl March {
             tables,
             volume: volume.build(shaders)?,
             attenuation,
-            size: (parameters.width, parameters.height),
+            width: parameters.width,
         })
     }
 
-    /// Tables, sections and attenuations of a frame.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        if let Some(tables) = &self.tables {
+    /// Sections and attenuations of a band; the tables before the first one.
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
+        if let Some(tables) = self.tables.as_ref().filter(|_| band.first_row == 0) {
             tables.record(frame)?;
         }
         for pass in std::iter::once(&self.volume).chain(&self.attenuation) {
-            let (width, height) = self.size;
             frame.compute(pass, |dispatch| {
-                for first_row in (0..height).step_by(BAND_ROWS as usize) {
-                    let end_row = height.min(first_row + BAND_ROWS);
-                    dispatch.constants(&Band { first_row, end_row }).threads(width, end_row - first_row, 1);
+                for part in band.parts() {
+                    dispatch.constants(&part).threads(self.width, part.rows(), 1);
                 }
             })?;
         }

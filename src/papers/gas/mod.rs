@@ -5,8 +5,11 @@
 //!                    │                                  ▲               ▲
 //!                    └─ (table) density-table ─► shadow-table ──────────┘
 //! ```
+//!
+//! A picture whose lists no buffer of the device holds is done in bands of rows, one after the other.
 
 mod blocks;
+mod capacity;
 mod geometry;
 #[cfg(test)]
 mod layouts;
@@ -21,6 +24,8 @@ mod tables;
 
 use std::sync::Arc;
 
+use self::blocks::Gases;
+use self::capacity::{Band, Most};
 use self::geometry::Geometry;
 use self::lists::Lists;
 use self::march::March;
@@ -29,7 +34,7 @@ use self::resolve::Resolve;
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 
-pub use self::blocks::Capacity;
+pub use self::capacity::Capacity;
 pub use self::lists::Fragment;
 pub use self::parameters::{Parameters, Variant};
 
@@ -43,6 +48,8 @@ pub struct Gas {
     parameters: Parameters,
     geometry: Geometry,
     passes: Passes,
+    most: Most,
+    lacks_geometry_stage: bool,
 }
 
 /// Everything whose size follows the lists'.
@@ -74,7 +81,7 @@ impl Passes {
 
 impl Gas {
     /// Makes every resource and pass; `label` goes before the names of the resources. The lists begin with room for four
-    /// fragments and two sections a pixel, or for what `capacity` says.
+    /// fragments and two sections a pixel, of as many rows as the device's buffers hold, or for what `capacity` says.
     ///
     /// # Errors
     /// What the Vulkan layer answers. The caller has validated `parameters` and `objects`.
@@ -86,14 +93,17 @@ impl Gas {
         objects: &[Object],
         capacity: Option<Capacity>,
     ) -> Result<Self, Error> {
-        let pixels = parameters.width.saturating_mul(parameters.height).max(1);
-        let usual = Capacity { fragments: pixels.saturating_mul(4), sections: pixels.saturating_mul(2) };
+        let most = Most::of(shaders.device(), parameters);
+        let capacity = capacity.unwrap_or_else(|| Capacity::usual(parameters, most));
         let geometry = Geometry::new(shaders, label, parameters, objects)?;
-        let passes = Passes::new(shaders, label, &geometry, variant, parameters, capacity.unwrap_or(usual))?;
-        Ok(Gas { label: label.to_owned(), variant, parameters: parameters.clone(), geometry, passes })
+        let passes = Passes::new(shaders, label, &geometry, variant, parameters, capacity)?;
+        let (label, parameters) = (label.to_owned(), parameters.clone());
+        let lacks_geometry_stage =
+            parameters.geometry_stage && !shaders.device().physical().has(Feature::GeometryShader);
+        Ok(Gas { label, variant, parameters, geometry, passes, most, lacks_geometry_stage })
     }
 
-    /// The most fragments and sections that a frame has wanted so far.
+    /// The rows that are done at once, and the most fragments and sections that they have wanted in a frame so far.
     ///
     /// # Errors
     /// What Vulkan answers.
@@ -101,34 +111,53 @@ impl Gas {
         self.passes.lists.demand(shaders)
     }
 
-    /// The sorted fragments of each pixel of the last frame, without the sections.
+    /// The sorted fragments of each pixel of the last frame, without the sections; of its last band, if there are several.
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
     pub fn fragments(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<Fragment>>, Error> {
-        self.passes.lists.read(shaders)
+        self.passes.lists.read(shaders, self.passes.march.as_ref().map(|march| &march.sections))
+    }
+
+    /// Evaluations of the density along the viewer's rays in the last frame; in its last band, if there are several.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
+    pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
+        self.passes.lists.evaluations(shaders)
     }
 
     /// What the run should tell: the device has no geometry stage.
-    pub fn warnings(&self, shaders: &ShaderLibrary) -> Vec<String> {
-        if shaders.device().physical().has(Feature::GeometryShader) {
-            return Vec::new();
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.lacks_geometry_stage {
+            warnings.push(
+                "the device has no geometry stage: `fragments` makes each triangle's footprint six times in its vertex \
+                 stage, so that its time is not that of the other devices' method"
+                    .to_owned(),
+            );
         }
-        vec!["the device has no geometry stage: `fragments` makes each triangle's footprint six times in its vertex stage".into()]
+        warnings
     }
 }
 
 impl Paper for Gas {
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         let Passes { lists, march, resolve } = &self.passes;
-        let volume_count = if march.is_some() { self.parameters.volumes.len() } else { 0 };
+        let gas = Gases {
+            volume_count: if march.is_some() { self.parameters.volumes.len() } else { 0 },
+            are_shadowing: march.as_ref().is_some_and(|march| march.attenuations.is_some()),
+        };
         let number = self.parameters.scene_frame(number);
-        self.geometry.write(&self.parameters, number, volume_count, lists.capacity)?;
-        lists.record(frame)?;
-        if let Some(march) = march {
-            march.record(frame)?;
+        self.geometry.write(&self.parameters, number, gas, lists.capacity)?;
+        for band in Band::all(self.parameters.height, lists.capacity.rows) {
+            lists.record(frame, band)?;
+            if let Some(march) = march {
+                march.record(frame, band)?;
+            }
+            resolve.record(frame, band)?;
         }
-        resolve.record(frame)
+        Ok(())
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
@@ -138,18 +167,7 @@ impl Paper for Gas {
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         let demand = self.passes.lists.demand(shaders)?;
-        let capacity = self.passes.lists.capacity;
-        if demand.fragments <= capacity.fragments && demand.sections <= capacity.sections {
-            return Ok(true);
-        }
-        // An eighth more: the frames to come may want a little more. What is enough stays as it is.
-        let grown = |demand: u32, capacity: u32| {
-            if demand > capacity { demand.saturating_add(demand / 8) } else { capacity }
-        };
-        let capacity = Capacity {
-            fragments: grown(demand.fragments, capacity.fragments),
-            sections: grown(demand.sections, capacity.sections),
-        };
+        let Some(capacity) = self.passes.lists.capacity.grown(demand, self.most)? else { return Ok(true) };
         self.passes = Passes::new(shaders, &self.label, &self.geometry, self.variant, &self.parameters, capacity)?;
         Ok(false)
     }

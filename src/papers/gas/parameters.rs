@@ -68,6 +68,11 @@ pub struct Parameters {
     /// Frames of the scene from one frame to the next; 0 holds the first.
     pub frame_step: u32,
     pub seed: u64,
+    /// Whether a geometry stage makes the footprints, where the device has one.
+    pub geometry_stage: bool,
+    /// Most bytes of a buffer of the lists, at least 4096: the picture is done in bands of rows whose lists fit. Without, or
+    /// where it binds less, what the device binds.
+    pub list_bytes: Option<u64>,
     /// Size of the picture in pixels.
     pub width: u32,
     pub height: u32,
@@ -97,6 +102,8 @@ impl Default for Parameters {
             first_frame: 0,
             frame_step: 1,
             seed: 1,
+            geometry_stage: true,
+            list_bytes: None,
             width: 360,
             height: 250,
         }
@@ -191,6 +198,8 @@ impl Parameters {
             self.first_frame,
             "is too late; a scene has 16000000 frames",
         )?;
+        let list_bytes = self.list_bytes.unwrap_or(u64::MAX);
+        ParameterError::check(list_bytes >= 4096, "--list-bytes", list_bytes, "must be at least 4096")?;
         ParameterError::check_size(self.width, self.height)?;
         ParameterError::check_camera(&self.camera)
     }

@@ -4,19 +4,13 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::capacity::{Band, SECTION_BYTES};
 use super::geometry::Geometry;
-use super::lists::{Lists, SECTION_BYTES};
+use super::lists::Lists;
 use super::march::March;
 use super::parameters::Parameters;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
-use crate::host_block;
-
-host_block! {
-    struct Shading {
-        is_attenuated: u32,
-    }
-}
 
 /// The last passes.
 pub struct Resolve {
@@ -25,7 +19,6 @@ pub struct Resolve {
     pub picture: Arc<ImageView>,
     resolve: Pass,
     view: Pass,
-    shading: Shading,
 }
 
 impl Resolve {
@@ -42,7 +35,7 @@ impl Resolve {
         let device = shaders.device();
         let image = |name: &str, format, usage| {
             let desc = ImageDesc::new_2d(format!("{label}/{name}"), format, parameters.width, parameters.height);
-            Image::new(device, desc.usage(usage))?.view()
+            Image::new(device, desc.usage(usage)).map_err(|error| error.set_by("--size"))?.view()
         };
         let stored = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
         let radiance = image("radiance", vk::Format::R32G32B32A32_SFLOAT, stored)?;
@@ -53,9 +46,7 @@ impl Resolve {
             upload(device, &format!("{label}/{name}"), usage, &[0; SECTION_BYTES as usize])
         };
         let sections = march.map_or_else(|| nothing("no sections"), |m| Ok(m.sections.clone()))?;
-        let attenuations = march.and_then(|m| m.attenuations.clone());
-        let shading = Shading { is_attenuated: attenuations.is_some().into() };
-        let attenuations = attenuations.map_or_else(|| nothing("no attenuations"), Ok)?;
+        let attenuations = march.and_then(|m| m.attenuations.clone()).map_or_else(|| nothing("no attenuations"), Ok)?;
         let resolve = Pass::compute("resolve", "A-buffer", "gas/resolve.comp")
             .with("frame", &geometry.frame)
             .with("Lights", &geometry.lights)
@@ -64,23 +55,22 @@ impl Resolve {
             .with("Links", &lists.links)
             .with("Surfaces", &lists.surfaces)
             .with("Colors", &lists.colors)
-            .with("Pixels", &lists.pixels)
             .with("Sections", &sections)
             .with("Attenuations", &attenuations)
             .with("radiance", &radiance)
-            .constants::<Shading>()
+            .constants::<Band>()
             .build(shaders)?;
         let view = Pass::graphics("view", "A-buffer", "common/fullscreen.vert", "gas/view.frag")
             .with("radiance", &radiance)
             .color(&picture, Load::Discard, Blend::Replace)
             .build(shaders)?;
-        Ok(Resolve { radiance, picture, resolve, view, shading })
+        Ok(Resolve { radiance, picture, resolve, view })
     }
 
-    /// Resolves the lists.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+    /// Resolves the lists of a band.
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
         frame.compute(&self.resolve, |dispatch| {
-            dispatch.constants(&self.shading).threads(self.picture.width(), self.picture.height(), 1);
+            dispatch.constants(&band).threads(self.picture.width(), band.rows(), 1);
         })
     }
 

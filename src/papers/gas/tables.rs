@@ -63,7 +63,8 @@ impl Tables {
         let table_count = (volume_count * parameters.lights.len()) as u64;
         let buffer = |name: &str, count: u64| {
             let desc = BufferDesc::new(format!("{label}/{name}"), 4 * entries * count);
-            Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
+            let buffer = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER));
+            buffer.map_err(|error| error.set_by("--table"))
         };
         let densities = buffer("density-table", volume_count as u64)?;
         let shadows = buffer("shadow-table", table_count)?;

@@ -4,4 +4,5 @@ pub mod coverage;
 pub mod density;
 pub mod noise;
 pub mod phase;
+pub mod rays;
 pub mod shadow_table;

@@ -1,0 +1,22 @@
+// The picture is done in bands of rows, whose lists the device's buffers hold; most pictures are one band. A slow pass is
+// dispatched in parts of a band, so that no watchdog ends it.
+
+layout(push_constant, std430) uniform Band {
+    uint list_row; // the first row of the band
+    uint first_row; // the first row of this dispatch
+    uint end_row; // the row after its last
+} band;
+
+// The list of a pixel.
+uint list_of(uvec2 pixel) {
+    return (pixel.y - band.list_row) * frame.counts.x + pixel.x;
+}
+
+// The pixel of a thread; in no dispatch where is_in_band says no.
+uvec2 pixel_of(uvec2 thread) {
+    return thread + uvec2(0u, band.first_row);
+}
+
+bool is_in_band(uvec2 pixel) {
+    return pixel.x < frame.counts.x && pixel.y < band.end_row;
+}
