@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fumarole::experiment::picture::read_target;
-use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::gpu::transfer::read_image;
+use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::papers::Paper;
 use fumarole::papers::gas::model::Object;

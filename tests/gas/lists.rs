@@ -127,6 +127,55 @@ fn slivers_take_the_nearest_sub_pixel_at_the_opacity_of_their_coverage() {
     });
 }
 
+/// Slivers in all directions: where a triangle's piece misses the middles of all sub-pixels, one that it goes through stands for it.
+#[test]
+fn empty_masks_take_a_sub_pixel_at_the_opacity_of_their_coverage() {
+    gpu_test(|device| {
+        let mut random = Random::new(17);
+        let corners: Vec<[DVec2; 3]> = (0..60)
+            .map(|_| {
+                let from = DVec2::new(random.range(5.0, 80.0).into(), random.range(5.0, 55.0).into());
+                let along = DVec2::from_angle(random.range(0.0, 6.28).into());
+                let across = along.perp() * f64::from(random.range(0.005, 0.05));
+                [from, from + along * f64::from(random.range(0.1, 9.0)), from + across]
+            })
+            .collect();
+        let triangles: Vec<[Vec3; 3]> = corners.iter().map(|c| c.map(|p| unproject(p, 3.0))).collect();
+        let drawing = Drawing::of(device, Variant::NoVolume, &parameters(), &[object(&triangles)]);
+        let mut count = 0;
+        for (i, list) in drawing.lists.iter().enumerate() {
+            let pixel = DVec2::new((i as u32 % WIDTH).into(), (i as u32 / WIDTH).into());
+            for fragment in list {
+                let piece = cut(&corners[fragment.triangle as usize], pixel);
+                let holds = |bit: u32| {
+                    let middle = DVec2::new(f64::from(bit % 4) + 0.5, f64::from(bit / 4) + 0.5) / DVec2::new(4.0, 8.0);
+                    let sides = (0..piece.len()).map(|k| {
+                        let (a, b) = (piece[k], piece[(k + 1) % piece.len()]);
+                        (b - a).perp_dot(middle - a)
+                    });
+                    let sides: Vec<f64> = sides.collect();
+                    sides.iter().all(|&s| s > -1e-6) || sides.iter().all(|&s| s < 1e-6)
+                };
+                if (0..32).any(holds) {
+                    continue;
+                }
+                assert_eq!(fragment.mask.count_ones(), 1, "{fragment:?}");
+                let expected = (area(&piece) * 32.0).min(0.99);
+                assert!((f64::from(fragment.opacity) - expected).abs() < 5e-3, "{fragment:?} for {expected}");
+                // The sub-pixel's own piece of the triangle, with slack for rounding.
+                let bit = fragment.mask.trailing_zeros();
+                let sub_pixels: Vec<DVec2> = piece.iter().map(|p| *p * DVec2::new(4.0, 8.0)).collect();
+                let cell = DVec2::new((bit % 4).into(), (bit / 4).into());
+                let center = sub_pixels.iter().sum::<DVec2>() / sub_pixels.len() as f64;
+                let is_through = area(&cut(&sub_pixels, cell)) > 0.0;
+                assert!(is_through || (center - cell - 0.5).abs().max_element() < 0.51, "{fragment:?}: {piece:?}");
+                count += 1;
+            }
+        }
+        assert!(count > 50, "{count} slivers");
+    });
+}
+
 /// Many triangles over each other, some at one depth: sorted by mean depth, then object, then triangle.
 #[test]
 fn long_lists_are_sorted() {

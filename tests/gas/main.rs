@@ -6,6 +6,8 @@ mod density;
 mod drawing;
 mod lists;
 mod march;
+mod pictures;
 mod scenes;
 mod slab;
+mod surfaces;
 mod tables;

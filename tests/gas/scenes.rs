@@ -8,9 +8,11 @@ use fumarole::papers::gas::{Parameters, Variant};
 use crate::common::gpu_test;
 use crate::drawing::Drawing;
 
-fn small(preset: Preset) -> (Parameters, Vec<fumarole::papers::gas::model::Object>) {
+/// 90 x 62 pixels, 16 steps and 32 entries a side; a solid has steps enough for its surface.
+pub fn small(preset: Preset) -> (Parameters, Vec<fumarole::papers::gas::model::Object>) {
     let scene = preset.scene();
-    (Parameters { width: 90, height: 62, steps: 16, table_size: 32, ..scene.parameters }, scene.objects)
+    let steps = if preset == Preset::Solid { 60 } else { 16 };
+    (Parameters { width: 90, height: 62, steps, table_size: 32, ..scene.parameters }, scene.objects)
 }
 
 #[test]

@@ -170,7 +170,8 @@ fn gas_before_the_light_is_brighter_where_g_is_positive() {
             parameters.background = Vec3::ZERO;
             let direction = Vec3::new(0.0, 0.0, towards_z);
             parameters.lights = vec![Light::Parallel { direction, intensity: Vec3::ONE }];
-            parameters.volumes[0].phase = [HenyeyGreenstein { weight: 1.0, g }, HenyeyGreenstein { weight: 0.0, g: 0.0 }];
+            parameters.volumes[0].phase =
+                [HenyeyGreenstein { weight: 1.0, g }, HenyeyGreenstein { weight: 0.0, g: 0.0 }];
             draw(device, &parameters, &[]).red((WIDTH * HEIGHT / 2 + WIDTH / 2) as usize)
         };
         for g in [-0.6_f64, 0.0, 0.5] {

@@ -13,7 +13,7 @@ use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, pa
 use super::paper::PaperArgs;
 use crate::experiment::gas::Setup;
 use crate::papers::gas::model::{DensityFunction, HenyeyGreenstein};
-use crate::papers::gas::scenes::Preset;
+use crate::papers::gas::scenes::{self, Preset};
 use crate::scene::{Light, MeshSource};
 
 /// The figures' scenes.
@@ -64,6 +64,12 @@ enum DensityWord {
     Turbulence,
     /// A sine wave through the turbulent space
     Clouds,
+    /// Figure 7's fog behind its front, moved along a helix as the frames go on
+    Fog,
+    /// Figures 6 and 8's steam, which rises and thins with its height
+    Steam,
+    /// A soft ball whose surface the turbulence moves
+    Hypertexture,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -93,6 +99,15 @@ pub struct GasArgs {
     /// Density function of all volumes [default: the scene's]
     #[arg(long, value_enum)]
     density: Option<DensityWord>,
+    /// Factor of all volumes' density (the paper's opaque), 0 to 1000000 [default: the scene's]
+    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
+    opaque: Option<f32>,
+    /// Exponent of all volumes' density, above 0 and at most 100 [default: the scene's]
+    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
+    power: Option<f32>,
+    /// Texture units a metre of all volumes, 0.0001 to 10000 [default: the scene's]
+    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
+    texture_scale: Option<f32>,
     /// Optical depth of density 1, per metre, of all volumes, 0 to 1000000 [default: the scene's]
     #[arg(long, value_name = "TAU", value_parser = parse_finite, allow_negative_numbers = true)]
     tau: Option<f32>,
@@ -121,6 +136,13 @@ pub struct GasArgs {
     /// Frames of the scene from one frame to the next; 0 holds the first [default: 0]
     #[arg(long, value_name = "N")]
     frame_step: Option<u32>,
+    /// Make the triangles' footprints in the vertex stage instead of by a geometry stage
+    #[arg(long)]
+    no_geometry_stage: bool,
+    /// Most bytes of a buffer of the A-buffer's lists, at least 4096: the picture is done in bands of rows whose lists fit
+    /// [default: what the device binds]
+    #[arg(long, value_name = "N")]
+    list_bytes: Option<u64>,
     /// Camera: eye and target, x,y,z,x,y,z in metres [default: the scene's]
     #[arg(long, value_name = "EYE,TARGET", value_parser = parse_eye_and_target, allow_hyphen_values = true)]
     camera: Option<[Vec3; 2]>,
@@ -177,6 +199,9 @@ impl GasArgs {
         set(&mut p.early_end, self.early_end);
         for volume in &mut p.volumes {
             set(&mut volume.texture.function, self.density.map(function));
+            set(&mut volume.texture.opaque, self.opaque);
+            set(&mut volume.texture.power, self.power);
+            set(&mut volume.texture.scale_per_m, self.texture_scale);
             set(&mut volume.tau_per_m, self.tau);
             set(&mut volume.albedo, self.albedo.map(Vec3::splat));
             set(&mut volume.falloff, self.falloff);
@@ -204,6 +229,8 @@ impl GasArgs {
             (p.width, p.height) = (size.width, size.height);
         }
         set(&mut p.seed, self.seed);
+        p.geometry_stage &= !self.no_geometry_stage;
+        p.list_bytes = self.list_bytes.or(p.list_bytes);
         setup.objects.clone_from(&self.object);
         setup
     }
@@ -214,5 +241,8 @@ fn function(word: DensityWord) -> DensityFunction {
         DensityWord::Constant => DensityFunction::Constant,
         DensityWord::Turbulence => DensityFunction::Turbulence,
         DensityWord::Clouds => DensityFunction::Clouds { frequency: 4.0 },
+        DensityWord::Fog => scenes::FOG,
+        DensityWord::Steam => scenes::STEAM,
+        DensityWord::Hypertexture => scenes::HYPERTEXTURE,
     }
 }

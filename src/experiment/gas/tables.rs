@@ -1,5 +1,6 @@
 //! The paper's tables 1 and 2, ours beside the paper's, and how cost and picture follow table size and steps.
 
+use glam::Vec3;
 use serde_json::json;
 
 use super::Setup;
@@ -18,6 +19,7 @@ use crate::papers::gas::scenes::Preset;
 use crate::report::plot::{BarChart, BarSeries, LineChart, Scale, Series};
 use crate::report::record::{ExperimentRow, Run};
 use crate::report::table::{Align, Style, Table, interval, number};
+use crate::scene::Light;
 
 /// A row of one of the paper's tables: scene, variant, minutes on an HP 9000/370.
 type PaperRow = (Preset, Variant, f64);
@@ -93,6 +95,9 @@ impl Number {
         self.rows().iter().find(found).map(|(_, _, minutes)| *minutes)
     }
 }
+
+/// A linear brightness of 1 % as the picture holds it.
+const ONE_PERCENT_SRGB: u8 = 25;
 
 /// A table's rows with what they are compared with.
 pub struct Outcome {
@@ -246,7 +251,7 @@ impl Trade {
     }
 
     /// The rows' times beside the Luv difference (eq. 2-9 of the caustics thesis) of their pictures from the reference, over
-    /// the pixels that the gas changes by more than 1 %.
+    /// the pixels in which the gas is denser than 1 % opacity.
     ///
     /// # Errors
     /// [`Error::Gpu`], [`Error::Image`].
@@ -259,14 +264,11 @@ impl Trade {
             let mut built = build(machine, &study, &scene, variant)?;
             picture::render(machine, &mut built.paper, 0)
         };
-        let bare = draw(machine, Variant::NoVolume, None)?;
         let reference = match self {
             Trade::TableSize => draw(machine, Variant::Traced, None)?,
             Trade::Steps => draw(machine, variant, counts.iter().max().copied())?,
         };
-        let changed = |(with, without): (&[u8], &[u8])| with.iter().zip(without).any(|(a, b)| a.abs_diff(*b) > 2);
-        let mask: Vec<bool> =
-            reference.pixels().chunks_exact(4).zip(bare.pixels().chunks_exact(4)).map(changed).collect();
+        let mask = gas_mask(machine, setup)?;
         let mut table = Vec::new();
         for (row, &count) in rows.iter().zip(&counts) {
             let difference = compare(&draw(machine, variant, Some(count))?, &reference, Some(&mask))?;
@@ -307,6 +309,22 @@ impl Trade {
         };
         Ok(chart.to_svg()?)
     }
+}
+
+/// The pixels in which the gas that is seen has an opacity of more than 1 %: it shines with it, between black surfaces.
+fn gas_mask(machine: &mut Machine, setup: &Setup) -> Result<Vec<bool>, Error> {
+    let mut study = setup.clone();
+    let parameters = &mut study.parameters;
+    parameters.volumes.iter_mut().for_each(|volume| volume.albedo = Vec3::ONE);
+    parameters.lights = vec![Light::Parallel { direction: Vec3::NEG_Y, intensity: Vec3::ZERO }];
+    (parameters.ambient, parameters.background) = (Vec3::ONE, Vec3::ZERO);
+    let mut scene = study.load()?;
+    for object in &mut scene.objects {
+        (object.color, object.checker, object.highlight.strength) = (Vec3::ZERO, None, 0.0);
+    }
+    let mut built = build(machine, &study, &scene, Variant::None)?;
+    let opacity = picture::render(machine, &mut built.paper, 0)?;
+    Ok(opacity.pixels().chunks_exact(4).map(|texel| texel[0] > ONE_PERCENT_SRGB).collect())
 }
 
 #[cfg(test)]

@@ -173,11 +173,7 @@ impl Lists {
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
-    pub fn read(
-        &self,
-        shaders: &ShaderLibrary,
-        sections: Option<&Arc<Buffer>>,
-    ) -> Result<Vec<Vec<Fragment>>, Error> {
+    pub fn read(&self, shaders: &ShaderLibrary, sections: Option<&Arc<Buffer>>) -> Result<Vec<Vec<Fragment>>, Error> {
         let words = |buffer: &Arc<Buffer>| -> Result<Vec<u32>, Error> {
             Ok(bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), buffer)?))
         };

@@ -99,7 +99,7 @@ fn parameters(volumes: Vec<Volume>) -> Parameters {
     }
 }
 
-fn swirl(along: f32) -> Swirl {
+const fn swirl(along: f32) -> Swirl {
     Swirl { along_per_frame: along, frames: 126.0, ellipse: [0.25, 0.2] }
 }
 
@@ -121,17 +121,21 @@ pub fn surface_fog() -> Scene {
     Scene { parameters: Parameters { width: 1024, height: 768, ..parameters(Vec::new()) }, objects }
 }
 
+/// The fog of figure 7.
+pub const FOG: DensityFunction = DensityFunction::Fog {
+    swirl: swirl(0.012),
+    front: Front { x_m: -4.6, per_frame_m: 0.017, depth_m: 2.5, full_frames: 0.0, turbulence_m: 0.8, table_m: 0.6 },
+};
+
 /// Figure 7: fog rolls in from the left, and a rook moves through it.
 pub fn volume_fog() -> Scene {
-    let front =
-        Front { x_m: -4.6, per_frame_m: 0.017, depth_m: 2.5, full_frames: 0.0, turbulence_m: 0.8, table_m: 0.6 };
     let fog = bright(Volume {
         shape: Shape::Box,
         center: Vec3::new(0.0, 0.5, 0.0),
         half_extent_m: Vec3::new(4.0, 0.5, 4.0),
         falloff: 0.35,
         texture: SolidTexture {
-            function: DensityFunction::Fog { swirl: swirl(0.012), front },
+            function: FOG,
             opaque: 2.0,
             power: 2.6,
             scale_per_m: 1.2,

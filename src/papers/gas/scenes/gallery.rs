@@ -99,6 +99,9 @@ pub fn scene() -> Scene {
     Scene { parameters: parameters(ball), objects }
 }
 
+/// The surface of the solid.
+pub const HYPERTEXTURE: DensityFunction = DensityFunction::Hypertexture { amplitude: 1.4, softness: 0.16 };
+
 /// A hypertexture ball, opaque, with shaded normals.
 pub fn solid() -> Scene {
     let ball = Volume {
@@ -107,7 +110,7 @@ pub fn solid() -> Scene {
         half_extent_m: Vec3::splat(0.8),
         is_solid: true,
         texture: SolidTexture {
-            function: DensityFunction::Hypertexture { amplitude: 1.4, softness: 0.16 },
+            function: HYPERTEXTURE,
             opaque: 1.0,
             power: 1.0,
             scale_per_m: 3.2,

@@ -42,17 +42,20 @@ fn glass_at(at: Vec3) -> Object {
     shiny(glass, 2.5, 60.0)
 }
 
+/// The steam of figures 6 and 8.
+pub const STEAM: DensityFunction =
+    DensityFunction::Steam { swirl: Swirl { along_per_frame: 0.03, frames: 120.0, ellipse: [0.2, 0.2] } };
+
 /// Steam from the drink's surface on.
 fn steam() -> Volume {
     let half = Vec3::new(0.75, 1.05, 0.75);
-    let swirl = Swirl { along_per_frame: 0.03, frames: 120.0, ellipse: [0.2, 0.2] };
     bright(Volume {
         shape: Shape::Frustum { bottom: 0.56, top: 1.0 },
         center: Vec3::new(0.0, DRINK_M + half.y, 0.0),
         half_extent_m: half,
         falloff: 0.5,
         texture: SolidTexture {
-            function: DensityFunction::Steam { swirl },
+            function: STEAM,
             opaque: 2.1,
             power: 3.0,
             scale_per_m: 2.2,

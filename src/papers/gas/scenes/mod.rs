@@ -7,6 +7,10 @@ mod lathe;
 
 use glam::{Mat4, Vec2, Vec3};
 
+pub use self::chess::FOG;
+pub use self::gallery::HYPERTEXTURE;
+pub use self::glass::STEAM;
+
 use super::model::{Highlight, Object, Volume};
 use super::parameters::Parameters;
 use crate::scene::{Mesh, shapes};
