@@ -63,6 +63,35 @@ fn the_volume_is_seen_and_another_seed_is_another_gas() {
     assert!(read("a.png") != read("d.png"));
 }
 
+/// What changes how the picture is made, and not what it shows; and what changes the gas.
+#[test]
+fn bands_and_pulled_vertices_show_the_same_and_other_densities_do_not() {
+    let out = folder();
+    let draw = |name: &str, options: &str| {
+        small(&format!("render --quiet --variant table --image {name}.png")).args(options).inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join(format!("{name}.png"))).unwrap()
+    };
+    let own = draw("own", "");
+    assert!(own == draw("bands", "--list-bytes 20000"));
+    assert!(own == draw("pulled", "--no-geometry-stage"));
+    let mut others = vec![own];
+    for (name, options) in [
+        ("constant", "--density constant"),
+        ("turbulence", "--density turbulence"),
+        ("clouds", "--density clouds"),
+        ("fog", "--density fog --first-frame 300"),
+        ("hypertexture", "--density hypertexture"),
+        ("opaque", "--opaque 3"),
+        ("power", "--power 2"),
+        ("scale", "--texture-scale 4"),
+    ] {
+        let picture = draw(name, options);
+        assert!(!others.contains(&picture), "{name}");
+        others.push(picture);
+    }
+    assert!(others[0] == draw("steam", "--density steam"));
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_its_option() {
     for (options, parts) in [
@@ -78,6 +107,12 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--early-end 2", &["--early-end 2"]),
         ("--light 0,0,0", &["--light 0,0,0"]),
         ("--size 0x0", &["--size 0x0"]),
+        ("--opaque -1", &["--opaque -1"]),
+        ("--power 0", &["--power 0"]),
+        ("--texture-scale 0", &["--texture-scale 0"]),
+        ("--list-bytes 10", &["--list-bytes 10", "at least 4096"]),
+        // A row of glass wants more than its four fragments a pixel, and a row is the least that is done at once.
+        ("--preset fig-6 --size 300x40 --list-bytes 20000", &["--list-bytes", "20000"][..1]),
         ("--object no-such.obj", &["no-such.obj"]),
     ] {
         gas("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
