@@ -1,0 +1,84 @@
+//! A fire on the device, and what it left in its buffers.
+
+use std::sync::Arc;
+
+use bytemuck::Pod;
+use fumarole::gpu::transfer::read_buffer;
+use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
+use fumarole::papers::Paper;
+use fumarole::papers::burning::model::with_triangles;
+use fumarole::papers::burning::{Burning, Counts, Parameters, Variant};
+use fumarole::scene::{Mesh, shapes};
+
+/// A closed object of about 1,000 triangles.
+pub fn ball() -> Mesh {
+    with_triangles(&shapes::sphere(32, 32), 1000)
+}
+
+/// Small pictures of a fast fire.
+pub fn quick() -> Parameters {
+    Parameters { width: 32, height: 24, speed_per_s: 0.5, flammability: 20, blocks: [4, 4, 4], ..Parameters::default() }
+}
+
+pub struct Fire {
+    pub paper: Burning,
+    recorder: Recorder,
+    device: Arc<Device>,
+}
+
+/// What the simulation left, as bits.
+#[derive(PartialEq)]
+pub struct State {
+    pub vertices: Vec<[f32; 4]>,
+    pub rotations: Vec<[f32; 4]>,
+    pub labels: Vec<u32>,
+    pub cells: Vec<u32>,
+    pub blocks: Vec<[i32; 8]>,
+    pub removed: Vec<u32>,
+    pub counts: Counts,
+}
+
+impl Fire {
+    pub fn new(device: &Arc<Device>, variant: Variant, parameters: &Parameters, mesh: &Mesh) -> Self {
+        parameters.validate().unwrap();
+        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let paper = Burning::new(&shaders, "test", variant, parameters, mesh).unwrap();
+        Fire { paper, recorder: Recorder::new(device).unwrap(), device: device.clone() }
+    }
+
+    /// A shell of [`quick`] numbers.
+    pub fn shell(device: &Arc<Device>, mesh: &Mesh) -> Self {
+        Self::new(device, Variant::Shell, &quick(), mesh)
+    }
+
+    pub fn frame(&mut self, number: u32) {
+        self.recorder.run(Mode::Plain, |frame| self.paper.record(frame, number)).unwrap();
+    }
+
+    /// Ticks of the simulation passes alone.
+    pub fn ticks(&mut self, count: u32) {
+        for done in (0..count).step_by(50) {
+            let batch = 50.min(count - done);
+            let Fire { paper, recorder, .. } = self;
+            recorder.run(Mode::Plain, |frame| (0..batch).try_for_each(|_| paper.tick(frame))).unwrap();
+        }
+    }
+
+    pub fn read<T: Pod>(&self, buffer: &Arc<Buffer>) -> Vec<T> {
+        bytemuck::pod_collect_to_vec(&read_buffer(&self.device, buffer).unwrap())
+    }
+
+    pub fn state(&self) -> State {
+        let (vertices, rotations) = self.paper.state();
+        let buffers = self.paper.buffers();
+        State {
+            vertices: self.read(vertices),
+            rotations: self.read(rotations),
+            labels: self.read(&buffers.labels),
+            cells: self.read(&buffers.cells),
+            blocks: self.read(&buffers.blocks),
+            removed: self.read(&buffers.removed),
+            counts: self.paper.counts().unwrap(),
+        }
+    }
+}
