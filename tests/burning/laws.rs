@@ -113,8 +113,7 @@ fn nothing_consumed_stays_when_pieces_may_come_off_and_no_part_comes_off_otherwi
             for _ in 0..12 {
                 fire.ticks(15);
                 let state = fire.state();
-                let is_consumed =
-                    |t: &[u32; 3]| t.iter().all(|&vertex| state.vertices[vertex as usize][3] == 0.0);
+                let is_consumed = |t: &[u32; 3]| t.iter().all(|&vertex| state.vertices[vertex as usize][3] == 0.0);
                 for (triangle, &removed) in fire.paper.model().triangles.iter().zip(&state.removed) {
                     assert!(removed == 0 || is_consumed(triangle));
                     kept += usize::from(removed == 0 && is_consumed(triangle));

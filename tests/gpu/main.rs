@@ -7,6 +7,7 @@ mod barriers;
 mod counters;
 mod devices;
 mod fixtures;
+mod indirect;
 mod memory_model;
 mod pictures;
 mod refusals;

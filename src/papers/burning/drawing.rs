@@ -59,7 +59,8 @@ impl Drawing {
         };
         let depth = target("depth", vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
         let picture = target("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
-        let camera = parameters.camera.unwrap_or_else(|| framing(&model.bounds, parameters.aspect()));
+        let camera =
+            parameters.camera.unwrap_or_else(|| framing(&model.lattice.positions, &model.bounds, parameters.aspect()));
         let block = ViewBlock {
             view_projection: (camera.projection(parameters.aspect()) * camera.view()).to_cols_array(),
             eye: camera.eye.extend(1.0).to_array(),

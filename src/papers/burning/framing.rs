@@ -14,27 +14,24 @@ pub fn seen_from(eye: Vec3, target: Vec3) -> Camera {
     Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.6, near_m: 0.01, far_m: 100.0 }
 }
 
-/// A camera from in front and above at the distance from which the box fills the picture.
-pub fn framing(bounds: &Bounds, aspect: f32) -> Camera {
+/// A camera from in front and above at the distance from which `places`, of a diagonal of 1 and with those `bounds`, fill the
+/// picture.
+pub fn framing(places: &[Vec3], bounds: &Bounds, aspect: f32) -> Camera {
     let target = bounds.center();
     let at = |distance: f32| seen_from(target + TO_EYE.normalize() * distance, target);
     let fits = |distance: f32| {
         let camera = at(distance);
         let projection = camera.projection(aspect) * camera.view();
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for corner in 0..8 {
-            let pick = |axis: usize| {
-                let end = if corner >> axis & 1 == 0 { bounds.min } else { bounds.max };
-                end.to_array()[axis]
-            };
-            let place = projection.project_point3(Vec3::new(pick(0), pick(1), pick(2)));
-            (low, high) = (low.min(place), high.max(place));
+        for &place in places {
+            let seen = projection.project_point3(place);
+            (low, high) = (low.min(seen), high.max(seen));
         }
         // From -1 to 1.
         let extent = (high - low) / 2.0;
         extent.x <= FILLED && extent.y <= FILLED
     };
-    // From 1 on, the box of diagonal 1 is in front of the eye.
+    // From 1 on, all of it is in front of the eye.
     let (mut near, mut far) = (1.0, 64.0);
     for _ in 0..24 {
         let middle = 0.5 * (near + far);
