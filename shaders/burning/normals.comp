@@ -28,6 +28,10 @@ layout(set = 0, binding = 8, std430) readonly buffer CornerIncidence {
     uint corner_incidence[]; // triangle * 4 + corner, ascending
 };
 
+layout(set = 0, binding = 24, std430) readonly buffer Alive {
+    uint alive[];
+};
+
 layout(set = 0, binding = 13, std430) readonly buffer Removed {
     uint removed[];
 };
@@ -68,6 +72,12 @@ vec3 area_vectors(uint from, uint to, bool with_removed) {
 void main() {
     uint corner = gl_GlobalInvocationID.x;
     if (corner >= constants.counts.z) {
+        return;
+    }
+    // Nothing that is drawn has a vertex that does not exist.
+    if (alive[welds[corner]] == 0u) {
+        normals[corner] = vec4(0.0, 1.0, 0.0, 0.0);
+        colors[corner] = vec4(0.0);
         return;
     }
     uint from = corner_incidence_offsets[corner];

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::Vec3;
 
-use super::framing::framing;
+use super::framing;
 use super::model::Model;
 use super::parameters::Parameters;
 use super::state::Buffers;
@@ -59,8 +59,7 @@ impl Drawing {
         };
         let depth = target("depth", vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
         let picture = target("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
-        let camera =
-            parameters.camera.unwrap_or_else(|| framing(&model.lattice.positions, &model.bounds, parameters.aspect()));
+        let camera = framing::camera(parameters, model);
         let block = ViewBlock {
             view_projection: (camera.projection(parameters.aspect()) * camera.view()).to_cols_array(),
             eye: camera.eye.extend(1.0).to_array(),

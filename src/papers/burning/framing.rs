@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use super::model::Model;
+use super::parameters::Parameters;
 use crate::scene::{Bounds, Camera};
 
 /// Share of the picture's height that the object fills (preset `3.8`), and at most of its width.
@@ -14,9 +16,14 @@ pub fn seen_from(eye: Vec3, target: Vec3) -> Camera {
     Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.6, near_m: 0.01, far_m: 100.0 }
 }
 
+/// The camera that looks at the object: the user's, or one that frames it.
+pub fn camera(parameters: &Parameters, model: &Model) -> Camera {
+    parameters.camera.unwrap_or_else(|| framing(&model.lattice.positions, &model.bounds, parameters.aspect()))
+}
+
 /// A camera from in front and above at the distance from which `places`, of a diagonal of 1 and with those `bounds`, fill the
 /// picture.
-pub fn framing(places: &[Vec3], bounds: &Bounds, aspect: f32) -> Camera {
+fn framing(places: &[Vec3], bounds: &Bounds, aspect: f32) -> Camera {
     let target = bounds.center();
     let at = |distance: f32| seen_from(target + TO_EYE.normalize() * distance, target);
     let fits = |distance: f32| {

@@ -21,6 +21,7 @@ mod layouts;
 pub mod model;
 mod normals;
 pub mod parameters;
+mod refinement;
 mod removal;
 mod state;
 
@@ -32,6 +33,7 @@ use self::drawing::Drawing;
 use self::heat::HeatBoundary;
 use self::model::Model;
 use self::normals::Normals;
+use self::refinement::Refinement;
 use self::removal::SurfaceRemoval;
 use super::{Paper, Target};
 use crate::gpu::transfer::read_buffer;
@@ -52,6 +54,7 @@ pub struct Burning {
     model: Model,
     buffers: Buffers,
     heat: HeatBoundary,
+    refinement: Option<Refinement>,
     deformation: Deformation,
     blocks: Blocks,
     removal: SurfaceRemoval,
@@ -80,13 +83,19 @@ impl Burning {
         let device = shaders.device();
         let largest_bytes = u64::from(device.physical().limits.max_storage_buffer_range);
         let model = Model::new(mesh, variant, parameters, largest_bytes)?;
-        let buffers = Buffers::new(shaders, label, variant, parameters, &model)?;
+        let mut buffers = Buffers::new(shaders, label, variant, parameters, &model)?;
+        let refinement = if variant.refines() && model.levels > 0 {
+            Some(Refinement::new(shaders, label, parameters, &mut buffers, &model)?)
+        } else {
+            None
+        };
         let mut burning = Burning {
             device: device.clone(),
             heat: HeatBoundary::new(shaders, &buffers, &model)?,
             deformation: Deformation::new(shaders, &buffers, &model)?,
             blocks: Blocks::new(shaders, &buffers, &model)?,
-            removal: SurfaceRemoval::new(shaders, label, variant, &buffers, &model)?,
+            removal: SurfaceRemoval::new(shaders, label, variant, &buffers, refinement.as_ref(), &model)?,
+            refinement,
             normals: Normals::new(shaders, &buffers, &model)?,
             drawing: Drawing::new(shaders, label, parameters, &buffers, &model)?,
             parameters: parameters.clone(),
@@ -145,6 +154,9 @@ impl Burning {
         let turn = 1 - self.turn();
         if part == 0 {
             self.heat.record(frame, turn)?;
+            if let Some(refinement) = &self.refinement {
+                refinement.record(frame)?;
+            }
         }
         self.deformation.record(frame, turn, part, parts)?;
         let is_last = part + 1 == parts;
@@ -163,6 +175,11 @@ impl Burning {
     /// The object, prepared.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// The refinement pattern, of an object that is refined.
+    pub fn refinement(&self) -> Option<&Refinement> {
+        self.refinement.as_ref()
     }
 
     /// Every buffer.

@@ -23,6 +23,7 @@ impl Normals {
             .with("CornerIncidence", &buffers.corner_incidence)
             .with("Removed", &buffers.removed)
             .with("Clock", &buffers.clock)
+            .with("Alive", &buffers.alive)
             .with("Mapped", &buffers.mapped)
             .with("Normals", &buffers.normals)
             .with("Colors", &buffers.colors)

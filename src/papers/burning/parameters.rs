@@ -36,6 +36,11 @@ impl crate::papers::Variant for Variant {
 }
 
 impl Variant {
+    /// Whether the triangles are refined where they are about to burn: 4, and the larger triangles of 5 and 6.
+    pub fn refines(self) -> bool {
+        matches!(self, Variant::LowPoly | Variant::Solid | Variant::Melting)
+    }
+
     /// Whether consumed triangles leave the drawn stream (3.5.4); a solid's and a melting object's stay.
     pub fn removes(self) -> bool {
         matches!(self, Variant::Shell | Variant::LowPoly | Variant::FullySubdivided)

@@ -6,6 +6,7 @@ use ash::vk;
 
 use super::model::Model;
 use super::parameters::Variant;
+use super::refinement::{LeavesConstants, Refinement};
 use super::state::Buffers;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
@@ -24,6 +25,11 @@ pub struct SurfaceRemoval {
     /// For either turn of the states; without where nothing is removed.
     mark: Option<[Pass; 2]>,
     compaction: [Pass; 3],
+    /// Of the compaction's first and last step.
+    threads: u32,
+    /// Of numbers that its middle step scans.
+    sums: u32,
+    leaves: Option<LeavesConstants>,
     triangles: u32,
 }
 
@@ -35,12 +41,14 @@ impl SurfaceRemoval {
         label: &str,
         variant: Variant,
         buffers: &Buffers,
+        refinement: Option<&Refinement>,
         model: &Model,
     ) -> Result<Self, Error> {
         let step =
             |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
         let triangles = model.triangles.len() as u32;
-        let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(triangles.div_ceil(GROUP)));
+        let (threads, sum_count) = refinement.map_or((triangles, triangles.div_ceil(GROUP)), |r| (r.runs(), r.runs()));
+        let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(sum_count));
         let sums: Arc<Buffer> = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
         let [a, b] = &buffers.states;
         let mark_a = step("burning/surface-removal-mark.comp")
@@ -52,26 +60,35 @@ impl SurfaceRemoval {
             .with("Clock", &buffers.clock)
             .build(shaders)?;
         let mark_b = mark_a.again().with("NewState", b).build(shaders)?;
-        let count = step("burning/surface-removal-count.comp")
-            .with("Removed", &buffers.removed)
-            .with("GroupSums", &sums)
-            .build(shaders)?;
+        let [count, scatter] = match refinement {
+            None => {
+                let count = step("burning/surface-removal-count.comp")
+                    .with("Removed", &buffers.removed)
+                    .with("GroupSums", &sums)
+                    .build(shaders)?;
+                let scatter = step("burning/surface-removal-scatter.comp")
+                    .with("Corners", &buffers.corners)
+                    .with("Removed", &buffers.removed)
+                    .with("Stream", &buffers.stream)
+                    .with("GroupSums", &sums)
+                    .build(shaders)?;
+                [count, scatter]
+            }
+            Some(refinement) => refinement.leaves(shaders, step, buffers, &sums)?,
+        };
         let scan = step("burning/surface-removal-scan.comp")
             .constants::<Groups>()
             .with("Clock", &buffers.clock)
             .with("Arguments", &buffers.arguments)
             .with("GroupSums", &sums)
             .build(shaders)?;
-        let scatter = step("burning/surface-removal-scatter.comp")
-            .with("Corners", &buffers.corners)
-            .with("Removed", &buffers.removed)
-            .with("Stream", &buffers.stream)
-            .with("GroupSums", &sums)
-            .build(shaders)?;
         let [mark_a, mark_b, count, scan, scatter] = Pass::steps([mark_a, mark_b, count, scan, scatter]);
         Ok(SurfaceRemoval {
             mark: variant.removes().then_some([mark_a, mark_b]),
             compaction: [count, scan, scatter],
+            threads,
+            sums: sum_count,
+            leaves: refinement.map(Refinement::leaves_constants),
             triangles,
         })
     }
@@ -93,14 +110,18 @@ impl SurfaceRemoval {
     /// What the Vulkan layer answers.
     pub fn compact(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let [count, scan, scatter] = &self.compaction;
-        frame.compute(count, |dispatch| {
-            dispatch.threads(self.triangles, 1, 1);
-        })?;
+        let over_all = |frame: &mut Frame<'_>, pass: &Pass| {
+            frame.compute(pass, |dispatch| {
+                if let Some(leaves) = &self.leaves {
+                    dispatch.constants(leaves);
+                }
+                dispatch.threads(self.threads, 1, 1);
+            })
+        };
+        over_all(frame, count)?;
         frame.compute(scan, |dispatch| {
-            dispatch.constants(&Groups { count: self.triangles.div_ceil(GROUP) }).threads(1, 1, 1);
+            dispatch.constants(&Groups { count: self.sums }).threads(1, 1, 1);
         })?;
-        frame.compute(scatter, |dispatch| {
-            dispatch.threads(self.triangles, 1, 1);
-        })
+        over_all(frame, scatter)
     }
 }

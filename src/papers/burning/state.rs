@@ -234,10 +234,9 @@ impl Buffers {
     }
 }
 
-/// Which vertices exist before the fire: all, but of a low-poly object only those of its coarse triangles.
+/// Which vertices exist before the fire: all, but of an object that is refined only those of its coarse triangles.
 fn alive_at_rest(variant: Variant, model: &Model) -> Vec<u32> {
-    let is_refined = variant == Variant::LowPoly;
-    let mut alive = vec![u32::from(!is_refined); model.rest.len()];
+    let mut alive = vec![u32::from(!variant.refines()); model.rest.len()];
     for corner in model.lattice.nodes[0].as_flattened() {
         alive[model.lattice.welds[*corner as usize] as usize] = 1;
     }

@@ -5,6 +5,7 @@ mod boundary;
 mod count;
 mod incidence;
 mod lattice;
+pub mod tree;
 mod weld;
 
 use glam::Vec3;
