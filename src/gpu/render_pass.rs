@@ -32,6 +32,8 @@ pub enum Blend {
     Multiply,
     /// source alpha over the destination.
     Over,
+    /// As `Over`, with a source colour that its alpha was multiplied into: adds where that is 0.
+    Premultiplied,
     /// Nothing is written: for the floor of a pass.
     Masked,
 }
@@ -43,6 +45,7 @@ impl Blend {
             Blend::Add => "add",
             Blend::Multiply => "multiply",
             Blend::Over => "over",
+            Blend::Premultiplied => "premultiplied over",
             Blend::Masked => "masked",
         }
     }
@@ -68,6 +71,7 @@ impl Blend {
             Blend::Add => blended(F::ONE, F::ONE, F::ONE, F::ONE),
             Blend::Multiply => blended(F::DST_COLOR, F::ZERO, F::ZERO, F::ONE),
             Blend::Over => blended(F::SRC_ALPHA, F::ONE_MINUS_SRC_ALPHA, F::ONE, F::ONE_MINUS_SRC_ALPHA),
+            Blend::Premultiplied => blended(F::ONE, F::ONE_MINUS_SRC_ALPHA, F::ONE, F::ONE_MINUS_SRC_ALPHA),
         }
     }
 }

@@ -6,6 +6,8 @@ use super::{CompiledShader, Error, Stage};
 /// Geometry shaders are excluded by their kind and do not belong here.
 pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/block-weights.comp", "atomics: vertices are counted by block"),
+    ("burning/flames-ready.comp", "an atomic: ready vertices are listed by block"),
+    ("burning/flames.comp", "an atomic: particles are counted"),
     ("burning/heat-boundary-triangles.comp", "an atomic: active triangles are counted"),
     ("burning/heat-boundary-vertices.comp", "an atomic: active vertices are counted"),
     ("burning/surface-removal-mark.comp", "an atomic: removed triangles are counted"),

@@ -156,6 +156,7 @@ fn the_blend_states_do_what_they_say() {
             (Blend::Add, [0.75, 0.75, 1.25, 0.75]),
             (Blend::Multiply, [0.125, 0.125, 0.25, 0.25]),
             (Blend::Over, [0.375, 0.375, 0.625, 0.625]),
+            (Blend::Premultiplied, [0.625, 0.5, 1.125, 0.625]),
         ];
         for (blend, expected) in cases {
             let target = color_target(device, "blended", vk::Format::R32G32B32A32_SFLOAT, 4, 4);

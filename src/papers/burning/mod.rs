@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! each tick of 1/60 s:
-//!   heat-boundary ─► (refinement) ─► internal-deformation ─► block-weights ─► block-rotation ─┐
-//!     ┌─────────────────────────────────────────────────────────────────────────────────────┘
+//!   heat-boundary ─► (refinement) ─► internal-deformation ─► block-weights ─► block-rotation ─► flames ─┐
+//!     ┌──────────────────────────────────────────────────────────────────────────────────────────────┘
 //! each frame:
-//!     └─► vertex-mapping ─► surface-removal ─► normals ─► draw
+//!     └─► vertex-mapping ─► surface-removal ─► normals ─► draw ─► draw-fire
 //! ```
 //!
 //! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the state lives on
@@ -14,6 +14,7 @@
 mod blocks;
 mod deformation;
 mod drawing;
+mod flames;
 mod framing;
 mod heat;
 #[cfg(test)]
@@ -30,6 +31,7 @@ use std::sync::Arc;
 use self::blocks::Blocks;
 use self::deformation::Deformation;
 use self::drawing::Drawing;
+use self::flames::Flames;
 use self::heat::HeatBoundary;
 use self::model::Model;
 use self::normals::Normals;
@@ -60,6 +62,7 @@ pub struct Burning {
     removal: SurfaceRemoval,
     normals: Normals,
     drawing: Drawing,
+    flames: Option<Flames>,
     /// Slices of ticks since the fire was lit, and at the start.
     slices: u64,
     start_slices: u64,
@@ -89,6 +92,8 @@ impl Burning {
         } else {
             None
         };
+        let drawing = Drawing::new(shaders, label, parameters, &buffers, &model)?;
+        let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &drawing)?;
         let mut burning = Burning {
             device: device.clone(),
             heat: HeatBoundary::new(shaders, &buffers, &model)?,
@@ -97,7 +102,8 @@ impl Burning {
             removal: SurfaceRemoval::new(shaders, label, variant, &buffers, refinement.as_ref(), &model)?,
             refinement,
             normals: Normals::new(shaders, &buffers, &model)?,
-            drawing: Drawing::new(shaders, label, parameters, &buffers, &model)?,
+            drawing,
+            flames,
             parameters: parameters.clone(),
             model,
             buffers,
@@ -162,6 +168,9 @@ impl Burning {
         let is_last = part + 1 == parts;
         if is_last {
             self.blocks.record(frame, turn)?;
+            if let Some(flames) = &self.flames {
+                flames.record(frame, turn)?;
+            }
         }
         self.slices += 1;
         Ok(is_last)
@@ -249,7 +258,11 @@ impl Paper for Burning {
             self.normals.record(frame)?;
             self.is_shaded = true;
         }
-        self.drawing.record(frame)
+        self.drawing.record(frame)?;
+        match &self.flames {
+            Some(flames) => flames.draw(frame),
+            None => Ok(()),
+        }
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {

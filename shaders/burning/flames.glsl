@@ -1,0 +1,33 @@
+// Flame groups (3.6): one a block. Of the pools of fire and smoke particles, which are maxima, a group gets its share by the block's
+// live vertices, while the block is in the combustion-ready area.
+
+// What is said of every block, and of one more beyond the last: its first fire and smoke particle, its first entry in the list of
+// ready vertices, its weight.
+struct Group {
+    uint first_fire;
+    uint first_smoke;
+    uint first_ready;
+    uint weight;
+};
+
+struct Particle {
+    vec4 place; // position; age in ticks
+    vec4 character; // life in ticks, 0 when it is not there; block that it was born in; two numbers of its own from 0 to 1
+};
+
+// Jarzynski and Olano's PCG (2020): one hash of three numbers.
+uvec3 hash(uvec3 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+vec3 unit(uvec3 h) {
+    return vec3(h >> 8u) / 16777216.0;
+}
