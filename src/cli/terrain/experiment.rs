@@ -172,7 +172,7 @@ impl Experiments {
             publication.picture(&format!("-{}.png", point.label), picture)?;
         }
         if !self.common.output.quiet {
-            outcome::say(&format!("heat maps: black is no step, nearly white {most} steps"));
+            outcome::say(&format!("heat maps: black is no step, nearly white {most} steps, by logarithm"));
         }
         machine.check_validation()?;
         Ok(())

@@ -76,8 +76,8 @@ fn heat(share: f32) -> [u8; 4] {
     [channel(0), channel(1), channel(2), 255]
 }
 
-/// Steps of each ray by heat, one picture for each setup. All share one ramp, from no step to the most that any ray took,
-/// which is given as well.
+/// Steps of each ray by heat, one picture for each setup. All share one ramp, from no step to the most that any ray took, which
+/// is given as well. It follows the logarithm: few rays graze the land, and those take many times the steps of the others.
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Scene`], [`Error::Image`], [`Error::Parameter`].
@@ -95,7 +95,7 @@ pub fn heat_maps<'a>(
         pictures.push((setup.parameters.width, setup.parameters.height, steps));
     }
     let draw = |(width, height, steps): (u32, u32, Vec<u32>)| {
-        let pixels = steps.iter().flat_map(|&steps| heat(steps as f32 / most as f32)).collect();
+        let pixels = steps.iter().flat_map(|&steps| heat((steps as f32).ln_1p() / (most as f32).ln_1p())).collect();
         Ok(Rgba8::new(width, height, pixels)?)
     };
     Ok((most, pictures.into_iter().map(draw).collect::<Result<_, Error>>()?))
