@@ -112,7 +112,7 @@ fn a_map_of_the_whole_earth_has_no_gap_at_its_seam() {
     let out = folder();
     let row = "1000 ".repeat(36);
     let rows = format!("{row}\n").repeat(18);
-    file(&out, "world.asc", &format!("ncols 36\nnrows 18\nxllcorner -180\nyllcorner -90\ncellsize 10\n{rows}"));
+    file(&out, "world.asc", format!("ncols 36\nnrows 18\nxllcorner -180\nyllcorner -90\ncellsize 10\n{rows}"));
     file(&out, "world.prj", "GEOGCS[\"WGS 84\",UNIT[\"degree\",0.0174532925199433]]");
     // From far beyond the antimeridian straight to the Earth's middle.
     let record = terrain("collide --map world.asc --base earth --base-level 0 --json --segment")

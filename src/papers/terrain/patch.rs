@@ -55,14 +55,12 @@ impl Patch {
     /// The largest second derivatives over the cell: along u twice, along u and v, along v twice; metres.
     pub fn bends(&self) -> DVec3 {
         let p = &self.points;
-        let mut bends = DVec3::ZERO;
-        for i in 0..4 {
-            for j in 0..2 {
-                let along_u = p[i][j] - 2.0 * p[i][j + 1] + p[i][j + 2];
-                let along_v = p[j][i] - 2.0 * p[j + 1][i] + p[j + 2][i];
-                bends = bends.max(DVec3::new(6.0 * along_u.abs(), 0.0, 6.0 * along_v.abs()));
-            }
-        }
+        let bend =
+            |line: &[f64; 4]| line.windows(3).map(|w| 6.0 * (w[0] - 2.0 * w[1] + w[2]).abs()).fold(0.0, f64::max);
+        let columns = [0, 1, 2, 3].map(|column| p.map(|row| row[column]));
+        let along_u = p.iter().map(bend).fold(0.0, f64::max);
+        let along_v = columns.iter().map(bend).fold(0.0, f64::max);
+        let mut bends = DVec3::new(along_u, 0.0, along_v);
         for i in 0..3 {
             for j in 0..3 {
                 let mixed = p[i + 1][j + 1] - p[i + 1][j] - p[i][j + 1] + p[i][j];
