@@ -60,7 +60,7 @@ pub struct Capacity {
 #[derive(Debug, Clone, Copy)]
 pub struct Most {
     bytes: u64,
-    /// The option that lowers it, or that asks for less.
+    /// What a user changes where one row is too much: the option to lower, perhaps one to raise.
     option: &'static str,
 }
 
@@ -72,7 +72,7 @@ impl Most {
         let heap_bytes = heaps.iter().map(|heap| heap.size).max().unwrap_or(0);
         let bytes = u64::from(physical.limits.max_storage_buffer_range).min(heap_bytes / HEAP_SHARE);
         match parameters.list_bytes {
-            Some(allowed) if allowed < bytes => Most { bytes: allowed, option: "--list-bytes" },
+            Some(allowed) if allowed < bytes => Most { bytes: allowed, option: "--size; or raise --list-bytes" },
             _ => Most { bytes, option: "--size" },
         }
     }
