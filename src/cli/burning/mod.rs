@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use self::experiment::Experiments;
 use super::failure::Failure;
-use super::options::{Size, parse_extents, parse_finite, parse_numbers, parse_size};
+use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
 use crate::experiment::burning::Setup;
 use crate::papers::burning::{Material, Shading, seen_from};
@@ -159,8 +159,8 @@ pub struct BurningArgs {
     #[arg(long, value_enum)]
     shading: Option<ShadingWord>,
     /// Camera: eye and target, x,y,z,x,y,z in diagonals [default: the object fills 80 % of the picture]
-    #[arg(long, value_name = "EYE,TARGET", value_parser = parse_numbers::<6>, allow_hyphen_values = true)]
-    camera: Option<[f32; 6]>,
+    #[arg(long, value_name = "EYE,TARGET", value_parser = parse_eye_and_target, allow_hyphen_values = true)]
+    camera: Option<[Vec3; 2]>,
     /// Size of the picture in pixels [default: 800x600]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<Size>,
@@ -244,9 +244,7 @@ impl BurningArgs {
             ShadingWord::Normals => Shading::Normals,
         };
         set(&mut p.shading, self.shading.map(shading));
-        if let Some([ex, ey, ez, tx, ty, tz]) = self.camera {
-            p.camera = Some(seen_from(Vec3::new(ex, ey, ez), Vec3::new(tx, ty, tz)));
-        }
+        p.camera = self.camera.map(|[eye, target]| seen_from(eye, target)).or(p.camera);
         if let Some(size) = self.size {
             (p.width, p.height) = (size.width, size.height);
         }
@@ -254,11 +252,5 @@ impl BurningArgs {
         set(&mut p.time_step_s, self.time_step);
         set(&mut p.first_frame, self.first_frame);
         setup
-    }
-}
-
-fn set<T>(target: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *target = value;
     }
 }

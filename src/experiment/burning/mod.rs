@@ -5,6 +5,7 @@ pub mod strips;
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
+use super::config::{self, entries};
 use super::error::Error;
 use super::machine::Machine;
 use super::measure::Measurement;
@@ -97,9 +98,8 @@ impl Study for Setup {
     fn config(&self, scene: &Scene, paper: &Burning) -> Map<String, Value> {
         let p = &self.parameters;
         let model = paper.model();
-        let camera = paper.camera();
         let sources: Vec<_> = model.sources.iter().map(|s| s.to_array()).collect();
-        let entries = [
+        entries([
             ("mesh", json!(self.mesh.to_string())),
             ("triangles", json!(scene.mesh.triangle_count())),
             ("levels", json!(model.levels)),
@@ -131,11 +131,10 @@ impl Study for Setup {
             ("material", json!(p.material.word())),
             ("albedo", json!(p.albedo.to_array())),
             ("shading", json!(p.shading.word())),
-            ("camera", json!([camera.eye.to_array(), camera.target.to_array()])),
+            ("camera", config::camera(paper.camera())),
             ("time_step", json!(p.time_step_s)),
             ("first_frame", json!(p.first_frame)),
-        ];
-        entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+        ])
     }
 
     fn summary(&self) -> String {
@@ -155,7 +154,7 @@ impl Study for Setup {
 fn results(paper: &Burning, measurement: &Measurement) -> Result<Map<String, Value>, Error> {
     let model = paper.model();
     let counts = paper.counts()?;
-    let entries = [
+    Ok(entries([
         ("frames_per_s", json!(median(&measurement.frame_ms).map(|ms| 1e3 / ms))),
         ("ticks", json!(counts.tick)),
         ("radius", json!(counts.radius)),
@@ -169,6 +168,5 @@ fn results(paper: &Burning, measurement: &Measurement) -> Result<Map<String, Val
         ("drawn_triangles", json!(counts.drawn_triangles)),
         ("fire_particles", json!(counts.fire_particles)),
         ("smoke_particles", json!(counts.smoke_particles)),
-    ];
-    Ok(entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect())
+    ]))
 }

@@ -76,9 +76,8 @@ impl Flames {
         let device = shaders.device();
         let name = |what: &str| format!("{label}/{what}");
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let empty = |what: &str, bytes: usize| {
-            Buffer::new(device, BufferDesc::new(name(what), bytes as u64).usage(storage))
-        };
+        let empty =
+            |what: &str, bytes: usize| Buffer::new(device, BufferDesc::new(name(what), bytes as u64).usage(storage));
         let blocks = model.grid.cell_count() as usize;
         let groups = empty("flame-groups", size_of::<Group>() * (blocks + 1))?;
         let listed = empty("listed-vertices", 4 * blocks)?;

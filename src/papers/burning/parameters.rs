@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::papers::ParameterError;
+use crate::papers::parameter::components;
 use crate::scene::Camera;
 
 /// The methods, one a chapter.
@@ -216,11 +217,6 @@ impl Default for Parameters {
     }
 }
 
-/// As they are typed.
-fn components(vector: Vec3) -> String {
-    vector.to_array().map(|c| c.to_string()).join(",")
-}
-
 impl Parameters {
     /// Checks every range.
     ///
@@ -285,16 +281,8 @@ impl Parameters {
         let step = self.time_step_s;
         check((0.0..=10.0).contains(&step), "--time-step", &step, "must be 0 to 10 seconds")?;
         check(self.first_frame <= 100_000, "--first-frame", &self.first_frame, "must be 0 to 100000")?;
-        let size = format!("{}x{}", self.width, self.height);
-        check(self.width >= 1 && self.height >= 1, "--size", &size, "has no pixel")?;
-        match self.camera {
-            None => Ok(()),
-            Some(camera) => camera.validate().map_err(|e| ParameterError {
-                name: "--camera",
-                value: [camera.eye, camera.target].map(components).join(","),
-                range: e.to_string(),
-            }),
-        }
+        ParameterError::check_size(self.width, self.height)?;
+        self.camera.as_ref().map_or(Ok(()), ParameterError::check_camera)
     }
 
     /// Slices of ticks that are due after frame `number`, counted from the start of the simulation: one a tick without
