@@ -9,7 +9,7 @@ use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::Vec3;
 
 use crate::common::gpu_test;
-use crate::fire::{Fire, quick};
+use crate::fire::Fire;
 
 fn mesh(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     let mut mesh = Mesh {

@@ -254,7 +254,7 @@ impl Paper for Burning {
             if !is_mapped {
                 self.blocks.map(frame, self.turn())?;
             }
-            self.removal.compact(frame)?;
+            self.removal.compact(frame, self.turn())?;
             self.normals.record(frame)?;
             self.is_shaded = true;
         }

@@ -22,9 +22,10 @@ const GROUP: u32 = 256;
 
 /// The steps of the pass.
 pub struct SurfaceRemoval {
-    /// For either turn of the states; without where nothing is removed.
-    mark: Option<[Pass; 2]>,
-    compaction: [Pass; 3],
+    /// For either turn of the states: marking what is consumed, and the three phases of the compaction.
+    turns: [[Pass; 4]; 2],
+    /// Whether anything that is consumed leaves the stream.
+    removes: bool,
     /// Of the compaction's first and last step.
     threads: u32,
     /// Of numbers that its middle step scans.
@@ -82,10 +83,10 @@ impl SurfaceRemoval {
             .with("Arguments", &buffers.arguments)
             .with("GroupSums", &sums)
             .build(shaders)?;
-        let [mark_a, mark_b, count, scan, scatter] = Pass::steps([mark_a, mark_b, count, scan, scatter]);
+        let turn = |mark| Pass::steps([mark, count.clone(), scan.clone(), scatter.clone()]);
         Ok(SurfaceRemoval {
-            mark: variant.removes().then_some([mark_a, mark_b]),
-            compaction: [count, scan, scatter],
+            turns: [turn(mark_a), turn(mark_b)],
+            removes: variant.removes(),
             threads,
             sums: sum_count,
             leaves: refinement.map(Refinement::leaves_constants),
@@ -98,18 +99,21 @@ impl SurfaceRemoval {
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn mark(&self, frame: &mut Frame<'_>, turn: usize) -> Result<(), Error> {
-        let Some(mark) = &self.mark else { return Ok(()) };
-        frame.compute(&mark[turn], |dispatch| {
+        if !self.removes {
+            return Ok(());
+        }
+        let [mark, ..] = &self.turns[turn];
+        frame.compute(mark, |dispatch| {
             dispatch.threads(self.triangles, 1, 1);
         })
     }
 
-    /// Makes the stream and its draw's parameters.
+    /// Makes the stream and its draw's parameters after the tick that left its state in buffer `turn`.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn compact(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let [count, scan, scatter] = &self.compaction;
+    pub fn compact(&self, frame: &mut Frame<'_>, turn: usize) -> Result<(), Error> {
+        let [_, count, scan, scatter] = &self.turns[turn];
         let over_all = |frame: &mut Frame<'_>, pass: &Pass| {
             frame.compute(pass, |dispatch| {
                 if let Some(leaves) = &self.leaves {
