@@ -152,7 +152,7 @@ pub struct BurningArgs {
     /// What the surface is made of [default: wood]
     #[arg(long, value_enum)]
     material: Option<MaterialWord>,
-    /// Albedo, linear red,green,blue, each 0 to 1 [default: 0.42,0.23,0.1]
+    /// Albedo, linear red,green,blue, each 0 to 1 [default: 0.36,0.17,0.07]
     #[arg(long, value_name = "R,G,B", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     albedo: Option<[f32; 3]>,
     /// What colours the mesh [default: lit]

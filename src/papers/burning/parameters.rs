@@ -205,7 +205,7 @@ impl Default for Parameters {
             particle_radius: 0.02,
             level_of_detail: None,
             material: Material::Wood,
-            albedo: Vec3::new(0.42, 0.23, 0.1),
+            albedo: Vec3::new(0.36, 0.17, 0.07),
             shading: Shading::Lit,
             camera: None,
             time_step_s: 1.0 / TICKS_PER_S,
