@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "burning/grid.glsl"
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
 };
 
 layout(set = 0, binding = 16, std430) readonly buffer OldRotations {
@@ -28,6 +28,22 @@ bool has_weight(uint block) {
     return block != NONE && blocks[8u * min(block, constants.counts.w - 1u)] > 0;
 }
 
+// Number of live vertices; of a solid's block the less, the longer it has been burning (5.4).
+float weight_of(uint block) {
+    float live = float(blocks[8u * block]);
+    if (constants.grid.w != SOLID) {
+        return live;
+    }
+    float flammability = constants.boundary.w;
+    return live * flammability / (flammability + float(blocks[8u * block + 5u]));
+}
+
+// What melts turns outside the combustion-ready boundary and above the ignition alone: there is weight to support (6.4).
+bool is_rigid(uint block) {
+    return constants.grid.w == MELTING
+        && (blocks[8u * block + 6u] > 0 || midpoint_of(block).y <= constants.boundary.z);
+}
+
 vec3 own_change(uint block) {
     ivec3 signs = ivec3(blocks[8u * block + 2u], blocks[8u * block + 3u], blocks[8u * block + 4u]);
     if (signs == ivec3(0)) {
@@ -37,7 +53,7 @@ vec3 own_change(uint block) {
     for (uint direction = 0u; direction < 6u; direction++) {
         neighbours += has_weight(neighbour_of(block, direction)) ? 1 : 0;
     }
-    float share = float(max(blocks[8u * block], 1)) * float(max(neighbours, 1));
+    float share = max(weight_of(block), 1.0) * float(max(neighbours, 1));
     return constants.rotation.x * constants.material.z * PI / share * vec3(signs);
 }
 
@@ -47,7 +63,7 @@ void main() {
         return;
     }
     vec4 before = old_rotations[block];
-    if (blocks[8u * block] <= 0) {
+    if (blocks[8u * block] <= 0 || is_rigid(block)) {
         new_rotations[block] = before;
         return;
     }

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 
 layout(set = 0, binding = 15, std430) buffer Blocks {
-    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
 };
 
 void main() {
@@ -18,4 +18,5 @@ void main() {
     for (uint i = 0u; i < 5u; i++) {
         blocks[8u * block + i] = 0;
     }
+    blocks[8u * block + 6u] = 0;
 }

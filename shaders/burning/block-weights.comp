@@ -27,7 +27,7 @@ layout(set = 0, binding = 14, std430) buffer Cells {
 };
 
 layout(set = 0, binding = 15, std430) buffer Blocks {
-    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
 };
 
 layout(set = 0, binding = 18, std430) buffer Clock {
@@ -62,6 +62,16 @@ void main() {
                 if (label == READY) {
                     atomicAdd(ready_count, 1u);
                     atomicAdd(blocks[8u * cell + 1u], 1);
+                }
+            }
+            if (label >= READY) {
+                atomicAdd(blocks[8u * cell + 6u], 1);
+            }
+            // The combustion counter of a block goes up once in each tick with active vertices (5.4).
+            if (label == DEFORMED && old_state[vertex].w > constants.solid.y) {
+                int tick = int(clock.tick);
+                if (atomicMax(blocks[8u * cell + 7u], tick) < tick) {
+                    atomicAdd(blocks[8u * cell + 5u], 1);
                 }
             }
             bool is_consumed = old_state[vertex].w > 0.0 && !is_live;

@@ -17,7 +17,7 @@ layout(set = 0, binding = 10, std430) readonly buffer NewState {
 };
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
 };
 
 layout(set = 0, binding = 17, std430) readonly buffer NewRotations {

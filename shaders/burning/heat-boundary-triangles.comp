@@ -46,7 +46,7 @@ void main() {
             uint vertex = triangles[3u * triangle + corner];
             uint label = labels[vertex];
             highest = max(highest, label);
-            if (label == DEFORMED && old_state[vertex].w > 0.0 && alive[vertex] == 1u) {
+            if (label == DEFORMED && old_state[vertex].w > constants.solid.y && alive[vertex] == 1u) {
                 is_active = true;
             }
         }

@@ -54,7 +54,7 @@ void main() {
     if (vertex < constants.counts.x) {
         uint label = area_of(rest[vertex].w);
         labels[vertex] = label;
-        if (label == DEFORMED && old_state[vertex].w > 0.0 && alive[vertex] == 1u) {
+        if (label == DEFORMED && old_state[vertex].w > constants.solid.y && alive[vertex] == 1u) {
             atomicAdd(active_count, 1u);
         }
     }

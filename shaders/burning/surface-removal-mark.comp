@@ -26,7 +26,7 @@ layout(set = 0, binding = 14, std430) readonly buffer Cells {
 };
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live vertices, ready vertices, sums of signs for pitch, yaw, roll, combustion counter, 2 unused
+    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
 };
 
 layout(set = 0, binding = 18, std430) buffer Clock {

@@ -97,7 +97,7 @@ impl Burning {
         let mut burning = Burning {
             device: device.clone(),
             heat: HeatBoundary::new(shaders, &buffers, &model)?,
-            deformation: Deformation::new(shaders, &buffers, &model)?,
+            deformation: Deformation::new(shaders, variant, &buffers, &model)?,
             blocks: Blocks::new(shaders, &buffers, &model)?,
             removal: SurfaceRemoval::new(shaders, label, variant, &buffers, refinement.as_ref(), &model)?,
             refinement,

@@ -22,6 +22,7 @@ host_block! {
         material: [f32; 4],
         rotation: [f32; 4],
         melting: [f32; 4],
+        solid: [f32; 4],
         albedo: [f32; 4],
         choices: [u32; 4],
         tree: [u32; 4],
@@ -92,12 +93,16 @@ pub struct Buffers {
     pub removed: Arc<Buffer>,
     /// uint\[N\]: block of the position.
     pub cells: Arc<Buffer>,
-    /// int\[8 * blocks\]: live vertices, ready vertices, three sums of signs, combustion counter, two unused.
+    /// int\[8 * blocks\]: live vertices, ready vertices, three sums of signs, combustion counter, vertices inside the
+    /// combustion-ready boundary, the last tick with active vertices.
     pub blocks: Arc<Buffer>,
     /// vec4\[blocks\] twice, which take turns as the states do: pitch, yaw, roll in radians.
     pub rotations: [Arc<Buffer>; 2],
-    /// vec4\[blocks\]: displacement of the base point in this tick, whether it is active.
-    pub base_displacements: Arc<Buffer>,
+    /// vec4\[blocks\] twice, which take turns as the states do: displacement of the base point since the start, whether it is
+    /// active (6.3.4).
+    pub base_displacements: [Arc<Buffer>; 2],
+    /// vec4\[N\]: how far a vertex has followed the base points; of one element where nothing melts.
+    pub flows: Arc<Buffer>,
     /// uint\[N\]: 1 where the vertex exists.
     pub alive: Arc<Buffer>,
     /// [`Counts`].
@@ -181,7 +186,8 @@ impl Buffers {
             cells: uploaded("cells", bytemuck::cast_slice(&model.rest_cells))?,
             blocks: uploaded("blocks", bytemuck::cast_slice(&counts))?,
             rotations: [zeros("rotations-a", 16 * blocks)?, zeros("rotations-b", 16 * blocks)?],
-            base_displacements: zeros("base-displacements", 16 * blocks)?,
+            base_displacements: [zeros("base-displacements-a", 16 * blocks)?, zeros("base-displacements-b", 16 * blocks)?],
+            flows: zeros("flows", 16 * if variant == Variant::Melting { vertices } else { 1 })?,
             alive: uploaded("alive", bytemuck::cast_slice(&alive))?,
             clock: zeros("clock", size_of::<Counts>())?,
             mapped: empty("mapped", 16 * vertices, plain)?,
@@ -194,7 +200,8 @@ impl Buffers {
         let [state_a, state_b] = buffers.states.each_ref().map(Arc::clone);
         let [rotations_a, rotations_b] = buffers.rotations.each_ref().map(Arc::clone);
         let kept = [&buffers.labels, &buffers.triangle_labels, &buffers.removed, &buffers.cells, &buffers.blocks];
-        let more = [&buffers.base_displacements, &buffers.alive, &buffers.clock];
+        let [bases_a, bases_b] = &buffers.base_displacements;
+        let more = [bases_a, bases_b, &buffers.flows, &buffers.alive, &buffers.clock];
         let mut kept: Vec<Arc<Buffer>> = kept.into_iter().chain(more).map(Arc::clone).collect();
         kept.extend([state_a, state_b, rotations_a, rotations_b]);
         for buffer in kept {
@@ -250,6 +257,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
     let tick_s = 1.0 / TICKS_PER_S;
     let fall = (f64::from(p.epsilon) * GRAVITY * tick_s * tick_s) as f32;
     let highest_source = model.sources.iter().map(|s| s.y).fold(f32::NEG_INFINITY, f32::max);
+    let retires_at = if variant == Variant::Solid { p.retire_at * p.flammability as f32 } else { 0.0 };
     let counts = [model.rest.len(), model.triangles.len(), model.lattice.welds.len(), model.base_points.len()];
     Constants {
         counts: counts.map(|count| count as u32),
@@ -259,7 +267,8 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         boundary: [(f64::from(p.speed_per_s) * tick_s) as f32, p.width_of_areas, highest_source, p.flammability as f32],
         material: [p.epsilon, p.beta, p.rho, p.phi],
         rotation: [p.gamma, p.spread, GREATEST_ROTATION_RAD, GREATEST_FREE_ROTATION_RAD],
-        melting: [p.omega, p.chi, p.upsilon, p.retire_at],
+        melting: [p.omega, p.chi, p.upsilon, 0.0],
+        solid: [model.outward, retires_at, 0.0, 0.0],
         albedo: with(p.albedo, fall),
         choices: [p.active_limit, p.keep_connected.into(), p.noise_seed(), (p.material == Material::Wood).into()],
         tree: [model.levels, model.coarse_count(), p.fire, p.smoke],

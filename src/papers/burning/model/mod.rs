@@ -43,6 +43,8 @@ pub struct Model {
     pub mean_edge: f32,
     pub sources: Vec<Vec3>,
     pub floor: f32,
+    /// 1 where the triangles wind so that their normals point out of the enclosed volume, or else -1.
+    pub outward: f32,
     /// Triangles of the mesh that were left out because two of their corners coincide.
     pub degenerate: u32,
 }
@@ -89,6 +91,7 @@ impl Model {
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
             mean_edge: mean_edge(positions, &triangles),
+            outward: if enclosed_volume(positions, &triangles) < 0.0 { -1.0 } else { 1.0 },
             floor: parameters.floor.unwrap_or(bounds.min.y),
             bounds,
             grid,
@@ -132,6 +135,12 @@ fn mean_edge(positions: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
     let around =
         |&[a, b, c]: &[u32; 3]| place(a).distance(place(b)) + place(b).distance(place(c)) + place(c).distance(place(a));
     (triangles.iter().map(around).sum::<f64>() / (3.0 * triangles.len().max(1) as f64)) as f32
+}
+
+/// Signed: by the tetrahedra that the triangles make with the origin.
+fn enclosed_volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    let place = |vertex: u32| positions[vertex as usize].as_dvec3();
+    triangles.iter().map(|&[a, b, c]| place(a).dot(place(b).cross(place(c))) / 6.0).sum()
 }
 
 fn base_points(grid: &Grid, positions: &[Vec3], rest_cells: &[u32]) -> Vec<u32> {

@@ -1,0 +1,124 @@
+#version 450
+
+// The movement of the base points (6.3.4), which guide what melts; one thread a block. An edge block without a bottom neighbour lets
+// its base point fall, the slower the farther the fire has gone on; others draw it to the lowest base point around them, until it
+// meets a block that does not melt yet. A base point starts at a vertex and then goes its own way: folding does not move it.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/clock.glsl"
+#include "burning/grid.glsl"
+
+layout(set = 0, binding = 1, std430) readonly buffer Rest {
+    vec4 rest[]; // xyz, R
+};
+
+layout(set = 0, binding = 7, std430) readonly buffer BasePoints {
+    uint base_points[];
+};
+
+layout(set = 0, binding = 11, std430) readonly buffer Labels {
+    uint labels[];
+};
+
+layout(set = 0, binding = 15, std430) readonly buffer Blocks {
+    int blocks[]; // of the last tick: live vertices first
+};
+
+layout(set = 0, binding = 18, std430) readonly buffer Clock {
+    Counts clock;
+};
+
+layout(set = 0, binding = 50, std430) readonly buffer OldBases {
+    vec4 old_bases[]; // displacement since the start, whether it is active
+};
+
+layout(set = 0, binding = 51, std430) buffer NewBases {
+    vec4 new_bases[];
+};
+
+bool has_base(uint block) {
+    return block != NONE && base_points[min(block, constants.counts.w - 1u)] != NONE;
+}
+
+bool is_active(uint block) {
+    return labels[base_points[block]] >= READY;
+}
+
+vec3 base_of(uint block) {
+    return rest[base_points[block]].xyz + old_bases[block].xyz;
+}
+
+bool is_free_edge(uint block) {
+    bool has_sides = true;
+    for (uint direction = 0u; direction < 4u; direction++) {
+        has_sides = has_base(neighbour_of(block, direction)) ? has_sides : false;
+    }
+    return !has_sides && !has_base(neighbour_of(block, 4u));
+}
+
+// The block around this one whose base point is the lowest, the first of several; NONE without any.
+uint lowest_around(uint block) {
+    ivec3 middle = ivec3(place_of(block));
+    ivec3 size = ivec3(constants.grid.xyz);
+    uint lowest = NONE;
+    float height = 0.0;
+    for (int i = 0; i < 27; i++) {
+        ivec3 at = middle + ivec3(i % 3, (i / 3) % 3, i / 9) - 1;
+        bool is_inside = all(greaterThanEqual(at, ivec3(0))) && all(lessThan(at, size));
+        uint other = is_inside ? uint((at.z * size.y + at.y) * size.x + at.x) : NONE;
+        if (other != block && has_base(other)) {
+            float y = base_of(other).y;
+            if (lowest == NONE || y < height) {
+                lowest = other;
+                height = y;
+            }
+        }
+    }
+    return lowest;
+}
+
+vec3 moved(uint block, vec3 p) {
+    float omega = constants.melting.x;
+    if (is_free_edge(block)) {
+        float behind = max(0.0, clock.radius - constants.boundary.y - rest[base_points[block]].w);
+        float fall = constants.albedo.w / constants.material.x; // g dt^2
+        float slower = max(behind / constants.cell_size.y, 1.0);
+        return vec3(p.x, max(constants.origin.w, p.y - omega * fall / slower), p.z);
+    }
+    uint lowest = lowest_around(block);
+    if (lowest == NONE) {
+        return p;
+    }
+    vec3 q = base_of(lowest);
+    if (q.y >= p.y) {
+        return p;
+    }
+    vec3 drawn = omega * (p - q) + q;
+    uint cell = cell_of(drawn);
+    if (cell != cell_of(p) && has_base(cell)) {
+        if (!is_active(cell) && blocks[8u * cell] > 0) {
+            return p; // the flow must pass over what is solid
+        }
+    }
+    return drawn;
+}
+
+void main() {
+    uint block = gl_GlobalInvocationID.x;
+    if (block >= constants.counts.w) {
+        return;
+    }
+    vec4 before = old_bases[block];
+    if (!has_base(block)) {
+        new_bases[block] = before;
+        return;
+    }
+    if (!is_active(block)) {
+        new_bases[block] = vec4(before.xyz, 0.0);
+        return;
+    }
+    vec3 p = base_of(block);
+    new_bases[block] = vec4(before.xyz + (moved(block, p) - p), 1.0);
+}

@@ -1,0 +1,191 @@
+#version 450
+
+// Internal deformation of what melts (6.3): flow-true vertices follow the base points, and the fractional folding keeps the edges
+// around them in range; the others are fixed points. Appendix C's code does otherwise and yields to the text.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/clock.glsl"
+#include "burning/grid.glsl"
+
+layout(set = 0, binding = 1, std430) readonly buffer Rest {
+    vec4 rest[]; // xyz, R
+};
+
+layout(set = 0, binding = 2, std430) readonly buffer Triangles {
+    uint triangles[];
+};
+
+layout(set = 0, binding = 3, std430) readonly buffer IncidenceOffsets {
+    uint incidence_offsets[];
+};
+
+layout(set = 0, binding = 4, std430) readonly buffer Incidence {
+    uint incidence[]; // triangle * 4 + corner, ascending
+};
+
+layout(set = 0, binding = 7, std430) readonly buffer BasePoints {
+    uint base_points[];
+};
+
+layout(set = 0, binding = 9, std430) readonly buffer OldState {
+    vec4 old_state[]; // position, L left
+};
+
+layout(set = 0, binding = 10, std430) buffer NewState {
+    vec4 new_state[];
+};
+
+layout(set = 0, binding = 11, std430) readonly buffer Labels {
+    uint labels[];
+};
+
+layout(set = 0, binding = 18, std430) readonly buffer Clock {
+    Counts clock;
+};
+
+layout(set = 0, binding = 24, std430) readonly buffer Alive {
+    uint alive[];
+};
+
+layout(set = 0, binding = 51, std430) readonly buffer NewBases {
+    vec4 new_bases[]; // displacement since the start, whether it is active
+};
+
+layout(set = 0, binding = 52, std430) buffer Flows {
+    vec4 flows[]; // how far the vertex has followed
+};
+
+layout(push_constant, std430) uniform Slice {
+    uint first;
+    uint count;
+} slice;
+
+// What the base points around the vertex's place at rest have moved, in between by the blocks' middles. A step alone would leave those
+// behind that become flow-true later than their base point, and blocks that move as a whole would tear the surface.
+vec3 guided(vec3 place) {
+    vec3 at = (place - constants.origin.xyz) / constants.cell_size.xyz - 0.5;
+    ivec3 low = ivec3(floor(at));
+    vec3 t = at - vec3(low);
+    ivec3 size = ivec3(constants.grid.xyz);
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    for (int i = 0; i < 8; i++) {
+        ivec3 corner = ivec3(i & 1, (i >> 1) & 1, i >> 2);
+        ivec3 block = low + corner;
+        if (all(greaterThanEqual(block, ivec3(0))) && all(lessThan(block, size))) {
+            uint cell = uint((block.z * size.y + block.y) * size.x + block.x);
+            if (base_points[cell] != NONE) {
+                vec3 near = mix(1.0 - t, t, vec3(corner));
+                float weight = near.x * near.y * near.z;
+                sum += weight * new_bases[cell].xyz;
+                weights += weight;
+            }
+        }
+    }
+    return weights > 0.0 ? sum / weights : vec3(0.0);
+}
+
+float longest() {
+    return constants.melting.x * constants.cell_size.w; // omega Dist
+}
+
+float shortest() {
+    return longest() / constants.melting.y; // omega Dist / chi
+}
+
+// Whether `vertex` is the source of its edge to `other`: the upper one, nearer heights than the shortest edge being a tie. The
+// dissertation breaks ties at random; here the indices take turns, so that neither end always gives way.
+bool is_source(uint vertex, float y, uint other, float other_y) {
+    if (abs(y - other_y) > shortest()) {
+        return y > other_y;
+    }
+    return (vertex > other) == (clock.tick % 2u == 0u);
+}
+
+// The step of the source s of an edge out of range; `fixed_points` of the triangle's corners do not flow. Upward motion would make no
+// sense, so an edge too long is shortened along x and z alone. No step goes beyond the limit that the edge violates.
+vec3 folded(vec3 s, vec3 d, uint fixed_points) {
+    vec3 edge = s - d;
+    float edge_length = length(edge);
+    float share = constants.melting.z / float(fixed_points + 1u);
+    if (edge_length > longest()) {
+        float horizontal = length(edge.xz);
+        if (horizontal <= 0.0) {
+            return vec3(0.0);
+        }
+        float left = sqrt(max(0.0, longest() * longest() - edge.y * edge.y));
+        return -min(share, 1.0 - left / horizontal) * vec3(edge.x, 0.0, edge.z);
+    }
+    return min(share, shortest() / edge_length - 1.0) * edge;
+}
+
+float violation(vec3 edge) {
+    return max(0.0, length(edge.xz) - longest()) + max(0.0, shortest() - length(edge));
+}
+
+// Fractional folding (6.3.3): the mean of the steps that the edges out of range ask for. It is not taken where it would tear the vertex
+// from those that hold it: what is not deformed yet, and what still burns above it. Without, the surface is pulled out from under
+// the solid rest.
+vec3 folding(uint vertex, vec3 s) {
+    vec3 sum = vec3(0.0);
+    float violating = 0.0;
+    uint from = incidence_offsets[vertex];
+    uint to = incidence_offsets[vertex + 1u];
+    for (uint i = from; i < to; i++) {
+        uint triangle = incidence[i] / 4u;
+        uint corner = incidence[i] % 4u;
+        uvec2 others = uvec2(triangles[3u * triangle + (corner + 1u) % 3u], triangles[3u * triangle + (corner + 2u) % 3u]);
+        uint fixed_points = (labels[others.x] < READY ? 1u : 0u) + (labels[others.y] < READY ? 1u : 0u);
+        for (int k = 0; k < 2; k++) {
+            uint other = k == 0 ? others.x : others.y;
+            vec3 d = old_state[other].xyz;
+            float edge_length = length(s - d);
+            bool is_violating = edge_length > longest() || (edge_length < shortest() && edge_length > 0.0);
+            if (is_violating && is_source(vertex, s.y, other, d.y)) {
+                sum += folded(s, d, fixed_points);
+                violating += 1.0;
+            }
+        }
+    }
+    if (violating == 0.0) {
+        return vec3(0.0);
+    }
+    vec3 fold = sum / violating;
+    float growth = 0.0;
+    for (uint i = from; i < to; i++) {
+        uint triangle = incidence[i] / 4u;
+        uint corner = incidence[i] % 4u;
+        for (uint k = 1u; k < 3u; k++) {
+            uint other = triangles[3u * triangle + (corner + k) % 3u];
+            vec4 holder = old_state[other];
+            bool is_above = holder.w > 0.0 && holder.y - s.y > shortest();
+            if (labels[other] < DEFORMED || is_above) {
+                growth += violation(s + fold - holder.xyz) - violation(s - holder.xyz);
+            }
+        }
+    }
+    return growth <= 0.0 ? fold : vec3(0.0);
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x >= slice.count) {
+        return;
+    }
+    uint vertex = slice.first + gl_GlobalInvocationID.x;
+    vec4 before = old_state[vertex];
+    uint label = labels[vertex];
+    if (label < READY || alive[vertex] == 0u) {
+        new_state[vertex] = before;
+        return;
+    }
+    vec3 flow = flows[vertex].xyz;
+    vec3 follow = (1.0 - constants.melting.x) * (guided(rest[vertex].xyz) - flow);
+    flows[vertex] = vec4(flow + follow, 0.0);
+    vec3 place = before.xyz + follow + folding(vertex, before.xyz);
+    bool is_burning = label == DEFORMED && before.w > 0.0;
+    place.y -= is_burning ? constants.albedo.w : 0.0; // gravity
+    place.y = max(place.y, constants.origin.w);
+    new_state[vertex] = vec4(place, is_burning ? before.w - 1.0 : before.w);
+}

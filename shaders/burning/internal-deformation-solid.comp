@@ -1,0 +1,87 @@
+#version 450
+
+// Internal deformation of a solid (5.3.3, 5.3.4): after the displacement of 3.4, each triangle draws its vertex inwards, to the point
+// P_in beneath its centroid, as deep as the side BA is long. The printed angles lose the quadrant; this is their vector form, and no
+// step goes beyond half the way. 5.5: a vertex that has burnt far enough leaves the group that deforms.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/displacement.glsl"
+
+layout(set = 0, binding = 2, std430) readonly buffer Triangles {
+    uint triangles[];
+};
+
+layout(set = 0, binding = 3, std430) readonly buffer IncidenceOffsets {
+    uint incidence_offsets[];
+};
+
+layout(set = 0, binding = 4, std430) readonly buffer Incidence {
+    uint incidence[]; // triangle * 4 + corner, ascending
+};
+
+layout(set = 0, binding = 9, std430) readonly buffer OldState {
+    vec4 old_state[]; // position, L left
+};
+
+layout(set = 0, binding = 10, std430) buffer NewState {
+    vec4 new_state[];
+};
+
+layout(set = 0, binding = 11, std430) readonly buffer Labels {
+    uint labels[];
+};
+
+layout(set = 0, binding = 24, std430) readonly buffer Alive {
+    uint alive[];
+};
+
+layout(push_constant, std430) uniform Slice {
+    uint first;
+    uint count;
+} slice;
+
+// Where the displaced corner `d` of triangle ABC is drawn to; B is the corner, C and A follow it in the triangle's order.
+vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
+    vec3 normal = cross(c - b, a - b);
+    float double_area = length(normal);
+    if (double_area <= 0.0) {
+        return d;
+    }
+    float depth = length(a - b);
+    vec3 inner = (a + b + c) / 3.0 - constants.solid.x * depth / double_area * normal;
+    float way = length(inner - d);
+    return way > 0.0 ? d + min(l * depth, 0.5 * way) / way * (inner - d) : d;
+}
+
+void main() {
+    if (gl_GlobalInvocationID.x >= slice.count) {
+        return;
+    }
+    uint vertex = slice.first + gl_GlobalInvocationID.x;
+    vec4 before = old_state[vertex];
+    if (labels[vertex] != DEFORMED || before.w <= constants.solid.y || alive[vertex] == 0u) {
+        new_state[vertex] = before;
+        return;
+    }
+    vec3 b = before.xyz;
+    float share_left = before.w / constants.boundary.w;
+    vec3 sum = vec3(0.0);
+    uint from = incidence_offsets[vertex];
+    uint to = incidence_offsets[vertex + 1u];
+    for (uint i = from; i < to; i++) {
+        uint triangle = incidence[i] / 4u;
+        uint corner = incidence[i] % 4u;
+        uint vertex_a = triangles[3u * triangle + (corner + 2u) % 3u];
+        uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
+        vec3 a = old_state[vertex_a].xyz;
+        vec3 c = old_state[vertex_c].xyz;
+        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, share_left);
+        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, share_left);
+        sum += contracted(a, b, c, cevians_meet(a, b, c, l, m), l) - b;
+    }
+    vec3 moved = b + sum / float(max(to - from, 1u));
+    moved.y -= constants.albedo.w; // gravity
+    new_state[vertex] = vec4(moved, before.w - 1.0);
+}
