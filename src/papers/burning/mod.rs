@@ -22,6 +22,7 @@ mod layouts;
 pub mod model;
 mod normals;
 pub mod parameters;
+pub mod reference;
 mod refinement;
 mod removal;
 mod state;

@@ -1,0 +1,183 @@
+//! The oracle of `burning`: chapters 3 to 6 in `f64`, written from the text. It shares nothing with the shaders, nor with the
+//! tables that they read.
+//!
+//! [`Tick::step`] advances a [`State`] by 1/60 s, pass by pass. Where rounding may decide otherwise than here, passes answer
+//! how close their decisions were.
+
+mod blocks;
+pub mod boundary;
+pub mod displacement;
+#[cfg(test)]
+mod fixtures;
+#[cfg(test)]
+mod laws;
+pub mod melting;
+mod model;
+mod normals;
+pub mod refinement;
+mod removal;
+pub mod solid;
+
+use glam::DVec3;
+
+pub use blocks::{Block, Grid};
+pub use model::{Model, Node, scaled};
+
+/// The chapters' methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variant {
+    Shell,
+    LowPoly,
+    FullySubdivided,
+    Solid,
+    Melting,
+}
+
+/// Tables 3.1 and 6.1 and what else the text leaves to the designer. Lengths are in diagonals of the mesh at rest.
+#[derive(Debug, Clone)]
+pub struct Constants {
+    /// L at the start.
+    pub flammability: u32,
+    pub epsilon: f64,
+    pub beta: f64,
+    pub rho: f64,
+    pub phi: f64,
+    pub gamma: f64,
+    pub omega: f64,
+    pub chi: f64,
+    pub upsilon: f64,
+    /// Growth of the boundary in a second.
+    pub speed: f64,
+    /// Width of an area of the boundary.
+    pub width: f64,
+    /// Ignition points.
+    pub sources: Vec<DVec3>,
+    /// R of each vertex.
+    pub reaches: Vec<f64>,
+    /// Height below which nothing melts.
+    pub floor: f64,
+    /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
+    pub active_limit: u32,
+    pub keep_connected: bool,
+    /// Share of the flammability below which a vertex of a solid leaves the deforming group (section 5.5).
+    pub retire_at: f64,
+}
+
+impl Default for Constants {
+    fn default() -> Self {
+        Constants {
+            flammability: 60,
+            epsilon: 0.1,
+            beta: 0.05,
+            rho: 0.5,
+            phi: 0.5,
+            gamma: 0.1,
+            omega: 0.8,
+            chi: 4.0,
+            upsilon: 0.2,
+            speed: 0.05,
+            width: 0.04,
+            sources: Vec::new(),
+            reaches: Vec::new(),
+            floor: 0.0,
+            active_limit: 0,
+            keep_connected: true,
+            retire_at: 0.0,
+        }
+    }
+}
+
+/// All that a tick changes.
+#[derive(Debug, Clone)]
+pub struct State {
+    pub tick: u32,
+    pub growth_ticks: u32,
+    /// Of the last heat boundary: what the active limit is held against.
+    pub active_vertices: u32,
+    pub positions: Vec<DVec3>,
+    /// Flammability left.
+    pub left: Vec<u32>,
+    /// Areas of the heat boundary.
+    pub labels: Vec<u32>,
+    /// Whether refinement has made the vertex.
+    pub alive: Vec<bool>,
+    /// Of the refinement pattern's nodes.
+    pub statuses: Vec<i32>,
+    pub cells: Vec<usize>,
+    pub blocks: Vec<Block>,
+    /// Pitch, yaw and roll of each block, in radians.
+    pub rotations: Vec<DVec3>,
+    pub mapped: Vec<DVec3>,
+    /// Of the finest triangles.
+    pub removed: Vec<bool>,
+    /// Of the drawn vertices, like what follows.
+    pub normals: Vec<DVec3>,
+    pub chars: Vec<f64>,
+    pub glows: Vec<f64>,
+}
+
+impl State {
+    /// The mesh before it is lit.
+    pub fn at_rest(tick: &Tick<'_>) -> Self {
+        let (model, n, corners) = (tick.model, tick.model.rest.len(), tick.model.welds.len());
+        let pattern = refinement::Pattern::new(model, &vec![refinement::status::INITIAL; model.nodes.len()]);
+        let is_refined = tick.variant != Variant::FullySubdivided;
+        let mut state = State {
+            tick: 0,
+            growth_ticks: 0,
+            active_vertices: 0,
+            positions: model.rest.clone(),
+            left: vec![tick.constants.flammability; n],
+            labels: vec![0; n],
+            alive: if is_refined { pattern.alive() } else { vec![true; n] },
+            statuses: pattern.statuses(),
+            cells: model.rest_cells.clone(),
+            blocks: vec![Block::default(); model.grid.cells()],
+            rotations: vec![DVec3::ZERO; model.grid.cells()],
+            mapped: model.rest.clone(),
+            removed: vec![false; model.triangles.len()],
+            normals: vec![DVec3::ZERO; corners],
+            chars: vec![0.0; corners],
+            glows: vec![0.0; corners],
+        };
+        tick.weigh(&state.clone(), &mut state);
+        tick.shade(&mut state);
+        state
+    }
+
+    /// Displaced and counted down: deformed, with something left.
+    pub fn is_active(&self, v: usize) -> bool {
+        self.labels[v] == boundary::area::DEFORMED && self.is_live(v)
+    }
+
+    /// Counts towards the weight of its block.
+    pub fn is_live(&self, v: usize) -> bool {
+        self.left[v] > 0 && self.alive[v]
+    }
+}
+
+/// What a tick needs besides the state.
+#[derive(Clone, Copy)]
+pub struct Tick<'a> {
+    pub variant: Variant,
+    pub model: &'a Model,
+    pub constants: &'a Constants,
+}
+
+impl Tick<'_> {
+    /// The state 1/60 s later.
+    pub fn step(&self, before: &State) -> State {
+        let mut state = before.clone();
+        self.heat(&mut state);
+        if self.variant != Variant::FullySubdivided {
+            self.refine(&mut state);
+        }
+        self.deform(&mut state);
+        self.weigh(before, &mut state);
+        self.rotate(&mut state);
+        self.map(&mut state);
+        self.remove(&mut state);
+        self.shade(&mut state);
+        state
+    }
+}
