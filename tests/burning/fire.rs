@@ -40,8 +40,18 @@ pub struct State {
 
 impl Fire {
     pub fn new(device: &Arc<Device>, variant: Variant, parameters: &Parameters, mesh: &Mesh) -> Self {
+        Self::compiled(device, Compiler::Glslang, variant, parameters, mesh)
+    }
+
+    pub fn compiled(
+        device: &Arc<Device>,
+        compiler: Compiler,
+        variant: Variant,
+        parameters: &Parameters,
+        mesh: &Mesh,
+    ) -> Self {
         parameters.validate().unwrap();
-        let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+        let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
         let paper = Burning::new(&shaders, "test", variant, parameters, mesh).unwrap();
         Fire { paper, recorder: Recorder::new(device).unwrap(), device: device.clone() }
     }

@@ -7,8 +7,6 @@ use super::{State, Tick, Variant};
 
 /// How much wider the grid is than the mesh on each side, in diagonals.
 const MARGIN: f64 = 1e-4;
-/// What of a block's own rotation its neighbours take over.
-const SPREAD: f64 = 0.5;
 /// Degrees: bounds of a block's rotation, and of one with two or more free sides.
 const BOUND: f64 = 2.0;
 const FREE_BOUND: f64 = 15.0;
@@ -101,7 +99,7 @@ impl Grid {
         self.neighbours(cell).into_iter().filter_map(|(_, n)| n.filter(|n| blocks[*n].live > 0)).collect()
     }
 
-    /// Whether no block with weight lies at the sides (x and z) in one, two... directions: how many are free.
+    /// How many of the four sides (x and z) have no block with weight.
     pub fn free_sides(&self, cell: usize, blocks: &[Block]) -> usize {
         let sides = self.neighbours(cell).into_iter().filter(|(axis, _)| *axis != 1);
         sides.filter(|(_, n)| n.is_none_or(|n| blocks[n].live == 0)).count()
@@ -109,16 +107,22 @@ impl Grid {
 }
 
 impl Tick<'_> {
-    /// Pass `block-weights`; `before` is the state of the last tick. Answers for each block how close the signs of its events
-    /// are to turning, in lengths.
+    /// The block that each vertex is in now. Answers for each vertex how far it is from the next one.
+    pub fn place(&self, state: &mut State) -> Vec<f64> {
+        let grid = &self.model.grid;
+        state.cells = state.positions.iter().map(|p| grid.cell(*p)).collect();
+        state.positions.iter().map(|p| grid.margin(*p)).collect()
+    }
+
+    /// Pass `block-weights` once every vertex is placed; `before` is the state of the last tick. Answers for each block how
+    /// close the signs of its events are to turning, in lengths.
     pub fn weigh(&self, before: &State, state: &mut State) -> Vec<f64> {
         let grid = &self.model.grid;
         let mut margins = vec![f64::INFINITY; grid.cells()];
         state.blocks = before.blocks.iter().map(|b| Block { burning: b.burning, ..Block::default() }).collect();
         let mut is_burning = vec![false; grid.cells()];
         for v in 0..state.positions.len() {
-            let (old, new) = (before.cells[v], grid.cell(state.positions[v]));
-            state.cells[v] = new;
+            let (old, new) = (before.cells[v], state.cells[v]);
             let is_live = state.is_live(v);
             is_burning[new] |= state.is_active(v);
             state.blocks[new].live += u32::from(is_live);
@@ -149,7 +153,7 @@ impl Tick<'_> {
         if self.variant != Variant::Melting {
             return is_heated;
         }
-        let ignition = self.constants.sources.iter().map(|s| s.y).fold(f64::INFINITY, f64::min);
+        let ignition = self.constants.sources.iter().map(|s| s.y).fold(f64::NEG_INFINITY, f64::max);
         is_heated && state.labels[v] < area::READY && self.model.rest[v].y > ignition
     }
 
@@ -169,7 +173,7 @@ impl Tick<'_> {
                 continue;
             }
             let taken = grid.neighbours(cell).into_iter().filter_map(|(axis, neighbour)| {
-                let share = if axis == 1 { SPREAD } else { -SPREAD };
+                let share = if axis == 1 { self.constants.spread } else { -self.constants.spread };
                 neighbour.map(|n| share * own[n])
             });
             let change = own[cell] + taken.sum::<DVec3>();
@@ -232,6 +236,7 @@ mod tests {
         state.left[v] = 0;
         state.labels[v] = area::DEFORMED;
         state.positions[v] = grid.midpoint(home) + grid.size * DVec3::new(0.2, 0.2, -0.2);
+        tick.place(&mut state);
         tick.weigh(&before, &mut state);
         assert_eq!(state.blocks[home].signs, [1, 1, 1]);
         let total: u32 = state.blocks.iter().map(|b| b.live).sum();

@@ -10,6 +10,8 @@ use super::{State, Tick, Variant};
 const AMPLITUDE: f64 = 0.3;
 /// The delta that divides the angle, in place of the frame-dependent increment of the radius.
 const DELTA: f64 = 0.25;
+/// Wavelength of the angle's noise, in diagonals.
+const WAVELENGTH: f64 = 1.0 / 8.0;
 /// Ticks a second.
 pub const RATE: f64 = 60.0;
 
@@ -42,6 +44,33 @@ pub fn limits(radius: f64, width: f64) -> [f64; 4] {
 /// How many of the limits enclose the point: its area.
 pub fn area_of(reach: f64, radius: f64, width: f64) -> u32 {
     limits(radius, width).into_iter().filter(|limit| reach <= *limit).count() as u32
+}
+
+/// The angle Theta in [0, 2): a value of its own for each corner of a lattice, faded along each axis in between.
+pub fn theta(point: DVec3, seed: u32) -> f64 {
+    let at = point / WAVELENGTH;
+    let mut sum = 0.0;
+    for corner in 0..8 {
+        let (mut weight, mut hash) = (1.0, scrambled(seed));
+        for axis in [2, 1, 0] {
+            let low = at[axis].floor();
+            let fade = |t: f64| t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t);
+            let step = corner >> axis & 1;
+            let nearness = fade(at[axis] - low);
+            weight *= if step == 1 { nearness } else { 1.0 - nearness };
+            hash = scrambled((low as i32 + step) as u32 ^ hash);
+        }
+        sum += weight * f64::from(hash) / 2f64.powi(32);
+    }
+    2.0 * sum
+}
+
+/// The integer hash that all of this program's noise is made of.
+fn scrambled(mut h: u32) -> u32 {
+    for (shift, factor) in [(16, 0x7feb_352d), (15, 0x846c_a68b)] {
+        h = (h ^ (h >> shift)).wrapping_mul(factor);
+    }
+    h ^ (h >> 16)
 }
 
 impl Tick<'_> {
@@ -95,6 +124,20 @@ mod tests {
         }
         let areas = [0.19, 0.17, 0.10, 0.05, 0.01].map(|reach| area_of(reach, 0.1, 0.04));
         assert_eq!(areas, [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn the_angle_is_smooth_and_its_wavelength_is_an_eighth() {
+        let line: Vec<f64> = (0..8000).map(|i| theta(DVec3::new(f64::from(i) / 1000.0, 0.25, -0.5), 7)).collect();
+        assert!(line.iter().all(|t| (0.0..2.0).contains(t)));
+        // Values of neighbouring corners are independent: the mean step of two uniform numbers in [0, 2) is 2 / 3.
+        let steps = line.chunks(125).map(|c| (c[124] - c[0]).abs()).collect::<Vec<_>>();
+        let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+        assert!((mean - 2.0 / 3.0).abs() < 0.15, "{mean}");
+        // A quintic rises by 15 / 8 of the mean slope at most.
+        let steepest = line.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(steepest < 2.0 * 15.0 / 8.0 / 125.0, "{steepest}");
+        assert!(theta(DVec3::splat(0.31), 7) != theta(DVec3::splat(0.31), 8));
     }
 
     #[test]

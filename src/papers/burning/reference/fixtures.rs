@@ -4,9 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::boundary::least_reach;
 use super::model::{Model, scaled};
-use super::{Constants, Tick, Variant};
+use super::{Constants, Parameters, Tick, Variant};
 
 /// A number in [-1, 1] that no pattern shows in.
 pub fn wave(i: i32) -> f64 {
@@ -64,12 +63,7 @@ impl Scene {
         let mut rest = model.rest.clone();
         rest.sort_by(|a, b| a.y.total_cmp(&b.y));
         let source = if variant == Variant::Melting { rest[rest.len() - 1] } else { rest[0] };
-        let theta = |p: DVec3| 1.0 + (9.0 * p.x).sin() * (11.0 * p.y + 7.0 * p.z).cos();
-        let constants = Constants {
-            reaches: model.rest.iter().map(|p| least_reach(*p, &[source], 1.0, theta(*p))).collect(),
-            sources: vec![source],
-            ..Constants::default()
-        };
+        let constants = Constants::new(&Parameters::default(), &model, &[source], 0.0);
         Scene { variant, model, constants }
     }
 

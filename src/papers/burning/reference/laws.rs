@@ -1,7 +1,5 @@
 //! Laws of whole runs.
 
-use glam::DVec3;
-
 use super::fixtures::{Scene, boxed, sphere};
 use super::solid::volume;
 use super::*;
@@ -109,5 +107,4 @@ fn wax_comes_to_rest_lower_and_above_the_floor() {
         }
     }
     assert!(in_range * 100 >= edges * 95, "{in_range} of {edges}");
-    let _ = DVec3::ZERO;
 }

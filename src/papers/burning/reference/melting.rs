@@ -128,7 +128,9 @@ impl Tick<'_> {
         for v in 0..before.positions.len() {
             if self.flows(&before, v) {
                 let (carried, close) = base[self.model.rest_cells[v]].unwrap_or((DVec3::ZERO, f64::INFINITY));
-                let (folded, margin) = self.folding(&before, v);
+                // Base points guide the flow and do not fold: so they come to rest.
+                let is_base = self.model.base_points[self.model.rest_cells[v]] == Some(v);
+                let (folded, margin) = if is_base { (DVec3::ZERO, f64::INFINITY) } else { self.folding(&before, v) };
                 let moved = before.positions[v] + carried + folded;
                 state.positions[v] = moved.with_y(moved.y.max(self.constants.floor));
                 margins[v] = margin.min(close);

@@ -23,15 +23,7 @@ use glam::DVec3;
 pub use blocks::{Block, Grid};
 pub use model::{Model, Node, scaled};
 
-/// The chapters' methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Variant {
-    Shell,
-    LowPoly,
-    FullySubdivided,
-    Solid,
-    Melting,
-}
+use super::{Parameters, Variant};
 
 /// Tables 3.1 and 6.1 and what else the text leaves to the designer. Lengths are in diagonals of the mesh at rest.
 #[derive(Debug, Clone)]
@@ -43,6 +35,8 @@ pub struct Constants {
     pub rho: f64,
     pub phi: f64,
     pub gamma: f64,
+    /// What of a block's own rotation its neighbours take over.
+    pub spread: f64,
     pub omega: f64,
     pub chi: f64,
     pub upsilon: f64,
@@ -63,26 +57,31 @@ pub struct Constants {
     pub retire_at: f64,
 }
 
-impl Default for Constants {
-    fn default() -> Self {
+impl Constants {
+    /// The constants of a configuration, burning from `sources`.
+    pub fn new(parameters: &Parameters, model: &Model, sources: &[DVec3], floor: f64) -> Self {
+        let p = parameters;
+        let psi = f64::from(p.psi);
+        let reach = |at: &DVec3| boundary::least_reach(*at, sources, psi, boundary::theta(*at, p.noise_seed()));
         Constants {
-            flammability: 60,
-            epsilon: 0.1,
-            beta: 0.05,
-            rho: 0.5,
-            phi: 0.5,
-            gamma: 0.1,
-            omega: 0.8,
-            chi: 4.0,
-            upsilon: 0.2,
-            speed: 0.05,
-            width: 0.04,
-            sources: Vec::new(),
-            reaches: Vec::new(),
-            floor: 0.0,
-            active_limit: 0,
-            keep_connected: true,
-            retire_at: 0.0,
+            flammability: p.flammability,
+            epsilon: p.epsilon.into(),
+            beta: p.beta.into(),
+            rho: p.rho.into(),
+            phi: p.phi.into(),
+            gamma: p.gamma.into(),
+            spread: p.spread.into(),
+            omega: p.omega.into(),
+            chi: p.chi.into(),
+            upsilon: p.upsilon.into(),
+            speed: p.speed_per_s.into(),
+            width: p.width_of_areas.into(),
+            sources: sources.to_vec(),
+            reaches: model.rest.iter().map(reach).collect(),
+            floor,
+            active_limit: p.active_limit,
+            keep_connected: p.keep_connected,
+            retire_at: p.retire_at.into(),
         }
     }
 }
@@ -173,6 +172,7 @@ impl Tick<'_> {
             self.refine(&mut state);
         }
         self.deform(&mut state);
+        self.place(&mut state);
         self.weigh(before, &mut state);
         self.rotate(&mut state);
         self.map(&mut state);

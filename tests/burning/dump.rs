@@ -1,0 +1,55 @@
+//! What the device holds as the oracle has it.
+
+use fumarole::papers::burning::reference::{Block, State};
+use glam::DVec3;
+
+use crate::fire::Fire;
+
+/// All that a tick changes. What only a shown tick makes is that of the last one shown.
+pub fn state(fire: &Fire) -> State {
+    let buffers = fire.paper.buffers();
+    let (state, rotations) = fire.paper.state();
+    let point = |v: &[f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
+    let points = |buffer| fire.read::<[f32; 4]>(buffer);
+    let state = points(state);
+    let [normals, colors] = [points(&buffers.normals), points(&buffers.colors)];
+    let block = |b: &[i32; 8]| Block {
+        live: b[0] as u32,
+        ready: b[1] as u32,
+        signs: [b[2], b[3], b[4]],
+        burning: b[5] as u32,
+    };
+    let counts = fire.paper.counts().unwrap();
+    State {
+        tick: counts.tick,
+        growth_ticks: counts.growth_ticks,
+        active_vertices: counts.active_vertices,
+        positions: state.iter().map(point).collect(),
+        left: state.iter().map(|v| v[3] as u32).collect(),
+        labels: fire.read(&buffers.labels),
+        alive: fire.read::<u32>(&buffers.alive).iter().map(|a| *a != 0).collect(),
+        statuses: statuses(fire),
+        cells: fire.read::<u32>(&buffers.cells).iter().map(|c| *c as usize).collect(),
+        blocks: fire.read::<[i32; 8]>(&buffers.blocks).iter().map(block).collect(),
+        rotations: points(rotations).iter().map(point).collect(),
+        mapped: points(&buffers.mapped).iter().map(point).collect(),
+        removed: fire.read::<u32>(&buffers.removed).iter().map(|r| *r != 0).collect(),
+        normals: normals.iter().map(point).collect(),
+        chars: normals.iter().map(|n| n[3].into()).collect(),
+        glows: colors.iter().map(|c| c[3].into()).collect(),
+    }
+}
+
+/// Drawn triangles in order: draw vertices.
+pub fn stream(fire: &Fire) -> Vec<[u32; 3]> {
+    let [index_count, instances, ..]: [u32; 5] =
+        fire.read(&fire.paper.buffers().arguments).try_into().expect("five words");
+    assert_eq!(instances, 1);
+    let stream: Vec<[u32; 3]> = fire.read(&fire.paper.buffers().stream);
+    stream[..index_count as usize / 3].to_vec()
+}
+
+/// Of the pattern's nodes, coarse triangle by coarse triangle.
+fn statuses(fire: &Fire) -> Vec<i32> {
+    vec![0; fire.paper.model().lattice.nodes.iter().map(Vec::len).sum()]
+}

@@ -1,0 +1,185 @@
+//! The device's state, advanced by the oracle by one tick, is the device's next one.
+
+use fumarole::gpu::Compiler;
+use fumarole::papers::burning::model::with_triangles;
+use fumarole::papers::burning::reference::{Node, State, boundary};
+use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::scene::{Mesh, MeshSource, shapes};
+use glam::DVec3;
+
+use crate::common::gpu_test;
+use crate::dump;
+use crate::fire::Fire;
+use crate::twin::Twin;
+
+/// Within it of a threshold in lengths rounding may decide either way.
+const CLOSE: f64 = 1e-5;
+/// What numbers of the device may differ by.
+const EXACT: f64 = 1e-4;
+/// The steps that are compared.
+const STEPS: [u32; 3] = [1, 50, 200];
+
+/// A boundary that has crossed half of the object after 200 ticks and has left burnt-out vertices behind.
+fn parameters() -> Parameters {
+    Parameters { speed_per_s: 0.15, flammability: 40, width: 64, height: 48, ..Parameters::default() }
+}
+
+/// About 1,500 triangles of the scanned bunny: no two alike.
+fn bunny() -> Mesh {
+    with_triangles(&MeshSource::Bunny.load().unwrap(), 1500)
+}
+
+/// Burns on the device, and compares at every step.
+fn compare(variant: Variant, parameters: &Parameters, mesh: &Mesh) {
+    for compiler in [Compiler::Glslang, Compiler::Naga] {
+        gpu_test(|device| {
+            let mut fire = Fire::compiled(device, compiler, variant, parameters, mesh);
+            let twin = Twin::new(&fire, variant, parameters, mesh);
+            let mut done = 0;
+            for step in STEPS {
+                fire.ticks(step - 1 - done);
+                done = step;
+                let before = dump::state(&fire);
+                fire.frame(step - 1);
+                Comparison { fire: &fire, twin: &twin, at: format!("{variant:?} by {compiler} at step {step}") }
+                    .all(&before, &dump::state(&fire));
+            }
+        });
+    }
+}
+
+/// One step.
+struct Comparison<'a> {
+    fire: &'a Fire,
+    twin: &'a Twin,
+    at: String,
+}
+
+impl Comparison<'_> {
+    /// Pass by pass; where rounding decides, the oracle goes on with the device's decision.
+    fn all(&self, before: &State, after: &State) {
+        let tick = self.twin.tick();
+        let mut state = before.clone();
+        tick.heat(&mut state);
+        self.labels(&mut state, after);
+        tick.refine(&mut state);
+        assert_eq!(state.alive, after.alive, "{}", self.at);
+
+        let margins = tick.deform(&mut state);
+        assert_eq!(state.left, after.left, "{}: flammability", self.at);
+        self.settle_positions(&mut state, after, &margins);
+
+        let margins = tick.place(&mut state);
+        self.settle(&mut state.cells, &after.cells, &margins, "blocks of vertices");
+        let margins = tick.weigh(before, &mut state);
+        self.settle(&mut state.blocks, &after.blocks, &margins, "weights of blocks");
+        tick.rotate(&mut state);
+        self.same_points(&state.rotations, &after.rotations, "rotations");
+        tick.map(&mut state);
+        self.same_points(&state.mapped, &after.mapped, "mapped positions");
+        tick.remove(&mut state);
+        assert_eq!(state.removed, after.removed, "{}: removed triangles", self.at);
+        self.shading(&mut state, after);
+        self.counts(&state);
+    }
+
+    fn labels(&self, state: &mut State, after: &State) {
+        let tick = self.twin.tick();
+        assert_eq!([state.tick, state.growth_ticks], [after.tick, after.growth_ticks], "{}", self.at);
+        let radius = tick.radius(state.growth_ticks);
+        assert!((radius - f64::from(self.fire.paper.counts().unwrap().radius)).abs() < 1e-6, "{}: radius {radius}", self.at);
+        let limits = boundary::limits(radius, self.twin.constants.width);
+        let margin = |reach: &f64| limits.map(|limit| (reach - limit).abs()).into_iter().fold(f64::INFINITY, f64::min);
+        let margins: Vec<f64> = self.twin.constants.reaches.iter().map(margin).collect();
+        self.settle(&mut state.labels, &after.labels, &margins, "areas");
+        // Counted before anything moves.
+        state.active_vertices = (0..state.labels.len()).filter(|v| state.is_active(*v)).count() as u32;
+        assert_eq!(state.active_vertices, after.active_vertices, "{}", self.at);
+        let is_active = |t: &&Node| t.vertices.iter().any(|v| state.is_active(*v));
+        let active = self.twin.model.triangles.iter().filter(is_active).count();
+        assert_eq!(active, self.fire.paper.counts().unwrap().active_triangles as usize, "{}", self.at);
+    }
+
+    /// Equal but where the decision was close; then the device's holds. Few are.
+    fn settle<T: PartialEq + Clone + std::fmt::Debug>(
+        &self,
+        ours: &mut [T],
+        theirs: &[T],
+        margins: &[f64],
+        what: &str,
+    ) {
+        assert_eq!(ours.len(), theirs.len());
+        let mut settled = 0;
+        for (i, (our, their)) in ours.iter_mut().zip(theirs).enumerate() {
+            if our != their {
+                assert!(margins[i] < CLOSE, "{}: {what}: {i} is {their:?}, not {our:?}, by {}", self.at, margins[i]);
+                *our = their.clone();
+                settled += 1;
+            }
+        }
+        assert!(settled * 100 <= ours.len(), "{}: {what}: {settled} close calls of {}", self.at, ours.len());
+    }
+
+    fn settle_positions(&self, state: &mut State, after: &State, margins: &[f64]) {
+        let mut settled = 0;
+        for v in 0..state.positions.len() {
+            let apart = state.positions[v].distance(after.positions[v]);
+            if apart >= EXACT && margins[v] < CLOSE {
+                state.positions[v] = after.positions[v];
+                settled += 1;
+            }
+        }
+        assert!(settled * 100 <= margins.len(), "{}: {settled} close calls of {}", self.at, margins.len());
+        self.same_points(&state.positions, &after.positions, "positions");
+    }
+
+    fn same_points(&self, ours: &[DVec3], theirs: &[DVec3], what: &str) {
+        assert_eq!(ours.len(), theirs.len());
+        let apart = ours.iter().zip(theirs).map(|(a, b)| a.distance(*b));
+        let (v, worst) = apart.enumerate().fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
+        assert!(worst < EXACT, "{}: {what}: {v} is {}, not {}", self.at, theirs[v], ours[v]);
+    }
+
+    fn shading(&self, state: &mut State, after: &State) {
+        let tick = self.twin.tick();
+        tick.shade(state);
+        let mut compared = 0;
+        for c in 0..state.normals.len() {
+            let numbers = [[state.chars[c], after.chars[c]], [state.glows[c], after.glows[c]]];
+            assert!(numbers.iter().all(|[a, b]| (a - b).abs() < EXACT), "{}: colour of {c}: {numbers:?}", self.at);
+            // Rounded positions turn triangles much smaller than the mesh's.
+            if tick.normal_sum(state, c).length() < 1e-5 {
+                continue;
+            }
+            compared += 1;
+            let [ours, theirs] = [state.normals[c], after.normals[c]];
+            assert!(ours.distance(theirs) < 1e-3, "{}: normal of {c} is {theirs}, not {ours}", self.at);
+        }
+        assert!(compared * 10 > state.normals.len(), "{}: {compared} normals", self.at);
+    }
+
+    fn counts(&self, state: &State) {
+        let (counts, tick) = (self.fire.paper.counts().unwrap(), self.twin.tick());
+        let live = (0..state.left.len()).filter(|v| state.is_live(*v)).count();
+        assert_eq!(counts.live_vertices as usize, live, "{}", self.at);
+        let ready: u32 = state.blocks.iter().map(|b| b.ready).sum();
+        assert_eq!(counts.ready_vertices, ready, "{}", self.at);
+        let stream = dump::stream(self.fire);
+        let expected = tick.stream(state);
+        assert!(stream.iter().map(|t| t.map(|c| c as usize)).eq(expected), "{}: stream", self.at);
+        assert_eq!(counts.drawn_triangles as usize, stream.len(), "{}", self.at);
+        let removed = state.removed.iter().filter(|r| **r).count();
+        assert_eq!(counts.removed_triangles as usize, removed, "{}", self.at);
+    }
+}
+
+#[test]
+fn shell() {
+    compare(Variant::Shell, &parameters(), &bunny());
+}
+
+#[test]
+fn fully_subdivided() {
+    let parameters = Parameters { levels: Some(3), ..parameters() };
+    compare(Variant::FullySubdivided, &parameters, &shapes::cuboid());
+}
