@@ -13,12 +13,8 @@ pub fn state(fire: &Fire) -> State {
     let points = |buffer| fire.read::<[f32; 4]>(buffer);
     let state = points(state);
     let [normals, colors] = [points(&buffers.normals), points(&buffers.colors)];
-    let block = |b: &[i32; 8]| Block {
-        live: b[0] as u32,
-        ready: b[1] as u32,
-        signs: [b[2], b[3], b[4]],
-        burning: b[5] as u32,
-    };
+    let block =
+        |b: &[i32; 8]| Block { live: b[0] as u32, ready: b[1] as u32, signs: [b[2], b[3], b[4]], burning: b[5] as u32 };
     let counts = fire.paper.counts().unwrap();
     State {
         tick: counts.tick,
@@ -51,5 +47,13 @@ pub fn stream(fire: &Fire) -> Vec<[u32; 3]> {
 
 /// Of the pattern's nodes, coarse triangle by coarse triangle.
 fn statuses(fire: &Fire) -> Vec<i32> {
-    vec![0; fire.paper.model().lattice.nodes.iter().map(Vec::len).sum()]
+    match fire.paper.refinement() {
+        Some(refinement) => fire.read(&refinement.statuses),
+        // Nothing is refined: the coarse triangles stay.
+        None => {
+            let nodes = &fire.paper.model().lattice.nodes;
+            let each = nodes.iter().map(Vec::len).sum::<usize>() / nodes[0].len();
+            (0..nodes[0].len() * each).map(|n| i32::from(n % each == 0)).collect()
+        }
+    }
 }

@@ -12,6 +12,8 @@ pub struct Twin {
     variant: Variant,
     pub model: Model,
     pub constants: Constants,
+    /// Finest level that is drawn.
+    pub finest: u32,
 }
 
 impl Twin {
@@ -22,8 +24,7 @@ impl Twin {
         let positions: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
         let triangles: Vec<[usize; 3]> =
             mesh.indices.chunks_exact(3).map(|t| [0, 1, 2].map(|k| t[k] as usize)).collect();
-        let model =
-            Model::new(&scaled(&positions), &triangles, prepared.levels, parameters.blocks.map(|b| b as usize));
+        let model = Model::new(&scaled(&positions), &triangles, prepared.levels, parameters.blocks.map(|b| b as usize));
 
         let triangles: Vec<[u32; 3]> = fire.read(&buffers.triangles);
         let corners: Vec<[u32; 3]> = fire.read(&buffers.corners);
@@ -84,7 +85,8 @@ impl Twin {
         for (reach, [.., r]) in constants.reaches.iter().zip(&rest) {
             assert!((reach - f64::from(*r)).abs() < 1e-5, "R {r}, expected {reach}");
         }
-        Twin { variant, model, constants }
+        let finest = parameters.level_of_detail.expect("tests say it").min(model.levels);
+        Twin { variant, model, constants, finest }
     }
 
     pub fn tick(&self) -> Tick<'_> {

@@ -40,8 +40,8 @@ impl Tick<'_> {
     pub(super) fn shares(&self, state: &State, triangle: usize, k: usize) -> [f64; 2] {
         let vertices = self.model.triangles[triangle].vertices;
         let b = vertices[k];
-        let weakening =
-            self.constants.beta * self.constants.rho * f64::from(state.left[b]) / f64::from(self.constants.flammability);
+        let weakening = self.constants.beta * self.constants.rho * f64::from(state.left[b])
+            / f64::from(self.constants.flammability);
         [vertices[(k + 2) % 3], vertices[(k + 1) % 3]].map(|end| {
             let bond = if state.labels[end] >= area::INITIAL { self.constants.phi } else { 1.0 };
             share(weakening, bond, self.model.mean_edge, state.positions[end].distance(state.positions[b]))

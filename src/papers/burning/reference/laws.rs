@@ -90,9 +90,27 @@ fn wax_comes_to_rest_lower_and_above_the_floor() {
     let end = run(&scene, 2 * all(&scene), |state| {
         assert!(state.positions.iter().all(|p| p.y >= scene.constants.floor));
         let now = center(state);
-        let area: f64 = scene.model.triangles.iter().map(|t| { let [a, b, c] = t.vertices.map(|v| state.positions[v]); (b - a).cross(c - a).length() }).sum();
-        if state.tick % 50 == 1 { eprintln!("{} center {now} area {area} top {} bottom {} r {}", state.tick, state.positions.iter().map(|p| p.y).fold(0.0, f64::max), state.positions.iter().map(|p| p.y).fold(9.0, f64::min), scene.tick().radius(state.growth_ticks)); }
-        if now > lowest + 0.01 * height { eprintln!("ROSE {now} after {lowest}"); }
+        let area: f64 = scene
+            .model
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.vertices.map(|v| state.positions[v]);
+                (b - a).cross(c - a).length()
+            })
+            .sum();
+        if state.tick % 50 == 1 {
+            eprintln!(
+                "{} center {now} area {area} top {} bottom {} r {}",
+                state.tick,
+                state.positions.iter().map(|p| p.y).fold(0.0, f64::max),
+                state.positions.iter().map(|p| p.y).fold(9.0, f64::min),
+                scene.tick().radius(state.growth_ticks)
+            );
+        }
+        if now > lowest + 0.01 * height {
+            eprintln!("ROSE {now} after {lowest}");
+        }
         lowest = lowest.min(now);
     });
     assert!(center(&end) < 0.7 * start, "{} of {start}", center(&end));

@@ -120,7 +120,6 @@ impl State {
     pub fn at_rest(tick: &Tick<'_>) -> Self {
         let (model, n, corners) = (tick.model, tick.model.rest.len(), tick.model.welds.len());
         let pattern = refinement::Pattern::new(model, &vec![refinement::status::INITIAL; model.nodes.len()]);
-        let is_refined = tick.variant != Variant::FullySubdivided;
         let mut state = State {
             tick: 0,
             growth_ticks: 0,
@@ -128,7 +127,7 @@ impl State {
             positions: model.rest.clone(),
             left: vec![tick.constants.flammability; n],
             labels: vec![0; n],
-            alive: if is_refined { pattern.alive() } else { vec![true; n] },
+            alive: if tick.variant.refines() { pattern.alive() } else { vec![true; n] },
             statuses: pattern.statuses(),
             cells: model.rest_cells.clone(),
             blocks: vec![Block::default(); model.grid.cells()],
@@ -168,9 +167,7 @@ impl Tick<'_> {
     pub fn step(&self, before: &State) -> State {
         let mut state = before.clone();
         self.heat(&mut state);
-        if self.variant != Variant::FullySubdivided {
-            self.refine(&mut state);
-        }
+        self.refine(&mut state);
         self.deform(&mut state);
         self.place(&mut state);
         self.weigh(before, &mut state);

@@ -5,14 +5,17 @@ use glam::DVec3;
 use super::{State, Tick};
 
 impl Tick<'_> {
-    /// Pass `normals`: unit normals by area over the triangles that are left (all if none is).
+    /// Pass `normals`: unit normals by area over the triangles that are left (all if none is). A vertex that refinement has not
+    /// made is not shaded.
     pub fn shade(&self, state: &mut State) {
-        for c in 0..self.model.welds.len() {
-            let sum = self.normal_sum(state, c);
-            state.normals[c] = if sum == DVec3::ZERO { DVec3::Y } else { sum.normalize() };
-        }
         let radius = self.radius(state.growth_ticks);
         for (c, &v) in self.model.welds.iter().enumerate() {
+            if !state.alive[v] {
+                (state.normals[c], state.chars[c], state.glows[c]) = (DVec3::Y, 0.0, 0.0);
+                continue;
+            }
+            let sum = self.normal_sum(state, c);
+            state.normals[c] = if sum == DVec3::ZERO { DVec3::Y } else { sum.normalize() };
             let reach = self.constants.reaches[v];
             state.chars[c] = self.char(radius, reach);
             state.glows[c] = self.glow(radius, reach);

@@ -39,7 +39,8 @@ impl<'a> Pattern<'a> {
 
     fn parts(&self, node: usize) -> (usize, u32, usize) {
         let within = node % self.model.nodes_each();
-        let level = (0..=self.model.levels).rev().find(|l| Model::level_start(*l) <= within).expect("level 0 starts at 0");
+        let level =
+            (0..=self.model.levels).rev().find(|l| Model::level_start(*l) <= within).expect("level 0 starts at 0");
         (node - within, level, within - Model::level_start(level))
     }
 
@@ -108,7 +109,7 @@ impl<'a> Pattern<'a> {
         let mut alive = vec![false; self.model.rest.len()];
         for (n, node) in self.model.nodes.iter().enumerate() {
             if self.parent(n).is_none() {
-                node.vertices.map(|v| alive[v] = true);
+                node.vertices.into_iter().for_each(|v| alive[v] = true);
             }
             if self.is_split[n] {
                 self.midpoints(n).into_iter().flatten().for_each(|v| alive[v] = true);
@@ -165,7 +166,8 @@ fn transition(corners: [usize; 3], midpoints: [Option<usize>; 3]) -> Vec<[usize;
         // An ear between a corner with a midpoint before it and the vertex after it is never flat.
         let is_midpoint = |v: usize| midpoints.contains(&Some(v));
         let n = around.len();
-        let tip = (0..n).find(|i| !is_midpoint(around[*i]) && is_midpoint(around[(i + n - 1) % n])).expect("one is halved");
+        let tip =
+            (0..n).find(|i| !is_midpoint(around[*i]) && is_midpoint(around[(i + n - 1) % n])).expect("one is halved");
         triangles.push([around[(tip + n - 1) % n], around[tip], around[(tip + 1) % n]]);
         around.remove(tip);
     }
@@ -183,17 +185,19 @@ impl Tick<'_> {
     }
 
     /// Pass `refinement`: triangles of the last level inside the virtual boundary become active with their siblings, and so on
-    /// up (4.4.3), in eligible coarse triangles.
+    /// up (4.4.3), in eligible coarse triangles. Far from the source the boundary may reach a vertex before any point of the
+    /// barycentric set is in the virtual area; what is in the initial area is refined in any case.
     pub fn refine(&self, state: &mut State) {
-        if self.model.levels == 0 {
+        if !self.variant.refines() || self.model.levels == 0 {
             return;
         }
         let mut pattern = Pattern::new(self.model, &state.statuses);
         let each = 4usize.pow(self.model.levels);
-        for coarse in (0..self.model.coarse).filter(|t| self.is_eligible(state, *t)) {
+        for coarse in 0..self.model.coarse {
+            let wanted = if self.is_eligible(state, coarse) { area::VIRTUAL } else { area::INITIAL };
             let first = coarse * self.model.nodes_each() + Model::level_start(self.model.levels);
             for n in first..first + each {
-                if self.model.nodes[n].vertices.iter().any(|v| state.labels[*v] >= area::VIRTUAL) {
+                if self.model.nodes[n].vertices.iter().any(|v| state.labels[*v] >= wanted) {
                     let parent = pattern.parent(n).expect("levels are not 0");
                     pattern.split(parent);
                 }
