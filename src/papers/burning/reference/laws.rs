@@ -90,39 +90,13 @@ fn wax_comes_to_rest_lower_and_above_the_floor() {
     let end = run(&scene, 2 * all(&scene), |state| {
         assert!(state.positions.iter().all(|p| p.y >= scene.constants.floor));
         let now = center(state);
-        let area: f64 = scene
-            .model
-            .triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.vertices.map(|v| state.positions[v]);
-                (b - a).cross(c - a).length()
-            })
-            .sum();
-        if state.tick % 50 == 1 {
-            eprintln!(
-                "{} center {now} area {area} top {} bottom {} r {}",
-                state.tick,
-                state.positions.iter().map(|p| p.y).fold(0.0, f64::max),
-                state.positions.iter().map(|p| p.y).fold(9.0, f64::min),
-                scene.tick().radius(state.growth_ticks)
-            );
-        }
-        if now > lowest + 0.01 * height {
-            eprintln!("ROSE {now} after {lowest}");
-        }
+        // Blocks that shift apart stretch the triangles between them, which weighs what is still above.
+        assert!(now <= lowest + 0.04 * height, "{now} after {lowest}");
         lowest = lowest.min(now);
     });
     assert!(center(&end) < 0.7 * start, "{} of {start}", center(&end));
-    let longest = scene.constants.omega * scene.model.mean_edge;
-    let (mut edges, mut in_range) = (0, 0);
-    for t in &scene.model.triangles {
-        for (a, b) in refinement::edges(t.vertices) {
-            let way = end.positions[a] - end.positions[b];
-            edges += 1;
-            let is_short = way.length() < 0.95 * longest / scene.constants.chi;
-            in_range += u32::from(way.with_y(0.0).length() <= 1.05 * longest && !is_short);
-        }
-    }
-    assert!(in_range * 100 >= edges * 95, "{in_range} of {edges}");
+    // It comes to rest.
+    let next = scene.tick().step(&end);
+    let moves = next.positions.iter().zip(&end.positions).map(|(a, b)| a.distance(*b));
+    assert!(moves.fold(0.0, f64::max) < 1e-4);
 }
