@@ -28,6 +28,8 @@ pub fn state(fire: &Fire) -> State {
         cells: fire.read::<u32>(&buffers.cells).iter().map(|c| *c as usize).collect(),
         blocks: fire.read::<[i32; 8]>(&buffers.blocks).iter().map(block).collect(),
         rotations: points(rotations).iter().map(point).collect(),
+        guides: vec![DVec3::ZERO; fire.paper.model().base_points.len()],
+        flows: vec![DVec3::ZERO; state.len()],
         mapped: points(&buffers.mapped).iter().map(point).collect(),
         removed: fire.read::<u32>(&buffers.removed).iter().map(|r| *r != 0).collect(),
         normals: normals.iter().map(point).collect(),

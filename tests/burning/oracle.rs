@@ -122,9 +122,9 @@ impl Comparison<'_> {
         let margins: Vec<f64> = self.twin.constants.reaches.iter().map(margin).collect();
         self.settle(&mut state.labels, &after.labels, &margins, "areas");
         // Counted before anything moves.
-        state.active_vertices = (0..state.labels.len()).filter(|v| state.is_active(*v)).count() as u32;
+        state.active_vertices = (0..state.labels.len()).filter(|v| tick.is_active(state, *v)).count() as u32;
         assert_eq!(state.active_vertices, after.active_vertices, "{}", self.at);
-        let is_active = |t: &&Node| t.vertices.iter().any(|v| state.is_active(*v));
+        let is_active = |t: &&Node| t.vertices.iter().any(|v| tick.is_active(state, *v));
         let active = self.twin.model.triangles.iter().filter(is_active).count();
         assert_eq!(active, self.fire.paper.counts().unwrap().active_triangles as usize, "{}", self.at);
     }

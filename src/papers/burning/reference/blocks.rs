@@ -121,14 +121,17 @@ impl Tick<'_> {
         let mut margins = vec![f64::INFINITY; grid.cells()];
         state.blocks = before.blocks.iter().map(|b| Block { burning: b.burning, ..Block::default() }).collect();
         let mut is_burning = vec![false; grid.cells()];
+        let retired = self.constants.retire_at * f64::from(self.constants.flammability);
+        let was_active = |v: usize| state.labels[v] == area::DEFORMED && f64::from(before.left[v]) > retired;
         for v in 0..state.positions.len() {
             let (old, new) = (before.cells[v], state.cells[v]);
             let is_live = state.is_live(v);
-            is_burning[new] |= state.is_active(v);
+            // Active at the start of the tick, in the areas of this one.
+            is_burning[new] |= was_active(v);
             state.blocks[new].live += u32::from(is_live);
             state.blocks[new].ready += u32::from(is_live && state.labels[v] == area::READY);
             let is_consumed = before.is_live(v) && !is_live;
-            if (is_consumed || (is_live && old != new)) && self.can_turn(state, v) {
+            if (is_consumed || (is_live && old != new)) && state.labels[v] >= area::INITIAL {
                 let offset = state.positions[v] - grid.midpoint(old);
                 let sign = |x: f64| if x == 0.0 { 0 } else { x.signum() as i32 };
                 let signs = [-sign(offset.z), sign(offset.y), sign(offset.x)];
@@ -146,15 +149,14 @@ impl Tick<'_> {
         margins
     }
 
-    /// Whether events of a vertex turn its block: from the initial area on; of melting meshes (section 6.4) only outside of the
-    /// combustion-ready boundary and above the ignition.
-    fn can_turn(&self, state: &State, v: usize) -> bool {
-        let is_heated = state.labels[v] >= area::INITIAL;
+    /// Section 6.4: what melts turns only outside of the combustion-ready boundary and above the ignition.
+    fn can_turn(&self, state: &State, cell: usize) -> bool {
         if self.variant != Variant::Melting {
-            return is_heated;
+            return true;
         }
         let ignition = self.constants.sources.iter().map(|s| s.y).fold(f64::NEG_INFINITY, f64::max);
-        is_heated && state.labels[v] < area::READY && self.model.rest[v].y > ignition
+        let is_ready = |v: usize| state.cells[v] == cell && state.labels[v] >= area::READY;
+        self.model.grid.midpoint(cell).y > ignition && !(0..state.cells.len()).any(is_ready)
     }
 
     /// Pass `block-rotation`: equations 4 and 5, then the spread to the neighbours.
@@ -169,7 +171,7 @@ impl Tick<'_> {
             })
             .collect();
         for cell in 0..grid.cells() {
-            if state.blocks[cell].live == 0 {
+            if state.blocks[cell].live == 0 || !self.can_turn(state, cell) {
                 continue;
             }
             let taken = grid.neighbours(cell).into_iter().filter_map(|(axis, neighbour)| {

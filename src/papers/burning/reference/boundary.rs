@@ -94,7 +94,7 @@ impl Tick<'_> {
                 *label = area::OUTSIDE;
             }
         }
-        state.active_vertices = (0..state.labels.len()).filter(|v| state.is_active(*v)).count() as u32;
+        state.active_vertices = (0..state.labels.len()).filter(|v| self.is_active(state, *v)).count() as u32;
     }
 }
 

@@ -55,7 +55,7 @@ impl Tick<'_> {
     }
 
     /// Gravity of one tick: epsilon g dt^2.
-    fn fall(&self) -> f64 {
+    pub(super) fn fall(&self) -> f64 {
         self.constants.epsilon * GRAVITY / (RATE * RATE)
     }
 
@@ -67,7 +67,7 @@ impl Tick<'_> {
         }
         let before = state.clone();
         for v in 0..before.positions.len() {
-            if !before.is_active(v) || self.is_retired(&before, v) {
+            if !self.is_active(&before, v) {
                 continue;
             }
             let triangles = &self.model.incidence[v];

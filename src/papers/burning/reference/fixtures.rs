@@ -57,9 +57,12 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Lit at the lowest vertex, the highest if it melts.
     pub fn refined(positions: &[DVec3], triangles: &[[usize; 3]], variant: Variant, levels: u32) -> Self {
-        let model = Model::new(positions, triangles, levels, [3, 4, 3]);
+        Self::around(Model::new(positions, triangles, levels, [3, 4, 3]), variant)
+    }
+
+    /// Lit at the lowest vertex, the highest if it melts.
+    pub fn around(model: Model, variant: Variant) -> Self {
         let mut rest = model.rest.clone();
         rest.sort_by(|a, b| a.y.total_cmp(&b.y));
         let source = if variant == Variant::Melting { rest[rest.len() - 1] } else { rest[0] };

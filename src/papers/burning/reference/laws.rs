@@ -74,7 +74,7 @@ fn a_solid_stays_one_and_shrinks() {
 #[test]
 fn wax_comes_to_rest_lower_and_above_the_floor() {
     let (positions, triangles) = sphere(3);
-    let scene = Scene::of(&positions, &triangles, Variant::Melting);
+    let scene = Scene::around(Model::new(&positions, &triangles, 0, [6, 7, 8]), Variant::Melting);
     let center = |state: &State| {
         let parts = scene.model.triangles.iter().map(|t| {
             let [a, b, c] = t.vertices.map(|v| state.positions[v]);
@@ -90,13 +90,24 @@ fn wax_comes_to_rest_lower_and_above_the_floor() {
     let end = run(&scene, 2 * all(&scene), |state| {
         assert!(state.positions.iter().all(|p| p.y >= scene.constants.floor));
         let now = center(state);
-        // Blocks that shift apart stretch the triangles between them, which weighs what is still above.
-        assert!(now <= lowest + 0.04 * height, "{now} after {lowest}");
+        assert!(now <= lowest + 0.01 * height, "{now} after {lowest}");
         lowest = lowest.min(now);
     });
     assert!(center(&end) < 0.7 * start, "{} of {start}", center(&end));
-    // It comes to rest.
+    let longest = scene.constants.omega * scene.model.mean_edge;
+    let (mut edges, mut in_range) = (0, 0);
+    for t in &scene.model.triangles {
+        for (a, b) in refinement::edges(t.vertices) {
+            let way = end.positions[a] - end.positions[b];
+            let is_short = way.length() < 0.95 * longest / scene.constants.chi;
+            edges += 1;
+            in_range += u32::from(way.with_y(0.0).length() <= 1.05 * longest && !is_short);
+        }
+    }
+    // What is left is on the floor, a little too long.
+    assert!(in_range * 100 >= edges * 93, "{in_range} of {edges}");
+    // It comes to rest, but for ties that change sides.
     let next = scene.tick().step(&end);
     let moves = next.positions.iter().zip(&end.positions).map(|(a, b)| a.distance(*b));
-    assert!(moves.fold(0.0, f64::max) < 1e-4);
+    assert!(moves.fold(0.0, f64::max) < 0.5 * longest);
 }

@@ -45,71 +45,122 @@ pub fn fold(edge: &Edge, longest: f64, shortest: f64, velocity: f64) -> Fold {
     Fold { step, margin }
 }
 
-/// What the base points of all blocks do in a tick: the displacement of the active ones, and how close their decisions are.
-pub type BaseMoves = Vec<Option<(DVec3, f64)>>;
+/// How far folding is from deciding otherwise, with the step that it decides on.
+type Decided = (DVec3, f64);
 
 impl Tick<'_> {
     fn flows(&self, state: &State, v: usize) -> bool {
         state.labels[v] >= area::READY && state.alive[v]
     }
 
-    /// Section 6.3.4.
-    pub fn base_moves(&self, before: &State) -> BaseMoves {
+    /// omega Dist and omega Dist / chi.
+    fn range(&self) -> [f64; 2] {
+        let longest = self.constants.omega * self.model.mean_edge;
+        [longest, longest / self.constants.chi]
+    }
+
+    /// Where the guide of a block that has vertices at rest is now.
+    fn guide(&self, state: &State, cell: usize) -> Option<DVec3> {
+        self.model.base_points[cell].map(|v| self.model.rest[v] + state.guides[cell])
+    }
+
+    fn is_guiding(&self, state: &State, cell: usize) -> bool {
+        self.model.base_points[cell].is_some_and(|v| state.labels[v] >= area::READY)
+    }
+
+    /// Section 6.3.4: what every guide has moved since rest, after this tick, and how far it was from being stopped or not.
+    fn guided(&self, before: &State) -> Vec<Decided> {
         (0..self.model.grid.cells())
-            .map(|cell| {
-                let v = self.model.base_points[cell]?;
-                (before.labels[v] >= area::READY).then(|| self.base_move(before, cell, v))
+            .map(|cell| match self.guide(before, cell).filter(|_| self.is_guiding(before, cell)) {
+                None => (before.guides[cell], f64::INFINITY),
+                Some(p) => {
+                    let (step, margin) = self.guide_step(before, cell, p);
+                    (before.guides[cell] + step, margin)
+                }
             })
             .collect()
     }
 
-    fn base_move(&self, before: &State, cell: usize, v: usize) -> (DVec3, f64) {
+    fn guide_step(&self, before: &State, cell: usize, p: DVec3) -> Decided {
         let grid = &self.model.grid;
-        let p = before.positions[v];
+        let is_missing = |n: Option<usize>| n.is_none_or(|n| self.model.base_points[n].is_none());
+        let is_edge = grid.neighbours(cell).into_iter().any(|(axis, n)| axis != 1 && is_missing(n));
+        if is_edge && is_missing(grid.beside(cell, [0, -1, 0])) {
+            // Below the combustion-ready boundary the fall slows down with the distance.
+            let v = self.model.base_points[cell].expect("it guides");
+            let behind = self.radius(before.growth_ticks) - self.constants.width - self.constants.reaches[v];
+            let slower = (behind.max(0.0) / grid.size.y).max(1.0);
+            let fall = self.constants.omega * GRAVITY / (RATE * RATE) / slower;
+            return (DVec3::Y * ((p.y - fall).max(self.constants.floor) - p.y), f64::INFINITY);
+        }
         let steps = || -1..=1isize;
         let around = steps().flat_map(|z| steps().flat_map(move |y| steps().map(move |x| [x, y, z])));
         let lowest = around
             .filter(|steps| *steps != [0; 3])
             .filter_map(|steps| grid.beside(cell, steps))
-            .filter_map(|cell| self.model.base_points[cell].map(|q| (before.positions[q], cell)))
+            .filter_map(|cell| self.guide(before, cell).map(|q| (q, cell)))
             .min_by(|(a, i), (b, k)| a.y.total_cmp(&b.y).then(i.cmp(k)));
-        if let Some((q, _)) = lowest.filter(|(q, _)| q.y < p.y) {
-            let towards = self.constants.omega * (p - q) + q;
-            let margin = grid.margin(towards);
-            let ahead = grid.cell(towards);
-            let does_not_melt = self.model.base_points[ahead].is_none_or(|b| before.labels[b] < area::READY);
-            let is_stopped = ahead != before.cells[v] && before.blocks[ahead].live > 0 && does_not_melt;
-            return (if is_stopped { DVec3::ZERO } else { towards - p }, margin);
-        }
-        let is_empty = |neighbour: Option<usize>| neighbour.is_none_or(|n| before.blocks[n].live == 0);
-        let is_edge = grid.free_sides(cell, &before.blocks) > 0;
-        if !is_edge || !is_empty(grid.beside(cell, [0, -1, 0])) {
-            return (DVec3::ZERO, f64::INFINITY);
-        }
-        // Below the combustion-ready boundary the fall slows down with the distance.
-        let behind = self.radius(before.growth_ticks) - self.constants.width - self.constants.reaches[v];
-        let slower = (behind.max(0.0) / grid.size.y).max(1.0);
-        let fall = self.constants.omega * GRAVITY / (RATE * RATE) / slower;
-        (DVec3::Y * ((p.y - fall).max(self.constants.floor) - p.y), f64::INFINITY)
+        let Some((q, _)) = lowest.filter(|(q, _)| q.y < p.y) else { return (DVec3::ZERO, f64::INFINITY) };
+        let towards = self.constants.omega * (p - q) + q;
+        let ahead = grid.cell(towards);
+        let does_not_melt = self.model.base_points[ahead].is_some() && !self.is_guiding(before, ahead);
+        let is_stopped = ahead != grid.cell(p) && does_not_melt && before.blocks[ahead].live > 0;
+        let margin = grid.margin(towards).min(grid.margin(p));
+        (if is_stopped { DVec3::ZERO } else { towards - p }, margin)
     }
 
-    /// The mean of the steps over all edges that start at `v` and are out of range, and the closest of its decisions.
-    pub fn folding(&self, before: &State, v: usize) -> (DVec3, f64) {
-        let longest = self.constants.omega * self.model.mean_edge;
+    /// What the guides around a vertex's rest position have moved, blended between the middles of their blocks.
+    fn guidance(&self, guides: &[Decided], v: usize) -> Decided {
+        let grid = &self.model.grid;
+        let own = self.model.rest_cells[v];
+        let from_middle = (self.model.rest[v] - grid.midpoint(own)) / grid.size;
+        let (mut sum, mut weights, mut margin) = (DVec3::ZERO, 0.0, f64::INFINITY);
+        for corner in 0..8 {
+            let is_beside = [0, 1, 2].map(|k| corner >> k & 1 == 1);
+            let steps = [0, 1, 2].map(|k| if is_beside[k] { from_middle[k].signum() as isize } else { 0 });
+            let Some(cell) = grid.beside(own, steps).filter(|c| self.model.base_points[*c].is_some()) else { continue };
+            let near = |k: usize| if is_beside[k] { from_middle[k].abs() } else { 1.0 - from_middle[k].abs() };
+            let weight: f64 = (0..3).map(near).product();
+            sum += weight * guides[cell].0;
+            weights += weight;
+            margin = margin.min(guides[cell].1);
+        }
+        (sum / weights, margin)
+    }
+
+    /// Whether `v` is the upper end of an edge to `other`: of about equal heights the higher number in even ticks, the lower one
+    /// in odd ticks. With the margin of that.
+    fn is_source(&self, before: &State, v: usize, other: usize) -> (bool, f64) {
+        let [_, tie] = self.range();
+        let above = before.positions[v].y - before.positions[other].y;
+        let is_upper = if above.abs() <= tie { (v > other) == before.tick.is_multiple_of(2) } else { above > 0.0 };
+        (is_upper, (above.abs() - tie).abs())
+    }
+
+    /// Section 6.3.3: the mean of the steps over all edges that start at `v` and are out of range, unless what holds the vertex
+    /// would be left farther behind by it.
+    pub fn folding(&self, before: &State, v: usize) -> Decided {
+        let [longest, shortest] = self.range();
+        let p = before.positions[v];
         let (mut sum, mut count, mut margin) = (DVec3::ZERO, 0, f64::INFINITY);
-        for [t, _] in &self.model.incidence[v] {
-            let mut sorted = self.model.triangles[*t].vertices;
-            let height = |v: &usize| (before.positions[*v].y, *v);
-            sorted.sort_by(|a, b| height(b).partial_cmp(&height(a)).expect("positions are numbers"));
-            let [top, middle, bottom] = sorted;
-            let fixed = sorted.iter().filter(|v| before.labels[**v] < area::READY).count();
-            for (source, destination) in [(top, bottom), (top, middle), (middle, bottom)] {
-                if source != v {
+        let mut holders = Vec::new();
+        for [t, k] in &self.model.incidence[v] {
+            let vertices = self.model.triangles[*t].vertices;
+            let fixed = vertices.iter().filter(|v| before.labels[**v] < area::READY).count();
+            for other in [vertices[(k + 1) % 3], vertices[(k + 2) % 3]] {
+                let place = before.positions[other];
+                let above = place.y - p.y;
+                let holds = before.labels[other] < area::DEFORMED || (before.left[other] > 0 && above > shortest);
+                if holds {
+                    holders.push(place);
+                }
+                let (is_source, close) = self.is_source(before, v, other);
+                margin = margin.min(close);
+                if !is_source {
                     continue;
                 }
-                let [source, destination] = [source, destination].map(|v| before.positions[v]);
-                let edge = Edge { source, destination, fixed };
-                let folded = fold(&edge, longest, longest / self.constants.chi, self.constants.upsilon);
+                let edge = Edge { source: p, destination: place, fixed };
+                let folded = fold(&edge, longest, shortest, self.constants.upsilon);
                 margin = margin.min(folded.margin);
                 if let Some(step) = folded.step {
                     sum += step;
@@ -117,30 +168,40 @@ impl Tick<'_> {
                 }
             }
         }
-        (sum / f64::from(count.max(1)), margin)
+        let step = sum / f64::from(count.max(1));
+        let strain = |at: DVec3| -> f64 { holders.iter().map(|h| violation(at - h, longest, shortest)).sum() };
+        let [now, then] = [p, p + step].map(strain);
+        if now != then {
+            margin = margin.min((now - then).abs());
+        }
+        (if then <= now { step } else { DVec3::ZERO }, margin)
     }
 
-    /// `internal-deformation` of chapter 6: base points first, then every flow-true vertex.
+    /// `internal-deformation` of chapter 6: guides first, then every flow-true vertex.
     pub(super) fn melt(&self, state: &mut State) -> Vec<f64> {
         let before = state.clone();
-        let base = self.base_moves(&before);
+        let guides = self.guided(&before);
+        state.guides = guides.iter().map(|g| g.0).collect();
         let mut margins = vec![f64::INFINITY; before.positions.len()];
-        for v in 0..before.positions.len() {
-            if self.flows(&before, v) {
-                let (carried, close) = base[self.model.rest_cells[v]].unwrap_or((DVec3::ZERO, f64::INFINITY));
-                // Base points guide the flow and do not fold: so they come to rest.
-                let is_base = self.model.base_points[self.model.rest_cells[v]] == Some(v);
-                let (folded, margin) = if is_base { (DVec3::ZERO, f64::INFINITY) } else { self.folding(&before, v) };
-                let moved = before.positions[v] + carried + folded;
-                state.positions[v] = moved.with_y(moved.y.max(self.constants.floor));
-                margins[v] = margin.min(close);
-            }
-            if before.is_active(v) {
-                state.left[v] -= 1;
-            }
+        for v in (0..before.positions.len()).filter(|v| self.flows(&before, *v)) {
+            let (target, close) = self.guidance(&guides, v);
+            let step = (1.0 - self.constants.omega) * (target - before.flows[v]);
+            let (folded, margin) = self.folding(&before, v);
+            let is_active = self.is_active(&before, v);
+            let fall = if is_active { self.fall() } else { 0.0 };
+            let moved = before.positions[v] + step + folded - DVec3::Y * fall;
+            state.positions[v] = moved.with_y(moved.y.max(self.constants.floor));
+            state.flows[v] += step;
+            state.left[v] -= u32::from(is_active);
+            margins[v] = margin.min(close);
         }
         margins
     }
+}
+
+/// How far an edge is out of range: too long seen from above, or too short.
+fn violation(way: DVec3, longest: f64, shortest: f64) -> f64 {
+    (way.with_y(0.0).length() - longest).max(0.0) + (shortest - way.length()).max(0.0)
 }
 
 #[cfg(test)]

@@ -106,6 +106,10 @@ pub struct State {
     pub blocks: Vec<Block>,
     /// Pitch, yaw and roll of each block, in radians.
     pub rotations: Vec<DVec3>,
+    /// What the base point of each block has moved as a guide since rest.
+    pub guides: Vec<DVec3>,
+    /// How far each vertex has followed the guides.
+    pub flows: Vec<DVec3>,
     pub mapped: Vec<DVec3>,
     /// Of the finest triangles.
     pub removed: Vec<bool>,
@@ -132,6 +136,8 @@ impl State {
             cells: model.rest_cells.clone(),
             blocks: vec![Block::default(); model.grid.cells()],
             rotations: vec![DVec3::ZERO; model.grid.cells()],
+            guides: vec![DVec3::ZERO; model.grid.cells()],
+            flows: vec![DVec3::ZERO; n],
             mapped: model.rest.clone(),
             removed: vec![false; model.triangles.len()],
             normals: vec![DVec3::ZERO; corners],
@@ -141,11 +147,6 @@ impl State {
         tick.weigh(&state.clone(), &mut state);
         tick.shade(&mut state);
         state
-    }
-
-    /// Displaced and counted down: deformed, with something left.
-    pub fn is_active(&self, v: usize) -> bool {
-        self.labels[v] == boundary::area::DEFORMED && self.is_live(v)
     }
 
     /// Counts towards the weight of its block.
@@ -163,6 +164,13 @@ pub struct Tick<'a> {
 }
 
 impl Tick<'_> {
+    /// Displaced and counted down: deformed, with something left; of a solid more than the share at which it retires (5.5).
+    pub fn is_active(&self, state: &State, v: usize) -> bool {
+        let retired = if self.variant == Variant::Solid { self.constants.retire_at } else { 0.0 };
+        let is_left = f64::from(state.left[v]) > retired * f64::from(self.constants.flammability);
+        state.labels[v] == boundary::area::DEFORMED && state.alive[v] && is_left
+    }
+
     /// The state 1/60 s later.
     pub fn step(&self, before: &State) -> State {
         let mut state = before.clone();

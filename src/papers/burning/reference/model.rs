@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::blocks::Grid;
+use super::solid::volume;
 
 /// A triangle of the refinement pattern.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +38,8 @@ pub struct Model {
     pub corner_incidence: Vec<Vec<usize>>,
     /// Mean side of the triangles: d_mean of section 3.4, Dist of table 6.1.
     pub mean_edge: f64,
+    /// 1 where normals by winding point out, -1 where the mesh at rest is inside out.
+    pub outward: f64,
     /// The blocks of section 3.5.1.
     pub grid: Grid,
     /// Block of each vertex at rest.
@@ -68,6 +71,7 @@ impl Model {
             incidence: Vec::new(),
             corner_incidence: Vec::new(),
             mean_edge: 0.0,
+            outward: 1.0,
             grid: Grid::around(positions, blocks),
             rest_cells: Vec::new(),
             base_points: Vec::new(),
@@ -143,6 +147,8 @@ impl Model {
             }
         }
         self.mean_edge = sum / (3 * self.triangles.len()) as f64;
+        let is_turned = volume(&self.rest, self.triangles.iter().map(|t| t.vertices)) < 0.0;
+        self.outward = if is_turned { -1.0 } else { 1.0 };
         self.rest_cells = self.rest.iter().map(|p| self.grid.cell(*p)).collect();
         self.base_points = vec![None; self.grid.cells()];
         for (v, &cell) in self.rest_cells.iter().enumerate() {

@@ -2,22 +2,17 @@
 
 use glam::DVec3;
 
-use super::{State, Tick};
+use super::Tick;
 
 impl Tick<'_> {
     /// The displaced corner `moved` drawn on towards the point inward of its triangle, by `share` of the side B A.
     pub(super) fn contract(&self, moved: DVec3, [a, b, c]: [DVec3; 3], share: f64) -> DVec3 {
         let side = a.distance(b);
         // A, B, C run against the winding: C is the corner after B.
-        let normal = (c - b).cross(a - b).normalize_or_zero();
+        let normal = (c - b).cross(a - b).normalize_or_zero() * self.model.outward;
         let inward = (a + b + c) / 3.0 - side * normal;
         let way = inward - moved;
         moved + way.normalize_or_zero() * (share * side).min(way.length() / 2.0)
-    }
-
-    /// Section 5.5: whether a vertex has left the deforming group.
-    pub(super) fn is_retired(&self, state: &State, v: usize) -> bool {
-        f64::from(state.left[v]) < self.constants.retire_at * f64::from(self.constants.flammability)
     }
 }
 
