@@ -1,5 +1,7 @@
 //! What the device holds as the oracle has it.
 
+use std::iter::repeat;
+
 use fumarole::papers::burning::reference::{Block, State};
 use glam::DVec3;
 
@@ -28,8 +30,9 @@ pub fn state(fire: &Fire) -> State {
         cells: fire.read::<u32>(&buffers.cells).iter().map(|c| *c as usize).collect(),
         blocks: fire.read::<[i32; 8]>(&buffers.blocks).iter().map(block).collect(),
         rotations: points(rotations).iter().map(point).collect(),
-        guides: vec![DVec3::ZERO; fire.paper.model().base_points.len()],
-        flows: vec![DVec3::ZERO; state.len()],
+        guides: points(&buffers.base_displacements[(counts.tick % 2) as usize]).iter().map(point).collect(),
+        // Nothing else flows than what melts.
+        flows: points(&buffers.flows).iter().map(point).chain(repeat(DVec3::ZERO)).take(state.len()).collect(),
         mapped: points(&buffers.mapped).iter().map(point).collect(),
         removed: fire.read::<u32>(&buffers.removed).iter().map(|r| *r != 0).collect(),
         normals: normals.iter().map(point).collect(),

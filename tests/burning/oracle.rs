@@ -8,7 +8,7 @@ use fumarole::papers::burning::reference::refinement::Pattern;
 use fumarole::papers::burning::reference::{Node, State, boundary};
 use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::common::gpu_test;
 use crate::dump;
@@ -93,6 +93,8 @@ impl Comparison<'_> {
         let margins = tick.deform(&mut state);
         assert_eq!(state.left, after.left, "{}: flammability", self.at);
         self.settle_positions(&mut state, after, &margins);
+        self.same_points(&state.guides, &after.guides, "guides");
+        self.same_points(&state.flows, &after.flows, "flows");
 
         let margins = tick.place(&mut state);
         self.settle(&mut state.cells, &after.cells, &margins, "blocks of vertices");
@@ -154,7 +156,7 @@ impl Comparison<'_> {
         for v in 0..state.positions.len() {
             let apart = state.positions[v].distance(after.positions[v]);
             if apart >= EXACT && margins[v] < CLOSE {
-                state.positions[v] = after.positions[v];
+                (state.positions[v], state.flows[v]) = (after.positions[v], after.flows[v]);
                 settled += 1;
             }
         }
@@ -226,7 +228,7 @@ impl Comparison<'_> {
 
 /// Directed edges that no other of the triangles has the other way.
 fn outline(triangles: &[[usize; 3]]) -> BTreeSet<[usize; 2]> {
-    let edges: BTreeSet<_> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+    let edges: BTreeSet<[usize; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
     edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a])).copied().collect()
 }
 
@@ -247,4 +249,21 @@ fn low_poly() {
         let parameters = Parameters { levels: Some(4), level_of_detail: Some(level_of_detail), ..parameters() };
         compare(Variant::LowPoly, &parameters, &shapes::cuboid());
     }
+}
+
+#[test]
+fn solid() {
+    compare(Variant::Solid, &Parameters { levels: Some(0), ..parameters() }, &bunny());
+    // Vertices that retire, and larger triangles that are refined.
+    let parameters = Parameters { levels: Some(3), retire_at: 0.4, ..parameters() };
+    compare(Variant::Solid, &parameters, &shapes::cuboid());
+}
+
+#[test]
+fn melting() {
+    compare(Variant::Melting, &Parameters { levels: Some(0), ..parameters() }, &bunny());
+    // Lit in the middle: structures above it turn.
+    let sources = vec![Vec3::new(0.0, 0.2, 0.25), Vec3::new(-0.2, 0.1, 0.0)];
+    let parameters = Parameters { levels: Some(3), sources, ..parameters() };
+    compare(Variant::Melting, &parameters, &shapes::cuboid());
 }
