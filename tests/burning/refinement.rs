@@ -191,7 +191,7 @@ fn leaves_part_every_coarse_triangle_and_neighbours_differ_by_one_level() {
                 seen.extend(levels.iter().copied());
                 before = levels;
             }
-            assert_eq!(seen, BTreeSet::from([0, 1, 2, 3, 4, 5]), "{}", mesh.name);
+            assert!((1..=5).all(|level| seen.contains(&level)), "{}: {seen:?}", mesh.name);
         }
     });
 }
@@ -199,10 +199,11 @@ fn leaves_part_every_coarse_triangle_and_neighbours_differ_by_one_level() {
 #[test]
 fn without_holes_every_edge_has_two_triangles_at_every_level_of_detail() {
     gpu_test(|device| {
-        for mesh in [cuboid(), sphere(7, 4)] {
-            for level in 0..=5 {
+        let levels: [&[u32]; 2] = [&[0, 1, 3, 5], &[2, 4, 5]];
+        for (mesh, levels) in [cuboid(), sphere(7, 4)].iter().zip(levels) {
+            for &level in levels {
                 let slow = Parameters { flammability: 10_000, level_of_detail: Some(level), ..parameters() };
-                let mut fire = Fire::new(device, Variant::LowPoly, &slow, &mesh);
+                let mut fire = Fire::new(device, Variant::LowPoly, &slow, mesh);
                 for ticks in [1, 20, 60, 120] {
                     fire.burn_to(ticks);
                     let drawn = fire.drawn();
@@ -237,29 +238,30 @@ fn hidden(removed: &[u32], levels: u32, level: u32) -> Vec<bool> {
 #[test]
 fn only_what_the_fire_has_removed_leaves_borders() {
     gpu_test(|device| {
-        for level in [5, 4, 2, 0] {
-            for keep_connected in [false, true] {
-                let parameters = Parameters { level_of_detail: Some(level), keep_connected, ..parameters() };
-                let mut fire = Fire::new(device, Variant::LowPoly, &parameters, &cuboid());
-                for ticks in [60, 110, 160] {
-                    fire.burn_to(ticks);
-                    let removed: Vec<u32> = fire.read(&fire.burning.buffers().removed);
-                    assert_eq!(removed.iter().sum::<u32>(), fire.counts().removed_triangles);
-                    let lattice = &fire.model().lattice;
-                    let gone: Vec<[u32; 3]> = hidden(&removed, 5, level)
-                        .iter()
-                        .zip(&lattice.nodes[level as usize])
-                        .filter(|(hidden, _)| **hidden)
-                        .map(|(_, corners)| corners.map(|corner| lattice.welds[corner as usize]))
-                        .collect();
-                    if level > 0 && ticks > 60 {
-                        assert!(!gone.is_empty(), "tick {ticks} at level {level}");
-                    }
-                    let gone = directed(&gone);
-                    for (a, b) in borders(&fire.drawn()) {
-                        assert!(gone.contains_key(&(b, a)), "({a}, {b}) at tick {ticks}, level {level}");
-                    }
+        for (level, keep_connected) in [(5, false), (5, true), (4, false), (2, true), (0, false)] {
+            let parameters = Parameters { level_of_detail: Some(level), keep_connected, ..parameters() };
+            let mut fire = Fire::new(device, Variant::LowPoly, &parameters, &cuboid());
+            for ticks in [60, 110, 160] {
+                fire.burn_to(ticks);
+                let removed: Vec<u32> = fire.read(&fire.burning.buffers().removed);
+                assert_eq!(removed.iter().sum::<u32>(), fire.counts().removed_triangles);
+                let lattice = &fire.model().lattice;
+                let gone: Vec<[u32; 3]> = hidden(&removed, 5, level)
+                    .iter()
+                    .zip(&lattice.nodes[level as usize])
+                    .filter(|(hidden, _)| **hidden)
+                    .map(|(_, corners)| corners.map(|corner| lattice.welds[corner as usize]))
+                    .collect();
+                if level > 0 && ticks > 60 {
+                    assert!(!gone.is_empty(), "tick {ticks} at level {level}");
                 }
+                let gone = directed(&gone);
+                let drawn = fire.drawn();
+                for (a, b) in borders(&drawn) {
+                    assert!(gone.contains_key(&(b, a)), "({a}, {b}) at tick {ticks}, level {level}");
+                }
+                // What is hidden is not drawn.
+                assert!(directed(&drawn).keys().all(|edge| !gone.contains_key(edge)), "tick {ticks}, level {level}");
             }
         }
     });
