@@ -91,6 +91,7 @@ pub enum Topology {
     Triangles,
     TriangleStrip,
     Points,
+    Lines,
 }
 
 /// A pipeline with its program.
@@ -138,6 +139,7 @@ impl Pipeline {
             Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
             Topology::TriangleStrip => vk::PrimitiveTopology::TRIANGLE_STRIP,
             Topology::Points => vk::PrimitiveTopology::POINT_LIST,
+            Topology::Lines => vk::PrimitiveTopology::LINE_LIST,
         });
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default()

@@ -35,6 +35,8 @@ enum ShadingWord {
     Blocks,
     /// Normals as colours
     Normals,
+    /// Lit, with the edges of the drawn triangles
+    Wire,
 }
 
 /// The finest level that is drawn; without a number, by distance.
@@ -242,6 +244,7 @@ impl BurningArgs {
             ShadingWord::Areas => Shading::Areas,
             ShadingWord::Blocks => Shading::Blocks,
             ShadingWord::Normals => Shading::Normals,
+            ShadingWord::Wire => Shading::Wire,
         };
         set(&mut p.shading, self.shading.map(shading));
         p.camera = self.camera.map(|[eye, target]| seen_from(eye, target)).or(p.camera);

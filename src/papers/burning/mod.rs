@@ -26,6 +26,7 @@ pub mod reference;
 mod refinement;
 mod removal;
 mod state;
+mod wire;
 
 use std::sync::Arc;
 
@@ -38,6 +39,7 @@ use self::model::Model;
 use self::normals::Normals;
 use self::refinement::Refinement;
 use self::removal::SurfaceRemoval;
+use self::wire::Wire;
 use super::{Paper, Target};
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
@@ -63,6 +65,7 @@ pub struct Burning {
     removal: SurfaceRemoval,
     normals: Normals,
     drawing: Drawing,
+    wire: Option<Wire>,
     flames: Option<Flames>,
     /// Slices of ticks since the fire was lit, and at the start.
     slices: u64,
@@ -94,6 +97,10 @@ impl Burning {
             None
         };
         let drawing = Drawing::new(shaders, label, parameters, &buffers, &model)?;
+        let wire = match parameters.shading {
+            Shading::Wire => Some(Wire::new(shaders, &buffers, &drawing, &model)?),
+            _ => None,
+        };
         let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &drawing)?;
         let mut burning = Burning {
             device: device.clone(),
@@ -104,6 +111,7 @@ impl Burning {
             refinement,
             normals: Normals::new(shaders, &buffers, &model)?,
             drawing,
+            wire,
             flames,
             parameters: parameters.clone(),
             model,
@@ -260,6 +268,9 @@ impl Paper for Burning {
             self.is_shaded = true;
         }
         self.drawing.record(frame)?;
+        if let Some(wire) = &self.wire {
+            wire.record(frame)?;
+        }
         match &self.flames {
             Some(flames) => flames.draw(frame),
             None => Ok(()),

@@ -79,10 +79,12 @@ pub enum Shading {
     Blocks,
     /// Normals as colours.
     Normals,
+    /// Lit, with the edges of the drawn triangles (figures 4.2, 4.4).
+    Wire,
 }
 
 impl Shading {
-    pub const ALL: [Shading; 4] = [Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals];
+    pub const ALL: [Shading; 5] = [Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals, Shading::Wire];
 
     pub fn word(self) -> &'static str {
         match self {
@@ -90,6 +92,7 @@ impl Shading {
             Shading::Areas => "areas",
             Shading::Blocks => "blocks",
             Shading::Normals => "normals",
+            Shading::Wire => "wire",
         }
     }
 
