@@ -17,7 +17,7 @@ void main() {
         return;
     }
     uint sum = 0u;
-    for (uint node = run * RUN; node < run * RUN + RUN; node++) {
+    for (uint node = run * RUN; node < min(run * RUN + RUN, nodes); node++) {
         sum += leaf_of(node).triangles;
     }
     group_sums[run] = sum;

@@ -68,15 +68,13 @@ uint midpoint_exists(Leaf leaf, uint edge) {
 
 // What is drawn of a node, counted over all coarse triangles.
 Leaf leaf_of(uint node) {
-    uint nodes = nodes_above(constants.tree.x + 1u);
-    Leaf leaf = Leaf(node / nodes, 0u, 0u, uvec3(0u), 0u);
-    if (leaf.coarse >= constants.tree.y) {
-        return leaf;
-    }
+    Leaf leaf = Leaf(0u, 0u, 0u, uvec3(0u), 0u);
     int status = statuses[node];
     if (status == UNUSED) {
         return leaf;
     }
+    uint nodes = nodes_above(constants.tree.x + 1u);
+    leaf.coarse = node / nodes;
     // Level k begins at (4^k - 1) / 3.
     uint place = node % nodes;
     leaf.level = uint(findMSB(3u * place + 1u)) / 2u;

@@ -65,7 +65,7 @@ void main() {
         return;
     }
     uint at = group_sums[run];
-    for (uint node = run * RUN; node < run * RUN + RUN; node++) {
+    for (uint node = run * RUN; node < min(run * RUN + RUN, nodes); node++) {
         Leaf leaf = leaf_of(node);
         if (leaf.triangles > 0u) {
             write(leaf, at);

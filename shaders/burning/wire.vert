@@ -21,7 +21,7 @@ layout(set = 0, binding = 22, std430) readonly buffer Stream {
     uint stream[];
 };
 
-const float LIFT = 0.002; // of the way to the eye
+const float LIFT = 0.004; // of the way to the eye
 
 void main() {
     uint number = uint(gl_VertexIndex);
