@@ -12,13 +12,12 @@ layout(set = 0, binding = 29, std430) buffer GroupSums {
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
-    uint nodes = constants.tree.y * nodes_above(constants.tree.x + 1u);
-    if (run * RUN >= nodes) {
+    if (run * RUN >= constants.tree.y * nodes_above(constants.tree.x + 1u)) {
         return;
     }
     uint sum = 0u;
-    for (uint node = run * RUN; node < min(run * RUN + RUN, nodes); node++) {
-        sum += leaf_of(node).triangles;
+    for (uint used = used_nodes(run); used != 0u; used &= used - 1u) {
+        sum += leaf_of(run * RUN + uint(findLSB(used))).triangles;
     }
     group_sums[run] = sum;
 }

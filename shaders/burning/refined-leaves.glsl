@@ -66,15 +66,24 @@ uint midpoint_exists(Leaf leaf, uint edge) {
     return alive[triangles[midpoint_at(leaf.coarse, leaf.level, leaf.index, edge)]];
 }
 
-// What is drawn of a node, counted over all coarse triangles.
-Leaf leaf_of(uint node) {
-    Leaf leaf = Leaf(0u, 0u, 0u, uvec3(0u), 0u);
-    int status = statuses[node];
-    if (status == UNUSED) {
-        return leaf;
+// The nodes of a run that are in use, a bit each: most runs of a cold object have none, and are done.
+uint used_nodes(uint run) {
+    uint nodes = constants.tree.y * nodes_above(constants.tree.x + 1u);
+    uint used = 0u;
+    for (uint i = 0u; i < RUN; i++) {
+        uint node = run * RUN + i;
+        if (node < nodes) {
+            used |= statuses[node] != UNUSED ? 1u << i : 0u;
+        }
     }
+    return used;
+}
+
+// What is drawn of a node that is in use, counted over all coarse triangles.
+Leaf leaf_of(uint node) {
     uint nodes = nodes_above(constants.tree.x + 1u);
-    leaf.coarse = node / nodes;
+    Leaf leaf = Leaf(node / nodes, 0u, 0u, uvec3(0u), 0u);
+    int status = statuses[node];
     // Level k begins at (4^k - 1) / 3.
     uint place = node % nodes;
     leaf.level = uint(findMSB(3u * place + 1u)) / 2u;

@@ -18,58 +18,43 @@ layout(set = 0, binding = 22, std430) buffer Stream {
     uint stream[];
 };
 
-uint corner(Leaf leaf, uint number) {
-    return corners[corner_at(leaf.coarse, leaf.level, leaf.index, number % 3u)];
-}
-
-uint midpoint(Leaf leaf, uint edge) {
-    return corners[midpoint_at(leaf.coarse, leaf.level, leaf.index, edge % 3u)];
-}
-
-void put(uint triangle, uint a, uint b, uint c) {
-    stream[3u * triangle] = a;
-    stream[3u * triangle + 1u] = b;
-    stream[3u * triangle + 2u] = c;
+// A point of the node, from the corner that its pattern is turned to: 0 to 2 its corners, 3 to 5 the midpoints of the edges after them.
+uint point(Leaf leaf, uint turned, uint number) {
+    uint at = corner_at(leaf.coarse, leaf.level, leaf.index, (turned + number) % 3u);
+    if (number >= 3u) {
+        at = midpoint_at(leaf.coarse, leaf.level, leaf.index, (turned + number) % 3u);
+    }
+    return corners[at];
 }
 
 // Windings stay the node's own.
-void write(Leaf leaf, uint at) {
-    uint k = 0u; // the corner that the pattern is turned to
-    if (leaf.triangles == 1u) {
-        put(at, corner(leaf, 0u), corner(leaf, 1u), corner(leaf, 2u));
-    } else if (leaf.triangles == 2u) {
-        k = leaf.split.x != 0u ? 0u : leaf.split.y != 0u ? 1u : 2u; // the split edge leaves from it
-        uint middle = midpoint(leaf, k);
-        put(at, corner(leaf, k), middle, corner(leaf, k + 2u));
-        put(at + 1u, middle, corner(leaf, k + 1u), corner(leaf, k + 2u));
+void write(Leaf leaf, uint first) {
+    // The points of the triangles of a node that is whole, or whose first edge, first two edges or all edges are split.
+    uint patterns[10] = uint[10](0x012u, 0x032u, 0x312u, 0x034u, 0x314u, 0x042u, 0x035u, 0x314u, 0x542u, 0x345u);
+    uint pattern = (leaf.triangles * (leaf.triangles - 1u)) / 2u;
+    uint turned = 0u;
+    if (leaf.triangles == 2u) {
+        turned = leaf.split.y + 2u * leaf.split.z;
     } else if (leaf.triangles == 3u) {
-        k = leaf.split.x == 0u ? 1u : leaf.split.y == 0u ? 2u : 0u; // the whole edge arrives at it
-        uint first = midpoint(leaf, k);
-        uint second = midpoint(leaf, k + 1u);
-        put(at, corner(leaf, k), first, second);
-        put(at + 1u, first, corner(leaf, k + 1u), second);
-        put(at + 2u, corner(leaf, k), second, corner(leaf, k + 2u));
-    } else {
-        uvec3 middle = uvec3(midpoint(leaf, 0u), midpoint(leaf, 1u), midpoint(leaf, 2u));
-        put(at, corner(leaf, 0u), middle.x, middle.z);
-        put(at + 1u, middle.x, corner(leaf, 1u), middle.y);
-        put(at + 2u, middle.z, middle.y, corner(leaf, 2u));
-        put(at + 3u, middle.x, middle.y, middle.z);
+        turned = leaf.split.x == 0u ? 1u : leaf.split.y == 0u ? 2u : 0u;
+    }
+    for (uint i = 0u; i < leaf.triangles; i++) {
+        uint points = patterns[pattern + i];
+        stream[3u * (first + i)] = point(leaf, turned, points >> 8u);
+        stream[3u * (first + i) + 1u] = point(leaf, turned, (points >> 4u) & 15u);
+        stream[3u * (first + i) + 2u] = point(leaf, turned, points & 15u);
     }
 }
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
-    uint nodes = constants.tree.y * nodes_above(constants.tree.x + 1u);
-    if (run * RUN >= nodes) {
+    if (run * RUN >= constants.tree.y * nodes_above(constants.tree.x + 1u)) {
         return;
     }
     uint at = group_sums[run];
-    for (uint node = run * RUN; node < min(run * RUN + RUN, nodes); node++) {
-        Leaf leaf = leaf_of(node);
-        if (leaf.triangles > 0u) {
-            write(leaf, at);
-            at += leaf.triangles;
-        }
+    for (uint used = used_nodes(run); used != 0u; used &= used - 1u) {
+        Leaf leaf = leaf_of(run * RUN + uint(findLSB(used)));
+        write(leaf, at);
+        at += leaf.triangles;
     }
 }
