@@ -12,6 +12,7 @@ use super::failure::Failure;
 use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
 use crate::experiment::burning::Setup;
+use crate::experiment::burning::presets::Preset;
 use crate::papers::burning::{Material, Shading, seen_from};
 use crate::scene::MeshSource;
 
@@ -39,6 +40,36 @@ enum ShadingWord {
     Wire,
 }
 
+/// Objects and numbers of the dissertation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PresetWord {
+    /// Section 3.8: a shell of 15,949 triangles, 3,000 fire and 1,800 smoke particles
+    #[value(name = "3.8")]
+    Results38,
+    /// Section 4.6: a box of 12 triangles, for low-poly
+    Box,
+    /// A door of 12 triangles, for low-poly
+    Door,
+    /// Section 5.5: a block of 45,000 triangles, for solid
+    #[value(name = "solid-45k")]
+    Solid45k,
+    /// Section 6.5: wax of 40,000 triangles, for melting
+    #[value(name = "melt-40k")]
+    Melt40k,
+}
+
+impl PresetWord {
+    fn preset(self) -> Preset {
+        match self {
+            PresetWord::Results38 => Preset::Results38,
+            PresetWord::Box => Preset::Box,
+            PresetWord::Door => Preset::Door,
+            PresetWord::Solid45k => Preset::Solid45k,
+            PresetWord::Melt40k => Preset::Melt40k,
+        }
+    }
+}
+
 /// The finest level that is drawn; without a number, by distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct LevelWord(Option<u32>);
@@ -63,10 +94,16 @@ fn parse_time_step(text: &str) -> Result<f64, String> {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Scene")]
 pub struct BurningArgs {
+    /// Take object and numbers of a section; options given beside it win
+    #[arg(long, value_enum)]
+    preset: Option<PresetWord>,
     /// What burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; scaled to a diagonal of 1,
     /// its base centred at the origin [default: bunny]
     #[arg(long, value_name = "SHAPE|FILE")]
     mesh: Option<MeshSource>,
+    /// Stretch the mesh along x, y and z, each factor above 0 and at most 1000 [default: 1,1,1]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    stretch: Option<[f32; 3]>,
     /// Simplify or subdivide the mesh to about so many triangles, 4 to 4000000 [default: as it is]
     #[arg(long, value_name = "N")]
     triangles: Option<u32>,
@@ -195,14 +232,20 @@ impl PaperArgs for BurningArgs {
     }
 
     fn resolve(&self, process: u32) -> Result<Setup, Failure> {
-        Ok(Setup { process, ..self.over(Setup::default()) })
+        Ok(Setup { process, ..self.over(self.preset.map_or_else(Setup::default, |word| word.preset().setup())) })
     }
 }
 
 impl BurningArgs {
+    /// The preset that was named, or that of section 3.8.
+    fn preset_or_default(&self) -> Setup {
+        self.preset.unwrap_or(PresetWord::Results38).preset().setup()
+    }
+
     /// What was typed over a setup's numbers.
     fn over(&self, mut setup: Setup) -> Setup {
         set(&mut setup.mesh, self.mesh.clone());
+        set(&mut setup.stretch, self.stretch.map(Vec3::from));
         setup.triangles = self.triangles.or(setup.triangles);
         let p = &mut setup.parameters;
         p.levels = self.levels.or(p.levels);

@@ -1,7 +1,13 @@
-//! The experiments of the `burning` paper: what a user set up, what a run says of itself, the picture strips.
+//! The experiments of the `burning` paper: what a user set up, what a run says of itself, the tables and the picture strips.
 
+pub mod course;
+pub mod presets;
+pub mod rates;
+pub mod refining;
 pub mod strips;
+pub mod sweeps;
 
+use glam::{Mat4, Vec3};
 use serde_json::{Map, Value, json};
 
 use super::bench::Built;
@@ -11,6 +17,7 @@ use super::machine::Machine;
 use super::measure::Measurement;
 use super::statistics::median;
 use super::study::{Findings, Identity, Study};
+use crate::gpu::transfer::read_buffer;
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::papers::Paper;
 use crate::papers::ParameterError;
@@ -24,6 +31,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// What burns.
     pub mesh: MeshSource,
+    /// Factors of the mesh along x, y and z, each above 0 and at most 1000.
+    pub stretch: Vec3,
     /// Triangles that the mesh is simplified or subdivided to, 4 to 4,000,000; as it is, without.
     pub triangles: Option<u32>,
     pub preset: Option<String>,
@@ -35,7 +44,7 @@ impl Default for Setup {
     /// The scanned bunny.
     fn default() -> Self {
         let parameters = Parameters::default();
-        Setup { parameters, mesh: MeshSource::Bunny, triangles: None, preset: None, process: 0 }
+        Setup { parameters, mesh: MeshSource::Bunny, stretch: Vec3::ONE, triangles: None, preset: None, process: 0 }
     }
 }
 
@@ -51,6 +60,10 @@ impl Setup {
     /// [`Error::Parameter`].
     pub fn check(&self) -> Result<(), Error> {
         self.parameters.validate()?;
+        let stretch = self.stretch.to_array();
+        let is_good = stretch.iter().all(|&factor| factor > 0.0 && factor <= 1000.0);
+        let text = stretch.map(|factor| factor.to_string()).join(",");
+        ParameterError::check(is_good, "--stretch", text, "each of x, y and z must be above 0 and at most 1000")?;
         let count = self.triangles.unwrap_or(4);
         ParameterError::check((4..=4_000_000).contains(&count), "--triangles", count, "must be 4 to 4000000")?;
         Ok(())
@@ -67,7 +80,10 @@ impl Study for Setup {
 
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
-        let mesh = self.mesh.load()?;
+        let mut mesh = self.mesh.load()?;
+        if self.stretch != Vec3::ONE {
+            mesh = mesh.transformed(&Mat4::from_scale(self.stretch));
+        }
         let mesh = match self.triangles {
             Some(count) => with_triangles(&mesh, count as usize),
             None => mesh,
@@ -101,6 +117,7 @@ impl Study for Setup {
         let sources: Vec<_> = model.sources.iter().map(|s| s.to_array()).collect();
         entries([
             ("mesh", json!(self.mesh.to_string())),
+            ("stretch", json!(self.stretch.to_array())),
             ("triangles", json!(scene.mesh.triangle_count())),
             ("levels", json!(model.levels)),
             ("edge", json!(p.edge)),
@@ -141,25 +158,35 @@ impl Study for Setup {
         format!("{}, frame {}", self.mesh, self.parameters.first_frame)
     }
 
-    fn findings(&self, _: &mut Machine, measured: &mut [(Built<Self>, Measurement)]) -> Result<Vec<Findings>, Error> {
+    fn findings(
+        &self,
+        machine: &mut Machine,
+        measured: &mut [(Built<Self>, Measurement)],
+    ) -> Result<Vec<Findings>, Error> {
         let findings = measured.iter().map(|(built, measurement)| {
             let warnings = built.paper.warnings();
-            Ok(Findings { results: results(&built.paper, measurement)?, warnings })
+            Ok(Findings { results: results(machine, &built.paper, measurement)?, warnings })
         });
         findings.collect()
     }
 }
 
-/// What the device has counted by the last frame, and the frame rate.
-fn results(paper: &Burning, measurement: &Measurement) -> Result<Map<String, Value>, Error> {
+/// What the device has counted by the last frame that was recorded, and the frame rate.
+fn results(machine: &Machine, paper: &Burning, measurement: &Measurement) -> Result<Map<String, Value>, Error> {
     let model = paper.model();
-    let counts = paper.counts()?;
+    let look = course::look(machine, paper)?;
+    let counts = look.counts;
+    let blocks: Vec<[i32; 8]> = bytemuck::pod_collect_to_vec(&read_buffer(&machine.device, &paper.buffers().blocks)?);
+    let occupied = blocks.iter().filter(|[live, ..]| *live > 0).count();
     Ok(entries([
         ("frames_per_s", json!(median(&measurement.frame_ms).map(|ms| 1e3 / ms))),
         ("ticks", json!(counts.tick)),
         ("radius", json!(counts.radius)),
         ("vertices", json!(model.rest.len())),
         ("finest_triangles", json!(model.triangles.len())),
+        ("coarse_triangles", json!(look.coarse)),
+        ("refined_coarse_triangles", json!(look.refined)),
+        ("occupied_blocks", json!(occupied)),
         ("active_vertices", json!(counts.active_vertices)),
         ("active_triangles", json!(counts.active_triangles)),
         ("live_vertices", json!(counts.live_vertices)),

@@ -1,32 +1,167 @@
-//! Picture strips: one object at several moments, side by side, as most figures of the dissertation show it.
+//! Picture strips: objects at several moments, as most figures of the dissertation show them.
+
+use glam::Vec3;
 
 use super::Setup;
+use super::presets::Preset;
 use crate::experiment::bench::build;
 use crate::experiment::error::Error;
 use crate::experiment::machine::Machine;
 use crate::experiment::picture;
 use crate::experiment::study::Study;
 use crate::image::Rgba8;
-use crate::papers::burning::Variant;
+use crate::papers::burning::{Material, Parameters, Shading, Variant};
+use crate::scene::MeshSource;
 
-/// The pictures of `frames`, which rise, and what the paper has to say at the last.
-///
-/// # Errors
-/// [`Error::Gpu`], [`Error::Scene`], [`Error::Image`], [`Error::Parameter`].
-pub fn draw(machine: &mut Machine, setup: &Setup, variant: Variant, frames: &[u32]) -> Result<Vec<Rgba8>, Error> {
-    let scene = setup.load()?;
-    let mut built = build(machine, setup, &scene, variant)?;
-    frames.iter().map(|&frame| picture::render(machine, &mut built.paper, frame)).collect()
+/// A row of pictures: one object by one method.
+#[derive(Debug, Clone)]
+pub struct Strip {
+    pub setup: Setup,
+    pub variant: Variant,
+}
+
+/// A figure of the dissertation: strips below each other, all at the same frames.
+#[derive(Debug, Clone)]
+pub struct Figure {
+    pub name: &'static str,
+    pub frames: Vec<u32>,
+    pub strips: Vec<Strip>,
+}
+
+/// Figures in the dissertation's order.
+pub const FIGURES: [&str; 11] = ["3.1", "3.2", "3.6", "3.8", "4.4", "4.5", "5.1", "5.2", "5.6", "6.1", "6.5"];
+
+fn strip(setup: &Setup, variant: Variant, change: impl FnOnce(&mut Parameters)) -> Strip {
+    let mut setup = setup.clone();
+    setup.preset = None;
+    // A strip holds several pictures.
+    (setup.parameters.width, setup.parameters.height) = (320, 240);
+    change(&mut setup.parameters);
+    Strip { setup, variant }
+}
+
+impl Figure {
+    /// The figure of that name.
+    pub fn named(name: &str) -> Option<Figure> {
+        let name = FIGURES.into_iter().find(|figure| *figure == name)?;
+        let as_it_is = |_: &mut Parameters| {};
+        let shell = Preset::Results38.setup();
+        let of_mesh = |mesh: MeshSource| Setup { mesh, ..shell.clone() };
+        let level = |level: u32| move |p: &mut Parameters| p.level_of_detail = Some(level);
+        let (frames, strips) = match name {
+            "3.1" => (vec![60, 240, 420, 720, 1080], vec![strip(&shell, Variant::Shell, as_it_is)]),
+            // One source, and three.
+            "3.2" => {
+                let areas = |sources: &[Vec3]| {
+                    strip(&shell, Variant::Shell, |p| {
+                        p.shading = Shading::Areas;
+                        p.sources = sources.to_vec();
+                        (p.fire, p.smoke) = (0, 0);
+                    })
+                };
+                let three = [Vec3::new(-0.3, 0.0, 0.0), Vec3::new(0.3, 0.2, 0.0), Vec3::new(0.0, 0.6, 0.0)];
+                (vec![60, 120, 240, 360, 480], vec![areas(&[]), areas(&three)])
+            }
+            // Without and with structural deformation.
+            "3.6" => {
+                let still = strip(&shell, Variant::Shell, |p| p.gamma = f32::MIN_POSITIVE);
+                (vec![180, 360, 540, 720, 900], vec![still, strip(&shell, Variant::Shell, as_it_is)])
+            }
+            "3.8" => {
+                let objects = [MeshSource::Teapot, MeshSource::Sphere, MeshSource::Bunny];
+                let strips = objects.map(|mesh| strip(&of_mesh(mesh), Variant::Shell, as_it_is));
+                (vec![60, 240, 420, 720, 1080], strips.into())
+            }
+            "4.4" => {
+                let setup = Preset::Box.setup();
+                let areas = strip(&setup, Variant::LowPoly, |p| p.shading = Shading::Areas);
+                (vec![60, 240, 420, 720, 1080], vec![areas, strip(&setup, Variant::LowPoly, as_it_is)])
+            }
+            // Finer to coarser.
+            "4.5" => {
+                let setup = Preset::Box.setup();
+                let strips = [5, 3, 2].map(|l| strip(&setup, Variant::LowPoly, level(l)));
+                (vec![240, 420, 720, 900], strips.into())
+            }
+            "5.1" => {
+                let shell = strip(&shell, Variant::Shell, as_it_is);
+                let solid = strip(&shell.setup, Variant::Solid, as_it_is);
+                (vec![240, 420, 720, 1080], vec![shell, solid])
+            }
+            "5.2" => (vec![60, 240, 420, 720, 1080], vec![strip(&Preset::Solid45k.setup(), Variant::Solid, as_it_is)]),
+            // A block of wood of few triangles, divided as far as its level of detail.
+            "5.6" => {
+                let mut setup = Preset::Solid45k.setup();
+                setup.triangles = None;
+                setup.parameters.edge = 0.04;
+                let strips = [5, 4, 3].map(|l| strip(&setup, Variant::Solid, level(l)));
+                (vec![240, 420, 720, 1080], strips.into())
+            }
+            "6.1" => (vec![0, 1200], vec![strip(&Preset::Melt40k.setup(), Variant::Melting, as_it_is)]),
+            _ => {
+                let still = strip(&Preset::Melt40k.setup(), Variant::Melting, |p| p.material = Material::Plain);
+                (vec![120, 360, 600, 900, 1200], vec![still])
+            }
+        };
+        Some(Figure { name, frames, strips })
+    }
+
+    /// Draws the figure.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`], [`Error::Scene`], [`Error::Image`], [`Error::Parameter`].
+    pub fn draw(&self, machine: &mut Machine) -> Result<Rgba8, Error> {
+        let mut rows = Vec::new();
+        for Strip { setup, variant } in &self.strips {
+            let scene = setup.load()?;
+            let mut paper = build(machine, setup, &scene, *variant)?.paper;
+            let pictures = self.frames.iter().map(|&frame| picture::render(machine, &mut paper, frame));
+            rows.push(side_by_side(&pictures.collect::<Result<Vec<_>, _>>()?)?);
+        }
+        below_each_other(&rows)
+    }
 }
 
 /// Pictures of one size, the first on the left.
-///
-/// # Errors
-/// [`Error::Image`].
-pub fn side_by_side(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
+fn side_by_side(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
     let (width, height) = pictures.first().map_or((0, 0), |p| (p.width(), p.height()));
     let row = 4 * width as usize;
     let rows =
         (0..height as usize).flat_map(|y| pictures.iter().flat_map(move |p| &p.pixels()[y * row..(y + 1) * row]));
     Ok(Rgba8::new(width * pictures.len() as u32, height, rows.copied().collect())?)
+}
+
+/// Pictures of one width, the first on top.
+fn below_each_other(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
+    let width = pictures.first().map_or(0, Rgba8::width);
+    let height = pictures.iter().map(Rgba8::height).sum();
+    let pixels = pictures.iter().flat_map(Rgba8::pixels).copied().collect();
+    Ok(Rgba8::new(width, height, pixels)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_figure_has_its_strips() {
+        for name in FIGURES {
+            let figure = Figure::named(name).unwrap();
+            assert_eq!(figure.name, name);
+            assert!(figure.frames.is_sorted_by(|a, b| a < b) && !figure.strips.is_empty(), "{name}");
+            for strip in &figure.strips {
+                strip.setup.check().unwrap();
+            }
+        }
+        assert!(Figure::named("3.3").is_none());
+    }
+
+    #[test]
+    fn pictures_stand_in_rows() {
+        let plain = |value: u8| Rgba8::new(2, 1, vec![value; 8]).unwrap();
+        let row = side_by_side(&[plain(1), plain(2)]).unwrap();
+        assert_eq!((row.width(), row.height(), row.pixels()[7], row.pixels()[8]), (4, 1, 1, 2));
+        let column = below_each_other(&[row.clone(), row]).unwrap();
+        assert_eq!((column.width(), column.height(), column.pixels()[16]), (4, 2, 1));
+    }
 }
