@@ -7,6 +7,7 @@ mod fire;
 mod laws;
 mod meshes;
 mod oracle;
+mod pictures;
 mod refinement;
 mod refusals;
 mod time;

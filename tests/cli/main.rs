@@ -4,6 +4,7 @@
 
 mod arguments;
 mod bench;
+mod burning;
 mod compare;
 mod devices;
 mod dumps;

@@ -51,6 +51,11 @@ pub fn terrain(arguments: &str) -> Program {
     Program::new(env!("CARGO_BIN_EXE_terrain")).args(arguments)
 }
 
+/// As [`caustics`].
+pub fn burning(arguments: &str) -> Program {
+    Program::new(env!("CARGO_BIN_EXE_burning")).args(arguments)
+}
+
 /// The umbrella.
 pub fn fumarole(arguments: &str) -> Program {
     Program::new(env!("CARGO_BIN_EXE_fumarole")).args(arguments)

@@ -1,0 +1,52 @@
+//! The finished picture of each variant.
+
+use std::path::Path;
+
+use fumarole::gpu::transfer::read_image;
+use fumarole::image::Rgba8;
+use fumarole::image::golden::{self, Tolerance};
+use fumarole::papers::burning::model::with_triangles;
+use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::papers::{Paper, Variant as _};
+use fumarole::scene::{Mesh, MeshSource, shapes};
+
+use crate::common::gpu_test;
+use crate::fire::Fire;
+
+/// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
+const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
+
+/// The bunny of 2,000 triangles, and for the methods of chapter 4 the box of 12.
+fn object(variant: Variant) -> Mesh {
+    match variant {
+        Variant::LowPoly | Variant::FullySubdivided => shapes::cuboid(),
+        _ => with_triangles(&MeshSource::Bunny.load().unwrap(), 2000),
+    }
+}
+
+#[test]
+fn the_pictures_are_the_golden_ones() {
+    gpu_test(|device| {
+        for &variant in Variant::ALL {
+            let parameters = Parameters {
+                speed_per_s: 0.2,
+                first_frame: 180,
+                fire: 300,
+                smoke: 100,
+                width: 128,
+                height: 96,
+                ..Parameters::default()
+            };
+            let mut fire = Fire::new(device, variant, &parameters, &object(variant));
+            fire.frame(0);
+            let view = fire.paper.picture();
+            let texels = read_image(device, view).unwrap();
+            let picture = Rgba8::new(view.width(), view.height(), texels).unwrap();
+            let file = format!("tests/golden/burning-{}.png", variant.word());
+            let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+            if let Err(error) = golden::check(&picture, &golden, TOLERANCE, Path::new(env!("CARGO_TARGET_TMPDIR"))) {
+                panic!("{error}");
+            }
+        }
+    });
+}

@@ -1,0 +1,302 @@
+//! `burning` through the binary: its passes, its record, its experiments, and what it refuses.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::program::{ONCE, Program, assert_schema, burning, device, entries, folder, fumarole, read_json};
+
+/// A fast fire of few triangles.
+const SMALL: &str = "--size 48x32 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10";
+const BALL: &str = "--mesh sphere --triangles 300";
+/// As `ONCE`, for what finds its frames itself.
+const BRIEF: &str = "--repeat 1 --warmup 1 --no-limits";
+
+/// Of every tick and frame.
+const SHELL: [&str; 10] = [
+    "heat-boundary",
+    "internal-deformation",
+    "block-weights",
+    "block-rotation",
+    "flames",
+    "vertex-mapping",
+    "surface-removal",
+    "normals",
+    "draw",
+    "draw-fire",
+];
+
+fn small(verb: &str) -> Program {
+    burning(verb).args(SMALL).on_test_device()
+}
+
+fn names(passes: &Value) -> Vec<&str> {
+    passes.as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn the_passes_follow_the_chapters() {
+    let listed = small("passes --json --variant all --levels 1").args(BALL).run().succeeded().json();
+    assert_eq!(listed.as_array().unwrap().len(), 5);
+    for listed in listed.as_array().unwrap() {
+        let mut passes = SHELL.to_vec();
+        if ["low-poly", "solid", "melting"].contains(&listed["variant"].as_str().unwrap()) {
+            passes.insert(1, "refinement");
+        }
+        assert_eq!(names(&listed["passes"]), passes, "{}", listed["variant"]);
+    }
+    let unlit = small("passes --json --variant shell --fire 0 --smoke 0").run().succeeded().json();
+    assert!(!names(&unlit[0]["passes"]).iter().any(|name| ["flames", "draw-fire"].contains(name)));
+}
+
+#[test]
+fn a_bench_says_what_burns() {
+    let bench = small("bench --json --quiet --validate --variant shell,low-poly,fully-subdivided --levels 1");
+    let record = bench.args(BALL).args("--first-frame 30").args(ONCE).run().succeeded().json();
+    assert_schema(&record);
+    for run in record["runs"].as_array().unwrap() {
+        assert_eq!((&run["paper"], &run["validation"]), (&"burning".into(), &"clean".into()));
+        let results = &run["results"];
+        let count = |name: &str| results[name].as_u64().unwrap_or_else(|| panic!("{name}: {results}"));
+        assert_eq!(count("ticks"), 31);
+        assert!(count("active_triangles") > 0 && count("active_triangles") <= count("finest_triangles"), "{results}");
+        assert!(count("active_vertices") <= count("live_vertices") && count("live_vertices") <= count("vertices"));
+        assert!(count("occupied_blocks") > 0 && count("occupied_blocks") <= 27, "{results}");
+        assert!(count("fire_particles") > 0 && count("fire_particles") <= 60, "{results}");
+        if run["variant"] == "low-poly" {
+            assert!(count("refined_coarse_triangles") <= count("coarse_triangles"), "{results}");
+        } else {
+            assert!(results["refined_coarse_triangles"].is_null());
+            assert_eq!(count("drawn_triangles") + count("removed_triangles"), count("finest_triangles"), "{results}");
+        }
+    }
+}
+
+#[test]
+fn presets_are_the_dissertation_s_objects() {
+    for (preset, triangles, fire, smoke) in [
+        ("3.8", 15_949, 3000, 1800),
+        ("box", 12, 2000, 500),
+        ("door", 12, 2000, 500),
+        ("solid-45k", 45_000, 2000, 500),
+        ("melt-40k", 40_000, 2000, 500),
+    ] {
+        let bench = burning("bench --json --quiet --size 16x12 --levels 0").on_test_device();
+        let record = bench.args("--preset").arg(preset).args("--frames 1").args(BRIEF).run().succeeded().json();
+        let run = &record["runs"][0];
+        assert_eq!(run["preset"], preset);
+        let config = &run["config"];
+        // Splitting and simplifying change a few triangles at a time.
+        assert!(config["triangles"].as_i64().unwrap().abs_diff(triangles) <= 4, "{preset}: {}", config["triangles"]);
+        assert_eq!((&config["fire"], &config["smoke"]), (&fire.into(), &smoke.into()), "{preset}");
+    }
+    let over = "bench --json --quiet --preset box --fire 7 --blocks 15x15x15 --levels 0 --size 16x12 --frames 1";
+    let record = burning(over).args(BRIEF).on_test_device().run().succeeded().json();
+    let config = &record["runs"][0]["config"];
+    assert_eq!((&config["fire"], &config["smoke"]), (&7.into(), &500.into()));
+    assert_eq!(config["blocks"], serde_json::json!([15, 15, 15]));
+}
+
+#[test]
+fn a_picture_and_its_dumps() {
+    let out = folder();
+    let render = small("render --quiet --frame 40 --image fire.png --dump state=state.npy --dump depth=depth.exr");
+    render.args(BALL).inside(out.path()).run().succeeded();
+    assert_eq!(entries(out.path()), ["depth.exr", "fire.png", "state.npy"]);
+    small("render --quiet --frame 39..41 --image of.png").args(BALL).inside(out.path()).run().succeeded();
+    let read = |name: &str| fs::read(out.path().join(name)).unwrap();
+    assert!(read("fire.png") == read("of-0040.png") && read("of-0039.png") != read("of-0040.png"));
+}
+
+#[test]
+fn a_stretched_mesh_is_another() {
+    let out = folder();
+    small("render --quiet --mesh box --image cube.png").inside(out.path()).run().succeeded();
+    small("render --quiet --mesh box --stretch 1,2,0.1 --image door.png").inside(out.path()).run().succeeded();
+    let read = |name: &str| fs::read(out.path().join(name)).unwrap();
+    assert!(read("cube.png") != read("door.png"));
+}
+
+#[test]
+fn a_source_too_far_away_burns_nothing_and_says_so() {
+    let far = small("bench --json --quiet --source 900,0,0 --first-frame 30").args(BALL).args(ONCE);
+    let run = far.run().succeeded().json()["runs"][0].clone();
+    assert!(run["warnings"].to_string().contains("nothing burns"), "{}", run["warnings"]);
+    assert_eq!((&run["results"]["active_vertices"], &run["results"]["removed_triangles"]), (&0.into(), &0.into()));
+    // An experiment has no frame to measure then.
+    let far = small("experiment 3.8 --quiet --source 900,0,0").args("--triangles 300").args(ONCE);
+    far.run().refused(2, &["nothing burns", "--source"]);
+}
+
+#[test]
+fn a_frame_rate_stands_beside_the_dissertation_s() {
+    for (name, frames_per_s, variant) in [("3.8", 70.0, "shell"), ("5.5", 60.0, "solid"), ("6.5", 60.0, "melting")] {
+        let out = folder();
+        let experiment = small(&format!("experiment {name} --triangles 300 --out .")).args(ONCE).inside(out.path());
+        let ended = experiment.run().succeeded();
+        let file = |ending: &str| format!("burning-{name}.{ending}");
+        assert_eq!(entries(out.path()), ["csv", "json", "svg"].map(file));
+        let record = read_json(&out.path().join(file("json")));
+        assert_schema(&record);
+        let run = &record["runs"][0];
+        assert_eq!((&run["variant"], &run["experiment"]["paper"]), (&variant.into(), &frames_per_s.into()));
+        // At the busiest frame there is fire.
+        assert!(run["results"]["fire_particles"].as_u64().unwrap() > 0, "{}", run["results"]);
+        assert!(run["config"]["first_frame"].as_u64().unwrap() > 0);
+        assert!(ended.stdout.contains(&format!("the dissertation: {frames_per_s}")), "{}", ended.stdout);
+    }
+}
+
+#[test]
+fn table_4_2_measures_until_half_is_refined() {
+    let out = folder();
+    let experiment = small("experiment 4.2 --levels 2 --out .").args(BRIEF).inside(out.path());
+    let ended = experiment.run().succeeded();
+    let files = ["burning-4.2-curves.csv", "burning-4.2-passes.csv", "burning-4.2.csv", "burning-4.2.json", "burning-4.2.svg"];
+    assert_eq!(entries(out.path()), files);
+    let record = read_json(&out.path().join("burning-4.2.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    // Four boxes, without and with particles, two methods.
+    assert_eq!(runs.len(), 16);
+    for (pair, (coarse, speed_up)) in runs.chunks(4).zip([(12, 1.96), (16, 2.09), (20, 2.43), (48, 1.25)]) {
+        for (at, run) in pair.iter().enumerate() {
+            assert_eq!(run["results"]["finest_triangles"], coarse * 16);
+            assert_eq!((&run["experiment"]["paper"], &run["config"]["fire"]), (&speed_up.into(), &[0, 60][at / 2].into()));
+            assert_eq!(run["variant"], ["low-poly", "fully-subdivided"][at % 2]);
+            assert_eq!(run["frames"], pair[0]["frames"]);
+        }
+    }
+    let curves = fs::read_to_string(out.path().join("burning-4.2-curves.csv")).unwrap();
+    let shares: Vec<f64> = curves.lines().skip(1).map(|line| line.split(',').nth(2).unwrap().parse().unwrap()).collect();
+    assert_eq!(shares.iter().filter(|&&share| share >= 0.5).count(), 4, "{curves}");
+    assert!(ended.stdout.contains("speed-up") && ended.stdout.contains("2.43"), "{}", ended.stdout);
+}
+
+#[test]
+fn optimisations_are_swept() {
+    let out = folder();
+    for name in ["blocks", "limits"] {
+        let experiment = small(&format!("experiment {name} --triangles 300 --out ."));
+        let words = SMALL.replace("--blocks 3x3x3", "");
+        let experiment = if name == "blocks" {
+            burning("experiment blocks --triangles 300 --out .").args(&words).on_test_device()
+        } else {
+            experiment
+        };
+        experiment.args("--frames 2").args(BRIEF).inside(out.path()).run().succeeded();
+    }
+    let record = read_json(&out.path().join("burning-blocks.json"));
+    assert_schema(&record);
+    let blocks: Vec<&Value> = record["runs"].as_array().unwrap().iter().map(|run| &run["experiment"]["paper"]).collect();
+    assert_eq!(blocks, [&Value::Null, &Value::Null, &70.0.into(), &30.0.into(), &Value::Null]);
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(out.path().join(name)).unwrap();
+        let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+        text.lines().skip(1).map(numbers).collect()
+    };
+    let active = rows("burning-limits-active.csv");
+    // A lower limit, fewer active vertices at once, a longer fire.
+    assert_eq!(active.len(), 3);
+    assert!(active[2][1] <= active[1][1] && active[1][1] <= active[0][1], "{active:?}");
+    assert!(active[2][2] >= active[1][2] && active[1][2] >= active[0][2] && active[2][2] > active[0][2], "{active:?}");
+    assert_eq!(rows("burning-limits-division.csv").iter().map(|row| row[0]).collect::<Vec<_>>(), [1.0, 2.0, 4.0, 8.0]);
+}
+
+#[test]
+fn scaling_follows_the_active_triangles() {
+    let out = folder();
+    let experiment = burning("experiment scaling --counts 200,800 --size 48x32 --out .").args(ONCE).on_test_device();
+    experiment.inside(out.path()).run().succeeded();
+    assert_schema(&read_json(&out.path().join("burning-scaling.json")));
+    let rates = fs::read_to_string(out.path().join("burning-scaling-rates.csv")).unwrap();
+    let active = |count: &str| -> u32 {
+        let line = rates.lines().find(|line| line.starts_with(count) && line.contains("internal-deformation")).unwrap();
+        line.split(',').nth(1).unwrap().parse().unwrap()
+    };
+    assert!(active("800") > 2 * active("200") && active("200") > 0, "{rates}");
+}
+
+#[test]
+fn strips_are_pictures() {
+    let out = folder();
+    let strips = burning("experiment sequence --figures 3.2,5.1 --moments 2,30 --quiet --out .").args(SMALL);
+    strips.args("--triangles 200").on_test_device().inside(out.path()).run().succeeded();
+    assert_eq!(entries(out.path()), ["burning-sequence-3.2.png", "burning-sequence-5.1.png"]);
+    let picture = fumarole::image::read_png(&out.path().join("burning-sequence-3.2.png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (2 * 48, 2 * 32));
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_option() {
+    for (options, parts) in [
+        ("--blocks 0x1x1", &["--blocks 0x1x1"][..]),
+        ("--blocks 257x1x1", &["--blocks 257x1x1"]),
+        ("--flammability 0", &["--flammability 0", "1 to 1000000"]),
+        ("--epsilon 0", &["--epsilon 0", "above 0 and below 1"]),
+        ("--beta 1", &["--beta 1"]),
+        ("--rho 1.5", &["--rho 1.5"]),
+        ("--phi -0.5", &["--phi -0.5"]),
+        ("--gamma 0", &["--gamma 0"]),
+        ("--omega 1", &["--omega 1"]),
+        ("--chi 1", &["--chi 1", "2 to 1000"]),
+        ("--upsilon 0", &["--upsilon 0"]),
+        ("--psi 0", &["--psi 0"]),
+        ("--speed 0", &["--speed 0"]),
+        ("--area-width 0", &["--area-width 0"]),
+        ("--levels 6", &["--levels 6"]),
+        ("--levels 5 --triangles 20000", &["--levels 5", "limit"]),
+        ("--triangles 3", &["--triangles 3"]),
+        ("--stretch 1,0,1", &["--stretch 1,0,1"]),
+        ("--stretch 1,1,1001", &["--stretch 1,1,1001"]),
+        ("--time-division 0", &["--time-division 0"]),
+        ("--fire 1000001", &["--fire 1000001"]),
+        ("--size 0x0", &["--size 0x0"]),
+        ("--mesh no-such.obj", &["no-such.obj"]),
+    ] {
+        burning("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
+    }
+    for option in ["epsilon", "beta", "rho", "phi", "gamma", "psi", "speed", "area-width", "chi", "upsilon", "time-step"] {
+        for value in ["nan", "inf", "two", ""] {
+            burning("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+        }
+    }
+    for (option, value) in [
+        ("preset", "3.9"),
+        ("source", "1,2"),
+        ("source", "1,nan,2"),
+        ("stretch", "1,2"),
+        ("blocks", "6x7"),
+        ("lod", "far"),
+        ("mesh", ""),
+    ] {
+        burning("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+    }
+}
+
+#[test]
+fn an_experiment_refuses_what_it_would_not_heed() {
+    for (options, part) in [
+        ("3.8 --first-frame 3", "--first-frame"),
+        ("3.8 --figures 3.1", "--figures"),
+        ("3.8 --preset box", "--preset"),
+        ("4.2 --frames 5", "--frames"),
+        ("4.2 --triangles 50", "--triangles"),
+        ("blocks --blocks 2x2x2", "--blocks"),
+        ("limits --active-limit 5", "--active-limit"),
+        ("limits --counts 5", "--counts"),
+        ("scaling --triangles 50", "--triangles"),
+        ("scaling --counts 2", "--triangles 2"),
+        ("sequence --json", "--json"),
+        ("sequence --moments 5,5", "--moments"),
+        ("5.5 --epsilon 1", "--epsilon 1"),
+    ] {
+        burning(&format!("experiment {options}")).on_test_device().run().refused(2, &[part]);
+    }
+}
+
+#[test]
+fn the_umbrella_runs_it_too() {
+    let listed = fumarole("burning passes --json").args(SMALL).arg("--device").arg(device()).run().succeeded().json();
+    assert_eq!(listed[0]["paper"], "burning");
+}
