@@ -18,6 +18,6 @@ fn the_buffers_hold_what_the_shaders_read() {
     }
     assert_eq!(block("burning/draw.vert", "view").check_host::<ViewBlock>(), Ok(()));
     let clock = block("burning/heat-boundary-clock.comp", "Clock");
-    let counts = clock.members[0].block.as_deref().expect("it is a structure");
+    let counts = clock.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(counts.check_host::<Counts>(), Ok(()));
 }
