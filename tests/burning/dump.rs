@@ -7,14 +7,15 @@ use glam::DVec3;
 
 use crate::fire::Fire;
 
-/// All that a tick changes. What only a shown tick makes is that of the last one shown.
-pub fn state(fire: &Fire) -> State {
+/// All that a tick changes; without what only a shown tick makes, unless the last one was shown.
+pub fn state(fire: &Fire, is_shown: bool) -> State {
     let buffers = fire.paper.buffers();
     let (state, rotations) = fire.paper.state();
     let point = |v: &[f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
     let points = |buffer| fire.read::<[f32; 4]>(buffer);
     let state = points(state);
-    let [normals, colors] = [points(&buffers.normals), points(&buffers.colors)];
+    let shown = |buffer| if is_shown { points(buffer) } else { Vec::new() };
+    let [mapped, normals, colors] = [&buffers.mapped, &buffers.normals, &buffers.colors].map(shown);
     let block =
         |b: &[i32; 8]| Block { live: b[0] as u32, ready: b[1] as u32, signs: [b[2], b[3], b[4]], burning: b[5] as u32 };
     let counts = fire.paper.counts().unwrap();
@@ -33,7 +34,7 @@ pub fn state(fire: &Fire) -> State {
         guides: points(&buffers.base_displacements[(counts.tick % 2) as usize]).iter().map(point).collect(),
         // Nothing else flows than what melts.
         flows: points(&buffers.flows).iter().map(point).chain(repeat(DVec3::ZERO)).take(state.len()).collect(),
-        mapped: points(&buffers.mapped).iter().map(point).collect(),
+        mapped: mapped.iter().map(point).collect(),
         removed: fire.read::<u32>(&buffers.removed).iter().map(|r| *r != 0).collect(),
         normals: normals.iter().map(point).collect(),
         chars: normals.iter().map(|n| n[3].into()).collect(),

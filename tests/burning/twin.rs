@@ -1,5 +1,7 @@
 //! The oracle's own model of the device's object, under the device's numbers.
 
+use std::collections::BTreeSet;
+
 use fumarole::papers::burning::reference::{Constants, Model, Node, Tick, scaled};
 use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::Mesh;
@@ -21,9 +23,12 @@ impl Twin {
     pub fn new(fire: &Fire, variant: Variant, parameters: &Parameters, mesh: &Mesh) -> Self {
         let prepared = fire.paper.model();
         let buffers = fire.paper.buffers();
-        let positions: Vec<DVec3> = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
+        // What no triangle uses does not count.
+        let used: Vec<u32> = BTreeSet::from_iter(&mesh.indices).into_iter().copied().collect();
+        let positions: Vec<DVec3> = used.iter().map(|i| mesh.positions[*i as usize].as_dvec3()).collect();
+        let number = |i: u32| used.binary_search(&i).expect("it is used");
         let triangles: Vec<[usize; 3]> =
-            mesh.indices.chunks_exact(3).map(|t| [0, 1, 2].map(|k| t[k] as usize)).collect();
+            mesh.indices.chunks_exact(3).map(|t| [0, 1, 2].map(|k| number(t[k]))).collect();
         let model = Model::new(&scaled(&positions), &triangles, prepared.levels, parameters.blocks.map(|b| b as usize));
 
         let triangles: Vec<[u32; 3]> = fire.read(&buffers.triangles);
