@@ -4,11 +4,14 @@
 mod common;
 mod dump;
 mod fire;
+mod flames;
 mod laws;
+mod melting;
 mod meshes;
 mod oracle;
 mod pictures;
 mod refinement;
 mod refusals;
+mod solid;
 mod time;
 mod twin;

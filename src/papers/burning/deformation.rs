@@ -31,7 +31,9 @@ impl Deformation {
     pub fn new(shaders: &ShaderLibrary, variant: Variant, buffers: &Buffers, model: &Model) -> Result<Self, Error> {
         let [a, b] = &buffers.states;
         let (section, shader) = match variant {
-            Variant::Shell | Variant::LowPoly | Variant::FullySubdivided => ("3.4", "burning/internal-deformation.comp"),
+            Variant::Shell | Variant::LowPoly | Variant::FullySubdivided => {
+                ("3.4", "burning/internal-deformation.comp")
+            }
             Variant::Solid => ("5.3", "burning/internal-deformation-solid.comp"),
             Variant::Melting => ("6.3", "burning/internal-deformation-melting.comp"),
         };
@@ -59,8 +61,7 @@ impl Deformation {
             .with("NewBases", bases_a)
             .with("Flows", &buffers.flows)
             .build(shaders)?;
-        let to_b =
-            to_a.again().with("OldState", a).with("NewState", b).with("NewBases", bases_b).build(shaders)?;
+        let to_b = to_a.again().with("OldState", a).with("NewState", b).with("NewBases", bases_b).build(shaders)?;
         let guide_a = Pass::compute(NAME, section, "burning/base-points.comp")
             .with("constants", &buffers.constants)
             .with("Rest", &buffers.rest)

@@ -1,6 +1,7 @@
 //! Host structs against the blocks of buffers that hold them; push constants are checked when their pass is built.
 
 use super::drawing::ViewBlock;
+use super::flames::{BillboardsBlock, Group, Particle};
 use super::state::{Constants, Counts};
 use crate::shader_build::{Block, EMBEDDED, Interface};
 
@@ -20,4 +21,11 @@ fn the_buffers_hold_what_the_shaders_read() {
     let clock = block("burning/heat-boundary-clock.comp", "Clock");
     let counts = clock.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(counts.check_host::<Counts>(), Ok(()));
+    assert_eq!(block("burning/flames.comp", "billboards").check_host::<BillboardsBlock>(), Ok(()));
+    for (name, is_group) in [("Groups", true), ("Particles", false)] {
+        let buffer = block("burning/flames.comp", name);
+        let element = buffer.members[0].block.as_deref().expect("it is a list of structures");
+        let checked = if is_group { element.check_host::<Group>() } else { element.check_host::<Particle>() };
+        assert_eq!(checked, Ok(()), "{name}");
+    }
 }

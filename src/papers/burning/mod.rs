@@ -33,7 +33,6 @@ use std::sync::Arc;
 use self::blocks::Blocks;
 use self::deformation::Deformation;
 use self::drawing::Drawing;
-use self::flames::Flames;
 use self::heat::HeatBoundary;
 use self::model::Model;
 use self::normals::Normals;
@@ -45,6 +44,7 @@ use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::scene::{Camera, Mesh};
 
+pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
 pub use self::state::{Buffers, Counts};
@@ -211,6 +211,11 @@ impl Burning {
         (&self.buffers.states[turn], &self.buffers.rotations[turn])
     }
 
+    /// Fire and smoke, where there is any.
+    pub fn flames(&self) -> Option<&Flames> {
+        self.flames.as_ref()
+    }
+
     pub fn camera(&self) -> &Camera {
         &self.drawing.camera
     }
@@ -305,7 +310,7 @@ impl Paper for Burning {
 
     fn targets(&self) -> Vec<Target> {
         let (state, rotations) = self.state();
-        vec![
+        let mut targets = vec![
             Target::table("rest", &self.buffers.rest, 4),
             Target::table("state", state, 4),
             Target::table("rotations", rotations, 4),
@@ -314,6 +319,11 @@ impl Paper for Burning {
             Target::table("colors", &self.buffers.colors, 4),
             Target::image("depth", &self.drawing.depth),
             Target::image("picture", &self.drawing.picture),
-        ]
+        ];
+        if let Some(flames) = &self.flames {
+            targets.push(Target::table("flame-groups", &flames.groups, 4));
+            targets.push(Target::table("particles", &flames.particles, 8));
+        }
+        targets
     }
 }

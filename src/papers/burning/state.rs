@@ -186,7 +186,10 @@ impl Buffers {
             cells: uploaded("cells", bytemuck::cast_slice(&model.rest_cells))?,
             blocks: uploaded("blocks", bytemuck::cast_slice(&counts))?,
             rotations: [zeros("rotations-a", 16 * blocks)?, zeros("rotations-b", 16 * blocks)?],
-            base_displacements: [zeros("base-displacements-a", 16 * blocks)?, zeros("base-displacements-b", 16 * blocks)?],
+            base_displacements: [
+                zeros("base-displacements-a", 16 * blocks)?,
+                zeros("base-displacements-b", 16 * blocks)?,
+            ],
             flows: zeros("flows", 16 * if variant == Variant::Melting { vertices } else { 1 })?,
             alive: uploaded("alive", bytemuck::cast_slice(&alive))?,
             clock: zeros("clock", size_of::<Counts>())?,
