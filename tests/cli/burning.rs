@@ -152,7 +152,8 @@ fn table_4_2_measures_until_half_is_refined() {
     let out = folder();
     let experiment = small("experiment 4.2 --levels 2 --out .").args(BRIEF).inside(out.path());
     let ended = experiment.run().succeeded();
-    let files = ["burning-4.2-curves.csv", "burning-4.2-passes.csv", "burning-4.2.csv", "burning-4.2.json", "burning-4.2.svg"];
+    let files =
+        ["burning-4.2-curves.csv", "burning-4.2-passes.csv", "burning-4.2.csv", "burning-4.2.json", "burning-4.2.svg"];
     assert_eq!(entries(out.path()), files);
     let record = read_json(&out.path().join("burning-4.2.json"));
     assert_schema(&record);
@@ -162,13 +163,17 @@ fn table_4_2_measures_until_half_is_refined() {
     for (pair, (coarse, speed_up)) in runs.chunks(4).zip([(12, 1.96), (16, 2.09), (20, 2.43), (48, 1.25)]) {
         for (at, run) in pair.iter().enumerate() {
             assert_eq!(run["results"]["finest_triangles"], coarse * 16);
-            assert_eq!((&run["experiment"]["paper"], &run["config"]["fire"]), (&speed_up.into(), &[0, 60][at / 2].into()));
+            assert_eq!(
+                (&run["experiment"]["paper"], &run["config"]["fire"]),
+                (&speed_up.into(), &[0, 60][at / 2].into())
+            );
             assert_eq!(run["variant"], ["low-poly", "fully-subdivided"][at % 2]);
             assert_eq!(run["frames"], pair[0]["frames"]);
         }
     }
     let curves = fs::read_to_string(out.path().join("burning-4.2-curves.csv")).unwrap();
-    let shares: Vec<f64> = curves.lines().skip(1).map(|line| line.split(',').nth(2).unwrap().parse().unwrap()).collect();
+    let shares: Vec<f64> =
+        curves.lines().skip(1).map(|line| line.split(',').nth(2).unwrap().parse().unwrap()).collect();
     assert_eq!(shares.iter().filter(|&&share| share >= 0.5).count(), 4, "{curves}");
     assert!(ended.stdout.contains("speed-up") && ended.stdout.contains("2.43"), "{}", ended.stdout);
 }
@@ -188,7 +193,8 @@ fn optimisations_are_swept() {
     }
     let record = read_json(&out.path().join("burning-blocks.json"));
     assert_schema(&record);
-    let blocks: Vec<&Value> = record["runs"].as_array().unwrap().iter().map(|run| &run["experiment"]["paper"]).collect();
+    let blocks: Vec<&Value> =
+        record["runs"].as_array().unwrap().iter().map(|run| &run["experiment"]["paper"]).collect();
     assert_eq!(blocks, [&Value::Null, &Value::Null, &70.0.into(), &30.0.into(), &Value::Null]);
     let rows = |name: &str| -> Vec<Vec<f64>> {
         let text = fs::read_to_string(out.path().join(name)).unwrap();
@@ -256,7 +262,9 @@ fn what_cannot_be_is_refused_by_its_option() {
     ] {
         burning("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
     }
-    for option in ["epsilon", "beta", "rho", "phi", "gamma", "psi", "speed", "area-width", "chi", "upsilon", "time-step"] {
+    for option in
+        ["epsilon", "beta", "rho", "phi", "gamma", "psi", "speed", "area-width", "chi", "upsilon", "time-step"]
+    {
         for value in ["nan", "inf", "two", ""] {
             burning("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
         }

@@ -72,10 +72,14 @@ impl Figure {
                 let strips = objects.map(|mesh| strip(&of_mesh(mesh), Variant::Shell, as_it_is));
                 (vec![60, 240, 420, 720, 1080], strips.into())
             }
+            // The hierarchy, and what it looks like.
             "4.4" => {
                 let setup = Preset::Box.setup();
-                let areas = strip(&setup, Variant::LowPoly, |p| p.shading = Shading::Areas);
-                (vec![60, 240, 420, 720, 1080], vec![areas, strip(&setup, Variant::LowPoly, as_it_is)])
+                let wire = strip(&setup, Variant::LowPoly, |p| {
+                    p.shading = Shading::Wire;
+                    (p.fire, p.smoke) = (0, 0);
+                });
+                (vec![60, 240, 420, 720, 1080], vec![wire, strip(&setup, Variant::LowPoly, as_it_is)])
             }
             // Finer to coarser.
             "4.5" => {

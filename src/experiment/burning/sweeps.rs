@@ -207,7 +207,8 @@ pub fn scaling_table(rows: &[Row]) -> Facts {
     for row in rows {
         let active = result(&row.run, "active_triangles").as_f64();
         let mut push = |pass: &str, ms: Option<f64>| {
-            let rate = active.zip(ms).filter(|(_, ms)| *ms > 0.0).map(|(active, ms)| active / ms * 1e3);
+            let rate =
+                active.zip(ms).filter(|(_, ms)| *ms > 0.0).map(|(active, ms)| (active / ms * 1e3).round() as u64);
             let total = result(&row.run, "finest_triangles");
             table.push(vec![total, json!(active.map(|n| n as u64)), json!(pass), json!(ms), json!(rate)]);
         };
