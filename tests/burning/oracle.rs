@@ -163,9 +163,9 @@ impl Comparison<'_> {
 
     fn settle_positions(&self, state: &mut State, after: &State, margins: &[f64]) {
         let mut settled = 0;
-        for v in 0..state.positions.len() {
+        for (v, margin) in margins.iter().enumerate() {
             let apart = state.positions[v].distance(after.positions[v]);
-            if apart >= EXACT && margins[v] < CLOSE {
+            if apart >= EXACT && *margin < CLOSE {
                 (state.positions[v], state.flows[v]) = (after.positions[v], after.flows[v]);
                 settled += 1;
             }

@@ -135,7 +135,7 @@ fn empty_masks_take_a_sub_pixel_at_the_opacity_of_their_coverage() {
         let corners: Vec<[DVec2; 3]> = (0..60)
             .map(|_| {
                 let from = DVec2::new(random.range(5.0, 80.0).into(), random.range(5.0, 55.0).into());
-                let along = DVec2::from_angle(random.range(0.0, 6.28).into());
+                let along = DVec2::from_angle(random.range(0.0, std::f32::consts::TAU).into());
                 let across = along.perp() * f64::from(random.range(0.005, 0.05));
                 [from, from + along * f64::from(random.range(0.1, 9.0)), from + across]
             })

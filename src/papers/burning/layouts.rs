@@ -24,7 +24,7 @@ fn the_buffers_hold_what_the_shaders_read() {
     assert_eq!(block("burning/flames.comp", "billboards").check_host::<BillboardsBlock>(), Ok(()));
     for (name, is_group) in [("Groups", true), ("Particles", false)] {
         let buffer = block("burning/flames.comp", name);
-        let element = buffer.members[0].block.as_deref().expect("it is a list of structures");
+        let element = buffer.members[0].block.as_ref().expect("it is a list of structures");
         let checked = if is_group { element.check_host::<Group>() } else { element.check_host::<Particle>() };
         assert_eq!(checked, Ok(()), "{name}");
     }

@@ -231,10 +231,10 @@ mod tests {
         let (vertices, corners) = (turned(model.rest.len()), turned(model.welds.len()));
         let other = model.renumbered(&vertices, &corners);
         assert!((other.mean_edge - model.mean_edge).abs() < 1e-14);
-        for v in 0..model.rest.len() {
-            assert_eq!(other.rest[vertices[v]], model.rest[v]);
-            assert_eq!(other.incidence[vertices[v]], model.incidence[v]);
-            assert_eq!(other.rest_cells[vertices[v]], model.rest_cells[v]);
+        for (v, &renamed) in vertices.iter().enumerate() {
+            assert_eq!(other.rest[renamed], model.rest[v]);
+            assert_eq!(other.incidence[renamed], model.incidence[v]);
+            assert_eq!(other.rest_cells[renamed], model.rest_cells[v]);
         }
     }
 }
