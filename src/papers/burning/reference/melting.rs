@@ -45,7 +45,7 @@ pub fn fold(edge: &Edge, longest: f64, shortest: f64, velocity: f64) -> Fold {
     Fold { step, margin }
 }
 
-/// How far folding is from deciding otherwise, with the step that it decides on.
+/// A step or place with how far it is from being decided otherwise, in lengths.
 type Decided = (DVec3, f64);
 
 impl Tick<'_> {
@@ -69,16 +69,28 @@ impl Tick<'_> {
     }
 
     /// Section 6.3.4: what every guide has moved since rest, after this tick, and how far it was from being stopped or not.
-    fn guided(&self, before: &State) -> Vec<Decided> {
+    pub fn guided(&self, before: &State) -> Vec<Decided> {
         (0..self.model.grid.cells())
             .map(|cell| match self.guide(before, cell).filter(|_| self.is_guiding(before, cell)) {
                 None => (before.guides[cell], f64::INFINITY),
                 Some(p) => {
                     let (step, margin) = self.guide_step(before, cell, p);
-                    (before.guides[cell] + step, margin)
+                    (before.guides[cell] + step, margin.min(self.choice_margin(before, cell, p)))
                 }
             })
             .collect()
+    }
+
+    /// How much lower the lowest of the guides around is than the next one, or than the guide itself where that is less: on the
+    /// floor, next to nothing.
+    fn choice_margin(&self, before: &State, cell: usize, p: DVec3) -> f64 {
+        let grid = &self.model.grid;
+        let around = (0..27).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]).filter(|steps| *steps != [0; 3]);
+        let near = around.filter_map(|steps| grid.beside(cell, steps)).filter_map(|cell| self.guide(before, cell));
+        let mut heights: Vec<f64> = near.map(|q| q.y).collect();
+        heights.sort_by(f64::total_cmp);
+        let [lowest, next] = [0, 1].map(|i| heights.get(i).copied().unwrap_or(f64::INFINITY));
+        if lowest.is_finite() { (next - lowest).min((p.y - lowest).abs()) } else { f64::INFINITY }
     }
 
     fn guide_step(&self, before: &State, cell: usize, p: DVec3) -> Decided {

@@ -231,10 +231,10 @@ mod tests {
         let (vertices, corners) = (turned(model.rest.len()), turned(model.welds.len()));
         let other = model.renumbered(&vertices, &corners);
         assert!((other.mean_edge - model.mean_edge).abs() < 1e-14);
-        for (v, &renamed) in vertices.iter().enumerate() {
-            assert_eq!(other.rest[renamed], model.rest[v]);
-            assert_eq!(other.incidence[renamed], model.incidence[v]);
-            assert_eq!(other.rest_cells[renamed], model.rest_cells[v]);
+        for (v, &number) in vertices.iter().enumerate() {
+            assert_eq!(other.rest[number], model.rest[v]);
+            assert_eq!(other.incidence[number], model.incidence[v]);
+            assert_eq!(other.rest_cells[number], model.rest_cells[v]);
         }
     }
 }
