@@ -122,6 +122,6 @@ fn fire_adds_light_smoke_covers_and_neither_leaves_a_picture_alone() {
         assert!((0..plain.len()).all(|i| !is_darker(&lit, &plain, i)), "fire took light away");
         assert!((0..plain.len()).filter(|&i| is_darker(&plain, &lit, i)).count() > 500);
         let smoky = pictured(0, 600);
-        assert!((0..plain.len()).filter(|&i| smoky[i] != plain[i]).count() > 500);
+        assert!((0..plain.len()).filter(|&i| smoky[i] != plain[i]).count() > 300);
     });
 }
