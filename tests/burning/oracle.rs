@@ -93,15 +93,19 @@ impl Comparison<'_> {
         tick.refine(&mut state);
         assert!(state.statuses == after.statuses && state.alive == after.alive, "{}: refinement", self.at);
 
-        let guided = tick.guided(&state);
-        let margins = tick.deform(&mut state);
+        let margins = if tick.variant == Variant::Melting {
+            let mut guides = tick.guided(&state);
+            for (guide, place) in guides.iter_mut().zip(&after.guides) {
+                if guide.0.distance(*place) >= EXACT && guide.1 < CLOSE {
+                    *guide = (*place, f64::INFINITY);
+                }
+            }
+            tick.follow(&mut state, &guides)
+        } else {
+            tick.deform(&mut state)
+        };
         assert_eq!(state.left, after.left, "{}: flammability", self.at);
         self.settle_positions(&mut state, after, &margins);
-        for (cell, (place, margin)) in guided.into_iter().enumerate() {
-            if place.distance(after.guides[cell]) >= EXACT && margin < CLOSE {
-                state.guides[cell] = after.guides[cell];
-            }
-        }
         self.same_points(&state.guides, &after.guides, "guides");
         self.same_points(&state.flows, &after.flows, "flows");
 

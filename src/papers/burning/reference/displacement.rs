@@ -63,7 +63,8 @@ impl Tick<'_> {
     /// is next to nothing, rounding decides.
     pub fn deform(&self, state: &mut State) -> Vec<f64> {
         if self.variant == Variant::Melting {
-            return self.melt(state);
+            let guides = self.guided(state);
+            return self.follow(state, &guides);
         }
         let before = state.clone();
         for v in 0..before.positions.len() {

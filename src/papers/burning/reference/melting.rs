@@ -46,7 +46,7 @@ pub fn fold(edge: &Edge, longest: f64, shortest: f64, velocity: f64) -> Fold {
 }
 
 /// A step or place with how far it is from being decided otherwise, in lengths.
-type Decided = (DVec3, f64);
+pub type Decided = (DVec3, f64);
 
 impl Tick<'_> {
     fn flows(&self, state: &State, v: usize) -> bool {
@@ -191,14 +191,14 @@ impl Tick<'_> {
         (if then <= now { step } else { DVec3::ZERO }, margin)
     }
 
-    /// `internal-deformation` of chapter 6: guides first, then every flow-true vertex.
-    pub(super) fn melt(&self, state: &mut State) -> Vec<f64> {
+    /// `internal-deformation` of chapter 6 once the guides have moved: every flow-true vertex follows and folds. Answers as
+    /// [`Tick::deform`].
+    pub fn follow(&self, state: &mut State, guides: &[Decided]) -> Vec<f64> {
         let before = state.clone();
-        let guides = self.guided(&before);
         state.guides = guides.iter().map(|g| g.0).collect();
         let mut margins = vec![f64::INFINITY; before.positions.len()];
         for v in (0..before.positions.len()).filter(|v| self.flows(&before, *v)) {
-            let (target, close) = self.guidance(&guides, v);
+            let (target, close) = self.guidance(guides, v);
             let step = (1.0 - self.constants.omega) * (target - before.flows[v]);
             let (folded, margin) = self.folding(&before, v);
             let is_active = self.is_active(&before, v);
