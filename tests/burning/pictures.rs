@@ -30,7 +30,7 @@ fn the_pictures_are_the_golden_ones() {
         for &variant in Variant::ALL {
             let parameters = Parameters {
                 speed_per_s: 0.2,
-                first_frame: 180,
+                first_frame: 120,
                 fire: 300,
                 smoke: 100,
                 width: 128,
