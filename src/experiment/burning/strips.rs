@@ -10,7 +10,7 @@ use crate::experiment::machine::Machine;
 use crate::experiment::picture;
 use crate::experiment::study::Study;
 use crate::image::Rgba8;
-use crate::papers::burning::{Material, Parameters, Shading, Variant};
+use crate::papers::burning::{Parameters, Shading, Variant};
 use crate::scene::MeshSource;
 
 /// A row of pictures: one object by one method.
@@ -101,10 +101,10 @@ impl Figure {
                 let strips = [5, 4, 3].map(|l| strip(&setup, Variant::Solid, level(l)));
                 (vec![240, 420, 720, 1080], strips.into())
             }
-            "6.1" => (vec![0, 1200], vec![strip(&Preset::Melt40k.setup(), Variant::Melting, as_it_is)]),
+            "6.1" => (vec![0, 600], vec![strip(&Preset::Melt40k.setup(), Variant::Melting, as_it_is)]),
             _ => {
-                let still = strip(&Preset::Melt40k.setup(), Variant::Melting, |p| p.material = Material::Plain);
-                (vec![120, 360, 600, 900, 1200], vec![still])
+                let wax = strip(&Preset::Melt40k.setup(), Variant::Melting, as_it_is);
+                (vec![120, 360, 540, 660, 780], vec![wax])
             }
         };
         Some(Figure { name, frames, strips })
