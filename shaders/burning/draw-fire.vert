@@ -15,13 +15,13 @@ layout(location = 0) out vec2 place_in_square; // -1 to 1
 layout(location = 1) out vec4 character; // share of its life, two numbers of its own, whether it is fire
 layout(location = 2) out float eye_depth;
 
-// Of the square, times the particle's radius. A flame is tall, swells at once and tapers; smoke spreads.
+// Of the square, times the particle's radius, the most that it comes to. A flame is tall, swells at once and tapers; smoke spreads.
 vec2 half_size(bool is_fire, float age, float random) {
     if (is_fire) {
-        float width = smoothstep(0.0, 0.15, age) * (1.0 - 0.7 * age) * (0.8 + 0.5 * random);
-        return vec2(1.15, 1.9) * width;
+        float height = smoothstep(0.0, 0.15, age) * (1.0 - 0.5 * age) * (0.75 + 0.25 * random);
+        return vec2(0.75, 1.15) * height;
     }
-    return vec2((1.0 + 2.2 * age) * (0.8 + 0.6 * random));
+    return vec2((0.45 + 0.55 * age) * (0.75 + 0.25 * random));
 }
 
 void main() {
