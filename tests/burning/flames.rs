@@ -112,7 +112,7 @@ fn fire_adds_light_smoke_covers_and_neither_leaves_a_picture_alone() {
         let pictured = |fire: u32, smoke: u32| {
             let parameters = Parameters { fire, smoke, width: 96, height: 72, ..burning() };
             let mut fire = Fire::new(device, Variant::Shell, &parameters, &ball());
-            fire.frame(150);
+            fire.frame(230);
             read_image(device, fire.paper.picture()).unwrap()
         };
         let plain = pictured(0, 0);
