@@ -180,7 +180,8 @@ impl Comparison<'_> {
                 settled += 1;
             }
         }
-        assert!(settled * 100 <= margins.len(), "{}: {settled} close calls of {}", self.at, margins.len());
+        // What has been folded to the end of the range stays there to the last bit, so some are always close.
+        assert!(settled * 25 <= margins.len(), "{}: {settled} close calls of {}", self.at, margins.len());
         self.same_points(&state.positions, &after.positions, "positions");
     }
 
