@@ -79,15 +79,10 @@ uint lowest_around(uint block) {
     return lowest;
 }
 
-// How soft the block is, 0 to 1: it softens over the width of the combustion-ready area, so that what still stands is not torn.
-float softness(float behind) {
-    return min(behind / constants.boundary.y, 1.0);
-}
-
 vec3 moved(uint block, vec3 p) {
     float omega = constants.melting.x;
-    float behind = max(0.0, clock.radius - constants.boundary.y - rest[base_points[block]].w);
     if (is_free_edge(block)) {
+        float behind = max(0.0, clock.radius - constants.boundary.y - rest[base_points[block]].w);
         float fall = constants.albedo.w / constants.material.x; // g dt^2
         float slower = max(behind / constants.cell_size.y, 1.0);
         return vec3(p.x, max(constants.origin.w, p.y - omega * fall / slower), p.z);
@@ -100,7 +95,7 @@ vec3 moved(uint block, vec3 p) {
     if (q.y >= p.y) {
         return p;
     }
-    vec3 drawn = mix(p, omega * (p - q) + q, softness(behind));
+    vec3 drawn = omega * (p - q) + q;
     uint cell = cell_of(drawn);
     if (cell != cell_of(p) && has_base(cell)) {
         if (!is_active(cell) && blocks[8u * cell] > 0) {

@@ -97,10 +97,10 @@ impl Tick<'_> {
         let grid = &self.model.grid;
         let is_missing = |n: Option<usize>| n.is_none_or(|n| self.model.base_points[n].is_none());
         let is_edge = grid.neighbours(cell).into_iter().any(|(axis, n)| axis != 1 && is_missing(n));
-        let v = self.model.base_points[cell].expect("it guides");
-        let behind = self.radius(before.growth_ticks) - self.constants.width - self.constants.reaches[v];
         if is_edge && is_missing(grid.beside(cell, [0, -1, 0])) {
             // Below the combustion-ready boundary the fall slows down with the distance.
+            let v = self.model.base_points[cell].expect("it guides");
+            let behind = self.radius(before.growth_ticks) - self.constants.width - self.constants.reaches[v];
             let slower = (behind.max(0.0) / grid.size.y).max(1.0);
             let fall = self.constants.omega * GRAVITY / (RATE * RATE) / slower;
             return (DVec3::Y * ((p.y - fall).max(self.constants.floor) - p.y), f64::INFINITY);
@@ -113,9 +113,7 @@ impl Tick<'_> {
             .filter_map(|cell| self.guide(before, cell).map(|q| (q, cell)))
             .min_by(|(a, i), (b, k)| a.y.total_cmp(&b.y).then(i.cmp(k)));
         let Some((q, _)) = lowest.filter(|(q, _)| q.y < p.y) else { return (DVec3::ZERO, f64::INFINITY) };
-        // The block softens over the width of the combustion-ready area.
-        let softness = (behind / self.constants.width).clamp(0.0, 1.0);
-        let towards = p + softness * (1.0 - self.constants.omega) * (q - p);
+        let towards = self.constants.omega * (p - q) + q;
         let ahead = grid.cell(towards);
         let does_not_melt = self.model.base_points[ahead].is_some() && !self.is_guiding(before, ahead);
         let is_stopped = ahead != grid.cell(p) && does_not_melt && before.blocks[ahead].live > 0;
