@@ -4,6 +4,8 @@ pub mod burning;
 pub mod caustics;
 pub mod gas;
 pub mod lava;
+#[cfg(test)]
+mod layout;
 mod parameter;
 pub mod terrain;
 
