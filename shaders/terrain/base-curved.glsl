@@ -5,6 +5,9 @@
 #include "terrain/between.glsl"
 #include "terrain/round.glsl"
 
+// How far a last segment may be from straight, in texels of the level that it is met at.
+const float STRAIGHT = 2.5e-4;
+
 // The part of a ray that can meet the map.
 struct Way {
     float near_m; // depth of its ends, metres
@@ -70,9 +73,9 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     return Way(range.x, range.y, from, whole, cut > 0.0 && cut < 1.0 && is_behind ? cut : 0.0);
 }
 
-// A ray behind the axis is cut there before it is halved.
-int first_depth(Way way) {
-    return way.cut > 0.0 ? 1 : 0;
+// The longest segment that is looked at, of `whole` units: a ray behind the axis is cut there before it is halved.
+int first_units(Way way, int whole) {
+    return way.cut > 0.0 ? whole / 2 : whole;
 }
 
 float part_at(Way way, float start) {
@@ -113,12 +116,17 @@ int entered(Way way, float height) {
 }
 
 // How far the ray may leave the straight line between the ends: nodes along u and v, height.
-vec3 slack_of(Way way, Segment segment, float size) {
+vec3 slack_of(Segment segment) {
     return segment.slack;
 }
 
-// The part of the segment over the map, and the surface at its near end.
-vec3 over_map(Segment segment) {
+// Whether a segment is straight enough to be met at a level.
+bool is_straight(vec3 slack, int shift) {
+    float straight = STRAIGHT * exp2(float(shift));
+    return max(slack.x, slack.y) <= straight && slack.z * land.bounds.w <= straight * land.margin.z;
+}
+
+Over over_map(Segment segment) {
     vec2 move = segment.far.xy - segment.near.xy;
     vec2 u = between(vec2(0.0, 1.0), segment.near.x, move.x, 0.0, float(land.size.x - 1));
     vec2 v = between(vec2(0.0, 1.0), segment.near.y, move.y, 0.0, float(land.size.y - 1));
@@ -127,5 +135,5 @@ vec3 over_map(Segment segment) {
         side = move.y > 0.0 ? WALL_NORTH : WALL_SOUTH;
     }
     float near = max(u.x, v.x);
-    return vec3(near, min(u.y, v.y), float(near > 0.0 ? side : TERRAIN));
+    return Over(near, min(u.y, v.y), near > 0.0 ? side : TERRAIN);
 }

@@ -32,7 +32,7 @@ vec2 base_place(vec3 direction, float depth_m) {
 
 Way way_of(vec3 eye, vec3 direction, float limit_m) {
     vec2 all = vec2(0.0, limit_m);
-    vec2 last = vec2(land.size.xy - 1);
+    vec2 last = vec2(map.last);
     vec2 u = between(all, eye.x, direction.x, 0.0, last.x);
     vec2 v = between(all, eye.y, direction.y, 0.0, last.y);
     vec2 h = between(all, eye.z, direction.z, land.bounds.x - land.margin.y, land.bounds.y + land.margin.y);
@@ -51,9 +51,9 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     return Way(near_m, far_m, side, eye + near_m * direction, (far_m - near_m) * direction);
 }
 
-// Halvings that come before everything else.
-int first_depth(Way way) {
-    return 0;
+// The longest segment that is looked at, of `whole` units.
+int first_units(Way way, int whole) {
+    return whole;
 }
 
 Segment segment_of(Way way, float start, float size) {
@@ -71,11 +71,15 @@ int entered(Way way, float height) {
 }
 
 // How far the ray may leave the straight line between the ends: nodes along u and v, height.
-vec3 slack_of(Way way, Segment segment, float size) {
+vec3 slack_of(Segment segment) {
     return vec3(0.0);
 }
 
-// The part of the segment over the map, and the surface at its near end.
-vec3 over_map(Segment segment) {
-    return vec3(0.0, 1.0, float(TERRAIN));
+// Whether a segment is straight enough to be met at a level.
+bool is_straight(vec3 slack, int shift) {
+    return true;
+}
+
+Over over_map(Segment segment) {
+    return Over(0.0, 1.0, TERRAIN);
 }

@@ -26,6 +26,20 @@ layout(set = 0, binding = 0, std140) uniform Land {
 
 layout(set = 0, binding = 1) uniform utexture2DArray levels;
 
+// What every look at the map needs of the block, read once: a member of a block is fetched anew in each turn of a loop.
+struct Map {
+    ivec2 last; // column and row
+    int top; // levels above the data
+    ivec2 spread; // texels between the coarser levels, at the data's size
+    bool is_float;
+    float pixel; // nodes that one covers at a depth of 1 m
+};
+Map map;
+
+void read_map() {
+    map = Map(land.size.xy - 1, land.size.z, land.form.xy * land.size.w, land.form.z != 0, land.eye.w);
+}
+
 // Surfaces that a ray may hit; numbered as src/papers/terrain/hit.rs does.
 const int SKY = 0;
 const int BASE = 1;
@@ -45,6 +59,20 @@ struct Hit {
     float surface; // which surface + 8 x level + 256 x map + 4096 x segments looked at
 };
 
+// The part of a segment that is over the map, and the surface at its near end.
+struct Over {
+    float near;
+    float far;
+    int surface;
+};
+
+// Where a last segment crosses the surface: the part of it over the map, -1 where it does not, and how high above the surface
+// its near end is.
+struct Crossing {
+    float part;
+    float above;
+};
+
 float surface_code(int surface, int shift, int segments) {
     return float(surface + 8 * shift + 4096 * min(segments, 4095)) + 256.0 * land.sundry.y;
 }
@@ -53,9 +81,9 @@ float surface_code(int surface, int shift, int segments) {
 // its padded width.
 float value_in(int layer, int shift, ivec2 texel) {
     int here = shift == 0 ? 0 : layer;
-    ivec2 origin = land.form.xy * (shift == 0 ? 0 : land.size.w >> shift);
+    ivec2 origin = shift == 0 ? ivec2(0) : map.spread >> shift;
     uint bits = texelFetch(levels, ivec3(origin + texel, here), 0).x;
-    return land.form.z != 0 ? uintBitsToFloat(bits) : float(bits);
+    return map.is_float ? uintBitsToFloat(bits) : float(int(bits));
 }
 
 float highest_at(int shift, ivec2 texel) {
@@ -63,7 +91,7 @@ float highest_at(int shift, ivec2 texel) {
 }
 
 ivec2 last_texel(int shift) {
-    return (land.size.xy - 1) >> shift;
+    return map.last >> shift;
 }
 
 // The north-west corner of the cell of a level around a place in nodes, and where the place lies in it, 0 to 1. A coarser

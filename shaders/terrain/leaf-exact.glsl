@@ -5,16 +5,16 @@ int finest_shift(float depth_m) {
 }
 
 // The part of a line at which a coordinate crosses a border between cells; 1 where it crosses none.
-float crossing(float from, float to) {
+float border_between(float from, float to) {
     float border = max(floor(from), floor(to));
     bool crosses = floor(from) != floor(to) && from != to;
     return crosses ? clamp((border - from) / (to - from), 0.0, 1.0) : 1.0;
 }
 
-float intersect(vec3 near, vec3 far, float depth_m) {
+Crossing crossing_of(vec3 near, vec3 far, float depth_m) {
     vec3 whole = far - near;
-    float u = crossing(near.x, far.x);
-    float v = crossing(near.y, far.y);
+    float u = border_between(near.x, far.x);
+    float v = border_between(near.y, far.y);
     float ends[4] = float[4](0.0, min(u, v), max(u, v), 1.0);
     float result = -1.0;
     for (int i = 0; i < 3; i++) {
@@ -26,5 +26,9 @@ float intersect(vec3 near, vec3 far, float depth_m) {
             result = part >= 0.0 ? ends[i] + part * size : -1.0;
         }
     }
-    return result;
+    return Crossing(result, 0.0);
+}
+
+float refined(Crossing crossing, vec3 near, vec3 far, float depth_m) {
+    return crossing.part;
 }

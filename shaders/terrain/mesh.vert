@@ -10,6 +10,7 @@
 #include "terrain/round.glsl"
 
 void main() {
+    read_map();
     int index = int(gl_VertexIndex);
     ivec2 last = land.size.xy - 1;
     ivec2 node = ivec2(index % land.size.x, index / land.size.x + mesh.first_row);

@@ -39,6 +39,7 @@ Local local_at(vec2 place, float height_m) {
 }
 
 vec4 normal_of(ivec2 pixel, vec4 hit) {
+    read_map();
     int surface = int(hit.w) & 7;
     int shift = (int(hit.w) >> 3) & 31;
     float height_m = (height_at(shift, hit.yz) - land.bounds.z) * land.bounds.w;

@@ -5,12 +5,13 @@ layout(set = 0, binding = 2) uniform texture2D depth;
 layout(set = 0, binding = 4) uniform texture2D prior; // what the maps before this one left of the light
 
 float lit_at(ivec2 pixel) {
+    read_map();
     vec4 hit = texelFetch(depth, pixel, 0);
     float before = texelFetch(prior, min(pixel, textureSize(prior, 0) - 1), 0).x;
     if ((int(hit.w) & 7) == SKY) {
         return before;
     }
-    shadow_shift = min((int(hit.w) >> 3) & 31, land.size.z);
+    shadow_shift = min((int(hit.w) >> 3) & 31, map.top);
     // A texel away from the surface itself.
     float away_m = land.sun.w * exp2(float(shadow_shift)) + 1.0e-5 * hit.x;
     vec3 from = land.eye.xyz + hit.x * direction_of(vec2(pixel)) + away_m * land.sun.xyz;

@@ -2,8 +2,8 @@
 //! precision.
 //!
 //! A ray is a voxel between two points (eq. 8) that is halved (eq. 12), the near half first and then the far one, until it
-//! lies above everything that the altitude map has below it or is short enough to be intersected. The segment at a depth of d
-//! is number k of 2^d, and the next one after it is found by counting.
+//! lies above everything that the altitude map has below it or is short enough to be intersected. The ray is [`WHOLE`] units
+//! long, and after a segment comes the longest that halving can make begin where it ends.
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
@@ -15,8 +15,8 @@ use super::relief::{Field, shift_for};
 use super::surface;
 use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of, eye};
 
-/// Halvings after which a segment is intersected whatever it touches.
-const DEEPEST: i32 = 23;
+/// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
+const WHOLE: u32 = 1 << 23;
 /// How far a last segment may be from straight, in texels of the level that it is met at.
 const STRAIGHT: f32 = 2.5e-4;
 
@@ -48,35 +48,32 @@ pub struct Caster<'a, T> {
     pub interpolation: Interpolation,
 }
 
-/// Counts the segments before and at the current one.
-struct Counter {
-    k: u32,
-    depth: i32,
+/// Where a segment begins on its ray and how long it is, in units.
+struct Span {
+    at: u32,
+    units: u32,
 }
 
-impl Counter {
-    fn size(&self) -> f32 {
-        (-self.depth as f32).exp2()
+impl Span {
+    fn start(&self) -> f32 {
+        self.at as f32 / WHOLE as f32
     }
 
-    fn start(&self) -> f32 {
-        self.k as f32 * self.size()
+    fn size(&self) -> f32 {
+        self.units as f32 / WHOLE as f32
     }
 
     fn halve(&mut self) {
-        self.k *= 2;
-        self.depth += 1;
+        self.units /= 2;
     }
 
-    /// The next segment of those that are done whole: up while this was a far half, then the far half beside it.
     fn advance(&mut self) {
-        let up = self.k.trailing_ones();
-        self.k = (self.k >> up) + 1;
-        self.depth -= up as i32;
+        self.at += self.units;
+        self.units = 1 << self.at.trailing_zeros();
     }
 
     fn is_done(&self) -> bool {
-        self.k >> self.depth != 0
+        self.at >= WHOLE
     }
 }
 
@@ -134,9 +131,9 @@ impl<T: Texel> Caster<'_, T> {
         }
         let margin = land.margin;
         let mut steps = 0;
-        let mut counter = Counter { k: 0, depth: way.first_depth() };
-        while !counter.is_done() {
-            let (start, size) = (counter.start(), counter.size());
+        let mut span = Span { at: 0, units: WHOLE >> way.first_depth() };
+        while !span.is_done() {
+            let (start, size) = (span.start(), span.size());
             let segment = way.segment(start, size);
             let (near, far, slack) = (segment.near.xy(), segment.far.xy(), segment.slack);
             let (low, high) = (near.min(far) - slack.xy(), near.max(far) + slack.xy());
@@ -147,16 +144,16 @@ impl<T: Texel> Caster<'_, T> {
             let lowest = segment.near.z.min(segment.far.z) - slack.z - margin[1];
             steps += 1;
             if lowest > self.highest_below(low - margin[0], high + margin[0], shift) {
-                counter.advance();
-            } else if (shift <= finest && is_straight) || counter.depth >= DEEPEST {
+                span.advance();
+            } else if (shift <= finest && is_straight) || span.units == 1 {
                 if let Some((part, surface)) = self.meet(way, &segment) {
                     let depth_m = way.depth_m(start + part * size);
                     let place = near.lerp(far, part);
                     return Some(self.hit(depth_m, place, surface, self.finest_shift(depth_m), steps));
                 }
-                counter.advance();
+                span.advance();
             } else {
-                counter.halve();
+                span.halve();
             }
         }
         None
