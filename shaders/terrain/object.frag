@@ -1,8 +1,12 @@
 #version 450
 
-// A polygon object under the terrain's light and haze. Faces are lit on both sides.
+// A polygon object under the terrain's light and haze, in its shadow. Faces are lit on both sides.
+
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/light.glsl"
+
+layout(set = 0, binding = 1) uniform texture2D shadow; // a single texel where none are thrown
 
 layout(location = 0) in vec3 facing;
 
@@ -11,8 +15,10 @@ layout(location = 0) out vec4 picture;
 const vec3 PAINT = vec3(0.55, 0.12, 0.08);
 
 void main() {
-    vec3 direction = view_direction(floor(gl_FragCoord.xy));
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float sunlit = texelFetch(shadow, min(pixel, textureSize(shadow, 0) - 1), 0).x;
+    vec3 direction = view_direction(vec2(pixel));
     vec3 normal = facing / max(length(facing), 1.0e-20);
     normal = dot(normal, direction) > 0.0 ? -normal : normal;
-    picture = vec4(encoded(lit_color(PAINT, normal, 1.0, length(direction) / gl_FragCoord.w)), 1.0);
+    picture = vec4(encoded(lit_color(PAINT, normal, sunlit, length(direction) / gl_FragCoord.w)), 1.0);
 }

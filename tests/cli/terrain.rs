@@ -148,8 +148,12 @@ fn bodies_that_are_none_are_refused() {
 fn figures_are_one_picture() {
     let out = folder();
     for name in ["figure-1", "figure-2"] {
-        small(&format!("experiment {name} --quiet --out .")).inside(out.path()).run().succeeded();
+        let ended = small(&format!("experiment {name} --out .")).inside(out.path()).run().succeeded();
+        assert!(ended.stderr.contains("synthetic"), "{}", ended.stderr);
     }
+    let real = "experiment figure-2 --map maunga-whau --out real";
+    assert!(!small(real).inside(out.path()).run().succeeded().stderr.contains("synthetic"));
+    fs::remove_dir_all(out.path().join("real")).unwrap();
     assert_eq!(entries(out.path()), ["terrain-figure-1.png", "terrain-figure-2.png"]);
     let read = |name: &str| fs::read(out.path().join(name)).unwrap();
     assert!(read("terrain-figure-1.png") != read("terrain-figure-2.png"));
@@ -167,6 +171,23 @@ fn maps_are_loaded_placed_and_united() {
     assert_eq!(maps[0]["spacing"], serde_json::json!([10.0, 10.0]));
     assert_eq!(maps[1]["source"], "maunga-whau");
     assert_eq!(maps[1]["place"], serde_json::json!([500.0, 0.0, -90.0]));
+}
+
+#[test]
+fn voids_are_filled_and_reported() {
+    let out = folder();
+    file(
+        &out,
+        "hole.asc",
+        "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -1\n0 -1 9\n0 -1 9\n",
+    );
+    let bench =
+        small("bench --json --quiet --variant cpu --map hole.asc").args(ONCE).inside(out.path()).run().succeeded();
+    let run = &bench.json()["runs"][0];
+    assert_eq!(run["config"]["maps"][0]["voids_filled"], 2);
+    assert!(run["warnings"].to_string().contains("map 0: 2 voids are filled"), "{}", run["warnings"]);
+    let render = small("render --map hole.asc --image hole.png").inside(out.path()).run().succeeded();
+    assert!(render.stderr.contains("map 0: 2 voids are filled"), "{}", render.stderr);
 }
 
 #[test]
@@ -195,18 +216,66 @@ fn what_cannot_be_is_refused_by_its_option() {
     }
 }
 
+/// A file that is no map is refused by its name and by the field that is wrong.
 #[test]
 fn maps_that_contradict_themselves_are_refused_with_file_and_field() {
     let out = folder();
-    file(&out, "short.hgt", "odd");
-    file(&out, "rows.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 5 10\n0 5 10\n");
-    file(&out, "nan.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n0 nan\n0 5\n");
-    file(&out, "none.asc", "ncols 0\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
-    file(&out, "void.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -1\n-1 -1\n-1 -1\n");
-    file(&out, "cut.tif", "II*\0");
-    for name in ["short.hgt", "rows.asc", "nan.asc", "none.asc", "void.asc", "cut.tif"] {
-        small("bench").arg("--map").arg(name).args(ONCE).inside(out.path()).run().refused(2, &[name]);
+    let grid = |name: &str, columns: u32, rows: u32, body: &str| {
+        file(&out, name, format!("ncols {columns}\nnrows {rows}\nxllcorner 0\nyllcorner 0\ncellsize 10\n{body}"));
+    };
+    let header = "NCOLS 3\nNROWS 3\nNBITS 16\n";
+    for (name, header, bytes) in
+        [("odd", header, 17), ("long", header, 20), ("wide", "NCOLS 3\nNROWS 3\nNBITS 16\nBANDROWBYTES 4\n", 18)]
+    {
+        file(&out, &format!("{name}.hdr"), header);
+        file(&out, &format!("{name}.bil"), vec![7; bytes]);
     }
+    file(&out, "voids.hdr", format!("{header}NODATA 1799\n"));
+    file(&out, "voids.bil", [7; 18]);
+    file(&out, "N37E140.hgt", vec![0; 2_884_801]);
+    file(&out, "N38E140.hgt", "odd");
+    grid("rows.asc", 3, 3, "0 5 10\n0 5 10\n");
+    grid("more.asc", 2, 2, "0 5 10\n0 5 10\n");
+    grid("nan.asc", 2, 2, "0 nan\n0 5\n");
+    grid("none.asc", 0, 2, "");
+    grid("large.asc", 16_385, 2, &"0 ".repeat(2 * 16_385));
+    grid("void.asc", 2, 2, "NODATA_value -1\n-1 -1\n-1 -1\n");
+    file(&out, "cut.tif", "II*\0");
+    file(&out, "text.png", "no picture");
+    file(&out, "map.xyz", "0 0 0");
+    for (name, field) in [
+        ("odd.bil", "its size is 17 bytes, but its header's SKIPBYTES 0 and NROWS 3 x NCOLS 3 x NBITS 16 make 18"),
+        ("long.hdr", "its size is 20 bytes"),
+        ("wide.bil", "BANDROWBYTES is 4, but NCOLS 3 x NBITS 16 needs 6"),
+        ("voids.bil", "all its samples are void"),
+        ("N37E140.hgt", "its size is 2884801 bytes"),
+        ("N38E140.hgt", "its size is 3 bytes"),
+        ("rows.asc", "6 heights for ncols x nrows = 3 x 3"),
+        ("more.asc", "more than the 4 heights"),
+        ("nan.asc", "row 0, column 1: its height is NaN"),
+        ("none.asc", "by ncols and nrows of its header, it has 0 x 2 samples"),
+        ("large.asc", "it has 16385 x 2 samples; a map has 2 to 16384 a side"),
+        ("void.asc", "all its samples are void"),
+        ("cut.tif", "cut.tif"),
+        ("text.png", "neither TIFF nor PNG"),
+        ("map.xyz", "unknown file ending \"xyz\""),
+    ] {
+        let stem = name.split('.').next().unwrap();
+        small("bench").arg("--map").arg(name).args(ONCE).inside(out.path()).run().refused(2, &[stem, field]);
+        terrain("collide --sphere 0,0,0,1 --map").arg(name).inside(out.path()).run().refused(2, &[stem, field]);
+    }
+}
+
+/// A map that goes once round has columns more on the device, so this one is larger than lavapipe's images.
+#[test]
+fn a_map_above_the_device_s_limits_is_refused_by_its_file() {
+    let out = folder();
+    let head = format!("ncols 16384\nnrows 2\nxllcorner -180\nyllcorner 0\ncellsize {}\n", 360.0 / 16_384.0);
+    file(&out, "round.asc", head + &"0 1 ".repeat(16_384));
+    let bench = "bench --base earth --variant gpu-compute --map round.asc";
+    small(bench).args(ONCE).inside(out.path()).run().refused(2, &["--map round.asc", "width 16388", "limit of 16384"]);
+    let mesh = "bench --variant mesh --resolution 4097";
+    small(mesh).args(ONCE).run().refused(2, &["--map volcano", "samples a side 4097", "4096"]);
 }
 
 #[test]

@@ -7,7 +7,8 @@ use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::papers::Paper;
-use fumarole::papers::terrain::{Hit, Inputs, MapInput, Parameters, Terrain, Variant};
+use fumarole::papers::terrain::{Hit, Inputs, MapInput, Parameters, Terrain, Variant, View};
+use fumarole::scene::Camera;
 
 pub struct Drawing {
     pub picture: Rgba8,
@@ -16,6 +17,8 @@ pub struct Drawing {
     pub hits: Vec<Hit>,
     /// x, y, z, and the height above the base in metres.
     pub normals: Vec<[f32; 4]>,
+    /// What is left of the sunlight; empty where the variant has no such target.
+    pub sunlit: Vec<f32>,
 }
 
 impl Drawing {
@@ -24,47 +27,73 @@ impl Drawing {
     }
 
     pub fn with(device: &Arc<Device>, variant: Variant, parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
-        Self::compiled_by(Compiler::Glslang, device, variant, parameters, inputs)
+        Painter::new(device, Compiler::Glslang, variant, parameters, inputs).draw()
     }
+}
 
-    pub fn compiled_by(
-        compiler: Compiler,
+/// Draws one land from one place after the other.
+pub struct Painter {
+    device: Arc<Device>,
+    paper: Terrain,
+    recorder: Recorder,
+}
+
+impl Painter {
+    pub fn new(
         device: &Arc<Device>,
+        compiler: Compiler,
         variant: Variant,
         parameters: &Parameters,
         inputs: &Inputs<'_>,
     ) -> Self {
         parameters.validate().unwrap();
         let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
-        let mut paper = Terrain::new(&shaders, "test", variant, parameters, inputs).unwrap();
-        let mut recorder = Recorder::new(device).unwrap();
+        Painter {
+            device: device.clone(),
+            paper: Terrain::new(&shaders, "test", variant, parameters, inputs).unwrap(),
+            recorder: Recorder::new(device).unwrap(),
+        }
+    }
+
+    pub fn from(&mut self, camera: Camera) -> Drawing {
+        self.paper.look(View::Camera(camera));
+        self.draw()
+    }
+
+    pub fn draw(&mut self) -> Drawing {
+        let Painter { device, paper, recorder } = self;
         let sample = recorder.run(Mode::Plain, |frame| paper.record_picture(frame, 0)).unwrap();
         let passes = sample.passes.iter().map(|pass| pass.info.name).collect();
         let picture = paper.picture();
         let pixels = read_image(device, picture).unwrap();
-        let texels = |name: &str| {
-            let target = paper.targets().into_iter().find(|target| target.name == name).unwrap();
+        let floats = |name: &str| {
+            let target = paper.targets().into_iter().find(|target| target.name == name)?;
             match read_target(device, &target).unwrap().samples() {
-                Samples::F32(values) => values.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect::<Vec<_>>(),
+                Samples::F32(values) => Some(values.clone()),
                 _ => panic!("{name} holds no floats"),
             }
         };
+        let texels = |name: &str| floats(name).unwrap().as_chunks::<4>().0.to_vec();
         Drawing {
             picture: Rgba8::new(picture.width(), picture.height(), pixels).unwrap(),
             passes,
             hits: texels("depth").into_iter().map(Hit::from_texel).collect(),
             normals: texels("normal"),
+            sunlit: floats("shadow").unwrap_or_default(),
         }
     }
 }
 
-/// Pixels that saw different things: another surface, another depth by more than a thousandth, or another normal.
+/// Pixels that saw different things: another surface, another depth by more than a thousandth, another normal, or another
+/// colour than normals so near can make.
 pub fn differing(a: &Drawing, b: &Drawing) -> usize {
     let pixels = a.hits.iter().zip(&b.hits).zip(a.normals.iter().zip(&b.normals));
-    let differ = pixels.filter(|((a, b), (n, m))| {
+    let colors = a.picture.pixels().as_chunks::<4>().0.iter().zip(b.picture.pixels().as_chunks::<4>().0);
+    let differ = pixels.zip(colors).filter(|(((a, b), (n, m)), (c, d))| {
         let is_same_depth = (a.depth_m - b.depth_m).abs() <= 1e-3 * a.depth_m.abs();
         let is_same_normal = (0..3).all(|i| (n[i] - m[i]).abs() < 0.02);
-        a.surface != b.surface || !is_same_depth || !is_same_normal
+        let is_same_color = (0..4).all(|i| c[i].abs_diff(d[i]) <= 6);
+        a.surface != b.surface || !is_same_depth || !is_same_normal || !is_same_color
     });
     differ.count()
 }

@@ -11,7 +11,7 @@ use fumarole::scene::random::Random;
 use rayon::prelude::*;
 
 use crate::common::gpu_test;
-use crate::drawing::Drawing;
+use crate::drawing::Painter;
 use crate::world::{Relief, Stand, World, random_map};
 
 /// Places along a ray at which it is compared with its footprint.
@@ -103,18 +103,20 @@ fn a_pixel_s_height_is_that_of_its_footprint() {
                 let mut random = Random::new(seed);
                 let map = random_map(&mut random, Relief::Waves, (257, 180), 12.0);
                 let world = World::alone("footprint", base, interpolation, None, map);
+                let stands = [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Far(3.0)];
+                let cameras = stands.map(|stand| (stand, world.camera(stand, &mut random)));
+                let parameters = Parameters { lod: Lod::Pixel, ..world.parameters(cameras[0].1, (width, height)) };
+                let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
                 let mut coarse = 0;
-                for stand in [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Far(3.0)] {
-                    let camera = world.camera(stand, &mut random);
-                    let rays = Rays::new(&camera, width, height);
-                    let parameters = Parameters { lod: Lod::Pixel, ..world.parameters(camera, (width, height)) };
-                    let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
-                    for (variant, compiler) in [
-                        (Variant::Cpu, Compiler::Glslang),
-                        (Variant::GpuCompute, Compiler::Glslang),
-                        (Variant::GpuFragment, Compiler::Naga),
-                    ] {
-                        let drawing = Drawing::compiled_by(compiler, device, variant, &parameters, &inputs);
+                for (variant, compiler) in [
+                    (Variant::Cpu, Compiler::Glslang),
+                    (Variant::GpuCompute, Compiler::Glslang),
+                    (Variant::GpuFragment, Compiler::Naga),
+                ] {
+                    let mut painter = Painter::new(device, compiler, variant, &parameters, &inputs);
+                    for (stand, camera) in cameras {
+                        let rays = Rays::new(&camera, width, height);
+                        let drawing = painter.from(camera);
                         let judge = |(pixel, hit): (usize, &Hit)| {
                             let (x, y) = ((pixel % width as usize) as f64, (pixel / width as usize) as f64);
                             let direction = rays.corner + x * rays.across + y * rays.down;

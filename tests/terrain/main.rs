@@ -6,6 +6,7 @@ mod common;
 mod drawing;
 mod footprint;
 mod land;
+mod light;
 mod oracle;
 mod pictures;
 mod pyramids;

@@ -5,7 +5,7 @@ use fumarole::papers::Variant as _;
 use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
 
 use crate::common::gpu_test;
-use crate::drawing::{Drawing, differing};
+use crate::drawing::{Drawing, Painter, differing};
 use crate::land::{adversaries, alone, volcano};
 
 pub fn small(view: View, lod: Lod) -> Parameters {
@@ -90,7 +90,7 @@ fn both_compilers_draw_one_picture() {
                 let of = |compiler| {
                     let maps = alone(volcano(60));
                     let inputs = Inputs { maps: &maps, ..Inputs::default() };
-                    Drawing::compiled_by(compiler, device, variant, &small(View::Side, lod), &inputs)
+                    Painter::new(device, compiler, variant, &small(View::Side, lod), &inputs).draw()
                 };
                 assert_agree(variant.word(), &of(Compiler::Glslang), &of(Compiler::Naga));
             }

@@ -132,6 +132,12 @@ impl Experiments {
         let mut machine = self.open()?;
         let picture = figures::draw(&mut machine, &setup, variant)?;
         machine.check_validation()?;
+        if !self.common.output.quiet && !self.scene.names_maps() {
+            outcome::say(&format!(
+                "{}: the synthetic volcano stands for Bandai; --map names another",
+                publication.name
+            ));
+        }
         publication.picture(".png", &picture)
     }
 

@@ -19,8 +19,8 @@ use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::image::read_png;
-use crate::papers::ParameterError;
 use crate::papers::terrain::{Base, Drape, Inputs, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
+use crate::papers::{Paper, ParameterError};
 use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
 
 /// What a user set up.
@@ -98,6 +98,16 @@ impl Setup {
         Ok(())
     }
 
+    /// Names the map that the device or the variant cannot hold: the paper calls it by its number.
+    fn name_map(&self, label: &str, error: gpu::Error) -> gpu::Error {
+        let gpu::Error::Limit { object, .. } = &error else { return error };
+        let is_of = |number: &usize| object.starts_with(&format!("{label}/map-{number}/"));
+        match (0..self.maps.len()).find(is_of) {
+            Some(number) => error.set_by(&format!("--map {}", self.maps[number].source)),
+            None => error,
+        }
+    }
+
     fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
         let mut map = match source {
             HeightMapSource::Volcano => volcano(self.resolution, self.seed)?,
@@ -150,7 +160,7 @@ impl Study for Setup {
         variant: Variant,
     ) -> Result<Terrain, gpu::Error> {
         let inputs = Inputs { maps: &scene.maps, objects: &scene.objects, drape: scene.drape.as_ref() };
-        Terrain::new(shaders, label, variant, &self.parameters, &inputs)
+        Terrain::new(shaders, label, variant, &self.parameters, &inputs).map_err(|error| self.name_map(label, error))
     }
 
     fn identity(&self) -> Identity {
@@ -228,7 +238,7 @@ impl Study for Setup {
                 ("steps_per_ray", json!(steps)),
                 ("hit_share", json!(census.hit_share())),
             ]);
-            findings.push(Findings { results, warnings: Vec::new() });
+            findings.push(Findings { results, warnings: built.paper.warnings() });
         }
         Ok(findings)
     }

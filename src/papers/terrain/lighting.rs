@@ -6,6 +6,7 @@ use ash::vk;
 
 use super::parameters::Parameters;
 use super::scene::DeviceScene;
+use super::shadows::Shadows;
 use super::stage::Stage;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
 use crate::papers::Target;
@@ -17,9 +18,7 @@ pub struct Lighting {
     normal: Arc<ImageView>,
     pub picture: Arc<ImageView>,
     normal_passes: Vec<Pass>,
-    /// What the maps leave of the sunlight.
-    shadow: Option<Arc<ImageView>>,
-    shadow_passes: Vec<Pass>,
+    shadows: Shadows,
     illumination: Pass,
 }
 
@@ -52,29 +51,11 @@ impl Lighting {
             );
             normal_passes.push(pass.build(shaders)?);
         }
-        let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.word());
-        let mut shadow_passes = Vec::new();
-        let mut shadow = scene.all_lit.clone();
-        if parameters.shadows {
-            let shadows = (0..scene.maps.len().min(2))
-                .map(|_| image("shadow", vk::Format::R32_SFLOAT))
-                .collect::<Result<Vec<_>, _>>()?;
-            for (map, target) in scene.maps.iter().zip(shadows.iter().cycle()) {
-                let pass = stage.say(
-                    ("shadow", "2"),
-                    &program,
-                    (target, Load::Discard),
-                    &[
-                        ("land", (&map.land).into()),
-                        ("levels", (&map.levels.view).into()),
-                        ("depth", depth.into()),
-                        ("prior", (&shadow).into()),
-                    ],
-                );
-                shadow_passes.push(pass.build(shaders)?);
-                shadow = target.clone();
-            }
-        }
+        let shadows = if parameters.shadows {
+            Shadows::of_maps(shaders, label, (stage, "shadow"), parameters, scene, depth)?
+        } else {
+            Shadows::none(device, label)?
+        };
         let illumination = stage.say(
             ("illumination", "4"),
             "illumination",
@@ -83,30 +64,21 @@ impl Lighting {
                 ("light", (&scene.light).into()),
                 ("depth", depth.into()),
                 ("normal", (&normal).into()),
-                ("shadow", (&shadow).into()),
+                ("shadow", (&shadows.sunlit).into()),
                 ("drape", (&scene.drape).into()),
             ],
         );
         let illumination = illumination.build(shaders)?;
-        let shadow = parameters.shadows.then_some(shadow);
-        Ok(Lighting {
-            stage,
-            depth: depth.clone(),
-            normal,
-            picture,
-            normal_passes,
-            shadow,
-            shadow_passes,
-            illumination,
-        })
+        Ok(Lighting { stage, depth: depth.clone(), normal, picture, normal_passes, shadows, illumination })
     }
 
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        for pass in self.normal_passes.iter().chain(&self.shadow_passes) {
+        for pass in &self.normal_passes {
             self.stage.record(frame, pass, &self.normal)?;
         }
+        self.shadows.record(frame)?;
         self.stage.record(frame, &self.illumination, &self.picture)
     }
 
@@ -117,7 +89,9 @@ impl Lighting {
 
     pub fn targets(&self) -> Vec<Target> {
         let mut targets = vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal)];
-        targets.extend(self.shadow.iter().map(|shadow| Target::image("shadow", shadow)));
+        if self.shadows.are_thrown() {
+            targets.push(Target::image("shadow", &self.shadows.sunlit));
+        }
         targets
     }
 }

@@ -69,12 +69,12 @@ impl Mesh {
             .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
             .build(shaders)?;
         let mut grids = Vec::new();
-        for (ground, map) in grounds.iter().zip(&scene.maps) {
+        for (index, (ground, map)) in grounds.iter().zip(&scene.maps).enumerate() {
             let shape = ground.shape;
             let side = shape.width.max(shape.height);
             if side > MESH_SIDE {
                 return Err(Error::Limit {
-                    object: format!("{label}/mesh"),
+                    object: format!("{label}/map-{index}/mesh"),
                     what: "number of samples a side",
                     wanted: side.into(),
                     limit: MESH_SIDE.into(),

@@ -1,7 +1,8 @@
 //! `terrain`: S. I. Vyatkin's terrain from a shape texture, ray-cast without triangles.
 //!
 //! ```text
-//! geometric-transformation (host) ─► depth ─► normal (─► shadow) ─► illumination (─► object-depth ─► objects)
+//! geometric-transformation (host) ─► depth ─► normal (─► shadow) ─► illumination
+//!                                                    (─► object-depth (─► object-hits ─► object-shadow) ─► objects)
 //! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow) ─► illumination (...)   (mesh)
 //! ```
 
@@ -27,6 +28,7 @@ pub mod reference;
 mod relief;
 mod scene;
 mod shading;
+mod shadows;
 mod solid;
 mod stage;
 mod surface;
@@ -67,7 +69,8 @@ pub struct Terrain {
 }
 
 enum Technique {
-    Cpu(Cpu),
+    /// With the maps on the device where those throw shadows on objects, which the device draws.
+    Cpu(Cpu, Option<DeviceScene>),
     Device(DeviceScene, DepthMethod, Lighting),
 }
 
@@ -100,7 +103,13 @@ impl Terrain {
         }
         let scene = Scene::new(parameters, inputs);
         let technique = match variant {
-            Variant::Cpu => Technique::Cpu(Cpu::new(shaders, label, parameters, &scene.maps, inputs.drape)?),
+            Variant::Cpu => {
+                let cpu = Cpu::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
+                let shades_objects = parameters.shadows && !inputs.objects.is_empty();
+                let device_scene =
+                    shades_objects.then(|| DeviceScene::new(shaders, label, parameters, &scene.maps, None));
+                Technique::Cpu(cpu, device_scene.transpose()?)
+            }
             Variant::GpuCompute | Variant::GpuFragment => {
                 let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
                 let device_scene = DeviceScene::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
@@ -115,17 +124,25 @@ impl Terrain {
                 Technique::Device(device_scene, DepthMethod::Mesh(mesh), lighting)
             }
         };
-        let (depth, picture) = match &technique {
-            Technique::Cpu(cpu) => (cpu.depth(), cpu.picture()),
-            Technique::Device(_, _, lighting) => (lighting.depth(), &lighting.picture),
+        let (depth, picture, device_scene) = match &technique {
+            Technique::Cpu(cpu, device_scene) => (cpu.depth(), cpu.picture(), device_scene.as_ref()),
+            Technique::Device(device_scene, _, lighting) => (lighting.depth(), &lighting.picture, Some(device_scene)),
         };
         let objects = match inputs.objects {
             [] => None,
-            meshes => Some(Objects::new(shaders, label, parameters, meshes, depth, picture)?),
+            meshes => {
+                let maps = device_scene.filter(|_| parameters.shadows);
+                Some(Objects::new(shaders, label, parameters, meshes, (depth, picture), maps)?)
+            }
         };
         let reads = ["camera", "placement"];
         let transformation = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &["land", "light"]);
         Ok(Terrain { parameters: parameters.clone(), scene, transformation, technique, objects })
+    }
+
+    /// Sees the next frames from elsewhere. The caller has validated the view.
+    pub fn look(&mut self, view: View) {
+        self.parameters.view = view;
     }
 }
 
@@ -133,11 +150,12 @@ impl Paper for Terrain {
     fn record(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
         let (scene, parameters) = (&self.scene, &self.parameters);
         match &mut self.technique {
-            Technique::Cpu(cpu) => {
+            Technique::Cpu(cpu, device_scene) => {
                 let seen = frame.host(&self.transformation, || scene.transform(parameters));
                 cpu.record(frame, &seen);
                 // Polygons are drawn by the device, so the processor's picture has to be there first.
                 if let Some(objects) = &self.objects {
+                    device_scene.as_ref().map_or(Ok(()), |maps| maps.write(&seen))?;
                     cpu.show(frame)?;
                     objects.record(frame, &seen)?;
                 }
@@ -161,21 +179,26 @@ impl Paper for Terrain {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         match &self.technique {
-            Technique::Cpu(cpu) if self.objects.is_none() => cpu.show(frame),
+            Technique::Cpu(cpu, _) if self.objects.is_none() => cpu.show(frame),
             _ => Ok(()),
         }
     }
 
+    fn warnings(&self) -> Vec<String> {
+        let voids = self.scene.maps.iter().map(|map| map.voids_filled()).enumerate().filter(|(_, voids)| *voids > 0);
+        voids.map(|(map, voids)| format!("map {map}: {voids} voids are filled from their neighbours")).collect()
+    }
+
     fn picture(&self) -> &Arc<ImageView> {
         match &self.technique {
-            Technique::Cpu(cpu) => cpu.picture(),
+            Technique::Cpu(cpu, _) => cpu.picture(),
             Technique::Device(_, _, lighting) => &lighting.picture,
         }
     }
 
     fn targets(&self) -> Vec<Target> {
         let mut targets = match &self.technique {
-            Technique::Cpu(cpu) => cpu.targets(),
+            Technique::Cpu(cpu, _) => cpu.targets(),
             Technique::Device(_, _, lighting) => lighting.targets(),
         };
         targets.push(Target::image("picture", self.picture()));

@@ -5,8 +5,11 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::blocks::LightBlock;
+use super::hit::NO_DEPTH;
 use super::parameters::Parameters;
-use super::scene::{Seen, block_buffer};
+use super::scene::{DeviceScene, Seen, block_buffer};
+use super::shadows::Shadows;
+use super::stage::Stage;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
@@ -25,15 +28,19 @@ host_block! {
     }
 }
 
-/// The passes `object-depth` and `objects`.
+/// The passes `object-depth` and `objects`; between them `object-hits` and `object-shadow` where the maps throw shadows.
 pub struct Objects {
     light: Arc<Buffer>,
     depth_pass: Pass,
+    /// Of the meshes; none without shadows.
+    hit_passes: Vec<Pass>,
+    shadows: Shadows,
+    /// Of the meshes, with their numbers of indices.
     passes: Vec<(Pass, u32)>,
 }
 
 impl Objects {
-    /// Draws over `picture` what is nearer than `depth` says.
+    /// Draws over the picture what is nearer than its depth says, in the shadow of the maps of `scene`.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
@@ -42,8 +49,8 @@ impl Objects {
         label: &str,
         parameters: &Parameters,
         meshes: &[Mesh],
-        depth: &Arc<ImageView>,
-        picture: &Arc<ImageView>,
+        (depth, picture): (&Arc<ImageView>, &Arc<ImageView>),
+        scene: Option<&DeviceScene>,
     ) -> Result<Self, Error> {
         let device = shaders.device();
         let name = format!("{label}/object-depth");
@@ -55,29 +62,40 @@ impl Objects {
             .with("depth", depth)
             .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
             .build(shaders)?;
-        let mut passes = Vec::new();
-        for mesh in meshes {
-            let pairs = mesh.positions.iter().zip(&mesh.normals);
-            let vertices: Vec<ObjectVertex> =
-                pairs.map(|(p, n)| ObjectVertex { position: p.to_array(), normal: n.to_array() }).collect();
-            let buffer = |what: &str, usage, bytes: &[u8]| {
-                upload(device, &format!("{label}/{}/{what}", mesh.name), usage, bytes)
-            };
-            let vertex_usage = vk::BufferUsageFlags::VERTEX_BUFFER;
-            let vertices = buffer("vertices", vertex_usage, bytemuck::cast_slice(&vertices))?;
-            let index_usage = vk::BufferUsageFlags::INDEX_BUFFER;
-            let indices = buffer("indices", index_usage, bytemuck::cast_slice(&mesh.indices))?;
-            let pass = Pass::graphics("objects", "1", "terrain/object.vert", "terrain/object.frag")
-                .with("light", &light)
-                .vertices::<ObjectVertex>(&vertices)
-                .indices(&indices)
+        let buffers = meshes.iter().map(|mesh| Buffers::new(shaders, label, mesh)).collect::<Result<Vec<_>, _>>()?;
+        let draw = |name: &'static str, fragment: &str, buffers: &Buffers| {
+            Pass::graphics(name, "1", "terrain/object.vert", fragment)
+                .vertices::<ObjectVertex>(&buffers.vertices)
+                .indices(&buffers.indices)
                 .constants::<ObjectConstants>()
+        };
+        let mut hit_passes = Vec::new();
+        let (shadows, test) = match scene {
+            None => (Shadows::none(device, label)?, DepthTest::LessWrite),
+            Some(scene) => {
+                let (size, format) = ((parameters.width, parameters.height), vk::Format::R32G32B32A32_SFLOAT);
+                let hits = Stage::Fragment.image(device, format!("{label}/object-hits"), format, size)?;
+                for (number, buffers) in buffers.iter().enumerate() {
+                    let load = if number == 0 { Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]) } else { Load::Keep };
+                    let pass = draw("object-hits", "terrain/object-hit.frag", buffers)
+                        .color(&hits, load, Blend::Replace)
+                        .depth(&tested, Load::Keep, DepthTest::LessWrite);
+                    hit_passes.push(pass.build(shaders)?);
+                }
+                let said = (Stage::Fragment, "object-shadow");
+                (Shadows::of_maps(shaders, label, said, parameters, scene, &hits)?, DepthTest::EqualReadOnly)
+            }
+        };
+        let pass = |buffers: &Buffers| {
+            let pass = draw("objects", "terrain/object.frag", buffers)
+                .with("light", &light)
+                .with("shadow", &shadows.sunlit)
                 .color(picture, Load::Keep, Blend::Replace)
-                .depth(&tested, Load::Keep, DepthTest::LessWrite)
-                .build(shaders)?;
-            passes.push((pass, mesh.indices.len() as u32));
-        }
-        Ok(Objects { light, depth_pass, passes })
+                .depth(&tested, Load::Keep, test);
+            Ok((pass.build(shaders)?, buffers.index_count))
+        };
+        let passes = buffers.iter().map(pass).collect::<Result<_, Error>>()?;
+        Ok(Objects { light, depth_pass, hit_passes, shadows, passes })
     }
 
     /// # Errors
@@ -88,10 +106,39 @@ impl Objects {
             draw.vertices(3);
         })?;
         let constants = ObjectConstants { to_clip: seen.to_clip.as_mat4().to_cols_array() };
-        self.passes.iter().try_for_each(|(pass, count)| {
+        let draw = |frame: &mut Frame<'_>, pass: &Pass, count: u32| {
             frame.graphics(pass, |draw| {
-                draw.constants(&constants).indices(*count);
+                draw.constants(&constants).indices(count);
             })
+        };
+        for (pass, (_, count)) in self.hit_passes.iter().zip(&self.passes) {
+            draw(frame, pass, *count)?;
+        }
+        self.shadows.record(frame)?;
+        self.passes.iter().try_for_each(|(pass, count)| draw(frame, pass, *count))
+    }
+}
+
+/// A mesh on the device.
+struct Buffers {
+    vertices: Arc<Buffer>,
+    indices: Arc<Buffer>,
+    index_count: u32,
+}
+
+impl Buffers {
+    fn new(shaders: &ShaderLibrary, label: &str, mesh: &Mesh) -> Result<Self, Error> {
+        let buffer = |what: &str, usage, bytes: &[u8]| {
+            upload(shaders.device(), &format!("{label}/{}/{what}", mesh.name), usage, bytes)
+        };
+        let pairs = mesh.positions.iter().zip(&mesh.normals);
+        let vertices: Vec<ObjectVertex> =
+            pairs.map(|(p, n)| ObjectVertex { position: p.to_array(), normal: n.to_array() }).collect();
+        let (vertex_usage, index_usage) = (vk::BufferUsageFlags::VERTEX_BUFFER, vk::BufferUsageFlags::INDEX_BUFFER);
+        Ok(Buffers {
+            vertices: buffer("vertices", vertex_usage, bytemuck::cast_slice(&vertices))?,
+            indices: buffer("indices", index_usage, bytemuck::cast_slice(&mesh.indices))?,
+            index_count: mesh.indices.len() as u32,
         })
     }
 }

@@ -142,9 +142,8 @@ pub struct DeviceScene {
     pub maps: Vec<Map>,
     pub light: Arc<Buffer>,
     pub drape: Arc<ImageView>,
-    /// A single texel each: no map has been looked at; no shadow is thrown.
+    /// A single texel: no map has been looked at.
     pub nothing: Arc<ImageView>,
-    pub all_lit: Arc<ImageView>,
 }
 
 impl DeviceScene {
@@ -170,23 +169,18 @@ impl DeviceScene {
             })
         };
         let maps = maps.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
-        let single = |name: &str, format, texel: &[f32]| {
-            texels(device, &format!("{label}/{name}"), format, (1, 1), |_, bytes| {
-                bytes.copy_from_slice(bytemuck::cast_slice(texel));
-            })
-        };
         let drape = drape.map_or_else(|| Cow::Owned(Drape::white()), Cow::Borrowed);
         let srgb = vk::Format::R8G8B8A8_SRGB;
         let drape = texels(device, &format!("{label}/drape"), srgb, drape.size(), |first_row, bytes| {
             bytes.copy_from_slice(drape.rows_from(first_row, bytes.len()));
         })?;
-        Ok(DeviceScene {
-            maps,
-            light: block_buffer::<LightBlock>(device, &format!("{label}/light"))?,
-            drape,
-            nothing: single("nothing", vk::Format::R32G32B32A32_SFLOAT, &[NO_DEPTH, 0.0, 0.0, 0.0])?,
-            all_lit: single("all-lit", vk::Format::R32_SFLOAT, &[1.0])?,
-        })
+        let texel = [NO_DEPTH, 0.0, 0.0, 0.0];
+        let vector = vk::Format::R32G32B32A32_SFLOAT;
+        let nothing = texels(device, &format!("{label}/nothing"), vector, (1, 1), |_, bytes| {
+            bytes.copy_from_slice(bytemuck::bytes_of(&texel));
+        })?;
+        let light = block_buffer::<LightBlock>(device, &format!("{label}/light"))?;
+        Ok(DeviceScene { maps, light, drape, nothing })
     }
 
     /// # Errors
@@ -199,8 +193,11 @@ impl DeviceScene {
     }
 }
 
-/// An image of texels that passes fetch.
-fn texels(
+/// An image of texels that passes fetch; `fill` writes a strip from a row on.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn texels(
     device: &Arc<Device>,
     name: &str,
     format: vk::Format,
