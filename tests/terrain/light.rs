@@ -46,7 +46,7 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
                 for camera in cameras {
                     let rays = Rays::new(&camera, SIZE.0, SIZE.1);
                     let [compute, fragment, cpu] = painters.each_mut().map(|painter| painter.from(camera));
-                    for (pixel, (hit, sunlit)) in compute.hits.iter().zip(&compute.sunlit).enumerate() {
+                    for (pixel, (hit, sunlit)) in compute.hits.iter().zip(&compute.sunlit).enumerate().step_by(5) {
                         if hit.surface == Surface::Sky {
                             assert_eq!(*sunlit, 1.0);
                             continue;
@@ -74,7 +74,7 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
                         );
                     }
                 }
-                assert!(lit > 200 && dark > 40, "{base:?} {interpolation:?}: {lit} in the sun, {dark} in the shadow");
+                assert!(lit > 40 && dark > 5, "{base:?} {interpolation:?}: {lit} in the sun, {dark} in the shadow");
             }
         }
     });

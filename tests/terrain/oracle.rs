@@ -96,7 +96,7 @@ impl<'a> Trials<'a> {
 fn assert_random(base: Base, interpolation: Interpolation, seed: u64, worlds: usize, stands: usize) {
     gpu_test(|device| {
         let mut random = Random::new(seed);
-        let longest: f32 = if base == Base::Plane { 1024.0 } else { 256.0 };
+        let longest: f32 = if base == Base::Plane { 1024.0 } else { 80.0 };
         let mut trials = Trials::new(device, (48, 36));
         for number in 0..worlds {
             let relief = [Relief::Waves, Relief::Noise, Relief::Terraces][number % 3];
@@ -106,7 +106,8 @@ fn assert_random(base: Base, interpolation: Interpolation, seed: u64, worlds: us
             let amplitude_cells = random.range(0.5, 6.0);
             let map = random_map(&mut random, relief, size, amplitude_cells);
             let (low, high) = map.range_m();
-            let level = [None, Some(low - 0.3 * (high - low)), Some(low + 0.4 * (high - low))][number / 2 % 3];
+            // No terrace lies on the base: which of the two is seen would be a matter of last bits.
+            let level = [None, Some(low - 0.3 * (high - low)), Some(low + 0.37 * (high - low))][number / 2 % 3];
             let name = format!("{number} {relief:?} {size:?} {level:?}");
             let world = World::alone(&name, base, interpolation, level, map);
             let turn: Vec<Stand> = STANDS.iter().cycle().skip(number * stands).take(stands).copied().collect();

@@ -16,6 +16,10 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
     let mut header = Header::default();
     let first = loop {
         let Some(word) = words.next()? else {
+            // A header that names no samples is wrong itself.
+            if header.columns.is_some() && header.rows.is_some() {
+                header.size(size_bytes)?;
+            }
             return Err(
                 words.fault("the file ends before its first height; it is cut off or something else".to_owned())
             );
@@ -229,6 +233,7 @@ mod tests {
             ("rows 2\n", "line 1: the word \"rows\" is none of ncols, nrows"),
             ("ncols 2\n1 2 3 4", "the header has no nrows"),
             ("ncols 0\nnrows 5\n1", "by ncols and nrows of its header, it has 0 x 5 samples"),
+            ("ncols 0\nnrows 5\n", "by ncols and nrows of its header, it has 0 x 5 samples"),
             ("ncols 16385\nnrows 5\n1", "16385 x 5 samples; a map has 2 to 16384 a side"),
             ("ncols 2.5\nnrows 5\n1", "ncols is 2.5; it has to be a whole number"),
             ("ncols 900\nnrows 900\n1 2", "heights of ncols x nrows = 900 x 900 take at least 1619999"),
