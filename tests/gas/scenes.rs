@@ -4,6 +4,8 @@ use fumarole::gpu::Compiler;
 use fumarole::papers::gas::parameters::validate_object;
 use fumarole::papers::gas::scenes::Preset;
 use fumarole::papers::gas::{Parameters, Variant};
+use fumarole::scene::Light;
+use glam::Vec3;
 
 use crate::common::gpu_test;
 use crate::drawing::Drawing;
@@ -13,6 +15,36 @@ pub fn small(preset: Preset) -> (Parameters, Vec<fumarole::papers::gas::model::O
     let scene = preset.scene();
     let steps = if preset == Preset::Solid { 60 } else { 16 };
     (Parameters { width: 90, height: 62, steps, table_size: 32, ..scene.parameters }, scene.objects)
+}
+
+/// Sizes, shadowing and frames of tables 1 and 2 and of the captions.
+#[test]
+fn the_figures_have_the_papers_sizes_and_frames() {
+    let [every_30, every_80] = [(30, 150), (80, 400)].map(|(step, last)| (0..=last).step_by(step).collect::<Vec<u32>>());
+    let fig_7 = [every_80, vec![440, 480, 520]].concat();
+    for (preset, size, variant, frames) in [
+        (Preset::Fig3, (1024, 682), Variant::None, vec![0]),
+        (Preset::Fig4, (1024, 768), Variant::NoVolume, vec![60]),
+        (Preset::Fig5, (1024, 682), Variant::Table, vec![0]),
+        (Preset::Fig6, (420, 400), Variant::Surfaces, every_30),
+        (Preset::Fig7, (320, 240), Variant::Surfaces, fig_7),
+        (Preset::Fig8, (360, 250), Variant::Table, vec![60]),
+    ] {
+        let parameters = preset.scene().parameters;
+        assert_eq!(((parameters.width, parameters.height), preset.variant()), (size, variant), "{preset:?}");
+        assert_eq!(preset.frames(), frames, "{preset:?}");
+    }
+}
+
+/// Step = longest side / 40; tau 4 over side 2; albedo 0.3; 0.8 at g = 0.5 and 0.2 at g = -0.3; light at (3, 6, 3).
+#[test]
+fn the_defaults_are_those_that_are_documented() {
+    let parameters = Parameters::default();
+    let volume = parameters.volumes[0];
+    assert_eq!((volume.step_m(parameters.steps), volume.tau_per_m), (2.0 / 40.0, 4.0 / 2.0));
+    assert_eq!((volume.albedo, volume.phase.map(|p| (p.weight, p.g))), (Vec3::splat(0.3), [(0.8, 0.5), (0.2, -0.3)]));
+    assert!(matches!(parameters.lights[0], Light::Point { position, .. } if position == Vec3::new(3.0, 6.0, 3.0)));
+    assert_eq!((parameters.table_size, parameters.early_end), (64, 0.01));
 }
 
 #[test]

@@ -103,6 +103,67 @@ fn a_pane_in_front_inside_and_behind_is_composited() {
     });
 }
 
+/// An opaque pane that covers a part of a pixel, within the gas: the rest of the pixel shows the gas behind it.
+#[test]
+fn gas_goes_on_behind_what_covers_a_part_of_the_pixel() {
+    gpu_test(|device| {
+        let parameters = parameters(1.0);
+        // Its border crosses the picture aslant; share of the gas before it 0.35.
+        let turn = Mat4::from_translation(Vec3::new(0.0, 0.0, 0.3)) * Mat4::from_rotation_z(0.3);
+        let mut half = pane(0.0, 1.0);
+        half.mesh = half.mesh.transformed(&(turn * Mat4::from_translation(Vec3::X * 15.0)));
+        let drawing = draw(device, &parameters, &[half]);
+        let mut partial = 0;
+        for (pixel, list) in drawing.lists.iter().enumerate() {
+            let mask = list.iter().fold(0, |all, f| all | f.mask);
+            let open = 1.0 - f64::from(mask.count_ones()) / 32.0;
+            partial += usize::from(mask != 0 && mask != u32::MAX);
+            let (passed, brightness) = closed_form(&parameters, pixel);
+            let (before, after) = (passed.powf(0.35), passed.powf(0.65));
+            let expected = brightness * (1.0 - before) + before * open * (brightness * (1.0 - after) + after);
+            assert!((drawing.red(pixel) - expected).abs() < 2e-4, "{} for {expected}", drawing.red(pixel));
+        }
+        assert!(partial > 15, "{partial} partly covered pixels");
+    });
+}
+
+/// The tracing begins at the farther of hither plane and entry, and ends at the nearer of yon plane and exit; the eye may stand in the
+/// gas.
+#[test]
+fn gas_is_traced_between_the_hither_and_the_yon_plane() {
+    gpu_test(|device| {
+        for (eye_z_m, near_m, far_m, thickness_m) in
+            [(5.0, 4.5, 99.0, 1.5), (5.0, 0.1, 5.2, 1.2), (5.0, 4.4, 4.9, 0.5), (0.3, 0.1, 99.0, 1.2), (5.0, 6.5, 99.0, 0.0)]
+        {
+            let mut parameters = parameters(1.0);
+            parameters.camera =
+                Camera { eye: Vec3::Z * eye_z_m, target: Vec3::NEG_Z * 9.0, near_m, far_m, ..parameters.camera };
+            let drawing = draw(device, &parameters, &[]);
+            for pixel in 0..(WIDTH * HEIGHT) as usize {
+                let (passed, brightness) = closed_form(&parameters, pixel);
+                let passed = passed.powf(thickness_m / 2.0);
+                let expected = passed + brightness * (1.0 - passed);
+                assert!((drawing.red(pixel) - expected).abs() < 1e-4, "{near_m} to {far_m}, {}", drawing.red(pixel));
+            }
+        }
+    });
+}
+
+/// The early end looks at all sections together: none of these is so opaque alone.
+#[test]
+fn the_tracing_ends_by_the_transparency_of_all_sections() {
+    gpu_test(|device| {
+        let parameters = Parameters { early_end: 0.5, ..parameters(1.0) };
+        let panes: Vec<Object> = (0..4).map(|i| pane(-0.71 + 0.4 * i as f32, 1.6e-5)).collect();
+        let drawing = draw(device, &parameters, &panes);
+        for (pixel, texel) in drawing.radiance.chunks_exact(4).enumerate() {
+            let (whole, _) = closed_form(&parameters, pixel);
+            let (passed, of_a_step) = (1.0 - f64::from(texel[3]), whole.powf(1.0 / 16.0));
+            assert!(whole < 0.3 && passed < 0.5 && passed > 0.5 * of_a_step - 1e-3, "{passed}");
+        }
+    });
+}
+
 #[test]
 fn a_solid_slab_follows_its_formula() {
     gpu_test(|device| {

@@ -5,4 +5,5 @@ pub mod density;
 pub mod noise;
 pub mod phase;
 pub mod rays;
+pub mod resolve;
 pub mod shadow_table;

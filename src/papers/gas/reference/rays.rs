@@ -162,12 +162,15 @@ impl March<'_> {
     /// B += T albedo (1 - exp(-tau rho dt)) sum(I_i phase), for all volumes at once.
     fn add(&mut self, inside: &[&Volume], at: f64, increment: f64) {
         let point = self.rays.eye() + self.direction * at;
+        let densities: Vec<f64> = inside.iter().map(|volume| self.rays.medium.density(volume, point)).collect();
+        let densest = densities.iter().copied().fold(0.0, f64::max);
+        let are_shadowed = self.are_shadowed && densest >= f64::from(self.rays.parameters.shadow_threshold);
         let (mut extinction, mut emission) = (0.0, DVec3::ZERO);
-        for volume in inside {
-            let thickness = f64::from(volume.tau_per_m) * self.rays.medium.density(volume, point);
+        for (volume, density) in inside.iter().zip(densities) {
+            let thickness = f64::from(volume.tau_per_m) * density;
             extinction += thickness;
             if thickness > 0.0 {
-                emission += volume.albedo.as_dvec3() * self.light(volume, point) * thickness;
+                emission += volume.albedo.as_dvec3() * self.light(volume, point, are_shadowed) * thickness;
             }
         }
         if extinction > 0.0 {
@@ -178,11 +181,11 @@ impl March<'_> {
     }
 
     /// What an element sends to the eye, for albedo 1: a gas by its phase function, a solid by its normal.
-    fn light(&self, volume: &Volume, point: DVec3) -> DVec3 {
+    fn light(&self, volume: &Volume, point: DVec3, are_shadowed: bool) -> DVec3 {
         let parameters = self.rays.parameters;
         let of_light = |light: &Light| {
             let (way, _, irradiance) = towards(light, point);
-            let depth = if self.are_shadowed { self.rays.optical_depth(point, light, 1) } else { 0.0 };
+            let depth = if are_shadowed { self.rays.optical_depth(point, light, 1) } else { 0.0 };
             let share = if volume.is_solid {
                 self.normal(volume, point).dot(way).max(0.0)
             } else {

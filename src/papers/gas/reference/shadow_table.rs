@@ -3,8 +3,74 @@
 use glam::{DVec3, IVec3};
 
 use super::density::Medium;
+use super::rays::towards;
 use crate::papers::gas::model::Volume;
+use crate::papers::gas::parameters::Parameters;
 use crate::scene::Light;
+
+/// The tables of all volumes and lights of one scene frame, and how they are read.
+pub struct ShadowTables<'a> {
+    parameters: &'a Parameters,
+    /// Of each volume, of each light.
+    sums: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'a> ShadowTables<'a> {
+    /// Of scene frame `number`, with the parameters' entries a side.
+    pub fn new(parameters: &'a Parameters, number: u32) -> Self {
+        let (medium, size) = (Medium::new(parameters, number), parameters.table_size);
+        let of_volume = |volume: &Volume| {
+            let densities = density_table(&medium, volume, size);
+            parameters.lights.iter().map(|light| shadow_table(&densities, volume, light, size)).collect()
+        };
+        ShadowTables { parameters, sums: parameters.volumes.iter().map(of_volume).collect() }
+    }
+
+    /// tau times the sums between a point and light `number`: the eight entries round the point, or round the place where its
+    /// ray to the light enters the table's box, interpolated.
+    pub fn optical_depth(&self, point: DVec3, number: usize) -> f64 {
+        let (way, distance, _) = towards(&self.parameters.lights[number], point);
+        let of_volume = |(volume, tables): (&Volume, &Vec<Vec<f64>>)| {
+            let entered = entry_into_box(volume, point, way).filter(|&at| at <= distance);
+            let sum = entered.map_or(0.0, |at| self.interpolated(volume, &tables[number], point + way * at));
+            f64::from(volume.tau_per_m) * sum
+        };
+        self.parameters.volumes.iter().zip(&self.sums).map(of_volume).sum()
+    }
+
+    fn interpolated(&self, volume: &Volume, table: &[f64], point: DVec3) -> f64 {
+        let last = f64::from(self.parameters.table_size - 1);
+        let share = (point - volume.center.as_dvec3()) / volume.half_extent_m.as_dvec3() / 2.0 + 0.5;
+        let at = (share * last).clamp(DVec3::ZERO, DVec3::splat(last));
+        let low = at.floor().min(DVec3::splat(last - 1.0));
+        let n = self.parameters.table_size as usize;
+        let corner = |corner: usize| {
+            let one = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let weight: f64 = (0..3).map(|a| 1.0 - (at[a] - low[a] - one[a] as f64).abs()).product();
+            let [x, y, z] = [0, 1, 2].map(|a| low[a] as usize + one[a]);
+            weight * table[(z * n + y) * n + x]
+        };
+        (0..8).map(corner).sum()
+    }
+}
+
+/// How far along its ray a point enters the box around the solid, 0 from inside; nothing where the ray misses it.
+fn entry_into_box(volume: &Volume, point: DVec3, way: DVec3) -> Option<f64> {
+    let (center, half) = (volume.center.as_dvec3(), volume.half_extent_m.as_dvec3());
+    let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+    for axis in 0..3 {
+        let (from, along) = (point[axis] - center[axis], way[axis]);
+        if along == 0.0 {
+            if from.abs() > half[axis] {
+                return None;
+            }
+        } else {
+            enter = enter.max((-half[axis] * along.signum() - from) / along);
+            leave = leave.min((half[axis] * along.signum() - from) / along);
+        }
+    }
+    (enter <= leave).then_some(enter)
+}
 
 /// Densities of the entries, x fastest.
 pub fn density_table(medium: &Medium, volume: &Volume, size: u32) -> Vec<f64> {
