@@ -26,7 +26,7 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     const ABOUT: &'static str;
     /// Variants of a bench that names none, comma-separated.
     const BENCHED: &'static str;
-    /// The variant of a picture that names none.
+    /// The variant of a picture that names none, as the help calls it: its word, unless [`PaperArgs::rendered`] chooses.
     const RENDERED: &'static str;
 
     /// What was typed, over the preset's numbers, over the defaults. `process` is which of several fresh processes this is.
@@ -34,6 +34,11 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     /// # Errors
     /// [`Failure::Input`] for options of which one would not be heeded.
     fn resolve(&self, process: u32) -> Result<Self::Study, Failure>;
+
+    /// The variant of a picture that names none.
+    fn rendered(&self) -> VariantOf<Self> {
+        find(Self::RENDERED).unwrap_or(VariantOf::<Self>::ALL[0])
+    }
 
     /// What the main job measures, in the variants of [`PaperArgs::BENCHED`].
     fn quick() -> Self::Study;

@@ -18,9 +18,8 @@ use crate::papers::{Paper, Variant};
 
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs<P: PaperArgs> {
-    /// Variant to render
-    #[arg(long, default_value = P::RENDERED, value_parser = variant_word::<VariantOf<P>>())]
-    variant: VariantOf<P>,
+    #[arg(long, help = format!("Variant to render [default: {}]", P::RENDERED), value_parser = variant_word::<VariantOf<P>>())]
+    variant: Option<VariantOf<P>>,
     /// Frame N, or the frames A..B from A up to but not including B
     #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]
     frame: Frames,
@@ -84,7 +83,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
         image: None,
         quiet: arguments.quiet,
     };
-    let variant = arguments.variant;
+    let variant = arguments.variant.unwrap_or_else(|| arguments.scene.rendered());
     let frames = arguments.frame;
     let is_range = frames.end - frames.first > 1;
     if is_range && !arguments.dump.is_empty() {
