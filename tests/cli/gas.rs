@@ -96,6 +96,107 @@ fn bands_and_pulled_vertices_show_the_same_and_other_densities_do_not() {
     assert!(others[0] == draw("steam", "--density steam"));
 }
 
+/// A preset's picture is its figure's: figures 3 and 5 have one scene, and differ in their shadowing.
+#[test]
+fn a_preset_is_drawn_in_its_figure_s_variant() {
+    let out = folder();
+    let drawn = |preset: &str, variant: &str| {
+        small(&format!("render --quiet --out . --preset {preset}")).inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join(format!("gas-{variant}-0000.png"))).unwrap()
+    };
+    assert!(drawn("fig-3", "none") != drawn("fig-5", "table"));
+    drawn("fig-4", "no-volume");
+    drawn("fig-6", "surfaces");
+    drawn("fig-7 --volume box,0,0.5,2,1,0.5,1", "surfaces");
+    drawn("fig-4 --volume box,0,0.5,2,1,0.5,1", "table");
+}
+
+/// Each number of the gases changes the picture of a scene that has such a gas.
+#[test]
+fn every_number_of_the_gases_is_seen() {
+    let out = folder();
+    let draw = |options: &str| {
+        small("render --quiet --variant none --image picture.png").args(options).inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join("picture.png")).unwrap()
+    };
+    for (scene, options) in [
+        (
+            "--preset fig-8",
+            &[
+                "--volume sphere,0.8,1,0,0.4,0.4,0.4",
+                "--volume frustum,0.8,1,0,0.4,0.4,0.4,1,0.2",
+                "--down 0.1",
+                "--swirl-frames 90",
+                "--ellipse 0.6,0.2",
+                "--tau 3",
+                "--albedo 0.2",
+                "--falloff 0.1",
+                "--phase 1,0,0,0",
+                "--pixel-size 0.3",
+                "--early-end 0.6",
+                "--ambient 0.6,0.6,0.6",
+                "--light 0,-1,0",
+                "--point-light 0,3,2",
+                "--camera 1,2,5,0,1,0",
+                "--object teapot",
+            ][..],
+        ),
+        ("--preset fig-7", &["--front -2,0.017,2.5,0.8,0.6", "--full-fog 900", "--down 0.1"]),
+        ("--density clouds", &["--frequency 9"]),
+        ("--preset solid", &["--hypertexture 0.5,0.16", "--hypertexture 1.4,0.6"]),
+        ("--preset fig-4", &["--volume box,0,0.5,2,1,0.5,1"]),
+    ] {
+        let mut pictures = vec![draw(scene)];
+        for option in options {
+            let picture = draw(&format!("{scene} {option}"));
+            assert!(!pictures.contains(&picture), "{scene} {option}");
+            pictures.push(picture);
+        }
+    }
+}
+
+/// How the gas and its shadows are sampled.
+#[test]
+fn steps_table_and_threshold_are_seen() {
+    let out = folder();
+    let draw = |options: &str| {
+        let render = gas("render --quiet --variant table --size 45x31 --image picture.png").args(options);
+        render.on_test_device().inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join("picture.png")).unwrap()
+    };
+    let options = ["", " --shadow-threshold 0.3"].map(|o| format!("--steps 8 --table 8{o}"));
+    let pictures = [&*options[0], &*options[1], "--steps 20 --table 8", "--steps 8 --table 30"].map(draw);
+    for (i, picture) in pictures.iter().enumerate() {
+        assert!(!pictures[..i].contains(picture), "picture {i}");
+    }
+}
+
+#[test]
+fn what_no_gas_heeds_is_refused() {
+    for (options, parts) in [
+        ("--preset fig-4 --tau 2", &["--tau", "no volume", "--volume"][..]),
+        ("--preset fig-4 --density fog", &["--density", "--volume"]),
+        ("--frequency 3", &["--frequency", "--density clouds"]),
+        ("--preset fig-3 --down 0.1", &["--down", "--density fog or steam"]),
+        ("--front 0,1,1,1,1", &["--front", "--density fog"]),
+        ("--full-fog 10", &["--full-fog", "--density fog"]),
+        ("--hypertexture 1,0.2", &["--hypertexture", "--density hypertexture"]),
+        ("--preset solid --phase 1,0,0,0", &["--phase", "solids have normals"]),
+        ("--preset fig-7 --front 0,1,0,1,1", &["--front 0,1,0,1,1", "depth above 0"]),
+        ("--preset fig-7 --full-fog -1", &["--full-fog -1"]),
+        ("--swirl-frames -1", &["--swirl-frames -1"]),
+        ("--ellipse 1,99999", &["--ellipse 1,99999"]),
+        ("--preset solid --hypertexture 1,0", &["--hypertexture 0", "softness"]),
+        ("--volume box,0,0,0,1,0,1", &["--volume 1,0,1", "half extents"]),
+        ("--volume frustum,0,0,0,1,1,1,0,0", &["--volume 0,0", "radii"]),
+    ] {
+        gas("render").on_test_device().args(options).run().refused(2, parts);
+    }
+    gas(&format!("render {}", "--volume sphere,0,0,0,1,1,1 ".repeat(8))).run().refused(2, &["--volume 9", "8"]);
+    gas("render --volume ball,0,0,0,1,1,1").run().misused(&["--volume", "sphere"]);
+    gas("experiment 2 --frequency 3").run().refused(2, &["--frequency"]);
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_its_option() {
     for (options, parts) in [

@@ -100,7 +100,7 @@ fn bad_numbers_are_named() {
         (with_volume(|v| v.tau_per_m = f32::NAN), "--tau"),
         (with_volume(|v| v.falloff = 2.0), "--falloff"),
         (with_volume(|v| v.phase[0].weight = 3.0), "--phase"),
-        (with_volume(|v| v.half_extent_m.x = 0.0), "--half-extent"),
+        (with_volume(|v| v.half_extent_m.x = 0.0), "--volume"),
     ];
     for (parameters, name) in cases {
         assert_eq!(parameters.validate().unwrap_err().name, name);

@@ -79,7 +79,7 @@ impl ExperimentArgs for Experiments {
                 "--table: this experiment sweeps it; give --counts",
             ),
             (name == Name::Steps && self.scene.steps.is_some(), "--steps: this experiment sweeps them; give --counts"),
-            (name == Name::Noise && self.scene.density.is_some(), "--density: this experiment compares two"),
+            (name == Name::Noise && self.scene.volumes.names_density(), "--density: this experiment compares two"),
             (is_pictures && self.scene.first_frame.is_some(), "--first-frame: the strips have the paper's frames"),
             (is_pictures && output.json.is_some(), "--json: a strip is pictures; `1` has a record"),
             (is_pictures && output.csv.is_some(), "--csv: a strip is pictures; `1` has rows"),
@@ -101,6 +101,7 @@ impl ExperimentArgs for Experiments {
 impl Experiments {
     fn table(&self, publication: &Publication<'_>, number: Number) -> Result<(), Failure> {
         let points = number.points(&|setup| self.scene.over(setup));
+        self.scene.check(points.iter().map(|point| &point.study))?;
         points.iter().try_for_each(|point| load(&point.study).map(drop))?;
         let mut machine = self.open()?;
         let swept = self.sweep(publication, &mut machine, &points)?;
@@ -113,6 +114,7 @@ impl Experiments {
 
     fn trade(&self, publication: &Publication<'_>, trade: Trade, variant: Variant) -> Result<(), Failure> {
         let setup = self.scene.over(Setup::of(self.scene.scene()));
+        self.scene.check([&setup])?;
         let counts = if self.counts.is_empty() { trade.counts() } else { self.counts.clone() };
         let points = trade.points(&setup, &counts, variant);
         points.iter().try_for_each(|point| load(&point.study).map(drop))?;
@@ -128,6 +130,7 @@ impl Experiments {
     /// The volume's time with the scene's density function, and with a constant in its place: what is left is turbulence.
     fn noise(&self, publication: &Publication<'_>) -> Result<(), Failure> {
         let setup = self.scene.over(Setup::of(self.scene.scene()));
+        self.scene.check([&setup])?;
         let mut constant = setup.clone();
         for volume in &mut constant.parameters.volumes {
             volume.texture.function = DensityFunction::Constant;
@@ -160,9 +163,11 @@ impl Experiments {
     }
 
     fn sequence(&self, publication: &Publication<'_>) -> Result<(), Failure> {
+        let setups = [Preset::Fig6, Preset::Fig7].map(|scene| self.scene.over(Setup::of(scene)));
+        self.scene.check(&setups)?;
         let mut machine = self.open()?;
-        for scene in [Preset::Fig6, Preset::Fig7] {
-            let mut setup = self.scene.over(Setup::of(scene));
+        for mut setup in setups {
+            let scene = setup.scene;
             for frame in scene.frames() {
                 setup.parameters.first_frame = frame;
                 let surfaces = setup.load()?;

@@ -1,6 +1,7 @@
 //! The options of the `gas` paper under the paper's own words, resolved into a setup.
 
 mod experiment;
+mod volumes;
 
 use std::convert::Infallible;
 
@@ -8,12 +9,13 @@ use clap::{Args, ValueEnum};
 use glam::Vec3;
 
 use self::experiment::Experiments;
+use self::volumes::VolumeArgs;
 use super::failure::Failure;
 use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
 use crate::experiment::gas::Setup;
-use crate::papers::gas::model::{DensityFunction, HenyeyGreenstein};
-use crate::papers::gas::scenes::{self, Preset};
+use crate::papers::gas::Variant;
+use crate::papers::gas::scenes::Preset;
 use crate::scene::{Light, MeshSource};
 
 /// The figures' scenes.
@@ -55,29 +57,14 @@ impl SceneWord {
     }
 }
 
-/// Density functions whose numbers the scene's volumes keep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum DensityWord {
-    /// The same everywhere
-    Constant,
-    /// Turbulence (1985)
-    Turbulence,
-    /// A sine wave through the turbulent space
-    Clouds,
-    /// Figure 7's fog behind its front, moved along a helix as the frames go on
-    Fog,
-    /// Figures 6 and 8's steam, which rises and thins with its height
-    Steam,
-    /// A soft ball whose surface the turbulence moves
-    Hypertexture,
-}
-
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Scene")]
 pub struct GasArgs {
     /// Scene of a figure with its numbers; options given beside it win [default: fig-8]
     #[arg(long, value_enum)]
     preset: Option<SceneWord>,
+    #[command(flatten)]
+    volumes: VolumeArgs,
     /// Polygon mesh in the scene: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; repeatable
     #[arg(long, value_name = "SHAPE|FILE")]
     object: Vec<MeshSource>,
@@ -96,31 +83,6 @@ pub struct GasArgs {
     /// Transparency below which a pixel's tracing ends, 0 (never) to 1 [default: 0.01]
     #[arg(long, value_name = "T", value_parser = parse_finite, allow_negative_numbers = true)]
     early_end: Option<f32>,
-    /// Density function of all volumes [default: the scene's]
-    #[arg(long, value_enum)]
-    density: Option<DensityWord>,
-    /// Factor of all volumes' density (the paper's opaque), 0 to 1000000 [default: the scene's]
-    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
-    opaque: Option<f32>,
-    /// Exponent of all volumes' density, above 0 and at most 100 [default: the scene's]
-    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
-    power: Option<f32>,
-    /// Texture units a metre of all volumes, 0.0001 to 10000 [default: the scene's]
-    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
-    texture_scale: Option<f32>,
-    /// Optical depth of density 1, per metre, of all volumes, 0 to 1000000 [default: the scene's]
-    #[arg(long, value_name = "TAU", value_parser = parse_finite, allow_negative_numbers = true)]
-    tau: Option<f32>,
-    /// Albedo of all gases, 0 to 1 [default: the scene's]
-    #[arg(long, value_name = "A", value_parser = parse_finite, allow_negative_numbers = true)]
-    albedo: Option<f32>,
-    /// Two Henyey-Greenstein functions of all gases: weight,g,weight,g; weights add up to 1, g between -1 and 1
-    /// [default: 0.8,0.5,0.2,-0.3]
-    #[arg(long, value_name = "W,G,W,G", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
-    phase: Option<[f32; 4]>,
-    /// Share of the way from the boundary to the middle over which all gases fade, 0 to 1 [default: the scene's]
-    #[arg(long, value_name = "F", value_parser = parse_finite, allow_negative_numbers = true)]
-    falloff: Option<f32>,
     /// Direction of light from infinity, x,y,z; repeatable; takes the place of the scene's lights
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     light: Vec<[f32; 3]>,
@@ -163,7 +125,7 @@ impl PaperArgs for GasArgs {
         "Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent), pass by pass";
     // Tracing shadows from every sample takes many times as long.
     const BENCHED: &'static str = "no-volume,none,surfaces,table";
-    const RENDERED: &'static str = "table";
+    const RENDERED: &'static str = "the preset's; table without one";
 
     /// Figure 8 at half its size.
     fn quick() -> Setup {
@@ -174,7 +136,18 @@ impl PaperArgs for GasArgs {
 
     fn resolve(&self, process: u32) -> Result<Setup, Failure> {
         let setup = Setup::of(self.scene());
-        Ok(Setup { process, preset: self.preset.and(setup.preset.clone()), ..self.over(setup) })
+        let preset = self.preset.and(setup.preset.clone());
+        let setup = self.over(setup);
+        self.check([&setup])?;
+        Ok(Setup { process, preset, ..setup })
+    }
+
+    /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.
+    fn rendered(&self) -> Variant {
+        match self.scene().variant() {
+            Variant::NoVolume if self.volumes.adds_volumes() => Variant::Table,
+            variant => variant,
+        }
     }
 }
 
@@ -189,6 +162,14 @@ impl GasArgs {
         self.preset.is_some()
     }
 
+    /// Checks that one of the scenes heeds each option of the gases.
+    ///
+    /// # Errors
+    /// [`Failure::Input`], naming the first option that none heeds.
+    fn check<'a>(&self, setups: impl IntoIterator<Item = &'a Setup>) -> Result<(), Failure> {
+        self.volumes.check(setups.into_iter().flat_map(|setup| &setup.parameters.volumes))
+    }
+
     /// What was typed over a scene's numbers.
     fn over(&self, mut setup: Setup) -> Setup {
         let p = &mut setup.parameters;
@@ -197,18 +178,7 @@ impl GasArgs {
         set(&mut p.pixel_size, self.pixel_size);
         set(&mut p.shadow_threshold, self.shadow_threshold);
         set(&mut p.early_end, self.early_end);
-        for volume in &mut p.volumes {
-            set(&mut volume.texture.function, self.density.map(function));
-            set(&mut volume.texture.opaque, self.opaque);
-            set(&mut volume.texture.power, self.power);
-            set(&mut volume.texture.scale_per_m, self.texture_scale);
-            set(&mut volume.tau_per_m, self.tau);
-            set(&mut volume.albedo, self.albedo.map(Vec3::splat));
-            set(&mut volume.falloff, self.falloff);
-            if let Some([w0, g0, w1, g1]) = self.phase {
-                volume.phase = [HenyeyGreenstein { weight: w0, g: g0 }, HenyeyGreenstein { weight: w1, g: g1 }];
-            }
-        }
+        self.volumes.over(&mut p.volumes);
         // As bright at the origin as the scenes' own light, wherever it stands.
         let parallel = self.light.iter().map(|&d| Light::Parallel { direction: d.into(), intensity: Vec3::ONE });
         let points = self.point_light.iter().map(|&p| {
@@ -233,16 +203,5 @@ impl GasArgs {
         p.list_bytes = self.list_bytes.or(p.list_bytes);
         setup.objects.clone_from(&self.object);
         setup
-    }
-}
-
-fn function(word: DensityWord) -> DensityFunction {
-    match word {
-        DensityWord::Constant => DensityFunction::Constant,
-        DensityWord::Turbulence => DensityFunction::Turbulence,
-        DensityWord::Clouds => DensityFunction::Clouds { frequency: 4.0 },
-        DensityWord::Fog => scenes::FOG,
-        DensityWord::Steam => scenes::STEAM,
-        DensityWord::Hypertexture => scenes::HYPERTEXTURE,
     }
 }

@@ -175,7 +175,7 @@ impl Parameters {
         ParameterError::check(is_good, "--shadow-threshold", threshold, "must be at least 0")?;
         ParameterError::check((0.0..=1.0).contains(&self.early_end), "--early-end", self.early_end, "must be 0 to 1")?;
         let volumes = self.volumes.len();
-        ParameterError::check(volumes <= MAX_VOLUMES, "--volumes", volumes, "a scene has at most 8 volumes")?;
+        ParameterError::check(volumes <= MAX_VOLUMES, "--volume", volumes, "a scene has at most 8 volumes")?;
         let lights = self.lights.len();
         ParameterError::check((1..=MAX_LIGHTS).contains(&lights), "--light", lights, "a scene has 1 to 4 lights")?;
         for volume in &self.volumes {
@@ -216,14 +216,14 @@ pub fn validate_object(object: &Object) -> Result<(), ParameterError> {
 }
 
 fn validate_volume(volume: &Volume) -> Result<(), ParameterError> {
-    ParameterError::check(volume.center.is_finite(), "--center", components(volume.center), "must be finite")?;
+    ParameterError::check(volume.center.is_finite(), "--volume", components(volume.center), "must have a finite centre")?;
     let half = volume.half_extent_m;
     let is_good = half.to_array().iter().all(|h| (1e-4..=1e6).contains(h));
-    ParameterError::check(is_good, "--half-extent", components(half), "must be 0.0001 to 1000000 metres each")?;
+    ParameterError::check(is_good, "--volume", components(half), "must have half extents of 0.0001 to 1000000 metres")?;
     ParameterError::check((0.0..=1.0).contains(&volume.falloff), "--falloff", volume.falloff, "must be 0 to 1")?;
     if let Shape::Frustum { bottom, top } = volume.shape {
         let is_good = [bottom, top].iter().all(|r| (0.0..=1.0).contains(r)) && bottom.max(top) > 0.0;
-        ParameterError::check(is_good, "--frustum", format!("{bottom},{top}"), "radii must be 0 to 1, and not both 0")?;
+        ParameterError::check(is_good, "--volume", format!("{bottom},{top}"), "must have radii of 0 to 1, not both 0")?;
     }
     let tau = volume.tau_per_m;
     ParameterError::check((0.0..=1e6).contains(&tau), "--tau", tau, "must be 0 to 1000000 per metre")?;
@@ -260,42 +260,37 @@ fn validate_texture(texture: &SolidTexture) -> Result<(), ParameterError> {
             ParameterError::check(frequency.abs() <= 1e4, "--frequency", frequency, "must be -10000 to 10000")
         }
         DensityFunction::Fog { swirl, front } => {
-            let is_good = front.depth_m > 0.0 && front.depth_m.is_finite();
-            ParameterError::check(is_good, "--front-depth", front.depth_m, "must be above 0 metres")?;
-            let rest = [front.x_m, front.per_frame_m, front.full_frames, front.turbulence_m, front.table_m];
-            ParameterError::check(
-                rest.iter().all(|v| v.is_finite()),
-                "--front",
-                format!("{rest:?}"),
-                "must be finite",
-            )?;
-            ParameterError::check(
-                front.full_frames >= 0.0,
-                "--full-fog",
-                front.full_frames,
-                "must be at least 0 frames",
-            )?;
+            let numbers = [front.x_m, front.per_frame_m, front.depth_m, front.turbulence_m, front.table_m];
+            let text = numbers.map(|n| n.to_string()).join(",");
+            let is_good = numbers.iter().all(|n| n.abs() <= 1e6) && front.depth_m > 0.0;
+            let range = "must be -1000000 to 1000000 each, with a depth above 0";
+            ParameterError::check(is_good, "--front", text, range)?;
+            let full = front.full_frames;
+            ParameterError::check((0.0..=1e6).contains(&full), "--full-fog", full, "must be 0 to 1000000 frames")?;
             validate_swirl(&swirl)
         }
         DensityFunction::Steam { swirl } => validate_swirl(&swirl),
         DensityFunction::Hypertexture { amplitude, softness } => {
             let is_good = (0.0..=100.0).contains(&amplitude);
-            ParameterError::check(is_good, "--amplitude", amplitude, "must be 0 to 100")?;
+            ParameterError::check(is_good, "--hypertexture", amplitude, "must move the surface by 0 to 100")?;
             ParameterError::check(
                 softness > 0.0 && softness <= 1.0,
-                "--softness",
+                "--hypertexture",
                 softness,
-                "must be above 0 and at most 1",
+                "must have a softness above 0 and at most 1",
             )
         }
     }
 }
 
 fn validate_swirl(swirl: &super::model::Swirl) -> Result<(), ParameterError> {
-    let numbers = [swirl.along_per_frame, swirl.frames, swirl.ellipse[0], swirl.ellipse[1]];
-    let is_good = numbers.iter().all(|v| v.abs() <= 1e4) && swirl.frames >= 0.0;
-    let range = "must be -10000 to 10000 each, with at least 0 frames a turn";
-    ParameterError::check(is_good, "--swirl", format!("{numbers:?}"), range)
+    let along = swirl.along_per_frame;
+    ParameterError::check(along.abs() <= 1e4, "--down", along, "must be -10000 to 10000 texture units a frame")?;
+    let frames = swirl.frames;
+    ParameterError::check((0.0..=1e4).contains(&frames), "--swirl-frames", frames, "must be 0 to 10000")?;
+    let [first, second] = swirl.ellipse;
+    let is_good = first.abs() <= 1e4 && second.abs() <= 1e4;
+    ParameterError::check(is_good, "--ellipse", format!("{first},{second}"), "must be -10000 to 10000 texture units")
 }
 
 fn validate_light(light: &Light) -> Result<(), ParameterError> {
