@@ -16,6 +16,7 @@ mod png;
 mod raster;
 mod replace;
 pub mod srgb;
+pub mod strip;
 mod view;
 
 pub use self::compare::{Difference, compare};

@@ -10,6 +10,7 @@ use crate::experiment::machine::Machine;
 use crate::experiment::picture;
 use crate::experiment::study::Study;
 use crate::image::Rgba8;
+use crate::image::strip::{below_each_other, side_by_side};
 use crate::papers::burning::{Parameters, Shading, Variant};
 use crate::scene::MeshSource;
 
@@ -122,25 +123,8 @@ impl Figure {
             let pictures = self.frames.iter().map(|&frame| picture::render(machine, &mut paper, frame));
             rows.push(side_by_side(&pictures.collect::<Result<Vec<_>, _>>()?)?);
         }
-        below_each_other(&rows)
+        Ok(below_each_other(&rows)?)
     }
-}
-
-/// Pictures of one size, the first on the left.
-fn side_by_side(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
-    let (width, height) = pictures.first().map_or((0, 0), |p| (p.width(), p.height()));
-    let row = 4 * width as usize;
-    let rows =
-        (0..height as usize).flat_map(|y| pictures.iter().flat_map(move |p| &p.pixels()[y * row..(y + 1) * row]));
-    Ok(Rgba8::new(width * pictures.len() as u32, height, rows.copied().collect())?)
-}
-
-/// Pictures of one width, the first on top.
-fn below_each_other(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
-    let width = pictures.first().map_or(0, Rgba8::width);
-    let height = pictures.iter().map(Rgba8::height).sum();
-    let pixels = pictures.iter().flat_map(Rgba8::pixels).copied().collect();
-    Ok(Rgba8::new(width, height, pixels)?)
 }
 
 #[cfg(test)]
@@ -158,14 +142,5 @@ mod tests {
             }
         }
         assert!(Figure::named("3.3").is_none());
-    }
-
-    #[test]
-    fn pictures_stand_in_rows() {
-        let plain = |value: u8| Rgba8::new(2, 1, vec![value; 8]).unwrap();
-        let row = side_by_side(&[plain(1), plain(2)]).unwrap();
-        assert_eq!((row.width(), row.height(), row.pixels()[7], row.pixels()[8]), (4, 1, 1, 2));
-        let column = below_each_other(&[row.clone(), row]).unwrap();
-        assert_eq!((column.width(), column.height(), column.pixels()[16]), (4, 2, 1));
     }
 }

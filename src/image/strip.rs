@@ -1,0 +1,40 @@
+//! Pictures in rows, as figures show them.
+
+use super::{Error, Rgba8};
+
+/// Pictures of one size, the first on the left.
+///
+/// # Errors
+/// [`Error`] where the sizes differ.
+pub fn side_by_side(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
+    let (width, height) = pictures.first().map_or((0, 0), |p| (p.width(), p.height()));
+    let row = 4 * width as usize;
+    let rows =
+        (0..height as usize).flat_map(|y| pictures.iter().flat_map(move |p| &p.pixels()[y * row..(y + 1) * row]));
+    Rgba8::new(width * pictures.len() as u32, height, rows.copied().collect())
+}
+
+/// Pictures of one width, the first on top.
+///
+/// # Errors
+/// [`Error`] where the widths differ.
+pub fn below_each_other(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
+    let width = pictures.first().map_or(0, Rgba8::width);
+    let height = pictures.iter().map(Rgba8::height).sum();
+    let pixels = pictures.iter().flat_map(Rgba8::pixels).copied().collect();
+    Rgba8::new(width, height, pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_stand_in_rows() {
+        let plain = |value: u8| Rgba8::new(2, 1, vec![value; 8]).unwrap();
+        let row = side_by_side(&[plain(1), plain(2)]).unwrap();
+        assert_eq!((row.width(), row.height(), row.pixels()[7], row.pixels()[8]), (4, 1, 1, 2));
+        let column = below_each_other(&[row.clone(), row]).unwrap();
+        assert_eq!((column.width(), column.height(), column.pixels()[16]), (4, 2, 1));
+    }
+}
