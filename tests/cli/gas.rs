@@ -46,6 +46,74 @@ fn table_2_is_written_with_the_ratios_beside_the_paper_s() {
     assert!(ended.stdout.contains("paper ratio"), "{}", ended.stdout);
 }
 
+/// Table 1 has a row for each time that the paper gives; figure 3's two are the only ones of one scene.
+#[test]
+fn table_1_is_written_with_the_ratios_beside_the_paper_s() {
+    let out = folder();
+    small("experiment 1 --out . --frames 1 --repeat 1 --warmup 1 --no-limits").inside(out.path()).run().succeeded();
+    let record = read_json(&out.path().join("gas-1.json"));
+    assert_schema(&record);
+    let row = |run: &serde_json::Value| {
+        let minutes = run["experiment"]["paper"].as_f64().unwrap() * 59.0;
+        (run["experiment"]["row"].as_str().unwrap().to_owned(), minutes.round())
+    };
+    let mut rows: Vec<_> = record["runs"].as_array().unwrap().iter().map(row).collect();
+    rows.sort_by(|a, b| a.0.cmp(&b.0));
+    let expected = [
+        ("fig-3 no-volume", 59.0),
+        ("fig-3 none", 71.0),
+        ("fig-4 no-volume", 105.0),
+        ("fig-5 table", 260.0),
+        ("fig-6 surfaces", 95.0),
+        ("fig-7 surfaces", 165.0),
+    ];
+    assert_eq!(rows, expected.map(|(row, minutes)| (row.to_owned(), minutes)));
+}
+
+/// Larger tables and more steps are nearer to what they are compared with; turbulence has a share of the time.
+#[test]
+fn sweeps_and_the_share_of_turbulence_are_written() {
+    let out = folder();
+    let run = |words: &str| {
+        let experiment = gas(&format!("experiment {words} --size 90x62 --quiet --out .")).args(ONCE);
+        experiment.on_test_device().inside(out.path()).run().succeeded();
+    };
+    let rows = |name: &str| read_json(&out.path().join(format!("gas-{name}.json")))["table"].clone();
+    let differences = |name: &str| -> Vec<(u64, f64)> {
+        let table = rows(name);
+        let of = |row: &serde_json::Value| (row["count"].as_u64().unwrap(), row["Luv mean"].as_f64().unwrap());
+        table["rows"].as_array().unwrap().iter().map(of).collect()
+    };
+    run("table-size --steps 20 --counts 4,24");
+    let by_size = differences("table-size");
+    assert!(by_size[0].0 == 4 && by_size[1].0 == 24 && by_size[1].1 < 0.7 * by_size[0].1, "{by_size:?}");
+    run("steps --counts 4,16,64");
+    let by_steps = differences("steps");
+    assert!(by_steps[1].1 < by_steps[0].1 && by_steps[2] == (64, 0.0) && by_steps[1].1 > 0.0, "{by_steps:?}");
+    run("noise --steps 20");
+    let share = rows("noise")["rows"][0]["share"].as_f64().unwrap();
+    assert!(share > 0.0 && share < 1.0, "{share}");
+}
+
+#[test]
+fn a_sequence_is_each_picture_and_all_of_a_figure() {
+    let out = folder();
+    gas("experiment sequence --quiet --size 24x18 --steps 4 --out .").on_test_device().inside(out.path()).run().succeeded();
+    let frames = [(6, vec![0, 30, 60, 90, 120, 150]), (7, vec![0, 80, 160, 240, 320, 400, 440, 480, 520])];
+    for (figure, frames) in frames {
+        let strip = fumarole::image::read_png(&out.path().join(format!("gas-sequence-fig-{figure}.png"))).unwrap();
+        assert_eq!((strip.width(), strip.height()), (3 * 24, frames.len() as u32 / 3 * 18));
+        for (i, frame) in frames.iter().enumerate() {
+            let file = out.path().join(format!("gas-sequence-fig-{figure}-{frame:04}.png"));
+            let picture = fumarole::image::read_png(&file).unwrap();
+            let (column, row) = (i % 3, i / 3);
+            let first = 4 * ((row * 18) * 72 + column * 24);
+            assert!(picture.pixels()[..4 * 24] == strip.pixels()[first..first + 4 * 24], "{}", file.display());
+        }
+    }
+    assert_eq!(entries(out.path()).len(), 6 + 9 + 2);
+}
+
 #[test]
 fn the_volume_is_seen_and_another_seed_is_another_gas() {
     let out = folder();

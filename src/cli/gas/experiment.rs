@@ -9,12 +9,14 @@ use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
 use crate::experiment::bench::{build, load};
+use crate::experiment::error::Error;
 use crate::experiment::facts::Facts;
 use crate::experiment::gas::Setup;
 use crate::experiment::gas::tables::{Number, Outcome, Trade};
 use crate::experiment::picture;
 use crate::experiment::study::Study;
 use crate::experiment::sweep::Point;
+use crate::image::strip::{below_each_other, side_by_side};
 use crate::papers::gas::Variant;
 use crate::papers::gas::model::DensityFunction;
 use crate::papers::gas::scenes::Preset;
@@ -37,6 +39,9 @@ pub enum Name {
     /// The picture strips of figures 6 and 7
     Sequence,
 }
+
+/// Of the six pictures of figure 6 and the nine of figure 7.
+const PICTURES_A_ROW: usize = 3;
 
 #[derive(Debug, Clone, Args)]
 pub struct Experiments {
@@ -168,13 +173,18 @@ impl Experiments {
         let mut machine = self.open()?;
         for mut setup in setups {
             let scene = setup.scene;
+            let surfaces = setup.load()?;
+            let mut pictures = Vec::new();
             for frame in scene.frames() {
                 setup.parameters.first_frame = frame;
-                let surfaces = setup.load()?;
                 let mut built = build(&machine, &setup, &surfaces, scene.variant())?;
                 let drawn = picture::render(&mut machine, &mut built.paper, 0)?;
                 publication.picture(&format!("-{}-{frame:04}.png", scene.word()), &drawn)?;
+                pictures.push(drawn);
             }
+            let rows = pictures.chunks(PICTURES_A_ROW).map(side_by_side).collect::<Result<Vec<_>, _>>();
+            let strip = rows.and_then(|rows| below_each_other(&rows)).map_err(Error::from)?;
+            publication.picture(&format!("-{}.png", scene.word()), &strip)?;
         }
         machine.check_validation()?;
         Ok(())
