@@ -105,9 +105,11 @@ void main() {
             uint behind = fragment_at(link.x);
             if (behind != NONE) {
                 uvec4 next = links[behind];
-                if ((next.y & bit) != 0u && surfaces[behind].y != surfaces[node].y) {
-                    share = share_behind(link, next) * opacity_of(colors[behind]);
-                    group &= share > 0.0 ? next.y : FULL;
+                float shown = share_behind(link, next) * opacity_of(colors[behind]);
+                if (shown > 0.0 && surfaces[behind].y != surfaces[node].y) {
+                    bool is_there = (next.y & bit) != 0u;
+                    share = is_there ? shown : 0.0;
+                    group &= is_there ? next.y : ~next.y;
                 }
             }
             float taken = left * opacity_of(colors[node]);

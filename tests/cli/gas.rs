@@ -98,7 +98,11 @@ fn sweeps_and_the_share_of_turbulence_are_written() {
 #[test]
 fn a_sequence_is_each_picture_and_all_of_a_figure() {
     let out = folder();
-    gas("experiment sequence --quiet --size 24x18 --steps 4 --out .").on_test_device().inside(out.path()).run().succeeded();
+    gas("experiment sequence --quiet --size 24x18 --steps 4 --out .")
+        .on_test_device()
+        .inside(out.path())
+        .run()
+        .succeeded();
     let frames = [(6, vec![0, 30, 60, 90, 120, 150]), (7, vec![0, 80, 160, 240, 320, 400, 440, 480, 520])];
     for (figure, frames) in frames {
         let strip = fumarole::image::read_png(&out.path().join(format!("gas-sequence-fig-{figure}.png"))).unwrap();

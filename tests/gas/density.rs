@@ -52,8 +52,7 @@ fn noise_and_turbulence_are_the_oracles() {
         let volume = Volume { half_extent_m: Vec3::splat(63.0 - 31.0), texture, ..default_volume() };
         let far = SolidTexture { offset: Vec3::new(31.5, -30.75, 30.125), ..texture };
         for pixel_size in [0.5, 0.1] {
-            let differences =
-                largest_differences(device, &[volume, Volume { texture: far, ..volume }], pixel_size, 33);
+            let differences = largest_differences(device, &[volume, Volume { texture: far, ..volume }], pixel_size, 33);
             assert!(differences.iter().all(|&d| d < 1e-5), "{pixel_size}: {differences:?}");
         }
     });

@@ -116,13 +116,14 @@ fn gases_that_overlap_are_marched_at_once() {
 fn gas_thinner_than_the_threshold_is_not_shadowed() {
     gpu_test(|device| {
         let gas = gases()[1];
-        let parameters = Parameters { steps: 12, shadow_threshold: 0.5, ..parameters(vec![gas]) };
+        let parameters = Parameters { steps: 12, shadow_threshold: 0.25, ..parameters(vec![gas]) };
         let drawing = Drawing::of(device, Variant::Traced, &parameters, &[]);
         let own = differences(&drawing, &parameters, true, Sampling::Random);
         // A density that is the threshold but for rounding may fall to either side.
         let off = |differences: &[DVec3]| differences.iter().filter(|d| d.abs().max_element() > 1e-4).count();
         assert!(off(&own) <= 3, "{} pixels", off(&own));
-        let all = differences(&drawing, &Parameters { shadow_threshold: 0.0, ..parameters.clone() }, true, Sampling::Random);
+        let all =
+            differences(&drawing, &Parameters { shadow_threshold: 0.0, ..parameters.clone() }, true, Sampling::Random);
         let none = differences(&drawing, &parameters, false, Sampling::Random);
         assert!(off(&all) > 50 && off(&none) > 50, "{} and {} pixels", off(&all), off(&none));
     });

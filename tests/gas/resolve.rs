@@ -102,7 +102,7 @@ fn a_pixel_is_its_32_sub_pixels() {
         for (has_gas, seed) in [(false, 3), (true, 4), (true, 5)] {
             let volumes = if has_gas { vec![gas()] } else { Vec::new() };
             let parameters = parameters(volumes);
-            let drawing = Drawing::of(device, Variant::None, &parameters, &triangles(40, seed));
+            let drawing = Drawing::of(device, Variant::None, &parameters, &triangles(160, seed));
             let rays = Rays::new(&parameters, 0);
             let (mut partial, mut long) = (0, 0);
             for (pixel, list) in drawing.lists.iter().enumerate() {

@@ -20,7 +20,8 @@ pub fn small(preset: Preset) -> (Parameters, Vec<fumarole::papers::gas::model::O
 /// Sizes, shadowing and frames of tables 1 and 2 and of the captions.
 #[test]
 fn the_figures_have_the_papers_sizes_and_frames() {
-    let [every_30, every_80] = [(30, 150), (80, 400)].map(|(step, last)| (0..=last).step_by(step).collect::<Vec<u32>>());
+    let [every_30, every_80] =
+        [(30, 150), (80, 400)].map(|(step, last)| (0..=last).step_by(step).collect::<Vec<u32>>());
     let fig_7 = [every_80, vec![440, 480, 520]].concat();
     for (preset, size, variant, frames) in [
         (Preset::Fig3, (1024, 682), Variant::None, vec![0]),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
-use fumarole::papers::gas::model::{Object, Volume};
+use fumarole::papers::gas::model::{DensityFunction, Object, Volume};
 use fumarole::papers::gas::reference::rays::{Rays, towards};
 use fumarole::papers::gas::reference::shadow_table::ShadowTables;
 use fumarole::papers::gas::{Parameters, Variant};
@@ -38,7 +38,10 @@ fn floor_view(volume: Volume, lights: Vec<Light>) -> Parameters {
 /// Gases that vary, so dense that every one of them and every light leaves dark shadows.
 fn dark_gases() -> Vec<Volume> {
     let dark = |mut gas: Volume| {
-        gas.texture.opaque = 2.5;
+        // The fog has not come far, and the steam thins with its height.
+        let function = gas.texture.function;
+        let is_thin = matches!(function, DensityFunction::Fog { .. } | DensityFunction::Steam { .. });
+        gas.texture.opaque = if is_thin { 6.0 } else { 2.5 };
         gas
     };
     gases().into_iter().skip(1).map(dark).collect()
@@ -113,7 +116,8 @@ fn surfaces_get_the_light_that_the_gas_lets_through() {
                 for variant in [Variant::Surfaces, Variant::Traced] {
                     let places = places(device, variant, &parameters);
                     let traced = |finer| {
-                        let depth = |place: &Place, l: usize| rays.optical_depth(place.point, &parameters.lights[l], finer);
+                        let depth =
+                            |place: &Place, l: usize| rays.optical_depth(place.point, &parameters.lights[l], finer);
                         spread(places.iter().map(|place| place.error(|l| depth(place, l))))
                     };
                     let ((_, worst), (mean, _), darkest) = (traced(1), traced(8), darkest(&places));
@@ -127,29 +131,57 @@ fn surfaces_get_the_light_that_the_gas_lets_through() {
     });
 }
 
-/// The table's shadows are those of a table in double precision, outside of the table's box too; and on average that table, and so the
-/// method, is 0.03 off rays at the most.
+/// The table's shadows are those of a table in double precision, outside of its box too.
 #[test]
-fn the_table_shadows_surfaces_as_a_table_in_double_precision_does() {
+fn the_table_shadows_surfaces_as_one_in_double_precision() {
     gpu_test(|device| {
         for gas in dark_gases() {
-            for light in lights() {
-                let parameters = floor_view(gas, vec![light]);
-                let (rays, tables) = (Rays::new(&parameters, FRAME), ShadowTables::new(&parameters, FRAME));
-                let places = places(device, Variant::Table, &parameters);
-                let (_, worst) = spread(places.iter().map(|p| p.error(|l| tables.optical_depth(p.point, l))));
-                let passed = |place: &Place| {
-                    let [table, traced] =
-                        [tables.optical_depth(place.point, 0), rays.optical_depth(place.point, &light, 8)];
-                    ((-table).exp() - (-traced).exp()).abs()
-                };
-                let ((mean, _), darkest) = (spread(places.iter().map(passed)), darkest(&places));
+            let parameters = floor_view(gas, lights());
+            let tables = ShadowTables::new(&parameters, FRAME);
+            let everywhere = places(device, Variant::Table, &parameters);
+            let (_, worst) = spread(everywhere.iter().map(|p| p.error(|l| tables.optical_depth(p.point, l))));
+            println!("{:?}: {worst:.2e}", gas.texture.function);
+            assert!(worst < 1e-3, "{:?}: {worst}", gas.texture.function);
+            for (l, light) in lights().into_iter().enumerate() {
+                let alone = floor_view(gas, vec![light]);
+                let places = places(device, Variant::Table, &alone);
+                let ((_, worst), darkest) =
+                    (spread(places.iter().map(|p| p.error(|_| tables.optical_depth(p.point, l)))), darkest(&places));
                 let case = format!("{:?}, {light:?}", gas.texture.function);
-                println!("{case}: {worst:.2e}; the table is {mean:.4} from rays on average; darkest {darkest:.3}");
+                println!("{case}: {worst:.2e}, darkest {darkest:.3}");
                 assert!(worst < 1e-3, "{case}: {worst}");
-                assert!(mean < 0.03, "{case}: {mean}");
                 assert!(darkest < 0.5, "{case}: no shadow is darker than {darkest}");
             }
         }
     });
+}
+
+/// The mean difference on the floor of what one light's table lets through from what rays let through, both in double precision.
+fn error_of_the_method(gas: Volume, light: Light, table_size: u32) -> f64 {
+    let parameters = Parameters { table_size, ..floor_view(gas, vec![light]) };
+    let (rays, tables) = (Rays::new(&parameters, FRAME), ShadowTables::new(&parameters, FRAME));
+    let places = (0..21 * 21).map(|i| DVec3::new(f64::from(i % 21 - 10) * 0.12, -1.6, f64::from(i / 21 - 10) * 0.12));
+    let difference = |point: DVec3| {
+        let [table, traced] = [tables.optical_depth(point, 0), rays.optical_depth(point, &light, 8)];
+        ((-table).exp() - (-traced).exp()).abs()
+    };
+    spread(places.map(difference)).0
+}
+
+/// What is left between table and rays is the method's: each entry's sum is interpolated from four others', so that a shadow spreads
+/// on its way, the most from a light inside. Below 0.03 on average at 64 entries a side in gas of the usual density; in denser gas
+/// more, but the less the finer the table.
+#[test]
+fn a_table_in_double_precision_is_near_rays() {
+    for gas in gases().into_iter().skip(1) {
+        for light in lights() {
+            let mean = error_of_the_method(gas, light, 64);
+            println!("{:?}, {light:?}: {mean:.4}", gas.texture.function);
+            assert!(mean < 0.03, "{:?}, {light:?}: {mean}", gas.texture.function);
+        }
+    }
+    let (gas, light) = (dark_gases()[0], lights()[2]);
+    let means = [32, 64, 128].map(|size| error_of_the_method(gas, light, size));
+    println!("dense turbulence round a light, by table size: {means:.4?}");
+    assert!(means.windows(2).all(|m| m[1] < 0.8 * m[0]), "{means:?}");
 }

@@ -216,7 +216,12 @@ pub fn validate_object(object: &Object) -> Result<(), ParameterError> {
 }
 
 fn validate_volume(volume: &Volume) -> Result<(), ParameterError> {
-    ParameterError::check(volume.center.is_finite(), "--volume", components(volume.center), "must have a finite centre")?;
+    ParameterError::check(
+        volume.center.is_finite(),
+        "--volume",
+        components(volume.center),
+        "must have a finite centre",
+    )?;
     let half = volume.half_extent_m;
     let is_good = half.to_array().iter().all(|h| (1e-4..=1e6).contains(h));
     ParameterError::check(is_good, "--volume", components(half), "must have half extents of 0.0001 to 1000000 metres")?;
