@@ -101,9 +101,9 @@ fn spread(errors: impl Iterator<Item = f64>) -> (f64, f64) {
     (sum / f64::from(count), worst)
 }
 
-/// The least share of the light that is seen anywhere: there is a shadow, and it is dark.
+/// The least share of any light colour that is seen anywhere: there is a shadow, and it is dark.
 fn darkest(places: &[Place]) -> f64 {
-    places.iter().map(|place| place.lit.max_element()).fold(1.0, f64::min)
+    places.iter().map(|place| place.lit.min_element()).fold(1.0, f64::min)
 }
 
 #[test]
