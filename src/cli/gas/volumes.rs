@@ -148,38 +148,40 @@ impl VolumeArgs {
     /// [`Failure::Input`], naming the first option that nothing heeds.
     pub fn check<'a>(&self, volumes: impl Iterator<Item = &'a Volume>) -> Result<(), Failure> {
         let volumes: Vec<&Volume> = volumes.collect();
-        let has = |of: fn(&Volume) -> bool| volumes.iter().any(|&v| of(v));
-        let is_there = |_: &Volume| true;
-        let is_gas = |v: &Volume| !v.is_solid;
-        let is_clouds = |v: &Volume| matches!(v.texture.function, DensityFunction::Clouds { .. });
-        let is_fog = |v: &Volume| matches!(v.texture.function, DensityFunction::Fog { .. });
-        let moves =
-            |v: &Volume| matches!(v.texture.function, DensityFunction::Fog { .. } | DensityFunction::Steam { .. });
-        let is_hypertexture = |v: &Volume| matches!(v.texture.function, DensityFunction::Hypertexture { .. });
-        let cases: [(bool, &str, fn(&Volume) -> bool, &str); 15] = [
-            (self.density.is_some(), "--density", is_there, "volume: give --volume"),
-            (self.opaque.is_some(), "--opaque", is_there, "volume: give --volume"),
-            (self.power.is_some(), "--power", is_there, "volume: give --volume"),
-            (self.texture_scale.is_some(), "--texture-scale", is_there, "volume: give --volume"),
-            (self.tau.is_some(), "--tau", is_there, "volume: give --volume"),
-            (self.albedo.is_some(), "--albedo", is_there, "volume: give --volume"),
-            (self.falloff.is_some(), "--falloff", is_there, "volume: give --volume"),
-            (self.phase.is_some(), "--phase", is_gas, "volume of gas, and solids have normals instead"),
-            (self.frequency.is_some(), "--frequency", is_clouds, "clouds: give --density clouds"),
-            (self.down.is_some(), "--down", moves, "fog or steam: give --density fog or steam"),
-            (self.swirl_frames.is_some(), "--swirl-frames", moves, "fog or steam: give --density fog or steam"),
-            (self.ellipse.is_some(), "--ellipse", moves, "fog or steam: give --density fog or steam"),
-            (self.full_fog.is_some(), "--full-fog", is_fog, "fog: give --density fog"),
-            (self.front.is_some(), "--front", is_fog, "fog: give --density fog"),
+        let functions: Vec<DensityFunction> = volumes.iter().map(|v| v.texture.function).collect();
+        let has_gas = volumes.iter().any(|v| !v.is_solid);
+        let has_clouds = functions.iter().any(|f| matches!(f, DensityFunction::Clouds { .. }));
+        let has_fog = functions.iter().any(|f| matches!(f, DensityFunction::Fog { .. }));
+        let has_steam = functions.iter().any(|f| matches!(f, DensityFunction::Steam { .. }));
+        let has_hypertexture = functions.iter().any(|f| matches!(f, DensityFunction::Hypertexture { .. }));
+        let given = [
+            (self.density.is_some(), "--density"),
+            (self.opaque.is_some(), "--opaque"),
+            (self.power.is_some(), "--power"),
+            (self.texture_scale.is_some(), "--texture-scale"),
+            (self.tau.is_some(), "--tau"),
+            (self.albedo.is_some(), "--albedo"),
+            (self.falloff.is_some(), "--falloff"),
+        ];
+        let unheeded =
+            given.map(|(is_given, option)| (is_given && volumes.is_empty(), option, "volume: give --volume"));
+        let moving = "fog or steam: give --density fog or steam";
+        let of_functions = [
+            (self.phase.is_some() && !has_gas, "--phase", "volume of gas, and solids have normals instead"),
+            (self.frequency.is_some() && !has_clouds, "--frequency", "clouds: give --density clouds"),
+            (self.down.is_some() && !has_fog && !has_steam, "--down", moving),
+            (self.swirl_frames.is_some() && !has_fog && !has_steam, "--swirl-frames", moving),
+            (self.ellipse.is_some() && !has_fog && !has_steam, "--ellipse", moving),
+            (self.full_fog.is_some() && !has_fog, "--full-fog", "fog: give --density fog"),
+            (self.front.is_some() && !has_fog, "--front", "fog: give --density fog"),
             (
-                self.hypertexture.is_some(),
+                self.hypertexture.is_some() && !has_hypertexture,
                 "--hypertexture",
-                is_hypertexture,
                 "hypertexture: give --density hypertexture",
             ),
         ];
-        match cases.into_iter().find(|&(is_given, _, of, _)| is_given && !has(of)) {
-            Some((_, option, _, lacks)) => Err(Failure::Input(format!("{option}: the scene has no {lacks}"))),
+        match unheeded.into_iter().chain(of_functions).find(|(is_unheeded, ..)| *is_unheeded) {
+            Some((_, option, lacks)) => Err(Failure::Input(format!("{option}: the scene has no {lacks}"))),
             None => Ok(()),
         }
     }
