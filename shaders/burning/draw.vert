@@ -1,67 +1,9 @@
 #version 450
 
-// The mesh from the buffers that the simulation wrote: no vertex buffer, the stream of drawn triangles is the index buffer.
+// A vertex of the mesh.
 
-#include "burning/view.glsl"
-
-layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
-};
-
-layout(set = 0, binding = 6, std430) readonly buffer Welds {
-    uint welds[];
-};
-
-layout(set = 0, binding = 11, std430) readonly buffer Labels {
-    uint labels[];
-};
-
-layout(set = 0, binding = 14, std430) readonly buffer Cells {
-    uint cells[];
-};
-
-layout(set = 0, binding = 19, std430) readonly buffer Mapped {
-    vec4 mapped[]; // position, L / L0
-};
-
-layout(set = 0, binding = 20, std430) readonly buffer Normals {
-    vec4 normals[]; // unit vector, how charred
-};
-
-layout(set = 0, binding = 21, std430) readonly buffer Colors {
-    vec4 colors[]; // linear RGB, glow
-};
-
-layout(location = 0) out vec3 place;
-layout(location = 1) out vec3 rest_place;
-layout(location = 2) out vec4 normal;
-layout(location = 3) out vec4 color;
-
-// From the outside in: cold, virtual, initial, combustion-ready, deformed.
-vec3 area_color(uint label) {
-    vec3 colors_of_areas[5] = vec3[5](
-        vec3(0.6), vec3(0.1, 0.25, 0.8), vec3(0.8, 0.7, 0.1), vec3(0.8, 0.2, 0.03), vec3(0.08)
-    );
-    return colors_of_areas[min(label, 4u)];
-}
-
-// Neighbouring numbers get unlike colours.
-vec3 block_color(uint block) {
-    uint h = (block + 1u) * 0x9e3779b9u;
-    return 0.15 + 0.7 * vec3(h & 0xffu, (h >> 8u) & 0xffu, (h >> 16u) & 0xffu) / 255.0;
-}
+#include "burning/seen.glsl"
 
 void main() {
-    uint corner = uint(gl_VertexIndex);
-    uint vertex = welds[corner];
-    place = mapped[vertex].xyz;
-    rest_place = rest[vertex].xyz;
-    normal = normals[corner];
-    color = colors[corner];
-    if (view.mode.x == AREAS) {
-        color = vec4(area_color(labels[vertex]), 0.0);
-    } else if (view.mode.x == BLOCKS) {
-        color = vec4(block_color(cells[vertex]), 0.0);
-    }
-    gl_Position = view.view_projection * vec4(place, 1.0);
+    see(uint(gl_VertexIndex));
 }

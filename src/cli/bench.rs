@@ -7,7 +7,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::options::{CommonArgs, MeasureArgs, OutputArgs};
 use super::outcome;
-use super::paper::{PaperArgs, VariantOf, VariantWord, resolve, variant_words};
+use super::paper::{PaperArgs, VariantOf, VariantWord, benched, chosen, variant_words};
 use super::processes;
 use super::watch::watched;
 use crate::experiment::bench::{Bench, Loaded, build, load};
@@ -20,8 +20,12 @@ use crate::report::trace::TraceRun;
 
 #[derive(Debug, Clone, Args)]
 pub struct BenchArgs<P: PaperArgs> {
-    /// Variants to measure, comma-separated, or all
-    #[arg(long, value_delimiter = ',', default_value = P::BENCHED, value_parser = variant_words::<VariantOf<P>>())]
+    #[arg(
+        long,
+        help = format!("Variants to measure, comma-separated, or all [default: the preset's if it has one, or {}]", P::BENCHED),
+        value_delimiter = ',',
+        value_parser = variant_words::<VariantOf<P>>()
+    )]
     variant: Vec<VariantWord<VariantOf<P>>>,
     #[command(flatten)]
     scene: P,
@@ -49,7 +53,7 @@ pub fn run<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(), Failure> {
 fn measure<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(Record, Vec<TraceRun>), Failure> {
     let BenchArgs { scene, common: CommonArgs { machine, measure, output }, .. } = arguments;
     let study = scene.resolve(measure.process)?;
-    let variants = resolve(&arguments.variant);
+    let variants = chosen(&arguments.variant, scene, benched::<P>);
     let schedule = measure.schedule(FRAMES, REPEAT);
     let loaded = load(&study)?;
     let mut machine = Machine::open(&machine.resolve(), P::Study::NEEDS)?;

@@ -26,7 +26,7 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     const ABOUT: &'static str;
     /// Variants of a bench that names none, comma-separated.
     const BENCHED: &'static str;
-    /// The variant of a picture that names none, as the help calls it: its word, unless [`PaperArgs::rendered`] chooses.
+    /// The variant of a picture that names neither one nor a preset.
     const RENDERED: &'static str;
 
     /// What was typed, over the preset's numbers, over the defaults. `process` is which of several fresh processes this is.
@@ -35,9 +35,14 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     /// [`Failure::Input`] for options of which one would not be heeded.
     fn resolve(&self, process: u32) -> Result<Self::Study, Failure>;
 
-    /// The variant of a picture that names none.
+    /// The method of the preset that was named, where a preset has one of its own.
+    fn preset_variant(&self) -> Option<VariantOf<Self>> {
+        None
+    }
+
+    /// The variant of a picture that names none: the preset's, or the paper's.
     fn rendered(&self) -> VariantOf<Self> {
-        find(Self::RENDERED).unwrap_or(VariantOf::<Self>::ALL[0])
+        self.preset_variant().or_else(|| find(Self::RENDERED)).unwrap_or(VariantOf::<Self>::ALL[0])
     }
 
     /// What the main job measures, in the variants of [`PaperArgs::BENCHED`].
@@ -90,6 +95,19 @@ pub fn resolve<V: Variant>(words: &[VariantWord<V>]) -> Vec<V> {
 pub fn benched<P: PaperArgs>() -> Vec<VariantOf<P>> {
     let words = P::BENCHED.split(',').filter_map(find).map(VariantWord::One);
     resolve(&words.collect::<Vec<_>>())
+}
+
+/// The variants that were named, or else the preset's, or else `usual`.
+pub fn chosen<P: PaperArgs>(
+    words: &[VariantWord<VariantOf<P>>],
+    scene: &P,
+    usual: impl FnOnce() -> Vec<VariantOf<P>>,
+) -> Vec<VariantOf<P>> {
+    match (words, scene.preset_variant()) {
+        ([], Some(variant)) => vec![variant],
+        ([], None) => usual(),
+        (words, _) => resolve(words),
+    }
 }
 
 /// What a paper does.

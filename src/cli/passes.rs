@@ -6,19 +6,19 @@ use serde_json::{Value, json};
 use super::failure::Failure;
 use super::options::MachineArgs;
 use super::outcome;
-use super::paper::{PaperArgs, VariantOf, VariantWord, resolve, variant_words};
+use super::paper::{PaperArgs, VariantOf, VariantWord, chosen, variant_words};
 use crate::experiment::bench::build;
 use crate::experiment::machine::Machine;
 use crate::experiment::study::Study;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Mode, PassInfo};
-use crate::papers::{Paper, Target, Variant};
+use crate::papers::{Kind, Paper, Target, Variant};
 use crate::report::table::{Align, Table};
 
 #[derive(Debug, Clone, Args)]
 pub struct PassesArgs<P: PaperArgs> {
-    /// Variants to list, comma-separated, or all
-    #[arg(long, value_delimiter = ',', default_value = "all", value_parser = variant_words::<VariantOf<P>>())]
+    /// Variants to list, comma-separated, or all [default: the preset's if it has one, or all]
+    #[arg(long, value_delimiter = ',', value_parser = variant_words::<VariantOf<P>>())]
     variant: Vec<VariantWord<VariantOf<P>>>,
     /// Print JSON
     #[arg(long)]
@@ -41,7 +41,7 @@ pub fn run<P: PaperArgs>(arguments: &PassesArgs<P>) -> Result<(), Failure> {
     let scene = study.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(), P::Study::NEEDS)?;
     let mut listed = Vec::new();
-    for variant in resolve(&arguments.variant) {
+    for variant in chosen(&arguments.variant, &arguments.scene, || VariantOf::<P>::ALL.to_vec()) {
         let mut built = build(&machine, &study, &scene, variant)?;
         let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
         let passes = sample.passes.iter().map(|p| (p.info.clone(), p.calls)).collect();
@@ -121,7 +121,12 @@ fn shape(target: &Target) -> String {
         }
         Resource::Buffer(view) => {
             let rows = view.buffer().size_bytes() / 4 / u64::from(target.columns.max(1));
-            format!("{rows} rows of {} floats", target.columns)
+            let values = match target.kind {
+                Kind::F32 => "f32",
+                Kind::U32 => "u32",
+                Kind::I32 => "i32",
+            };
+            format!("{rows} rows of {} {values}", target.columns)
         }
         Resource::Sampler(_) => String::new(),
     }

@@ -18,7 +18,11 @@ use crate::papers::{Paper, Variant};
 
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs<P: PaperArgs> {
-    #[arg(long, help = format!("Variant to render [default: {}]", P::RENDERED), value_parser = variant_word::<VariantOf<P>>())]
+    #[arg(
+        long,
+        help = format!("Variant to render [default: the preset's if it has one, or {}]", P::RENDERED),
+        value_parser = variant_word::<VariantOf<P>>()
+    )]
     variant: Option<VariantOf<P>>,
     /// Frame N, or the frames A..B from A up to but not including B
     #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]

@@ -11,7 +11,7 @@ use super::machine::Machine;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Device, Mode, transfer};
 use crate::image::{self, Raster, Rgba8};
-use crate::papers::{Paper, Target};
+use crate::papers::{Kind, Paper, Target};
 
 /// Records frame `number` and reads its picture; numbers rise, unless the paper is restarted.
 ///
@@ -37,9 +37,14 @@ pub fn read_target(device: &Arc<Device>, target: &Target) -> Result<Raster, Erro
     match &target.resource {
         Resource::Buffer(view) => {
             let bytes = transfer::read_buffer(device, view.buffer())?;
-            let values: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
             let columns = (target.columns as usize).max(1);
-            Ok(Raster::table(values.len() / columns, columns, values)?)
+            let rows = bytes.len() / 4 / columns;
+            let raster = match target.kind {
+                Kind::F32 => Raster::table(rows, columns, bytemuck::pod_collect_to_vec::<u8, f32>(&bytes)),
+                Kind::U32 => Raster::table(rows, columns, bytemuck::pod_collect_to_vec::<u8, u32>(&bytes)),
+                Kind::I32 => Raster::table(rows, columns, bytemuck::pod_collect_to_vec::<u8, i32>(&bytes)),
+            };
+            Ok(raster?)
         }
         Resource::Image(view) => {
             let bytes = transfer::read_image(device, view)?;

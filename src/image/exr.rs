@@ -9,7 +9,7 @@ use super::raster::{Planes, Raster, Samples};
 
 const CHANNEL_NAMES: [&[&str]; 4] = [&["Y"], &["R", "G"], &["R", "G", "B"], &["R", "G", "B", "A"]];
 
-/// Writes a raster that is not empty as OpenEXR, every value unchanged.
+/// Writes a raster that is not empty as OpenEXR, every value unchanged but signed integers beyond 2^24.
 pub(super) fn encode(file: &mut (impl Write + Seek), raster: &Raster) -> io::Result<()> {
     let planes = raster.planes();
     let size = (planes.width, planes.height);
@@ -38,6 +38,10 @@ fn plane(samples: &Samples, planes: &Planes, layer: usize, channel: usize) -> Fl
     match samples {
         Samples::F32(values) => FlatSamples::F32(every(values, of)),
         Samples::U32(values) => FlatSamples::U32(every(values, of)),
+        // The format has no signed integers.
+        Samples::I32(values) => {
+            FlatSamples::F32(every(values, of).into_iter().map(|value: i32| value as f32).collect())
+        }
         Samples::U16(values) => FlatSamples::U32(every(values, of)),
         Samples::U8(values) => FlatSamples::U32(every(values, of)),
     }

@@ -10,6 +10,7 @@ pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
     match raster.samples() {
         Samples::F32(values) => array(file, &dimensions, values),
         Samples::U32(values) => array(file, &dimensions, values),
+        Samples::I32(values) => array(file, &dimensions, values),
         Samples::U16(values) => array(file, &dimensions, values),
         Samples::U8(values) => array(file, &dimensions, values),
     }
@@ -72,6 +73,10 @@ mod tests {
         let (header, data) = parse(&bytes);
         assert_header(&header, "<u4", &[2, 1]);
         assert_eq!(data, [255, 255, 255, 255, 1, 0, 0, 0]);
+        let bytes = written(&Raster::table(1, 2, vec![-2i32, 1]).unwrap());
+        let (header, data) = parse(&bytes);
+        assert_header(&header, "<i4", &[1, 2]);
+        assert_eq!(data, [254, 255, 255, 255, 1, 0, 0, 0]);
         let bytes = written(&Raster::table(1, 2, vec![258u16, 3]).unwrap());
         let (header, data) = parse(&bytes);
         assert_header(&header, "<u2", &[1, 2]);

@@ -79,6 +79,7 @@ pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
         (Samples::F32(values), 1) => (view::ramp(values, 1).into(), ExtendedColorType::Rgb8),
         (Samples::F32(values), channels) => (view::linear_light(values, channels).into(), ExtendedColorType::Rgb8),
         (Samples::U32(values), channels) => (view::ramp(values, channels).into(), ExtendedColorType::Rgb8),
+        (Samples::I32(values), channels) => (view::ramp(values, channels).into(), ExtendedColorType::Rgb8),
     };
     store(file, &bytes, size, color)
 }

@@ -5,6 +5,7 @@ use super::Error;
 pub enum Samples {
     F32(Vec<f32>),
     U32(Vec<u32>),
+    I32(Vec<i32>),
     U16(Vec<u16>),
     U8(Vec<u8>),
 }
@@ -15,6 +16,7 @@ impl Samples {
         match self {
             Self::F32(values) => values.len(),
             Self::U32(values) => values.len(),
+            Self::I32(values) => values.len(),
             Self::U16(values) => values.len(),
             Self::U8(values) => values.len(),
         }
@@ -34,6 +36,12 @@ impl From<Vec<f32>> for Samples {
 impl From<Vec<u32>> for Samples {
     fn from(values: Vec<u32>) -> Self {
         Self::U32(values)
+    }
+}
+
+impl From<Vec<i32>> for Samples {
+    fn from(values: Vec<i32>) -> Self {
+        Self::I32(values)
     }
 }
 

@@ -73,18 +73,38 @@ pub trait Paper {
 pub struct Target {
     pub name: String,
     pub resource: Resource,
-    /// Floats a row, for a buffer; images have their own shape.
+    /// Values a row, for a buffer; images have their own shape.
     pub columns: u32,
+    /// Of a buffer's values; images have their own format.
+    pub kind: Kind,
+}
+
+/// What the 32-bit values of a buffer are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    F32,
+    U32,
+    I32,
 }
 
 impl Target {
     /// An image.
     pub fn image(name: impl Into<String>, view: &Arc<ImageView>) -> Self {
-        Target { name: name.into(), resource: view.into(), columns: 0 }
+        Target { name: name.into(), resource: view.into(), columns: 0, kind: Kind::F32 }
     }
 
     /// A buffer of rows of `columns` 32-bit floats.
     pub fn table(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
-        Target { name: name.into(), resource: buffer.into(), columns }
+        Target { name: name.into(), resource: buffer.into(), columns, kind: Kind::F32 }
+    }
+
+    /// A buffer of rows of `columns` unsigned 32-bit integers.
+    pub fn words(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
+        Target { kind: Kind::U32, ..Self::table(name, buffer, columns) }
+    }
+
+    /// A buffer of rows of `columns` signed 32-bit integers.
+    pub fn integers(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
+        Target { kind: Kind::I32, ..Self::table(name, buffer, columns) }
     }
 }

@@ -13,5 +13,6 @@ mod pictures;
 mod refinement;
 mod refusals;
 mod solid;
+mod textures;
 mod time;
 mod twin;

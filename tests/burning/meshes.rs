@@ -1,15 +1,17 @@
 //! Meshes as they come: degenerate, non-manifold, in pieces; and counts.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
-use fumarole::papers::Paper;
+use fumarole::gpu::Device;
 use fumarole::papers::burning::model::{Model, with_triangles};
 use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::Vec3;
 
 use crate::common::gpu_test;
-use crate::fire::Fire;
+use crate::fire::{Fire, quick};
 
 fn mesh(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     let mut mesh = Mesh {
@@ -23,14 +25,23 @@ fn mesh(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     mesh
 }
 
-/// Burns out, with pictures.
-fn burn(device: &std::sync::Arc<fumarole::gpu::Device>, mesh: &Mesh) -> Fire {
-    let mut fire = Fire::shell(device, mesh);
+/// Burns out by every method, with pictures; the shell's fire.
+fn burn(device: &Arc<Device>, mesh: &Mesh) -> Fire {
+    for &variant in Variant::ALL.iter().filter(|v| **v != Variant::Shell) {
+        burn_by(device, mesh, variant);
+    }
+    burn_by(device, mesh, Variant::Shell)
+}
+
+fn burn_by(device: &Arc<Device>, mesh: &Mesh, variant: Variant) -> Fire {
+    // Two levels are few enough for a mesh of thousands of triangles.
+    let levels = (variant != Variant::Shell).then_some(2);
+    let mut fire = Fire::new(device, variant, &Parameters { levels, ..quick() }, mesh);
     [0, 30, 60, 100, 160, 260].into_iter().for_each(|number| fire.frame(number));
     let buffers = fire.paper.buffers();
     let drawn: Vec<f32> =
         [&buffers.mapped, &buffers.normals, &buffers.colors].into_iter().flat_map(|b| fire.read::<f32>(b)).collect();
-    assert!(drawn.iter().all(|v| v.is_finite()), "{}", mesh.name);
+    assert!(drawn.iter().all(|v| v.is_finite()), "{} {variant:?}", mesh.name);
     let state = fire.state();
     assert!(state.vertices.iter().flatten().chain(state.rotations.iter().flatten()).all(|v| v.is_finite()));
     assert_eq!(state.counts.live_vertices, 0);

@@ -6,7 +6,7 @@ use fumarole::gpu::transfer::read_image;
 use fumarole::image::Rgba8;
 use fumarole::image::golden::{self, Tolerance};
 use fumarole::papers::burning::model::with_triangles;
-use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::papers::burning::{Parameters, Shading, Variant};
 use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 
@@ -22,6 +22,31 @@ fn object(variant: Variant) -> Mesh {
         Variant::LowPoly | Variant::FullySubdivided => shapes::cuboid(),
         _ => with_triangles(&MeshSource::Bunny.load().unwrap(), 2000),
     }
+}
+
+#[test]
+fn the_object_fills_its_share_of_the_picture() {
+    gpu_test(|device| {
+        // A tall object its height, a wide one the width.
+        for (mesh, by_height) in [(MeshSource::Bunny, true), (MeshSource::Teapot, false)] {
+            let (width, height) = (120, if by_height { 90 } else { 120 });
+            let parameters =
+                Parameters { shading: Shading::Normals, fire: 0, smoke: 0, width, height, ..Parameters::default() };
+            let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh.load().unwrap());
+            fire.frame(0);
+            let texels = read_image(device, fire.paper.picture()).unwrap();
+            let is_object = |i: u32| texels[4 * i as usize..][..3] != texels[..3];
+            let drawn: Vec<u32> = (0..width * height).filter(|i| is_object(*i)).collect();
+            let extent = |at: fn(u32, u32) -> u32| {
+                let places = drawn.iter().map(|i| at(*i, width));
+                f64::from(places.clone().max().unwrap() - places.min().unwrap() + 1)
+            };
+            let columns = extent(|i, width| i % width) / f64::from(width);
+            let rows = extent(|i, width| i / width) / f64::from(height);
+            let (filled, other) = if by_height { (rows, columns) } else { (columns, rows) };
+            assert!((filled - 0.8).abs() < 0.025 && other < 0.82, "{mesh}: {columns} x {rows}");
+        }
+    });
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! `burning` through the binary: its passes, its record, its experiments, and what it refuses.
 
 use std::fs;
+use std::path::Path;
 
+use fumarole::image::{Rgba8, write_png};
 use serde_json::Value;
 
 use super::program::{ONCE, Program, assert_schema, burning, device, entries, folder, fumarole, read_json};
@@ -44,6 +46,9 @@ fn the_passes_follow_the_chapters() {
             passes.insert(1, "refinement");
         }
         assert_eq!(names(&listed["passes"]), passes, "{}", listed["variant"]);
+        // Everything static is uploaded once (3.7.4): no pass of a frame moves data between host and device.
+        let mut kinds = listed["passes"].as_array().unwrap().iter().map(|pass| pass["kind"].as_str().unwrap());
+        assert!(kinds.all(|kind| ["compute", "graphics"].contains(&kind)), "{listed}");
     }
     let unlit = burning("passes --json --variant shell --fire 0 --smoke 0 --size 48x32").on_test_device();
     let unlit = unlit.run().succeeded().json();
@@ -75,17 +80,17 @@ fn a_bench_says_what_burns() {
 
 #[test]
 fn presets_are_the_dissertation_s_objects() {
-    for (preset, triangles, fire, smoke) in [
-        ("3.8", 15_949, 3000, 1800),
-        ("box", 12, 2000, 500),
-        ("door", 12, 2000, 500),
-        ("solid-45k", 45_000, 2000, 500),
-        ("melt-40k", 40_000, 2000, 500),
+    for (preset, variant, triangles, fire, smoke) in [
+        ("3.8", "shell", 15_949, 3000, 1800),
+        ("box", "low-poly", 12, 2000, 500),
+        ("door", "low-poly", 12, 2000, 500),
+        ("solid-45k", "solid", 45_000, 2000, 500),
+        ("melt-40k", "melting", 40_000, 2000, 500),
     ] {
         let bench = burning("bench --json --quiet --size 16x12 --levels 0").on_test_device();
         let record = bench.args("--preset").arg(preset).args("--frames 1").args(BRIEF).run().succeeded().json();
         let run = &record["runs"][0];
-        assert_eq!(run["preset"], preset);
+        assert_eq!((&run["preset"], &run["variant"]), (&preset.into(), &variant.into()));
         let config = &run["config"];
         // Splitting and simplifying change a few triangles at a time.
         assert!(config["triangles"].as_i64().unwrap().abs_diff(triangles) <= 4, "{preset}: {}", config["triangles"]);
@@ -99,6 +104,66 @@ fn presets_are_the_dissertation_s_objects() {
 }
 
 #[test]
+fn a_preset_chooses_its_method_unless_one_is_named() {
+    let out = folder();
+    small("render --quiet --preset solid-45k --triangles 300 --out .").inside(out.path()).run().succeeded();
+    small("render --quiet --preset solid-45k --triangles 300 --out . --variant shell")
+        .inside(out.path())
+        .run()
+        .succeeded();
+    assert_eq!(entries(out.path()), ["burning-shell-0000.png", "burning-solid-0000.png"]);
+    let listed = |options: &str| {
+        let listed = small(&format!("passes --json --levels 1 {options}")).run().succeeded().json();
+        listed.as_array().unwrap().iter().map(|l| l["variant"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(listed("--preset door"), ["low-poly"]);
+    assert_eq!(listed("--preset door --variant fully-subdivided,shell"), ["shell", "fully-subdivided"]);
+    let bench = small("bench --json --quiet --preset melt-40k --triangles 300 --variant solid").args(ONCE);
+    let runs = bench.run().succeeded().json()["runs"].clone();
+    assert_eq!((runs.as_array().unwrap().len(), &runs[0]["variant"]), (1, &"solid".into()));
+}
+
+#[test]
+fn a_picture_covers_the_mesh() {
+    let out = folder();
+    let picture = |width: u32, height: u32, color: [u8; 4]| {
+        Rgba8::new(width, height, color.repeat((width * height) as usize)).unwrap()
+    };
+    let write = |name: &str, picture: &Rgba8| write_png(&out.path().join(name), picture).unwrap();
+    write("blue.png", &picture(4, 4, [0, 0, 255, 255]));
+    write("dot.png", &picture(1, 1, [0, 0, 255, 0]));
+    write("wide.png", &picture(8193, 1, [9; 4]));
+    let whole = fs::read(out.path().join("blue.png")).unwrap();
+    fs::write(out.path().join("cut.png"), &whole[..whole.len() / 2]).unwrap();
+    fs::write(out.path().join("no.png"), "not a picture").unwrap();
+    let cold = |options: &str| {
+        let render = small("render --quiet --source 900,0,0 --image out.png").args(options).inside(out.path());
+        render.run().succeeded();
+        fumarole::image::read_png(&out.path().join("out.png")).unwrap()
+    };
+    // The file's alpha does not count, and one texel is a picture.
+    let blue = cold("--mesh box --texture blue.png");
+    assert!(blue == cold("--mesh box --texture dot.png"));
+    let count = |picture: &Rgba8| picture.pixels().chunks_exact(4).filter(|p| p[2] > 100 && p[0] == 0).count();
+    assert!(count(&blue) > 300 && count(&cold("--mesh box")) == 0);
+    assert_eq!(count(&cold("--mesh box --texture blue.png --albedo 1,1,0")), 0, "the albedo is a factor");
+    let bench = small("bench --json --quiet --mesh box --texture blue.png").args(ONCE).inside(out.path());
+    let config = bench.run().succeeded().json()["runs"][0]["config"].clone();
+    assert_eq!((&config["texture"], &config["material"]), (&"blue.png".into(), &Value::Null));
+    for (options, parts) in [
+        ("--mesh box --texture gone.png", &["gone.png"][..]),
+        ("--mesh box --texture cut.png", &["cut.png"]),
+        ("--mesh box --texture no.png", &["no.png"]),
+        ("--mesh box --texture .", &["error"]),
+        ("--mesh box --texture wide.png", &["--texture wide.png", "8192"]),
+        ("--mesh bunny --texture blue.png", &["--texture blue.png", "bunny", "texture coordinates"]),
+    ] {
+        small("render").args(options).inside(out.path()).run().refused(2, parts);
+    }
+    small("render --texture blue.png --material wood").run().misused(&["--texture", "--material"]);
+}
+
+#[test]
 fn a_picture_and_its_dumps() {
     let out = folder();
     let render = small("render --quiet --frame 40 --image fire.png --dump state=state.npy --dump depth=depth.exr");
@@ -107,6 +172,74 @@ fn a_picture_and_its_dumps() {
     small("render --quiet --frame 39..41 --image of.png").args(BALL).inside(out.path()).run().succeeded();
     let read = |name: &str| fs::read(out.path().join(name)).unwrap();
     assert!(read("fire.png") == read("of-0040.png") && read("of-0039.png") != read("of-0040.png"));
+}
+
+#[test]
+fn counters_and_flags_are_dumped_as_the_integers_that_they_are() {
+    let out = folder();
+    let kinds = [
+        ("labels", "u4", 1),
+        ("triangle-labels", "u4", 1),
+        ("alive", "u4", 1),
+        ("removed", "u4", 1),
+        ("cells", "u4", 1),
+        ("flame-groups", "u4", 4),
+        ("blocks", "i4", 8),
+        ("statuses", "i4", 1),
+        ("state", "f4", 4),
+    ];
+    let mut render = small("render --quiet --preset box --levels 2 --frame 30 --image fire.png");
+    for (name, ..) in kinds {
+        render = render.arg("--dump").arg(format!("{name}={name}.npy"));
+    }
+    render.inside(out.path()).run().succeeded();
+    let values = |name: &str, kind: &str, columns: usize| -> Vec<[u8; 4]> {
+        let bytes = fs::read(out.path().join(format!("{name}.npy"))).unwrap();
+        let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+        let header = String::from_utf8_lossy(&bytes[10..end]).into_owned();
+        let data: Vec<[u8; 4]> = bytes[end..].chunks_exact(4).map(|b| b.try_into().unwrap()).collect();
+        let shape = format!("({}, {columns})", data.len() / columns);
+        assert!(header.contains(&format!("'<{kind}'")) && header.contains(&shape), "{name}: {header}");
+        data
+    };
+    let words = |name: &str, kind: &str, columns| -> Vec<i64> {
+        let number =
+            |b: [u8; 4]| if kind == "i4" { i32::from_le_bytes(b).into() } else { u32::from_le_bytes(b).into() };
+        values(name, kind, columns).into_iter().map(number).collect()
+    };
+    let all: Vec<Vec<i64>> = kinds.iter().map(|(name, kind, columns)| words(name, kind, *columns)).collect();
+    let [labels, triangle_labels, alive, removed, cells, _, blocks, statuses, _] = &all[..] else { panic!() };
+    assert!(labels.contains(&4) && labels.iter().chain(triangle_labels).all(|l| (0..=4).contains(l)));
+    assert!(alive.iter().chain(removed).all(|f| (0..=1).contains(f)) && cells.iter().all(|c| (0..27).contains(c)));
+    assert!((removed.len(), statuses.len()) == (12 * 16, 12 * 21) && statuses.contains(&-1) && statuses.contains(&1));
+    // The sums of signs go both ways.
+    assert!(blocks.iter().any(|b| *b < 0) && blocks.iter().any(|b| *b > 0), "{blocks:?}");
+    let passes = small("passes --preset box --levels 2").run().succeeded();
+    for part in ["labels (", " of 1 u32)", " of 8 i32)", " of 4 f32)"] {
+        assert!(passes.stdout.contains(part), "{part}: {}", passes.stdout);
+    }
+}
+
+#[test]
+fn every_kind_of_file_burns() {
+    let out = folder();
+    let meshes = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/meshes");
+    for file in [
+        "spider.obj",
+        "concave_polygon.obj",
+        "wuson.stl",
+        "cube_binary.ply",
+        "Mesh_PrimitiveMode_05.gltf",
+        "teapot.obj",
+    ] {
+        for variant in ["shell", "melting"] {
+            let bench = small("bench --json --quiet --first-frame 20 --frames 1 --levels 1 --variant").arg(variant);
+            let record =
+                bench.arg("--mesh").arg(meshes.join(file)).args(BRIEF).inside(out.path()).run().succeeded().json();
+            let results = &record["runs"][0]["results"];
+            assert!(results["active_vertices"].as_u64().unwrap() > 0, "{file} {variant}: {results}");
+        }
+    }
 }
 
 #[test]

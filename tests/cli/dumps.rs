@@ -15,7 +15,7 @@ fn targets(variant: &str) -> Vec<(String, String)> {
 }
 
 /// The numbers that a shape speaks of, with the type of its elements: `64 x 64 x 5 layers R16G16B16A16_SFLOAT` or
-/// `286 rows of 8 floats`.
+/// `286 rows of 8 f32`.
 fn dimensions(shape: &str) -> Vec<u64> {
     shape.split(' ').filter_map(|word| word.parse().ok()).collect()
 }

@@ -3,6 +3,7 @@
 mod experiment;
 
 use std::convert::Infallible;
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use glam::Vec3;
@@ -13,7 +14,7 @@ use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, pa
 use super::paper::PaperArgs;
 use crate::experiment::burning::Setup;
 use crate::experiment::burning::presets::Preset;
-use crate::papers::burning::{Material, Shading, seen_from};
+use crate::papers::burning::{Material, Shading, Variant, seen_from};
 use crate::scene::MeshSource;
 
 /// What the surface is made of.
@@ -94,7 +95,7 @@ fn parse_time_step(text: &str) -> Result<f64, String> {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Scene")]
 pub struct BurningArgs {
-    /// Take object and numbers of a section; options given beside it win
+    /// Take object, numbers and method of a section; options given beside it win
     #[arg(long, value_enum)]
     preset: Option<PresetWord>,
     /// What burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; scaled to a diagonal of 1,
@@ -191,7 +192,10 @@ pub struct BurningArgs {
     /// What the surface is made of [default: wood]
     #[arg(long, value_enum)]
     material: Option<MaterialWord>,
-    /// Albedo, linear red,green,blue, each 0 to 1 [default: 0.36,0.17,0.07]
+    /// PNG that covers the mesh by its texture coordinates, in place of a material
+    #[arg(long, value_name = "FILE.png", conflicts_with = "material")]
+    texture: Option<PathBuf>,
+    /// Albedo, linear red,green,blue, each 0 to 1; a factor of a texture [default: 0.36,0.17,0.07, with a texture 1,1,1]
     #[arg(long, value_name = "R,G,B", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     albedo: Option<[f32; 3]>,
     /// What colours the mesh [default: lit]
@@ -229,6 +233,10 @@ impl PaperArgs for BurningArgs {
         let mut setup = Setup::default();
         setup.parameters.first_frame = 420;
         setup
+    }
+
+    fn preset_variant(&self) -> Option<Variant> {
+        self.preset.map(|word| word.preset().variant())
     }
 
     fn resolve(&self, process: u32) -> Result<Setup, Failure> {
@@ -281,6 +289,10 @@ impl BurningArgs {
             MaterialWord::Wood => Material::Wood,
         };
         set(&mut p.material, self.material.map(material));
+        if self.texture.is_some() {
+            setup.texture.clone_from(&self.texture);
+            p.albedo = Vec3::ONE;
+        }
         set(&mut p.albedo, self.albedo.map(Vec3::from));
         let shading = |word| match word {
             ShadingWord::Lit => Shading::Lit,

@@ -125,7 +125,7 @@ impl PaperArgs for GasArgs {
         "Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent), pass by pass";
     // Tracing shadows from every sample takes many times as long.
     const BENCHED: &'static str = "no-volume,none,surfaces,table";
-    const RENDERED: &'static str = "the preset's; table without one";
+    const RENDERED: &'static str = "table";
 
     /// Figure 8 at half its size.
     fn quick() -> Setup {

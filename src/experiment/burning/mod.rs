@@ -6,6 +6,10 @@ pub mod rates;
 pub mod refining;
 pub mod strips;
 pub mod sweeps;
+pub mod texture;
+
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 use serde_json::{Map, Value, json};
@@ -22,7 +26,7 @@ use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::papers::Paper;
 use crate::papers::ParameterError;
 use crate::papers::burning::model::with_triangles;
-use crate::papers::burning::{Burning, NEEDS, Parameters, Variant};
+use crate::papers::burning::{Burning, NEEDS, Parameters, Texture, Variant};
 use crate::scene::{Mesh, MeshSource};
 
 /// What a user set up.
@@ -35,6 +39,8 @@ pub struct Setup {
     pub stretch: Vec3,
     /// Triangles that the mesh is simplified or subdivided to, 4 to 4,000,000; as it is, without.
     pub triangles: Option<u32>,
+    /// A PNG that covers the mesh by its texture coordinates, in place of the material.
+    pub texture: Option<PathBuf>,
     pub preset: Option<String>,
     /// Which of several fresh processes this is.
     pub process: u32,
@@ -44,13 +50,22 @@ impl Default for Setup {
     /// The scanned bunny.
     fn default() -> Self {
         let parameters = Parameters::default();
-        Setup { parameters, mesh: MeshSource::Bunny, stretch: Vec3::ONE, triangles: None, preset: None, process: 0 }
+        Setup {
+            parameters,
+            mesh: MeshSource::Bunny,
+            stretch: Vec3::ONE,
+            triangles: None,
+            texture: None,
+            preset: None,
+            process: 0,
+        }
     }
 }
 
 /// A setup with its mesh loaded and brought to its count.
 pub struct Scene {
     pub mesh: Mesh,
+    pub texture: Option<Arc<Texture>>,
 }
 
 impl Setup {
@@ -88,7 +103,18 @@ impl Study for Setup {
             Some(count) => with_triangles(&mesh, count as usize),
             None => mesh,
         };
-        Ok(Scene { mesh })
+        let texture = match &self.texture {
+            None => None,
+            Some(path) if mesh.texture_coordinates.is_empty() => {
+                return Err(Error::Input(format!(
+                    "--texture {}: the mesh {} has no texture coordinates; give one that has, or leave the texture out",
+                    path.display(),
+                    self.mesh
+                )));
+            }
+            Some(path) => Some(Arc::new(texture::load(path)?)),
+        };
+        Ok(Scene { mesh, texture })
     }
 
     fn make(
@@ -98,7 +124,8 @@ impl Study for Setup {
         scene: &Scene,
         variant: Variant,
     ) -> Result<Burning, gpu::Error> {
-        Burning::new(shaders, label, variant, &self.parameters, &scene.mesh)
+        let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
+        Burning::new(shaders, label, variant, &parameters, &scene.mesh)
     }
 
     fn identity(&self) -> Identity {
@@ -145,7 +172,8 @@ impl Study for Setup {
             ("smoke", json!(p.smoke)),
             ("particle_radius", json!(p.particle_radius)),
             ("lod", json!(p.level_of_detail)),
-            ("material", json!(p.material.word())),
+            ("material", json!(scene.texture.is_none().then(|| p.material.word()))),
+            ("texture", json!(self.texture.as_ref().map(|path| path.display().to_string()))),
             ("albedo", json!(p.albedo.to_array())),
             ("shading", json!(p.shading.word())),
             ("camera", config::camera(paper.camera())),

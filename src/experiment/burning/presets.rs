@@ -55,6 +55,6 @@ impl Preset {
             Preset::Solid45k => (MeshSource::Box, Vec3::new(2.0, 1.0, 1.0), Some(45_000), few_particles),
             Preset::Melt40k => (MeshSource::Bunny, Vec3::ONE, Some(40_000), wax),
         };
-        Setup { parameters, mesh, stretch, triangles, preset: Some(self.word().to_owned()), process: 0 }
+        Setup { parameters, mesh, stretch, triangles, preset: Some(self.word().to_owned()), ..Setup::default() }
     }
 }

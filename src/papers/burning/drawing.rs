@@ -7,8 +7,9 @@ use glam::Vec3;
 
 use super::framing;
 use super::model::Model;
-use super::parameters::Parameters;
+use super::parameters::{Material, Parameters};
 use super::state::Buffers;
+use super::texture::Surface;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
@@ -40,11 +41,13 @@ pub struct Drawing {
     pub depth: Arc<ImageView>,
     /// 8-bit sRGB.
     pub picture: Arc<ImageView>,
+    /// Of an object that a picture covers.
+    pub surface: Option<Surface>,
 }
 
 impl Drawing {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// [`Error::Pass`] for a texture on a mesh without texture coordinates; what the Vulkan layer answers.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -68,7 +71,27 @@ impl Drawing {
         };
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let view = upload(device, &format!("{label}/view"), usage, bytemuck::bytes_of(&block))?;
-        let pass = Pass::graphics("draw", "3.8", "burning/draw.vert", "burning/draw.frag")
+        let coordinates = &model.lattice.texture_coordinates;
+        let surface = match &parameters.texture {
+            None => None,
+            Some(_) if coordinates.is_empty() => {
+                let problem = "the mesh has no texture coordinates for the texture".to_owned();
+                return Err(Error::Pass { pass: "draw".into(), problem });
+            }
+            Some(texture) => Some(Surface::new(shaders, label, texture, coordinates)?),
+        };
+        // A shader a material: devices that run both sides of a branch would pay for all of them.
+        let pass = match (&surface, parameters.material) {
+            (Some(surface), _) => {
+                Pass::graphics("draw", "3.8", "burning/draw-textured.vert", "burning/draw-textured.frag")
+                    .with("TextureCoordinates", &surface.coordinates)
+                    .with("TextureLevels", &surface.levels)
+                    .with("texels", &surface.texels)
+            }
+            (None, Material::Plain) => Pass::graphics("draw", "3.8", "burning/draw.vert", "burning/draw.frag"),
+            (None, Material::Wood) => Pass::graphics("draw", "3.8", "burning/draw.vert", "burning/draw-wood.frag"),
+        };
+        let pass = pass
             .with("constants", &buffers.constants)
             .with("view", &view)
             .with("Rest", &buffers.rest)
@@ -83,7 +106,7 @@ impl Drawing {
             .color(&picture, BACKGROUND, Blend::Replace)
             .depth(&depth, FAR, DepthTest::LessWrite)
             .build(shaders)?;
-        Ok(Drawing { pass, camera, view, depth, picture })
+        Ok(Drawing { pass, camera, view, depth, picture, surface })
     }
 
     /// # Errors

@@ -26,6 +26,7 @@ pub mod reference;
 mod refinement;
 mod removal;
 mod state;
+mod texture;
 mod wire;
 
 use std::sync::Arc;
@@ -48,6 +49,7 @@ pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
 pub use self::state::{Buffers, Counts};
+pub use self::texture::{Level, Texture};
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
@@ -310,18 +312,31 @@ impl Paper for Burning {
 
     fn targets(&self) -> Vec<Target> {
         let (state, rotations) = self.state();
+        let buffers = &self.buffers;
         let mut targets = vec![
-            Target::table("rest", &self.buffers.rest, 4),
+            Target::table("rest", &buffers.rest, 4),
             Target::table("state", state, 4),
+            Target::words("labels", &buffers.labels, 1),
+            Target::words("triangle-labels", &buffers.triangle_labels, 1),
+            Target::words("alive", &buffers.alive, 1),
+            Target::words("removed", &buffers.removed, 1),
+            Target::words("cells", &buffers.cells, 1),
+            Target::integers("blocks", &buffers.blocks, 8),
             Target::table("rotations", rotations, 4),
-            Target::table("mapped", &self.buffers.mapped, 4),
-            Target::table("normals", &self.buffers.normals, 4),
-            Target::table("colors", &self.buffers.colors, 4),
+            Target::table("mapped", &buffers.mapped, 4),
+            Target::table("normals", &buffers.normals, 4),
+            Target::table("colors", &buffers.colors, 4),
             Target::image("depth", &self.drawing.depth),
             Target::image("picture", &self.drawing.picture),
         ];
+        if let Some(refinement) = &self.refinement {
+            targets.push(Target::integers("statuses", &refinement.statuses, 1));
+        }
+        if let Some(surface) = &self.drawing.surface {
+            targets.push(Target::table("texture-coordinates", &surface.coordinates, 2));
+        }
         if let Some(flames) = &self.flames {
-            targets.push(Target::table("flame-groups", &flames.groups, 4));
+            targets.push(Target::words("flame-groups", &flames.groups, 4));
             targets.push(Target::table("particles", &flames.particles, 8));
         }
         targets

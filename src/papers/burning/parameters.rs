@@ -1,7 +1,10 @@
 //! What a user can set, under the dissertation's own words.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
+use super::texture::Texture;
 use crate::papers::ParameterError;
 use crate::papers::parameter::components;
 use crate::scene::Camera;
@@ -163,7 +166,9 @@ pub struct Parameters {
     /// Finest level that is drawn, 0 to 5; without, by the distance of the camera (4.5).
     pub level_of_detail: Option<u32>,
     pub material: Material,
-    /// Linear RGB, 0 to 1.
+    /// Covers the object in place of the material; the mesh must have texture coordinates.
+    pub texture: Option<Arc<Texture>>,
+    /// Linear RGB, 0 to 1; a factor of the texture.
     pub albedo: Vec3,
     pub shading: Shading,
     /// Without, the object fills 80 % of the picture's height.
@@ -208,6 +213,7 @@ impl Default for Parameters {
             particle_radius: 0.02,
             level_of_detail: None,
             material: Material::Wood,
+            texture: None,
             albedo: Vec3::new(0.36, 0.17, 0.07),
             shading: Shading::Lit,
             camera: None,

@@ -6,7 +6,7 @@ use ash::vk;
 use glam::Vec3;
 
 use super::model::Model;
-use super::parameters::{Material, Parameters, TICKS_PER_S, Variant};
+use super::parameters::{Parameters, TICKS_PER_S, Variant};
 use crate::gpu::transfer::{copy_buffers, upload};
 use crate::gpu::{Buffer, BufferDesc, Device, Error, ShaderLibrary};
 use crate::host_block;
@@ -273,7 +273,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         melting: [p.omega, p.chi, p.upsilon, 0.0],
         solid: [model.outward, retires_at, 0.0, 0.0],
         albedo: with(p.albedo, fall),
-        choices: [p.active_limit, p.keep_connected.into(), p.noise_seed(), (p.material == Material::Wood).into()],
+        choices: [p.active_limit, p.keep_connected.into(), p.noise_seed(), 0],
         tree: [model.levels, model.coarse_count(), p.fire, p.smoke],
     }
 }

@@ -1,0 +1,12 @@
+#version 450
+
+// A surface of wood.
+
+#include "burning/lit.glsl"
+#include "burning/wood.glsl"
+
+layout(location = 0) out vec4 shaded;
+
+void main() {
+    shaded = lit(vec3(wood(rest_place)));
+}

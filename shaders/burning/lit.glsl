@@ -1,0 +1,30 @@
+// Two-sided Lambert and ambient light on the charring surface, with the glow of its combustion-ready edge.
+
+#include "burning/constants.glsl"
+#include "burning/view.glsl"
+
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec3 rest_place;
+layout(location = 2) in vec4 normal; // unit vector, how charred
+layout(location = 3) in vec4 color; // charred albedo, glow
+
+const vec3 EMBERS = vec3(1.0, 0.35, 0.05);
+
+// `pattern` is what the surface's material makes of the albedo, a factor of it.
+vec4 lit(vec3 pattern) {
+    vec3 n = normalize(normal.xyz);
+    if (view.mode.x == NORMALS) {
+        return vec4(0.5 + 0.5 * n, 1.0);
+    }
+    vec3 to_eye = view.eye.xyz - place;
+    if (dot(n, to_eye) < 0.0) {
+        n = -n;
+    }
+    vec3 albedo = color.rgb;
+    if (view.mode.x == LIT) {
+        // `color` mixes the plain albedo with that of char; this puts the pattern's in its place.
+        albedo += (1.0 - normal.w) * constants.albedo.rgb * (pattern - 1.0);
+    }
+    float light = view.to_light.w + (1.0 - view.to_light.w) * max(dot(n, view.to_light.xyz), 0.0);
+    return vec4(albedo * light + color.a * EMBERS, 1.0);
+}
