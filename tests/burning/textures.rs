@@ -131,7 +131,7 @@ fn a_seam_stays_sharp_where_its_vertices_are_welded() {
                 red += u32::from(r > 120);
                 blue += u32::from(b > 120);
             }
-            assert!(red > 800 && red.abs_diff(blue) < 100, "{variant:?}: {red} {blue}");
+            assert!(red.min(blue) > 800, "{variant:?}: {red} {blue}");
         }
     });
 }

@@ -198,7 +198,7 @@ fn counters_and_flags_are_dumped_as_the_integers_that_they_are() {
         let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
         let header = String::from_utf8_lossy(&bytes[10..end]).into_owned();
         let data: Vec<[u8; 4]> = bytes[end..].chunks_exact(4).map(|b| b.try_into().unwrap()).collect();
-        let shape = format!("({}, {columns})", data.len() / columns);
+        let shape = format!("({}, {columns}, )", data.len() / columns);
         assert!(header.contains(&format!("'<{kind}'")) && header.contains(&shape), "{name}: {header}");
         data
     };
@@ -233,9 +233,10 @@ fn every_kind_of_file_burns() {
         "teapot.obj",
     ] {
         for variant in ["shell", "melting"] {
-            let bench = small("bench --json --quiet --first-frame 20 --frames 1 --levels 1 --variant").arg(variant);
-            let record =
-                bench.arg("--mesh").arg(meshes.join(file)).args(BRIEF).inside(out.path()).run().succeeded().json();
+            let bench =
+                small(&format!("bench --json --quiet --first-frame 20 --frames 1 --levels 1 --variant {variant}"));
+            let bench = bench.arg("--mesh").arg(meshes.join(file)).args(BRIEF);
+            let record = bench.inside(out.path()).run().succeeded().json();
             let results = &record["runs"][0]["results"];
             assert!(results["active_vertices"].as_u64().unwrap() > 0, "{file} {variant}: {results}");
         }
