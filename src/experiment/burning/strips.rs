@@ -50,7 +50,7 @@ impl Figure {
         let of_mesh = |mesh: MeshSource| Setup { mesh, ..shell.clone() };
         let level = |level: u32| move |p: &mut Parameters| p.level_of_detail = Some(level);
         let (frames, strips) = match name {
-            "3.1" => (vec![60, 240, 420, 720, 1080], vec![strip(&shell, Variant::Shell, as_it_is)]),
+            "3.1" => (vec![200, 340, 450, 560, 680], vec![strip(&shell, Variant::Shell, as_it_is)]),
             // One source, and three.
             "3.2" => {
                 let areas = |sources: &[Vec3]| {
@@ -66,12 +66,12 @@ impl Figure {
             // Without and with structural deformation.
             "3.6" => {
                 let still = strip(&shell, Variant::Shell, |p| p.gamma = f32::MIN_POSITIVE);
-                (vec![180, 360, 540, 720, 900], vec![still, strip(&shell, Variant::Shell, as_it_is)])
+                (vec![200, 340, 450, 560, 680], vec![still, strip(&shell, Variant::Shell, as_it_is)])
             }
             "3.8" => {
                 let objects = [MeshSource::Teapot, MeshSource::Sphere, MeshSource::Bunny];
                 let strips = objects.map(|mesh| strip(&of_mesh(mesh), Variant::Shell, as_it_is));
-                (vec![60, 240, 420, 720, 1080], strips.into())
+                (vec![200, 340, 450, 560, 680], strips.into())
             }
             // The hierarchy, and what it looks like.
             "4.4" => {
@@ -91,7 +91,7 @@ impl Figure {
             "5.1" => {
                 let shell = strip(&shell, Variant::Shell, as_it_is);
                 let solid = strip(&shell.setup, Variant::Solid, as_it_is);
-                (vec![240, 420, 720, 1080], vec![shell, solid])
+                (vec![240, 420, 520, 640], vec![shell, solid])
             }
             "5.2" => (vec![60, 240, 420, 720, 1080], vec![strip(&Preset::Solid45k.setup(), Variant::Solid, as_it_is)]),
             // A block of wood of few triangles, divided as far as its level of detail.
