@@ -11,7 +11,7 @@ use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 
 use crate::common::gpu_test;
-use crate::fire::Fire;
+use crate::fire::{Fire, quick};
 
 /// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
 const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
@@ -46,6 +46,24 @@ fn the_object_fills_its_share_of_the_picture() {
             let (filled, other) = if by_height { (rows, columns) } else { (columns, rows) };
             assert!((filled - 0.8).abs() < 0.025 && other < 0.82, "{mesh}: {columns} x {rows}");
         }
+    });
+}
+
+#[test]
+fn a_late_picture_is_that_of_all_frames_before_it() {
+    gpu_test(|device| {
+        let mesh = shapes::cuboid();
+        // So slow that it still burns; more ticks than a frame records.
+        let parameters = Parameters { speed_per_s: 0.02, ..quick() };
+        let [mut stepped, mut late] = [0, 1].map(|_| Fire::new(device, Variant::LowPoly, &parameters, &mesh));
+        stepped.ticks(1500);
+        stepped.frame(1500);
+        late.frame(1500);
+        assert!(stepped.state() == late.state());
+        let counts = late.paper.counts().unwrap();
+        assert!(counts.tick == 1501 && counts.active_vertices > 0 && counts.drawn_triangles > 0, "{counts:?}");
+        let picture = |fire: &Fire| read_image(device, fire.paper.picture()).unwrap();
+        assert!(picture(&stepped) == picture(&late));
     });
 }
 

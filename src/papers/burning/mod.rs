@@ -54,6 +54,10 @@ pub use self::texture::{Level, Texture};
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
 
+/// Slices that one frame records at most, more than the longest time step has: those of frames that are left out before a late
+/// picture would not fit into memory at once.
+const MOST_SLICES: u64 = 1024;
+
 /// The paper under one variant.
 pub struct Burning {
     device: Arc<Device>,
@@ -129,15 +133,22 @@ impl Burning {
 
     /// What was there before frame 0 becomes the start.
     fn burn_to_first_frame(&mut self) -> Result<(), Error> {
+        self.start_slices = self.parameters.slices_before();
+        self.burn_until(self.start_slices)?;
+        if self.start_slices > 0 { self.buffers.save(&self.device) } else { Ok(()) }
+    }
+
+    /// Simulates up to a number of slices, in submissions of its own.
+    fn burn_until(&mut self, slices: u64) -> Result<(), Error> {
         /// Few enough for one submission.
         const BATCH: u64 = 64;
-        self.start_slices = self.parameters.slices_before();
         let mut recorder = Recorder::new(&self.device)?;
-        while self.slices < self.start_slices {
-            let end = self.start_slices.min(self.slices + BATCH);
+        while self.slices < slices {
+            let end = slices.min(self.slices + BATCH);
             recorder.run(Mode::Plain, |frame| self.simulate(frame, end))?;
+            self.is_shaded = false;
         }
-        if self.start_slices > 0 { self.buffers.save(&self.device) } else { Ok(()) }
+        Ok(())
     }
 
     /// Ticks since the fire was lit.
@@ -254,6 +265,9 @@ impl Paper for Burning {
         }
         self.next_frame = number + 1;
         let due = self.parameters.slices_due(number);
+        if due > self.slices + MOST_SLICES {
+            self.burn_until(due - MOST_SLICES)?;
+        }
         let last_tick = due / u64::from(self.parameters.time_division);
         let mut is_mapped = self.is_shaded;
         while self.slices < due {
