@@ -84,13 +84,16 @@ impl Painter {
     }
 }
 
-/// Pixels that saw different things: another surface, another depth by more than a thousandth, or another normal.
+/// Pixels that saw different things: another surface, another depth by more than a thousandth, another normal, or another
+/// colour than normals so near can make.
 pub fn differing(a: &Drawing, b: &Drawing) -> usize {
     let pixels = a.hits.iter().zip(&b.hits).zip(a.normals.iter().zip(&b.normals));
-    let differ = pixels.filter(|((a, b), (n, m))| {
+    let colors = a.picture.pixels().as_chunks::<4>().0.iter().zip(b.picture.pixels().as_chunks::<4>().0);
+    let differ = pixels.zip(colors).filter(|(((a, b), (n, m)), (c, d))| {
         let is_same_depth = (a.depth_m - b.depth_m).abs() <= 1e-3 * a.depth_m.abs();
         let is_same_normal = (0..3).all(|i| (n[i] - m[i]).abs() < 0.02);
-        a.surface != b.surface || !is_same_depth || !is_same_normal
+        let is_same_color = (0..4).all(|i| c[i].abs_diff(d[i]) <= 6);
+        a.surface != b.surface || !is_same_depth || !is_same_normal || !is_same_color
     });
     differ.count()
 }

@@ -13,6 +13,7 @@ use super::measure::Measurement;
 use super::statistics::median;
 use super::study::{Findings, Identity, Study};
 use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::papers::Paper;
 use crate::papers::gas::model::Object;
 use crate::papers::gas::parameters::validate_object;
 use crate::papers::gas::scenes::Preset;

@@ -126,19 +126,6 @@ impl Gas {
     pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
         self.passes.lists.evaluations(shaders)
     }
-
-    /// What the run should tell: the device has no geometry stage.
-    pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.lacks_geometry_stage {
-            warnings.push(
-                "the device has no geometry stage: `fragments` makes each triangle's footprint six times in its vertex \
-                 stage, so that its time is not that of the other devices' method"
-                    .to_owned(),
-            );
-        }
-        warnings
-    }
 }
 
 impl Paper for Gas {
@@ -170,6 +157,19 @@ impl Paper for Gas {
         let Some(capacity) = self.passes.lists.capacity.grown(demand, self.most)? else { return Ok(true) };
         self.passes = Passes::new(shaders, &self.label, &self.geometry, self.variant, &self.parameters, capacity)?;
         Ok(false)
+    }
+
+    /// The device has no geometry stage.
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.lacks_geometry_stage {
+            warnings.push(
+                "the device has no geometry stage: `fragments` makes each triangle's footprint six times in its vertex \
+                 stage, so that its time is not that of the other devices' method"
+                    .to_owned(),
+            );
+        }
+        warnings
     }
 
     fn picture(&self) -> &Arc<ImageView> {

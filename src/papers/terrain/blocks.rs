@@ -126,13 +126,15 @@ impl LandBlock {
 impl LightBlock {
     /// `range_m` is the lowest and the highest above the base, `near_m` the near plane of what is rasterised. Nothing is draped.
     pub fn new(parameters: &Parameters, rays: &Rays, range_m: (f64, f64), near_m: f32) -> Self {
+        // Of a level map the tint is the lowest's: a range of nothing would tell rounding apart.
+        let highest_m = range_m.1.max(range_m.0 + 1.0);
         LightBlock {
             corner: four(rays.corner, 0.0),
             across: four(rays.across, 0.0),
             down: four(rays.down, 0.0),
             sun: parameters.sun.direction().extend(SKY).to_array(),
             haze: HAZE.extend(parameters.haze_per_km / 1000.0).to_array(),
-            range: [range_m.0 as f32, range_m.1 as f32, near_m, 0.0],
+            range: [range_m.0 as f32, highest_m as f32, near_m, 0.0],
             drape: [1.0, 1.0, 0.0, 0.0],
         }
     }
