@@ -3,7 +3,6 @@
 use super::drawing::ViewBlock;
 use super::flames::{BillboardsBlock, Group, Particle};
 use super::state::{Constants, Counts};
-use super::texture::LevelBlock;
 use crate::papers::layout::{block, check_block, check_list};
 
 #[test]
@@ -16,7 +15,6 @@ fn the_buffers_hold_what_the_shaders_read() {
     let counts = clock.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(counts.check_host::<Counts>(), Ok(()));
     check_block::<BillboardsBlock>("burning/flames.comp", "billboards");
-    check_list::<LevelBlock>("burning/draw-textured.frag", "TextureLevels");
     check_list::<Group>("burning/flames.comp", "Groups");
     check_list::<Particle>("burning/flames.comp", "Particles");
 }

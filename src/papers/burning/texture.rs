@@ -6,7 +6,6 @@ use ash::vk;
 
 use crate::gpu::transfer::{upload, upload_rows};
 use crate::gpu::{Buffer, Error, Image, ImageDesc, ImageView, ShaderLibrary};
-use crate::host_block;
 
 /// A picture with its smaller versions, each half as large as the one before it, down to one texel.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,23 +23,11 @@ pub struct Level {
     pub texels: Vec<u8>,
 }
 
-host_block! {
-    /// `burning/draw-textured.frag`
-    pub(super) struct LevelBlock {
-        width: u32,
-        height: u32,
-        /// In the image that holds all levels.
-        first_row: u32,
-        /// Of the picture; the same in all.
-        level_count: u32,
-    }
-}
-
 /// What the shaders read of a texture.
 pub struct Surface {
     /// All levels below one another, 8-bit sRGB: the shader filters by itself, so that every device draws the same.
     pub texels: Arc<ImageView>,
-    /// [`LevelBlock`] of each level.
+    /// uvec4 of each level: width, height, first row in the image, number of levels.
     pub levels: Arc<Buffer>,
     /// vec2\[C\] for C draw vertices: they stay apart where the simulated vertices are welded.
     pub coordinates: Arc<Buffer>,
@@ -61,9 +48,9 @@ impl Surface {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let level_count = texture.levels.len() as u32;
         let mut height = 0;
-        let mut blocks = Vec::new();
+        let mut levels: Vec<[u32; 4]> = Vec::new();
         for level in &texture.levels {
-            blocks.push(LevelBlock { width: level.width, height: level.height, first_row: height, level_count });
+            levels.push([level.width, level.height, height, level_count]);
             height += level.height;
         }
         let width = texture.levels[0].width;
@@ -72,10 +59,10 @@ impl Surface {
         let row_bytes = 4 * width as usize;
         upload_rows(device, &texels, (width, height), |first_row, bytes| {
             for (row, bytes) in (first_row..).zip(bytes.chunks_exact_mut(row_bytes)) {
-                let at = blocks.partition_point(|block| block.first_row <= row) - 1;
+                let at = levels.partition_point(|[_, _, first_row, _]| *first_row <= row) - 1;
                 let from = &texture.levels[at].texels;
                 let own_bytes = 4 * texture.levels[at].width as usize;
-                let first = (row - blocks[at].first_row) as usize * own_bytes;
+                let first = (row - levels[at][2]) as usize * own_bytes;
                 // Nothing to the right of a smaller level is read.
                 bytes.fill(0);
                 bytes[..own_bytes].copy_from_slice(&from[first..first + own_bytes]);
@@ -83,7 +70,7 @@ impl Surface {
         })?;
         Ok(Surface {
             texels,
-            levels: upload(device, &format!("{label}/texture-levels"), storage, bytemuck::cast_slice(&blocks))?,
+            levels: upload(device, &format!("{label}/texture-levels"), storage, bytemuck::cast_slice(&levels))?,
             coordinates: upload(
                 device,
                 &format!("{label}/texture-coordinates"),
