@@ -5,6 +5,7 @@ mod common;
 mod dump;
 mod fire;
 mod flames;
+mod flames_oracle;
 mod laws;
 mod melting;
 mod meshes;

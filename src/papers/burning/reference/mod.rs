@@ -9,6 +9,7 @@ pub mod boundary;
 pub mod displacement;
 #[cfg(test)]
 mod fixtures;
+pub mod flames;
 #[cfg(test)]
 mod laws;
 pub mod melting;
