@@ -38,6 +38,10 @@ layout(set = 0, binding = 51, std430) buffer NewBases {
     vec4 new_bases[];
 };
 
+// So much lower must the lowest base point be to draw another, in diagonals: on the floor all are equal but for rounding, which is not
+// to choose where the flow goes nor to keep it from coming to rest.
+const float LEVEL = 1e-4;
+
 bool has_base(uint block) {
     return block != NONE && base_points[min(block, constants.counts.w - 1u)] != NONE;
 }
@@ -92,7 +96,7 @@ vec3 moved(uint block, vec3 p) {
         return p;
     }
     vec3 q = base_of(lowest);
-    if (q.y >= p.y) {
+    if (q.y >= p.y - LEVEL) {
         return p;
     }
     vec3 drawn = omega * (p - q) + q;

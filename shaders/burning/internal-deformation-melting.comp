@@ -87,6 +87,13 @@ vec3 guided(vec3 place) {
     return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
+// What part of its way to the guides a vertex takes in a tick: 1 - omega in the time in which the boundary crosses an area. What flows
+// so does not outrun the heat; faster, the triangles between it and what does not flow yet would be drawn out into sheets, which are
+// more surface higher up than there was before.
+float following() {
+    return (1.0 - constants.melting.x) * min(1.0, constants.boundary.x / constants.boundary.y);
+}
+
 float longest() {
     return constants.melting.x * constants.cell_size.w; // omega Dist
 }
@@ -95,13 +102,17 @@ float shortest() {
     return longest() / constants.melting.y; // omega Dist / chi
 }
 
+// Ticks for which the same end of a tie gives way.
+const uint TURN_TICKS = 8u;
+
 // Whether `vertex` is the source of its edge to `other`: the upper one, nearer heights than the shortest edge being a tie. The
-// dissertation breaks ties at random; here the indices take turns, so that neither end always gives way.
+// dissertation breaks ties at random; here the indices take turns. Within a turn edges are restored one after the other from one end
+// of the surface to the other; with turns of a tick each end undoes what the other has done, and the edges do not come to rest in range.
 bool is_source(uint vertex, float y, uint other, float other_y) {
     if (abs(y - other_y) > shortest()) {
         return y > other_y;
     }
-    return (vertex > other) == (clock.tick % 2u == 0u);
+    return (vertex > other) == (clock.tick / TURN_TICKS % 2u == 0u);
 }
 
 // The step of the source s of an edge out of range; `fixed_points` of the triangle's corners do not flow. Upward motion would make no
@@ -181,7 +192,7 @@ void main() {
         return;
     }
     vec3 flow = flows[vertex].xyz;
-    vec3 follow = (1.0 - constants.melting.x) * (guided(rest[vertex].xyz) - flow);
+    vec3 follow = following() * (guided(rest[vertex].xyz) - flow);
     flows[vertex] = vec4(flow + follow, 0.0);
     vec3 place = before.xyz + follow + folding(vertex, before.xyz);
     bool is_burning = label == DEFORMED && before.w > 0.0;

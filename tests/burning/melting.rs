@@ -49,9 +49,7 @@ fn in_range(fire: &Fire, state: &State, parameters: &Parameters) -> f64 {
 #[test]
 fn it_sinks_stays_above_the_floor_and_rests_with_its_edges_in_range() {
     gpu_test(|device| {
-        // The teapot falls short of both laws (1 % and 95 %): its spout and handle stretch while they come down, and the folds of
-        // two open sheets one above the other hold each other.
-        for (mesh, most_rise, least_share) in [(ball(), 0.01, 0.95), (shapes::teapot(), 0.012, 0.92)] {
+        for mesh in [ball(), shapes::teapot()] {
             let parameters = wax();
             let mut fire = Fire::new(device, Variant::Melting, &parameters, &mesh);
             let rest = fire.state();
@@ -59,18 +57,18 @@ fn it_sinks_stays_above_the_floor_and_rests_with_its_edges_in_range() {
             let tall = f64::from(fire.paper.model().bounds.max.y - floor);
             let start = height(&fire, &rest);
             let mut lowest = start;
-            for _ in 0..50 {
-                fire.ticks(50);
+            for _ in 0..250 {
+                fire.ticks(10);
                 let state = fire.state();
                 assert!(state.vertices.iter().all(|v| v[1] >= floor && v.iter().all(|x| x.is_finite())));
                 let height = height(&fire, &state);
-                assert!(height <= lowest + most_rise * tall, "{height} after {lowest}");
+                assert!(height <= lowest + 0.01 * tall, "{height} after {lowest}");
                 lowest = lowest.min(height);
             }
             let state = fire.state();
             assert!(height(&fire, &state) < 0.5 * start);
             let share = in_range(&fire, &state, &parameters);
-            assert!(share >= least_share, "{share} of the edges are in range");
+            assert!(share >= 0.95, "{share} of the edges are in range");
         }
     });
 }

@@ -6,6 +6,12 @@ use super::boundary::{RATE, area};
 use super::displacement::GRAVITY;
 use super::{State, Tick};
 
+/// How much lower a base point must be to draw another, in diagonals (ours): next to the same height is the same.
+const LEVEL: f64 = 1e-4;
+
+/// Ticks for which the same end of an edge between equal heights gives way (ours; at random in the text).
+const TURN: u32 = 8;
+
 /// One edge of a triangle that a flow-true vertex is the source, the upper end, of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
@@ -53,6 +59,12 @@ impl Tick<'_> {
         state.labels[v] >= area::READY && state.alive[v]
     }
 
+    /// Share of its way to the guides that a vertex takes in a tick: 1 - omega of it in the time in which the boundary crosses an
+    /// area (ours; the text lets vertices "follow").
+    fn following(&self) -> f64 {
+        (1.0 - self.constants.omega) * (self.constants.speed / RATE / self.constants.width).min(1.0)
+    }
+
     /// omega Dist and omega Dist / chi.
     fn range(&self) -> [f64; 2] {
         let longest = self.constants.omega * self.model.mean_edge;
@@ -81,8 +93,7 @@ impl Tick<'_> {
             .collect()
     }
 
-    /// How much lower the lowest of the guides around is than the next one, or than the guide itself where that is less: on the
-    /// floor, next to nothing.
+    /// By how much the guide is drawn to the lowest one around, and to no other, or else by how much it is not.
     fn choice_margin(&self, before: &State, cell: usize, p: DVec3) -> f64 {
         let grid = &self.model.grid;
         let around = (0..27).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]).filter(|steps| *steps != [0; 3]);
@@ -90,7 +101,9 @@ impl Tick<'_> {
         let mut heights: Vec<f64> = near.map(|q| q.y).collect();
         heights.sort_by(f64::total_cmp);
         let [lowest, next] = [0, 1].map(|i| heights.get(i).copied().unwrap_or(f64::INFINITY));
-        if lowest.is_finite() { (next - lowest).min((p.y - lowest).abs()) } else { f64::INFINITY }
+        let drawn = p.y - LEVEL - lowest;
+        // Not drawn, it does not matter by which.
+        if drawn > 0.0 { drawn.min(next - lowest) } else { -drawn }
     }
 
     fn guide_step(&self, before: &State, cell: usize, p: DVec3) -> Decided {
@@ -112,7 +125,7 @@ impl Tick<'_> {
             .filter_map(|steps| grid.beside(cell, steps))
             .filter_map(|cell| self.guide(before, cell).map(|q| (q, cell)))
             .min_by(|(a, i), (b, k)| a.y.total_cmp(&b.y).then(i.cmp(k)));
-        let Some((q, _)) = lowest.filter(|(q, _)| q.y < p.y) else { return (DVec3::ZERO, f64::INFINITY) };
+        let Some((q, _)) = lowest.filter(|(q, _)| q.y < p.y - LEVEL) else { return (DVec3::ZERO, f64::INFINITY) };
         let towards = self.constants.omega * (p - q) + q;
         let ahead = grid.cell(towards);
         let does_not_melt = self.model.base_points[ahead].is_some() && !self.is_guiding(before, ahead);
@@ -140,12 +153,13 @@ impl Tick<'_> {
         (sum / weights, margin)
     }
 
-    /// Whether `v` is the upper end of an edge to `other`: of about equal heights the higher number in even ticks, the lower one
-    /// in odd ticks. With the margin of that.
+    /// Whether `v` is the upper end of an edge to `other`: of about equal heights the higher number for [`TURN`] ticks, then the
+    /// lower one for as many. With the margin of that.
     fn is_source(&self, before: &State, v: usize, other: usize) -> (bool, f64) {
         let [_, tie] = self.range();
         let above = before.positions[v].y - before.positions[other].y;
-        let is_upper = if above.abs() <= tie { (v > other) == before.tick.is_multiple_of(2) } else { above > 0.0 };
+        let is_upper =
+            if above.abs() <= tie { (v > other) == (before.tick / TURN).is_multiple_of(2) } else { above > 0.0 };
         (is_upper, (above.abs() - tie).abs())
     }
 
@@ -197,7 +211,7 @@ impl Tick<'_> {
         let mut margins = vec![f64::INFINITY; before.positions.len()];
         for v in (0..before.positions.len()).filter(|v| self.flows(&before, *v)) {
             let (target, close) = self.guidance(guides, v);
-            let step = (1.0 - self.constants.omega) * (target - before.flows[v]);
+            let step = self.following() * (target - before.flows[v]);
             let (folded, margin) = self.folding(&before, v);
             let is_active = self.is_active(&before, v);
             let fall = if is_active { self.fall() } else { 0.0 };
