@@ -1,5 +1,6 @@
 //! The device's state, advanced by the oracle by one tick, is the device's next one.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use fumarole::gpu::Compiler;
@@ -39,8 +40,8 @@ fn bunny() -> Mesh {
     with_triangles(&MeshSource::Bunny.load().unwrap(), 1500)
 }
 
-/// Burns on the device, and compares at every step.
-fn compare(variant: Variant, parameters: &Parameters, mesh: &Mesh) {
+/// Burns on the device, and compares at every step; `show` sees the last state.
+fn compare_and(variant: Variant, parameters: &Parameters, mesh: &Mesh, show: impl Fn(&State)) {
     for compiler in [Compiler::Glslang, Compiler::Naga] {
         gpu_test(|device| {
             let mut fire = Fire::compiled(device, compiler, variant, parameters, mesh);
@@ -52,12 +53,22 @@ fn compare(variant: Variant, parameters: &Parameters, mesh: &Mesh) {
                 fire.ticks(step - 1 - done);
                 done = step;
                 let before = dump::state(&fire, false);
-                fire.frame(step - 1);
+                // The frames that the tick is spread over.
+                let frames = parameters.time_division;
+                ((step - 1) * frames..step * frames).for_each(|number| fire.frame(number));
+                let after = dump::state(&fire, true);
                 Comparison { fire: &fire, twin: &twin, at: format!("{variant:?} by {compiler} at step {step}") }
-                    .all(&before, &dump::state(&fire, true));
+                    .all(&before, &after);
+                if Some(&step) == STEPS.last() {
+                    show(&after);
+                }
             }
         });
     }
+}
+
+fn compare(variant: Variant, parameters: &Parameters, mesh: &Mesh) {
+    compare_and(variant, parameters, mesh, |_| ());
 }
 
 /// One step.
@@ -275,6 +286,9 @@ fn low_poly() {
 #[test]
 fn solid() {
     compare(Variant::Solid, &Parameters { levels: Some(0), ..parameters() }, &bunny());
+    // So much displacement that vertices come down to their cores.
+    let fierce = Parameters { levels: Some(0), beta: 0.9, flammability: 150, ..parameters() };
+    compare(Variant::Solid, &fierce, &bunny());
     // Vertices that retire, and larger triangles that are refined.
     let parameters = Parameters { levels: Some(3), retire_at: 0.4, ..parameters() };
     compare(Variant::Solid, &parameters, &shapes::cuboid());
@@ -287,4 +301,32 @@ fn melting() {
     let sources = vec![Vec3::new(0.0, 0.2, 0.25), Vec3::new(-0.2, 0.1, 0.0)];
     let parameters = Parameters { levels: Some(3), sources, ..parameters() };
     compare(Variant::Melting, &parameters, &shapes::cuboid());
+}
+
+#[test]
+fn a_tick_over_several_frames() {
+    for variant in [Variant::Shell, Variant::Melting] {
+        compare(variant, &Parameters { levels: Some(0), time_division: 3, ..parameters() }, &bunny());
+    }
+}
+
+#[test]
+fn a_limit_of_active_vertices() {
+    let parameters = Parameters { active_limit: 60, ..parameters() };
+    compare_and(Variant::Shell, &parameters, &bunny(), |state| {
+        assert!(state.growth_ticks < state.tick && state.active_vertices > 30, "the limit never held the boundary");
+    });
+}
+
+#[test]
+fn what_comes_off_without_keeping_blocks_connected() {
+    let removed = [true, false].map(|keep_connected| {
+        let parameters = Parameters { keep_connected, blocks: [12, 14, 16], ..parameters() };
+        let count = Cell::new(0);
+        compare_and(Variant::Shell, &parameters, &bunny(), |state| {
+            count.set(state.removed.iter().filter(|r| **r).count());
+        });
+        count.get()
+    });
+    assert!(0 < removed[0] && removed[0] < removed[1], "{removed:?}");
 }
