@@ -9,7 +9,7 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     vec4 material; // epsilon, beta, rho, phi
     vec4 rotation; // gamma, x, greatest angle, greatest angle of a free block
     vec4 melting; // omega, chi, upsilon
-    vec4 solid; // 1 where triangles wind outwards or else -1; L at which a vertex retires, 0 but for a solid
+    vec4 solid; // 1 where triangles wind outwards or else -1; L at which a vertex retires, 0 but for a solid; depth of its char
     vec4 albedo; // linear RGB; fall in a tick: epsilon g dt^2
     uvec4 choices; // active limit, whether neighbours are kept connected, seed
     uvec4 tree; // levels, coarse triangles, fire and smoke particles at most

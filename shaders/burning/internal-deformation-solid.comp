@@ -3,11 +3,18 @@
 // Internal deformation of a solid (5.3.3, 5.3.4): after the displacement of 3.4, each triangle draws its vertex inwards, to the point
 // P_in beneath its centroid, as deep as the side BA is long. The printed angles lose the quadrant; this is their vector form, and no
 // step goes beyond half the way. 5.5: a vertex that has burnt far enough leaves the group that deforms.
+//
+// Nothing printed ends the way inwards: with a great beta L surfaces would pass each other, and the solid turn inside out. Ours ends at a
+// char's depth, three quarters of the solid's volume over its surface (a quarter of a ball's radius): what lies deeper stays enclosed.
 
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/displacement.glsl"
+
+layout(set = 0, binding = 1, std430) readonly buffer Rest {
+    vec4 rest[]; // xyz, R
+};
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
     uint triangles[];
@@ -55,6 +62,13 @@ vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
     return way > 0.0 ? d + min(l * depth, 0.5 * way) / way * (inner - d) : d;
 }
 
+// The place, no farther than the char's depth from where the vertex was at rest, which sinks with it.
+vec3 within_char(vec3 place, vec3 at_rest, float left) {
+    vec3 from = at_rest - vec3(0.0, constants.albedo.w * (constants.boundary.w - left), 0.0);
+    float way = distance(place, from);
+    return way > constants.solid.z ? from + constants.solid.z / way * (place - from) : place;
+}
+
 void main() {
     if (gl_GlobalInvocationID.x >= slice.count) {
         return;
@@ -83,5 +97,6 @@ void main() {
     }
     vec3 moved = b + sum / float(max(to - from, 1u));
     moved.y -= constants.albedo.w; // gravity
-    new_state[vertex] = vec4(moved, before.w - 1.0);
+    float left = before.w - 1.0;
+    new_state[vertex] = vec4(within_char(moved, rest[vertex].xyz, left), left);
 }

@@ -1,6 +1,11 @@
 //! Solids (chapter 5): they burn inwards, and nothing of their surface leaves.
 
+use std::sync::Arc;
+
+use fumarole::gpu::Device;
+use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::scene::{Mesh, shapes};
 use glam::DVec3;
 
 use crate::common::gpu_test;
@@ -15,22 +20,43 @@ fn volume(fire: &Fire, state: &State) -> f64 {
     triangles.map(|&[a, b, c]| place(a).dot(place(b).cross(place(c))) / 6.0).sum()
 }
 
+/// Burns all of a mesh; the volume after every 20 ticks, as shares of that at rest.
+fn burn(device: &Arc<Device>, parameters: &Parameters, mesh: &Mesh) -> Vec<f64> {
+    let mut fire = Fire::new(device, Variant::Solid, parameters, mesh);
+    let at_rest = volume(&fire, &fire.state());
+    let mut shares = Vec::new();
+    while fire.state().vertices.iter().any(|v| v[3] > 0.0) {
+        fire.ticks(20);
+        shares.push(volume(&fire, &fire.state()) / at_rest);
+        assert!(shares.len() < 100, "it burns out");
+    }
+    assert_eq!(fire.state().counts.removed_triangles, 0);
+    shares
+}
+
 #[test]
 fn the_enclosed_volume_shrinks_and_stays_positive_and_no_triangle_leaves() {
     gpu_test(|device| {
         for (beta, flammability) in [(0.05, 60), (0.2, 60)] {
             let parameters = Parameters { beta, flammability, keep_connected: false, ..quick() };
-            let mut fire = Fire::new(device, Variant::Solid, &parameters, &ball());
-            let at_rest = volume(&fire, &fire.state());
-            for _ in 0..20 {
-                fire.ticks(20);
-                let volume = volume(&fire, &fire.state());
-                assert!(volume > 0.0 && volume < 1.001 * at_rest, "{volume} of {at_rest}");
+            let shares = burn(device, &parameters, &ball());
+            assert!(shares.iter().all(|share| (0.0..1.001).contains(share)), "{shares:?}");
+            assert!(shares.last().is_some_and(|&share| share < 0.99), "{shares:?}");
+        }
+    });
+}
+
+/// The corners of table 3.1's ranges, by a ball, flat sides and a thin shell of a pot.
+#[test]
+fn no_constants_turn_a_solid_inside_out() {
+    gpu_test(|device| {
+        let teapot = with_triangles(&shapes::teapot(), 2000);
+        for (name, mesh) in [("ball", ball()), ("box", with_triangles(&shapes::cuboid(), 768)), ("teapot", teapot)] {
+            for (beta, rho, flammability) in [(0.9, 0.5, 200), (0.99, 0.99, 200), (0.99, 0.99, 20)] {
+                let parameters = Parameters { beta, rho, flammability, ..quick() };
+                let shares = burn(device, &parameters, &mesh);
+                assert!(shares.iter().all(|&share| share > 0.0), "{name}, beta {beta}, L {flammability}: {shares:?}");
             }
-            let state = fire.state();
-            assert!(state.vertices.iter().all(|v| v[3] == 0.0), "all of it has burnt");
-            assert!(volume(&fire, &state) < 0.99 * at_rest);
-            assert_eq!(state.counts.removed_triangles, 0);
         }
     });
 }

@@ -58,6 +58,7 @@ impl Twin {
         let around = around.iter().map(|l| l.iter().map(|entry| (entry / 4) as usize).collect::<Vec<_>>());
         assert!(around.eq(model.corner_incidence.iter().cloned()), "draw vertices' triangles in ascending order");
         assert!((model.mean_edge - f64::from(prepared.mean_edge)).abs() < 1e-6);
+        assert!((model.char_depth - f64::from(prepared.char_depth)).abs() < 1e-6);
         assert!(model.grid.low.distance(prepared.grid.origin.as_dvec3()) < 1e-6);
         assert!(model.grid.size.distance(prepared.grid.cell_size.as_dvec3()) < 1e-6);
 

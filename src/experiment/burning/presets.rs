@@ -48,11 +48,13 @@ impl Preset {
     pub fn setup(self) -> Setup {
         let few_particles = Parameters { fire: 2000, smoke: 500, ..Parameters::default() };
         let wax = Parameters { material: Material::Plain, albedo: Vec3::new(0.8, 0.66, 0.4), ..few_particles.clone() };
+        // Displacements are shares of edges, which are short in so fine a mesh: with the defaults it would lose hardly any volume.
+        let timber = Parameters { beta: 0.5, flammability: 120, ..few_particles.clone() };
         let (mesh, stretch, triangles, parameters) = match self {
             Preset::Results38 => (MeshSource::Bunny, Vec3::ONE, Some(15_949), Parameters::default()),
             Preset::Box => (MeshSource::Box, Vec3::ONE, None, few_particles),
             Preset::Door => (MeshSource::Box, Vec3::new(1.0, 2.1, 0.08), None, few_particles),
-            Preset::Solid45k => (MeshSource::Box, Vec3::new(2.0, 1.0, 1.0), Some(45_000), few_particles),
+            Preset::Solid45k => (MeshSource::Box, Vec3::new(2.0, 1.0, 1.0), Some(45_000), timber),
             Preset::Melt40k => (MeshSource::Bunny, Vec3::ONE, Some(40_000), wax),
         };
         Setup { parameters, mesh, stretch, triangles, preset: Some(self.word().to_owned()), ..Setup::default() }

@@ -49,6 +49,8 @@ impl Deformation {
             .with("Alive", &buffers.alive);
         let (vertex_count, blocks) = (model.rest.len() as u32, model.grid.cell_count());
         if variant != Variant::Melting {
+            let is_solid = variant == Variant::Solid;
+            let vertices = if is_solid { vertices.with("Rest", &buffers.rest) } else { vertices };
             let to_a = vertices.build(shaders)?;
             let to_b = to_a.again().with("OldState", a).with("NewState", b).build(shaders)?;
             return Ok(Deformation { base_points: None, vertices: [to_a, to_b], vertex_count, blocks });

@@ -271,7 +271,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         material: [p.epsilon, p.beta, p.rho, p.phi],
         rotation: [p.gamma, p.spread, GREATEST_ROTATION_RAD, GREATEST_FREE_ROTATION_RAD],
         melting: [p.omega, p.chi, p.upsilon, 0.0],
-        solid: [model.outward, retires_at, 0.0, 0.0],
+        solid: [model.outward, retires_at, model.char_depth, 0.0],
         albedo: with(p.albedo, fall),
         choices: [p.active_limit, p.keep_connected.into(), p.noise_seed(), 0],
         tree: [model.levels, model.coarse_count(), p.fire, p.smoke],

@@ -45,11 +45,17 @@ pub struct Model {
     pub floor: f32,
     /// 1 where the triangles wind so that their normals point out of the enclosed volume, or else -1.
     pub outward: f32,
+    /// How far a vertex of a solid comes from where it was at rest: [`CHAR_SHARE`] of its volume over its surface, a quarter of a
+    /// ball's radius.
+    pub char_depth: f32,
     /// Triangles of the mesh that were left out because two of their corners coincide.
     pub degenerate: u32,
 }
 
 pub const NO_VERTEX: u32 = u32::MAX;
+
+/// With more than this, crumpled sides of a box that burns one after the other were seen to pass each other.
+pub const CHAR_SHARE: f64 = 0.75;
 
 impl Model {
     /// Prepares a mesh for a variant. `largest_bytes` is what the device binds at most.
@@ -84,6 +90,7 @@ impl Model {
         let seed = parameters.noise_seed();
         let distance = |&p: &Vec3| p.extend(boundary::distance(p, &sources, parameters.psi, seed) as f32).to_array();
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
+        let volume = enclosed_volume(positions, &triangles);
         Ok(Model {
             levels,
             rest: positions.iter().map(distance).collect(),
@@ -91,7 +98,8 @@ impl Model {
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
             mean_edge: mean_edge(positions, &triangles),
-            outward: if enclosed_volume(positions, &triangles) < 0.0 { -1.0 } else { 1.0 },
+            outward: if volume < 0.0 { -1.0 } else { 1.0 },
+            char_depth: (CHAR_SHARE * volume.abs() / surface(positions, &triangles)) as f32,
             floor: parameters.floor.unwrap_or(bounds.min.y),
             bounds,
             grid,
@@ -141,6 +149,12 @@ fn mean_edge(positions: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
 fn enclosed_volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
     let place = |vertex: u32| positions[vertex as usize].as_dvec3();
     triangles.iter().map(|&[a, b, c]| place(a).dot(place(b).cross(place(c))) / 6.0).sum()
+}
+
+fn surface(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
+    let place = |vertex: u32| positions[vertex as usize].as_dvec3();
+    let area = |&[a, b, c]: &[u32; 3]| (place(b) - place(a)).cross(place(c) - place(a)).length() / 2.0;
+    triangles.iter().map(area).sum::<f64>().max(f64::MIN_POSITIVE)
 }
 
 fn base_points(grid: &Grid, positions: &[Vec3], rest_cells: &[u32]) -> Vec<u32> {

@@ -79,8 +79,10 @@ impl Tick<'_> {
                 if self.variant == Variant::Solid { self.contract(moved, corners, l) } else { moved }
             };
             let mean = triangles.iter().map(target).sum::<DVec3>() / triangles.len() as f64;
-            state.positions[v] = mean - DVec3::Y * self.fall();
             state.left[v] -= 1;
+            let moved = mean - DVec3::Y * self.fall();
+            state.positions[v] =
+                if self.variant == Variant::Solid { self.charred(v, moved, state.left[v]) } else { moved };
         }
         vec![f64::INFINITY; before.positions.len()]
     }

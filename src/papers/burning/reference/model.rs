@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::blocks::Grid;
-use super::solid::volume;
+use super::solid::{area, volume};
 
 /// A triangle of the refinement pattern.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +40,8 @@ pub struct Model {
     pub mean_edge: f64,
     /// 1 where normals by winding point out, -1 where the mesh at rest is inside out.
     pub outward: f64,
+    /// Three quarters of the volume at rest over its surface.
+    pub char_depth: f64,
     /// The blocks of section 3.5.1.
     pub grid: Grid,
     /// Block of each vertex at rest.
@@ -72,6 +74,7 @@ impl Model {
             corner_incidence: Vec::new(),
             mean_edge: 0.0,
             outward: 1.0,
+            char_depth: 0.0,
             grid: Grid::around(positions, blocks),
             rest_cells: Vec::new(),
             base_points: Vec::new(),
@@ -147,8 +150,10 @@ impl Model {
             }
         }
         self.mean_edge = sum / (3 * self.triangles.len()) as f64;
-        let is_turned = volume(&self.rest, self.triangles.iter().map(|t| t.vertices)) < 0.0;
-        self.outward = if is_turned { -1.0 } else { 1.0 };
+        let triangles = || self.triangles.iter().map(|t| t.vertices);
+        let enclosed = volume(&self.rest, triangles());
+        self.outward = if enclosed < 0.0 { -1.0 } else { 1.0 };
+        self.char_depth = 0.75 * enclosed.abs() / area(&self.rest, triangles());
         self.rest_cells = self.rest.iter().map(|p| self.grid.cell(*p)).collect();
         self.base_points = vec![None; self.grid.cells()];
         for (v, &cell) in self.rest_cells.iter().enumerate() {

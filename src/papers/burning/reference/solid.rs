@@ -14,6 +14,20 @@ impl Tick<'_> {
         let way = inward - moved;
         moved + way.normalize_or_zero() * (share * side).min(way.length() / 2.0)
     }
+
+    /// A place that a vertex with `left` of its flammability moved to, no farther from where it was at rest and sank from than three
+    /// quarters of the solid's volume over its surface.
+    pub(super) fn charred(&self, vertex: usize, place: DVec3, left: u32) -> DVec3 {
+        let sunk = f64::from(self.constants.flammability - left) * self.fall();
+        let from = self.model.rest[vertex] - DVec3::Y * sunk;
+        from + (place - from).clamp_length_max(self.model.char_depth)
+    }
+}
+
+/// Of the triangles.
+pub fn area(positions: &[DVec3], triangles: impl IntoIterator<Item = [usize; 3]>) -> f64 {
+    let of = |[a, b, c]: [usize; 3]| (positions[b] - positions[a]).cross(positions[c] - positions[a]).length() / 2.0;
+    triangles.into_iter().map(of).sum()
 }
 
 /// Six times the enclosed volume is the sum of the triangles' triple products.
