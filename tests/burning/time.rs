@@ -46,6 +46,19 @@ fn a_divided_tick_has_the_same_result() {
 }
 
 #[test]
+fn what_never_changes_may_be_loaded_in_every_frame() {
+    gpu_test(|device| {
+        let mut reference = Fire::shell(device, &ball());
+        let mut fire = Fire::new(device, Variant::Shell, &Parameters { preload: false, ..quick() }, &ball());
+        (0..TICKS).for_each(|number| {
+            reference.frame(number);
+            fire.frame(number);
+        });
+        assert!(fire.state() == reference.state());
+    });
+}
+
+#[test]
 fn left_out_frames_are_caught_up_and_a_restart_replays() {
     gpu_test(|device| {
         let mut steps = Fire::shell(device, &ball());

@@ -343,6 +343,9 @@ fn optimisations_are_swept() {
     assert!(active[2][1] <= active[1][1] && active[1][1] <= active[0][1], "{active:?}");
     assert!(active[2][2] >= active[1][2] && active[1][2] >= active[0][2] && active[2][2] > active[0][2], "{active:?}");
     assert_eq!(rows("burning-limits-division.csv").iter().map(|row| row[0]).collect::<Vec<_>>(), [1.0, 2.0, 4.0, 8.0]);
+    // Nothing is loaded in a frame, or something that takes time.
+    let loading = rows("burning-limits-loading.csv");
+    assert!(loading.len() == 2 && loading[0][1].is_nan() && loading[1][1] > 0.0, "{loading:?}");
 }
 
 #[test]
@@ -427,6 +430,7 @@ fn an_experiment_refuses_what_it_would_not_heed() {
         ("4.2 --triangles 50", "--triangles"),
         ("blocks --blocks 2x2x2", "--blocks"),
         ("limits --active-limit 5", "--active-limit"),
+        ("limits --no-preload", "--no-preload"),
         ("limits --counts 5", "--counts"),
         ("scaling --triangles 50", "--triangles"),
         ("scaling --counts 2", "--triangles 2"),

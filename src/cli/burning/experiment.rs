@@ -117,6 +117,7 @@ impl ExperimentArgs for Experiments {
             (name == Name::Blocks && scene.blocks.is_some(), "--blocks: this experiment sweeps them"),
             (name == Name::Limits && scene.active_limit.is_some(), "--active-limit: this experiment sweeps it"),
             (name == Name::Limits && scene.time_division.is_some(), "--time-division: this experiment sweeps it"),
+            (name == Name::Limits && scene.no_preload, "--no-preload: this experiment measures both"),
             (is_sequence && output.json.is_some(), "--json: a sequence is pictures; `3.8` has a record"),
             (is_sequence && output.csv.is_some(), "--csv: a sequence is pictures; `3.8` has rows"),
         ]
@@ -241,13 +242,25 @@ impl Experiments {
         let mut all = self.clone();
         all.common.measure.frames = self.common.measure.frames.or(sweeps::DIVISIONS.last().map(|most| 2 * most));
         let divided = all.sweep(publication, &mut machine, &sweeps::division_points(&setup, &free)?)?;
-        let tables = [sweeps::limit_table(&fires, &limited.rows), sweeps::division_table(&divided.rows)];
+        let loaded = self.sweep(publication, &mut machine, &sweeps::loading_points(&setup, &free)?)?;
+        let tables = [
+            sweeps::limit_table(&fires, &limited.rows),
+            sweeps::division_table(&divided.rows),
+            sweeps::loading_table(&loaded.rows),
+        ];
         publication.save(&publication.file("-active.csv"), tables[0].csv().as_bytes())?;
         publication.save(&publication.file("-division.csv"), tables[1].csv().as_bytes())?;
+        publication.save(&publication.file("-loading.csv"), tables[2].csv().as_bytes())?;
         let text = tables.iter().map(|table| table.render(outcome::style())).collect::<Vec<_>>().join("\n");
-        publish(publication, &machine, limited.rows.into_iter().chain(divided.rows).collect(), text, &[])?;
+        publish(
+            publication,
+            &machine,
+            limited.rows.into_iter().chain(divided.rows).chain(loaded.rows).collect(),
+            text,
+            &[],
+        )?;
         machine.check_validation()?;
-        limited.stopped.or(divided.stopped).map_or(Ok(()), |error| Err(error.into()))
+        limited.stopped.or(divided.stopped).or(loaded.stopped).map_or(Ok(()), |error| Err(error.into()))
     }
 
     fn sequence(&self, publication: &Publication<'_>) -> Result<(), Failure> {

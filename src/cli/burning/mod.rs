@@ -171,6 +171,12 @@ pub struct BurningArgs {
     /// Spread each tick over so many frames (3.7.2), 1 to 64 [default: 1]
     #[arg(long, value_name = "K")]
     time_division: Option<u32>,
+    /// Load what never changes before the first frame (3.7.4; the default)
+    #[arg(long, overrides_with = "no_preload")]
+    preload: bool,
+    /// Load it again in every frame
+    #[arg(long)]
+    no_preload: bool,
     /// Never leave a block that has weight without neighbours (the default)
     #[arg(long, overrides_with = "no_keep_connected")]
     keep_connected: bool,
@@ -279,6 +285,7 @@ impl BurningArgs {
         set(&mut p.blocks, self.blocks);
         set(&mut p.active_limit, self.active_limit);
         set(&mut p.time_division, self.time_division);
+        p.preload &= !self.no_preload;
         p.keep_connected &= !self.no_keep_connected;
         set(&mut p.fire, self.fire);
         set(&mut p.smoke, self.smoke);

@@ -167,6 +167,7 @@ impl Study for Setup {
             ("blocks", json!(p.blocks)),
             ("active_limit", json!(p.active_limit)),
             ("time_division", json!(p.time_division)),
+            ("preload", json!(p.preload)),
             ("keep_connected", json!(p.keep_connected)),
             ("fire", json!(p.fire)),
             ("smoke", json!(p.smoke)),

@@ -184,6 +184,34 @@ pub fn division_table(rows: &[Row]) -> Facts {
     }
 }
 
+/// The busiest tick with everything loaded before, and without.
+///
+/// # Errors
+/// [`Error::Input`] without a look at the fire.
+pub fn loading_points(setup: &Setup, looks: &[Look]) -> Result<Vec<Point<Setup>>, Error> {
+    let tick = busiest_tick(looks)?;
+    let of = |preload: bool| {
+        let mut study = setup.clone();
+        study.parameters.preload = preload;
+        study.parameters.first_frame = frame_before(&study.parameters, tick);
+        point(format!("preload {preload}"), f64::from(u8::from(preload)), study)
+    };
+    Ok([true, false].map(of).into())
+}
+
+/// What loading ahead buys (3.7.4).
+pub fn loading_table(rows: &[Row]) -> Facts {
+    let rows = rows.iter().map(|row| {
+        let loaded = if row.x > 0.0 { "before" } else { "in every frame" };
+        vec![json!(loaded), json!(gpu_ms(&row.run, &["loading"])), json!(row.run.median_frame_ms())]
+    });
+    Facts {
+        title: "Section 3.7.4: what never changes, loaded",
+        columns: &["loaded", "loading ms", "frame ms"],
+        rows: rows.collect(),
+    }
+}
+
 /// Triangles without any named.
 pub const COUNTS: [u32; 7] = [1_000, 3_162, 10_000, 31_623, 100_000, 316_228, 1_000_000];
 

@@ -19,6 +19,7 @@ mod framing;
 mod heat;
 #[cfg(test)]
 mod layouts;
+mod loading;
 pub mod model;
 mod normals;
 pub mod parameters;
@@ -35,6 +36,7 @@ use self::blocks::Blocks;
 use self::deformation::Deformation;
 use self::drawing::Drawing;
 use self::heat::HeatBoundary;
+use self::loading::Loading;
 use self::model::Model;
 use self::normals::Normals;
 use self::refinement::Refinement;
@@ -64,6 +66,7 @@ pub struct Burning {
     parameters: Parameters,
     model: Model,
     buffers: Buffers,
+    loading: Option<Loading>,
     heat: HeatBoundary,
     refinement: Option<Refinement>,
     deformation: Deformation,
@@ -108,8 +111,10 @@ impl Burning {
             _ => None,
         };
         let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &drawing)?;
+        let loading = if parameters.preload { None } else { Some(Loading::new(device, &buffers)?) };
         let mut burning = Burning {
             device: device.clone(),
+            loading,
             heat: HeatBoundary::new(shaders, &buffers, &model)?,
             deformation: Deformation::new(shaders, variant, &buffers, &model)?,
             blocks: Blocks::new(shaders, &buffers, &model)?,
@@ -267,6 +272,9 @@ impl Paper for Burning {
         let due = self.parameters.slices_due(number);
         if due > self.slices + MOST_SLICES {
             self.burn_until(due - MOST_SLICES)?;
+        }
+        if let Some(loading) = &self.loading {
+            loading.record(frame)?;
         }
         let last_tick = due / u64::from(self.parameters.time_division);
         let mut is_mapped = self.is_shaded;

@@ -155,6 +155,8 @@ pub struct Parameters {
     pub active_limit: u32,
     /// Frames that one tick is spread over (3.7.2), 1 to 64.
     pub time_division: u32,
+    /// Loads what never changes before the first frame (3.7.4), not in every frame.
+    pub preload: bool,
     /// Keeps what holds a neighbouring block to the rest (3.5.4).
     pub keep_connected: bool,
     /// Most fire particles, 0 to 1,000,000.
@@ -207,6 +209,7 @@ impl Default for Parameters {
             blocks: [6, 7, 8],
             active_limit: 0,
             time_division: 1,
+            preload: true,
             keep_connected: true,
             fire: 3000,
             smoke: 1800,

@@ -213,6 +213,23 @@ impl Buffers {
         Ok(buffers)
     }
 
+    /// What no pass writes.
+    pub fn unchanging(&self) -> [&Arc<Buffer>; 11] {
+        [
+            &self.constants,
+            &self.rest,
+            &self.triangles,
+            &self.incidence_offsets,
+            &self.incidence,
+            &self.corners,
+            &self.welds,
+            &self.corner_incidence_offsets,
+            &self.corner_incidence,
+            &self.base_points,
+            &self.rest_cells,
+        ]
+    }
+
     /// Lets a restart bring back what `buffer`, which a tick needs from the last one, holds at the start.
     ///
     /// # Errors
