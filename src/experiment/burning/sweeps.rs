@@ -29,6 +29,14 @@ fn point(label: String, x: f64, study: Setup) -> Point<Setup> {
     Point { label, x, study, variants: vec![Variant::Shell], left_out: Vec::new() }
 }
 
+/// A setup with a change, whose frame 0 shows `tick`.
+fn at_tick(setup: &Setup, tick: u32, change: impl FnOnce(&mut Parameters)) -> Setup {
+    let mut study = setup.clone();
+    change(&mut study.parameters);
+    study.parameters.first_frame = frame_before(&study.parameters, tick);
+    study
+}
+
 /// Block counts without any named: one, some, the dissertation's 336 and 3,375 (3.7.3), and more.
 pub const BLOCKS: [[u32; 3]; 5] = [[1, 1, 1], [3, 3, 4], [6, 7, 8], [15, 15, 15], [30, 30, 30]];
 
@@ -38,11 +46,8 @@ const BLOCK_RATES: [([u32; 3], f64); 2] = [([6, 7, 8], 70.0), ([15, 15, 15], 30.
 /// One point a division into blocks, at `tick` of the fire.
 pub fn block_points(setup: &Setup, tick: u32) -> Vec<Point<Setup>> {
     let of = |blocks: [u32; 3]| {
-        let mut study = setup.clone();
-        study.parameters.blocks = blocks;
-        study.parameters.first_frame = frame_before(&setup.parameters, tick);
         let [x, y, z] = blocks;
-        point(format!("{x}x{y}x{z}"), f64::from(x * y * z), study)
+        point(format!("{x}x{y}x{z}"), f64::from(x * y * z), at_tick(setup, tick, |p| p.blocks = blocks))
     };
     BLOCKS.map(of).into()
 }
@@ -147,9 +152,7 @@ pub const DIVISIONS: [u32; 4] = [1, 2, 4, 8];
 pub fn division_points(setup: &Setup, looks: &[Look]) -> Result<Vec<Point<Setup>>, Error> {
     let tick = busiest_tick(looks)?;
     let of = |division: u32| {
-        let mut study = setup.clone();
-        study.parameters.time_division = division;
-        study.parameters.first_frame = frame_before(&study.parameters, tick);
+        let study = at_tick(setup, tick, |p| p.time_division = division);
         point(format!("division {division}"), f64::from(division), study)
     };
     Ok(DIVISIONS.map(of).into())
@@ -191,9 +194,7 @@ pub fn division_table(rows: &[Row]) -> Facts {
 pub fn loading_points(setup: &Setup, looks: &[Look]) -> Result<Vec<Point<Setup>>, Error> {
     let tick = busiest_tick(looks)?;
     let of = |preload: bool| {
-        let mut study = setup.clone();
-        study.parameters.preload = preload;
-        study.parameters.first_frame = frame_before(&study.parameters, tick);
+        let study = at_tick(setup, tick, |p| p.preload = preload);
         point(format!("preload {preload}"), f64::from(u8::from(preload)), study)
     };
     Ok([true, false].map(of).into())
