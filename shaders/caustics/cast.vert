@@ -8,6 +8,9 @@ layout(location = 1) in vec3 normal;
 #include "caustics/box.glsl"
 #include "caustics/cast.glsl"
 
+// Each light adds to what the first one found in front.
+invariant gl_Position;
+
 layout(location = 0) out vec3 world;
 layout(location = 1) out vec3 world_normal;
 

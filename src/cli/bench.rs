@@ -22,7 +22,7 @@ use crate::report::trace::TraceRun;
 pub struct BenchArgs<P: PaperArgs> {
     #[arg(
         long,
-        help = format!("Variants to measure, comma-separated, or all [default: the preset's if it has one, or {}]", P::BENCHED),
+        help = format!("Variants to measure, comma-separated, or all [default: that of a preset made for one, or {}]", P::BENCHED),
         value_delimiter = ',',
         value_parser = variant_words::<VariantOf<P>>()
     )]

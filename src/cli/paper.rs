@@ -35,7 +35,7 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     /// [`Failure::Input`] for options of which one would not be heeded.
     fn resolve(&self, process: u32) -> Result<Self::Study, Failure>;
 
-    /// The method of the preset that was named, where a preset has one of its own.
+    /// The variant that the named preset is made for, where it is one alone.
     fn preset_variant(&self) -> Option<VariantOf<Self>> {
         None
     }

@@ -17,7 +17,7 @@ use crate::report::table::{Align, Table};
 
 #[derive(Debug, Clone, Args)]
 pub struct PassesArgs<P: PaperArgs> {
-    /// Variants to list, comma-separated, or all [default: the preset's if it has one, or all]
+    /// Variants to list, comma-separated, or all [default: that of a preset made for one, or all]
     #[arg(long, value_delimiter = ',', value_parser = variant_words::<VariantOf<P>>())]
     variant: Vec<VariantWord<VariantOf<P>>>,
     /// Print JSON

@@ -21,9 +21,13 @@ pub fn side_by_side(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
 /// Pictures of one width, the first on top.
 ///
 /// # Errors
-/// [`Error::Length`] where the widths differ.
+/// [`Error::SizeMismatch`] where the widths differ.
 pub fn below_each_other(pictures: &[Rgba8]) -> Result<Rgba8, Error> {
-    let width = pictures.first().map_or(0, Rgba8::width);
+    let size = |p: &Rgba8| (p.width(), p.height());
+    let (width, first) = pictures.first().map_or((0, 0), size);
+    if let Some(other) = pictures.iter().find(|p| p.width() != width) {
+        return Err(Error::SizeMismatch { left: (width, first), right: size(other) });
+    }
     let height = pictures.iter().map(Rgba8::height).sum();
     let pixels = pictures.iter().flat_map(Rgba8::pixels).copied().collect();
     Rgba8::new(width, height, pixels)
@@ -40,6 +44,7 @@ mod tests {
         assert_eq!((row.width(), row.height(), row.pixels()[7], row.pixels()[8]), (4, 1, 1, 2));
         let other = Rgba8::new(1, 2, vec![0; 8]).unwrap();
         assert!(matches!(side_by_side(&[plain(1), other]), Err(Error::SizeMismatch { .. })));
+        assert!(matches!(below_each_other(&[row.clone(), plain(1)]), Err(Error::SizeMismatch { .. })));
         let column = below_each_other(&[row.clone(), row]).unwrap();
         assert_eq!((column.width(), column.height(), column.pixels()[16]), (4, 2, 1));
     }

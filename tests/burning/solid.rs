@@ -40,20 +40,21 @@ fn the_enclosed_volume_shrinks_and_stays_positive_and_no_triangle_leaves() {
         for (beta, flammability) in [(0.05, 60), (0.2, 60)] {
             let parameters = Parameters { beta, flammability, keep_connected: false, ..quick() };
             let shares = burn(device, &parameters, &ball());
-            assert!(shares.iter().all(|share| (0.0..1.001).contains(share)), "{shares:?}");
+            assert!(shares.iter().all(|share| *share > 0.0 && *share < 1.001), "{shares:?}");
             assert!(shares.last().is_some_and(|&share| share < 0.99), "{shares:?}");
         }
     });
 }
 
-/// The corners of table 3.1's ranges, by a ball, flat sides and a thin shell of a pot.
+/// Great values of what moves vertices inwards in table 3.1, by a ball, flat sides and a thin shell of a pot.
 #[test]
 fn no_constants_turn_a_solid_inside_out() {
     gpu_test(|device| {
         let teapot = with_triangles(&shapes::teapot(), 2000);
         for (name, mesh) in [("ball", ball()), ("box", with_triangles(&shapes::cuboid(), 768)), ("teapot", teapot)] {
-            for (beta, rho, flammability) in [(0.9, 0.5, 200), (0.99, 0.99, 200), (0.99, 0.99, 20)] {
-                let parameters = Parameters { beta, rho, flammability, ..quick() };
+            let ends = [(0.9, 0.5, 0.5, 200), (0.99, 0.99, 0.5, 200), (0.99, 0.99, 0.99, 20), (0.99, 0.99, 0.99, 200)];
+            for (beta, rho, phi, flammability) in ends {
+                let parameters = Parameters { beta, rho, phi, flammability, ..quick() };
                 let shares = burn(device, &parameters, &mesh);
                 assert!(shares.iter().all(|&share| share > 0.0), "{name}, beta {beta}, L {flammability}: {shares:?}");
             }

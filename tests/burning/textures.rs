@@ -157,33 +157,35 @@ fn every_pixel_shows_its_place_of_the_picture() {
     let (from, to) = (Vec2::new(-0.25, -0.4), Vec2::new(1.25, 1.1));
     let mesh = sheets(&[[Vec2::NEG_ONE, Vec2::ONE, from, to]]);
     gpu_test(|device| {
-        let mut fire = Fire::new(device, Variant::Shell, &covered(&noisy), &mesh);
-        fire.frame(0);
-        let camera = fire.paper.camera();
-        let seen = camera.projection(WIDTH as f32 / HEIGHT as f32).as_dmat4() * camera.view().as_dmat4();
-        let back: DMat4 = seen.inverse();
-        // Of a surface that faces +z, with an ambient share of 0.35.
-        let light = 0.35 + 0.65 * DVec3::new(0.45, 0.75, 0.6).normalize().z;
-        let side = 0.5_f64.sqrt();
-        let mut shown = 0;
-        for (i, pixel) in (0..).zip(pixels(device, &fire)) {
-            let at = DVec2::new(f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5);
-            let at = 2.0 * at / DVec2::new(WIDTH.into(), HEIGHT.into()) - 1.0;
-            let [near, far] = [0.2, 0.9].map(|depth| back.project_point3(at.extend(depth)));
-            let place = near + (far - near) * (near.z / (near.z - far.z));
-            let share = DVec2::new(place.x / side + 0.5, place.y / side);
-            // Pixels that the edges cut belong to neither side for certain.
-            if share.min_element() < 0.02 || share.max_element() > 0.98 {
-                continue;
+        for compiler in [Compiler::Glslang, Compiler::Naga] {
+            let mut fire = Fire::compiled(device, compiler, Variant::Shell, &covered(&noisy), &mesh);
+            fire.frame(0);
+            let camera = fire.paper.camera();
+            let seen = camera.projection(WIDTH as f32 / HEIGHT as f32).as_dmat4() * camera.view().as_dmat4();
+            let back: DMat4 = seen.inverse();
+            // Of a surface that faces +z, with an ambient share of 0.35.
+            let light = 0.35 + 0.65 * DVec3::new(0.45, 0.75, 0.6).normalize().z;
+            let side = 0.5_f64.sqrt();
+            let mut shown = 0;
+            for (i, pixel) in (0..).zip(pixels(device, &fire)) {
+                let at = DVec2::new(f64::from(i % WIDTH) + 0.5, f64::from(i / WIDTH) + 0.5);
+                let at = 2.0 * at / DVec2::new(WIDTH.into(), HEIGHT.into()) - 1.0;
+                let [near, far] = [0.2, 0.9].map(|depth| back.project_point3(at.extend(depth)));
+                let place = near + (far - near) * (near.z / (near.z - far.z));
+                let share = DVec2::new(place.x / side + 0.5, place.y / side);
+                // Pixels that the edges cut belong to neither side for certain.
+                if share.min_element() < 0.02 || share.max_element() > 0.98 {
+                    continue;
+                }
+                let expected = light * sampled(&picture, from.as_dvec2() + share * (to - from).as_dvec2());
+                for (ours, theirs) in expected.to_array().iter().zip(pixel) {
+                    let off = (255.0 * srgb::encode(*ours) - f64::from(theirs)).abs();
+                    assert!(off < 1.5, "pixel {i}: {expected} is not {pixel:?}");
+                }
+                shown += 1;
             }
-            let expected = light * sampled(&picture, from.as_dvec2() + share * (to - from).as_dvec2());
-            for (ours, theirs) in expected.to_array().iter().zip(pixel) {
-                let off = (255.0 * srgb::encode(*ours) - f64::from(theirs)).abs();
-                assert!(off < 1.5, "pixel {i}: {expected} is not {pixel:?}");
-            }
-            shown += 1;
+            assert!(shown > 1000, "{shown}");
         }
-        assert!(shown > 1000, "{shown}");
     });
 }
 

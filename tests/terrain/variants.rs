@@ -4,6 +4,9 @@ use fumarole::gpu::Compiler;
 use fumarole::papers::Variant as _;
 use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
 
+use fumarole::scene::shapes;
+use glam::{Mat4, Vec3};
+
 use crate::common::gpu_test;
 use crate::drawing::{Drawing, Painter, differing};
 use crate::land::{adversaries, alone, volcano};
@@ -84,15 +87,25 @@ fn a_huge_round_base_is_a_plane() {
 
 #[test]
 fn both_compilers_draw_one_picture() {
+    // In the air above the crater.
+    let ball = shapes::sphere(16, 12)
+        .transformed(&(Mat4::from_translation(2500.0 * Vec3::Y) * Mat4::from_scale(Vec3::splat(700.0))));
     gpu_test(|device| {
         for lod in [Lod::Exact, Lod::Pixel] {
             for variant in [Variant::GpuCompute, Variant::GpuFragment] {
                 let of = |compiler| {
                     let maps = alone(volcano(60));
-                    let inputs = Inputs { maps: &maps, ..Inputs::default() };
-                    Painter::new(device, compiler, variant, &small(View::Side, lod), &inputs).draw()
+                    let objects = [ball.clone()];
+                    let inputs = Inputs { maps: &maps, objects: &objects, ..Inputs::default() };
+                    let parameters = Parameters { shadows: true, ..small(View::Side, lod) };
+                    Painter::new(device, compiler, variant, &parameters, &inputs).draw()
                 };
-                assert_agree(variant.word(), &of(Compiler::Glslang), &of(Compiler::Naga));
+                let [glslang, naga] = [Compiler::Glslang, Compiler::Naga].map(of);
+                assert_agree(variant.word(), &glslang, &naga);
+                let pixels =
+                    glslang.picture.pixels().as_chunks::<4>().0.iter().zip(naga.picture.pixels().as_chunks().0);
+                let differing = pixels.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 6)).count();
+                assert!(differing * 1000 <= glslang.hits.len(), "{}: {differing} colours differ", variant.word());
             }
         }
     });

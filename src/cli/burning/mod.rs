@@ -198,7 +198,7 @@ pub struct BurningArgs {
     /// What the surface is made of [default: wood]
     #[arg(long, value_enum)]
     material: Option<MaterialWord>,
-    /// PNG that covers the mesh by its texture coordinates, in place of a material
+    /// PNG that covers the mesh by its texture coordinates, in place of a material; at most 8192 pixels a side
     #[arg(long, value_name = "FILE.png", conflicts_with = "material")]
     texture: Option<PathBuf>,
     /// Albedo, linear red,green,blue, each 0 to 1; a factor of a texture [default: 0.36,0.17,0.07, with a texture 1,1,1]

@@ -9,7 +9,7 @@ use crate::papers::gas::model::{DensityFunction, Front, HenyeyGreenstein, Shape,
 use crate::papers::gas::parameters::default_volume;
 use crate::papers::gas::scenes;
 
-/// Density functions whose numbers the scene's volumes keep.
+/// Density functions, with the numbers of the figures that they come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum DensityWord {
     /// The same everywhere
@@ -37,8 +37,8 @@ struct Place {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Gases")]
 pub struct VolumeArgs {
-    /// One more volume beside the scene's: box, sphere, cylinder or frustum, its centre and half extents in metres, and of a
-    /// frustum the radii at the bottom and at the top as shares of the half extents; filled as the scene's first volume, or
+    /// One more volume beside the scene's: box, sphere, cylinder or frustum, its centre and half extents in metres (0.0001 to
+    /// 1000000), and of a frustum the radii at the bottom and at the top as shares of the half extents, 0 to 1; filled as the scene's first volume, or
     /// with turbulence; repeatable, up to 8 volumes
     #[arg(long, value_name = "SHAPE,X,Y,Z,X,Y,Z[,B,T]", value_parser = parse_place, allow_hyphen_values = true)]
     volume: Vec<Place>,
@@ -66,11 +66,11 @@ pub struct VolumeArgs {
     /// Of fog and steam: diameters of the helix, texture units, -10000 to 10000 (ELLIPSE1, ELLIPSE2) [default: the figure's]
     #[arg(long, value_name = "F,F", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     ellipse: Option<[f32; 2]>,
-    /// Of fog: frames until it is at its thickest, 0 (at once) or more (FULL_FOG) [default: 0]
+    /// Of fog: frames until it is at its thickest, 0 (at once) to 1000000 (FULL_FOG) [default: 0]
     #[arg(long, value_name = "N", value_parser = parse_finite, allow_negative_numbers = true)]
     full_fog: Option<f32>,
     /// Of fog: the front's x in metres at frame 0, metres a frame, metres behind it until the fog is thickest (above 0), metres
-    /// by which a turbulence of 1 moves it, and a random number of 1 [default: figure 7's]
+    /// by which a turbulence of 1 moves it, and a random number of 1; each -1000000 to 1000000 [default: figure 7's]
     #[arg(long, value_name = "X,STEP,DEPTH,T,R", value_parser = parse_numbers::<5>, allow_hyphen_values = true)]
     front: Option<[f32; 5]>,
     /// Of hypertexture: share of the radius by which turbulence moves the surface, 0 to 100, and over which it turns dense,

@@ -125,7 +125,13 @@ impl Study for Setup {
         variant: Variant,
     ) -> Result<Burning, gpu::Error> {
         let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
-        Burning::new(shaders, label, variant, &parameters, &scene.mesh)
+        let made = Burning::new(shaders, label, variant, &parameters, &scene.mesh);
+        made.map_err(|error| match (&error, &self.texture) {
+            (gpu::Error::Limit { object, .. }, Some(path)) if *object == format!("{label}/texture") => {
+                error.set_by(&format!("--texture {}", path.display()))
+            }
+            _ => error,
+        })
     }
 
     fn identity(&self) -> Identity {

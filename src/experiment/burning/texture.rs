@@ -6,7 +6,8 @@ use crate::experiment::error::Error;
 use crate::image::{Rgba8, read_png, srgb};
 use crate::papers::burning::{Level, Texture};
 
-/// With all its levels, a picture of this side is the largest that every capable device takes.
+/// With all its levels a picture of this side fills an image of 16,384 texels a side, which devices of this size of image take; others
+/// name their limit.
 const LARGEST_SIDE: u32 = 8192;
 
 /// Reads a PNG and makes its levels.

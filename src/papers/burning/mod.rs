@@ -63,6 +63,7 @@ const MOST_SLICES: u64 = 1024;
 /// The paper under one variant.
 pub struct Burning {
     device: Arc<Device>,
+    variant: Variant,
     parameters: Parameters,
     model: Model,
     buffers: Buffers,
@@ -114,6 +115,7 @@ impl Burning {
         let loading = if parameters.preload { None } else { Some(Loading::new(device, &buffers)?) };
         let mut burning = Burning {
             device: device.clone(),
+            variant,
             loading,
             heat: HeatBoundary::new(shaders, &buffers, &model)?,
             deformation: Deformation::new(shaders, variant, &buffers, &model)?,
@@ -315,6 +317,13 @@ impl Paper for Burning {
         if self.model.degenerate > 0 {
             let count = self.model.degenerate;
             warnings.push(format!("{count} triangles of the mesh have two corners in one place and are left out"));
+        }
+        if self.variant == Variant::Solid && !self.model.is_closed {
+            warnings.push(
+                "the mesh is not closed: how deep a solid chars follows from the volume that it encloses; close it, or burn it \
+                 as `shell`"
+                    .to_owned(),
+            );
         }
         let nearest = self.model.rest.iter().map(|r| r[3]).fold(f32::INFINITY, f32::min);
         let radius = self.parameters.speed_per_s * (self.ticks() as f64 / TICKS_PER_S) as f32;

@@ -213,7 +213,7 @@ impl Buffers {
         Ok(buffers)
     }
 
-    /// What no pass writes.
+    /// The object, its blocks and the constants: what the simulation reads and no pass writes.
     pub fn unchanging(&self) -> [&Arc<Buffer>; 11] {
         [
             &self.constants,

@@ -126,8 +126,9 @@ impl LandBlock {
 impl LightBlock {
     /// `range_m` is the lowest and the highest above the base, `near_m` the near plane of what is rasterised. Nothing is draped.
     pub fn new(parameters: &Parameters, rays: &Rays, range_m: (f64, f64), near_m: f32) -> Self {
-        // Of a level map the tint is the lowest's: a range of nothing would tell rounding apart.
-        let highest_m = range_m.1.max(range_m.0 + 1.0);
+        // A level map has one tint: over a range of nothing, rounding would choose it.
+        let rounding_m = 1e-3 * range_m.0.abs().max(1.0);
+        let highest_m = range_m.1.max(range_m.0 + rounding_m);
         LightBlock {
             corner: four(rays.corner, 0.0),
             across: four(rays.across, 0.0),

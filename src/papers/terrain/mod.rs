@@ -55,6 +55,7 @@ pub use self::scene::{Inputs, MapInput};
 use self::stage::Stage;
 use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, ShaderLibrary};
+use crate::scene::HeightMap;
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
@@ -151,11 +152,13 @@ impl Paper for Terrain {
         let (scene, parameters) = (&self.scene, &self.parameters);
         match &mut self.technique {
             Technique::Cpu(cpu, device_scene) => {
-                let seen = frame.host(&self.transformation, || scene.transform(parameters));
+                let seen = frame.host(&self.transformation, || {
+                    let seen = scene.transform(parameters);
+                    device_scene.as_ref().map_or(Ok(()), |maps| maps.write(&seen)).map(|()| seen)
+                })?;
                 cpu.record(frame, &seen);
                 // Polygons are drawn by the device, so the processor's picture has to be there first.
                 if let Some(objects) = &self.objects {
-                    device_scene.as_ref().map_or(Ok(()), |maps| maps.write(&seen))?;
                     cpu.show(frame)?;
                     objects.record(frame, &seen)?;
                 }
@@ -185,8 +188,13 @@ impl Paper for Terrain {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let voids = self.scene.maps.iter().map(|map| map.voids_filled()).enumerate().filter(|(_, voids)| *voids > 0);
-        voids.map(|(map, voids)| format!("map {map}: {voids} voids are filled from their neighbours")).collect()
+        let maps = (1..).zip(&self.scene.maps).filter(|(_, map)| map.voids_filled() > 0);
+        let of = self.scene.maps.len();
+        let warning = |(number, map): (usize, &Arc<HeightMap>)| {
+            let voids = map.voids_filled();
+            format!("--map {number} of {of}: voids are filled from their neighbours: {voids}")
+        };
+        maps.map(warning).collect()
     }
 
     fn picture(&self) -> &Arc<ImageView> {
@@ -201,6 +209,9 @@ impl Paper for Terrain {
             Technique::Cpu(cpu, _) => cpu.targets(),
             Technique::Device(_, _, lighting) => lighting.targets(),
         };
+        if let Some(objects) = &self.objects {
+            targets.extend(objects.targets());
+        }
         targets.push(Target::image("picture", self.picture()));
         targets
     }

@@ -13,6 +13,7 @@ use super::stage::Stage;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
+use crate::papers::Target;
 use crate::scene::Mesh;
 
 host_block! {
@@ -34,6 +35,7 @@ pub struct Objects {
     depth_pass: Pass,
     /// Of the meshes; none without shadows.
     hit_passes: Vec<Pass>,
+    hits: Option<Arc<ImageView>>,
     shadows: Shadows,
     /// Of the meshes, with their numbers of indices.
     passes: Vec<(Pass, u32)>,
@@ -70,8 +72,8 @@ impl Objects {
                 .constants::<ObjectConstants>()
         };
         let mut hit_passes = Vec::new();
-        let (shadows, test) = match scene {
-            None => (Shadows::none(device, label)?, DepthTest::LessWrite),
+        let (shadows, hits, test) = match scene {
+            None => (Shadows::none(device, &format!("{label}/objects"))?, None, DepthTest::LessWrite),
             Some(scene) => {
                 let (size, format) = ((parameters.width, parameters.height), vk::Format::R32G32B32A32_SFLOAT);
                 let hits = Stage::Fragment.image(device, format!("{label}/object-hits"), format, size)?;
@@ -83,7 +85,8 @@ impl Objects {
                     hit_passes.push(pass.build(shaders)?);
                 }
                 let said = (Stage::Fragment, "object-shadow");
-                (Shadows::of_maps(shaders, label, said, parameters, scene, &hits)?, DepthTest::EqualReadOnly)
+                let shadows = Shadows::of_maps(shaders, label, said, parameters, scene, &hits)?;
+                (shadows, Some(hits), DepthTest::EqualReadOnly)
             }
         };
         let pass = |buffers: &Buffers| {
@@ -95,7 +98,7 @@ impl Objects {
             Ok((pass.build(shaders)?, buffers.index_count))
         };
         let passes = buffers.iter().map(pass).collect::<Result<_, Error>>()?;
-        Ok(Objects { light, depth_pass, hit_passes, shadows, passes })
+        Ok(Objects { light, depth_pass, hit_passes, hits, shadows, passes })
     }
 
     /// # Errors
@@ -116,6 +119,13 @@ impl Objects {
         }
         self.shadows.record(frame)?;
         self.passes.iter().try_for_each(|(pass, count)| draw(frame, pass, *count))
+    }
+
+    /// Where objects are seen and what of the sun reaches them, with shadows.
+    pub fn targets(&self) -> Vec<Target> {
+        let hits = self.hits.iter().map(|hits| Target::image("object-hits", hits));
+        let shadows = Some(&self.shadows).filter(|shadows| shadows.are_thrown());
+        hits.chain(shadows.map(|shadows| Target::image("object-shadow", &shadows.sunlit))).collect()
     }
 }
 

@@ -45,9 +45,9 @@ impl Shadows {
         let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.word());
         let size = (parameters.width, parameters.height);
         let targets = (0..scene.maps.len().min(2))
-            .map(|_| stage.image(device, format!("{label}/{name}"), vk::Format::R32_SFLOAT, size))
+            .map(|turn| stage.image(device, format!("{label}/{name}-{turn}"), vk::Format::R32_SFLOAT, size))
             .collect::<Result<Vec<_>, _>>()?;
-        let Shadows { mut sunlit, mut passes, .. } = Shadows::none(device, label)?;
+        let Shadows { mut sunlit, mut passes, .. } = Shadows::none(device, &format!("{label}/{name}"))?;
         // Each map's pass reads what the maps before it left.
         for (map, target) in scene.maps.iter().zip(targets.iter().cycle()) {
             let pass = stage.say(

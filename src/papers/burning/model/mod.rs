@@ -48,6 +48,8 @@ pub struct Model {
     /// How far a vertex of a solid comes from where it was at rest: [`CHAR_SHARE`] of its volume over its surface, a quarter of a
     /// ball's radius.
     pub char_depth: f32,
+    /// Whether each edge of the mesh has two triangles, which run along it in opposite ways.
+    pub is_closed: bool,
     /// Triangles of the mesh that were left out because two of their corners coincide.
     pub degenerate: u32,
 }
@@ -64,7 +66,7 @@ impl Model {
     /// [`Error::Limit`] for more triangles than that holds.
     pub fn new(mesh: &Mesh, variant: Variant, parameters: &Parameters, largest_bytes: u64) -> Result<Self, Error> {
         let welded = Welded::new(mesh);
-        let degenerate = welded.degenerate;
+        let (degenerate, is_closed) = (welded.degenerate, welded.is_closed());
         let levels = parameters.levels.unwrap_or_else(|| own_levels(&welded, variant, parameters.edge));
         let count = (welded.triangles.len() as u64) << (2 * levels);
         // Three 32-bit indices a triangle are the longest list; an incidence holds a triangle's number times 4.
@@ -106,6 +108,7 @@ impl Model {
             rest_cells,
             triangles,
             sources,
+            is_closed,
             degenerate,
             lattice,
         })

@@ -63,4 +63,17 @@ impl Welded {
         }
         welded
     }
+
+    /// Whether each edge has two triangles, which run along it in opposite ways.
+    pub fn is_closed(&self) -> bool {
+        let mut ways: HashMap<[u32; 2], i32> = HashMap::new();
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|corner| self.welds[corner as usize]);
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                let (edge, way) = if from < to { ([from, to], 1) } else { ([to, from], 1 << 16) };
+                *ways.entry(edge).or_default() += way;
+            }
+        }
+        ways.values().all(|&count| count == (1 << 16) + 1)
+    }
 }

@@ -1,5 +1,5 @@
-//! Section 3.6: groups of fire and smoke particles by block. The numbers of particles are exact; lives, speeds and the hash that
-//! decides what is random are the program's own, taken from its pages and not from its shaders.
+//! Section 3.6: groups of fire and smoke particles by block. How many there are and where they go follow from the dissertation and are
+//! exact; lives, speeds and the hash that decides what is random are not in it, and are those of `shaders/burning/flames.comp`.
 
 use std::f64::consts::TAU;
 
