@@ -3,6 +3,8 @@
 use std::sync::Arc;
 
 use fumarole::experiment::burning::texture::with_levels;
+use fumarole::gpu::Compiler;
+use fumarole::gpu::Compiler;
 use fumarole::gpu::Device;
 use fumarole::gpu::transfer::read_image;
 use fumarole::image::{Rgba8, srgb};
@@ -212,7 +214,7 @@ fn a_mesh_without_coordinates_takes_no_texture() {
     let (_, dot) = texture(1, 1, |_, _| [188; 3]);
     let mesh = Mesh { texture_coordinates: Vec::new(), ..shapes::cuboid() };
     gpu_test(|device| {
-        let shaders = fumarole::gpu::ShaderLibrary::new(device, fumarole::gpu::Compiler::Glslang, None).unwrap();
+        let shaders = fumarole::gpu::ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
         let made = fumarole::papers::burning::Burning::new(&shaders, "test", Variant::Shell, &covered(&dot), &mesh);
         let error = made.err().unwrap().to_string();
         assert!(error.contains("no texture coordinates"), "{error}");
