@@ -3,10 +3,8 @@
 use std::sync::Arc;
 
 use fumarole::experiment::burning::texture::with_levels;
-use fumarole::gpu::Compiler;
-use fumarole::gpu::Compiler;
-use fumarole::gpu::Device;
 use fumarole::gpu::transfer::read_image;
+use fumarole::gpu::{Compiler, Device};
 use fumarole::image::{Rgba8, srgb};
 use fumarole::papers::Paper;
 use fumarole::papers::burning::model::Model;

@@ -102,8 +102,8 @@ fn both_compilers_draw_one_picture() {
                 };
                 let [glslang, naga] = [Compiler::Glslang, Compiler::Naga].map(of);
                 assert_agree(variant.word(), &glslang, &naga);
-                let pixels =
-                    glslang.picture.pixels().as_chunks::<4>().0.iter().zip(naga.picture.pixels().as_chunks().0);
+                let [a, b] = [&glslang, &naga].map(|drawing| drawing.picture.pixels().as_chunks::<4>().0);
+                let pixels = a.iter().zip(b);
                 let differing = pixels.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 6)).count();
                 assert!(differing * 1000 <= glslang.hits.len(), "{}: {differing} colours differ", variant.word());
             }
