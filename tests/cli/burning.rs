@@ -157,7 +157,7 @@ fn a_picture_covers_the_mesh() {
         ("--mesh box --texture gone.png", &["gone.png"][..]),
         ("--mesh box --texture cut.png", &["cut.png"]),
         ("--mesh box --texture no.png", &["no.png"]),
-        ("--mesh box --texture .", &["reading ."]),
+        ("--mesh box --texture .", &["reading picture ."]),
         ("--mesh box --texture wide.png", &["--texture wide.png", "8192"]),
         ("--mesh bunny --texture blue.png", &["--texture blue.png", "bunny", "texture coordinates"]),
     ] {
