@@ -185,7 +185,11 @@ fn voids_are_filled_and_reported() {
         small("bench --json --quiet --variant cpu --map hole.asc").args(ONCE).inside(out.path()).run().succeeded();
     let run = &bench.json()["runs"][0];
     assert_eq!(run["config"]["maps"][0]["voids_filled"], 2);
-    assert!(run["warnings"].to_string().contains("--map 1 of 1: voids are filled from their neighbours: 2"), "{}", run["warnings"]);
+    assert!(
+        run["warnings"].to_string().contains("--map 1 of 1: voids are filled from their neighbours: 2"),
+        "{}",
+        run["warnings"]
+    );
     let render = small("render --map hole.asc --image hole.png").inside(out.path()).run().succeeded();
     assert!(render.stderr.contains("--map 1 of 1: voids are filled from their neighbours: 2"), "{}", render.stderr);
 }
