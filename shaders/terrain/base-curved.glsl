@@ -40,6 +40,11 @@ vec2 base_depth(vec3 direction) {
     float root = sqrt(max(discriminant, 0.0));
     bool is_met = discriminant > 0.0 && q.y < 0.0;
     float base_m = is_met ? q.z / (root - q.y) : NO_DEPTH;
+    if (is_met) {
+        // Once more from there, where numbers are small: from afar the root loses its last digits.
+        vec3 there = along_ray(land.eye.xyz + base_m * direction, direction, land.ground.xy, land.slope.zw, 0.0);
+        base_m -= abs(there.y) > 0.1 * root ? 0.5 * there.z / there.y : 0.0;
+    }
     float slack_m = land.margin.y * land.bounds.w / max(root, 1.0e-20);
     return q.z <= 0.0 ? vec2(0.0) : vec2(base_m, slack_m);
 }

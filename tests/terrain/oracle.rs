@@ -96,10 +96,15 @@ impl<'a> Trials<'a> {
 fn assert_random(base: Base, interpolation: Interpolation, seed: u64, worlds: usize, stands: usize) {
     gpu_test(|device| {
         let mut random = Random::new(seed);
-        let longest: f32 = if base == Base::Plane { 1024.0 } else { 256.0 };
         let mut trials = Trials::new(device, (48, 36));
         for number in 0..worlds {
             let relief = [Relief::Waves, Relief::Noise, Relief::Terraces][number % 3];
+            // Of a large map on a round base hardly a wall is seen.
+            let longest: f32 = match number % 2 {
+                _ if base == Base::Plane => 1024.0,
+                0 => 80.0,
+                _ => 256.0,
+            };
             // As many small as large, odd by even.
             let side = |random: &mut Random| (2.0 * (longest / 2.0).powf(random.unit())) as u32;
             let size = (side(&mut random) | 1, side(&mut random) & !1);
@@ -146,15 +151,15 @@ fn adversarial_maps() {
 fn maps_around_a_cylinder() {
     let base = Base::Cylinder { radius_m: 900.0 };
     assert_random(base, Interpolation::Bilinear, 4, 6, 2);
-    assert_random(base, Interpolation::Bicubic, 5, 4, 2);
+    assert_random(base, Interpolation::Bicubic, 5, 6, 2);
 }
 
 #[test]
 fn maps_on_flat_and_long_ellipsoids() {
     let flat = Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 };
-    assert_random(flat, Interpolation::Bilinear, 6, 4, 2);
+    assert_random(flat, Interpolation::Bilinear, 6, 6, 2);
     let long = Base::Ellipsoid { equatorial_m: 2000.0, polar_m: 2600.0 };
-    assert_random(long, Interpolation::Bicubic, 7, 4, 2);
+    assert_random(long, Interpolation::Bicubic, 7, 6, 2);
 }
 
 /// Maps once around, which meet themselves at a seam, and from pole to pole.

@@ -164,7 +164,9 @@ impl AlongRay {
 impl<'a> CurvedWay<'a> {
     fn base_of(land: &LandBlock, direction: Vec3) -> (f32, f32, Vec2) {
         let [_, _, off, along] = land.slope;
-        let q = AlongRay::new(eye(land), direction, Vec2::from_slice(&land.ground), Vec2::new(off, along), 0.0);
+        let quadric =
+            |from: Vec3| AlongRay::new(from, direction, Vec2::from_slice(&land.ground), Vec2::new(off, along), 0.0);
+        let q = quadric(eye(land));
         let place = |depth_m: f32| {
             let point = eye(land) + depth_m * direction;
             on_map(land, point, point.x).xy()
@@ -174,7 +176,10 @@ impl<'a> CurvedWay<'a> {
         }
         match q.root {
             Some(root) if q.b < 0.0 => {
-                let depth_m = q.c / (root - q.b);
+                let far_m = q.c / (root - q.b);
+                // Once more from there, where numbers are small: from afar the root loses its last digits.
+                let there = quadric(eye(land) + far_m * direction);
+                let depth_m = far_m - if there.b.abs() > 0.1 * root { 0.5 * there.c / there.b } else { 0.0 };
                 (depth_m, land.margin[1] * land.bounds[3] / root.max(1e-20), place(depth_m))
             }
             _ => (NO_DEPTH, 0.0, Vec2::ZERO),
