@@ -160,3 +160,21 @@ fn more_triangles_than_the_device_binds_are_refused() {
     let error = Model::new(&shapes::cuboid(), Variant::Shell, &parameters, 100_000).err().unwrap().to_string();
     assert!(error.contains("--levels 5"), "{error}");
 }
+
+#[test]
+fn an_open_mesh_as_a_solid_is_told() {
+    gpu_test(|device| {
+        let mut turned = shapes::cuboid();
+        turned.indices.swap(0, 1);
+        let open = shapes::plane(Vec2::splat(2.0), UVec2::splat(2));
+        for (variant, mesh, is_told) in [
+            (Variant::Solid, shapes::cuboid(), false),
+            (Variant::Solid, turned, true),
+            (Variant::Solid, open.clone(), true),
+            (Variant::Shell, open, false),
+        ] {
+            let fire = Fire::new(device, variant, &quick(), &mesh);
+            assert_eq!(fire.paper.warnings().iter().any(|w| w.contains("not closed")), is_told, "{variant:?}");
+        }
+    });
+}

@@ -38,8 +38,8 @@ struct Place {
 #[command(next_help_heading = "Gases")]
 pub struct VolumeArgs {
     /// One more volume beside the scene's: box, sphere, cylinder or frustum, its centre and half extents in metres (0.0001 to
-    /// 1000000), and of a frustum the radii at the bottom and at the top as shares of the half extents, 0 to 1; filled as the scene's first volume, or
-    /// with turbulence; repeatable, up to 8 volumes
+    /// 1000000), and of a frustum the radii at the bottom and at the top as shares of the half extents, 0 to 1; filled as the
+    /// scene's first volume, or with turbulence; repeatable, up to 8 volumes
     #[arg(long, value_name = "SHAPE,X,Y,Z,X,Y,Z[,B,T]", value_parser = parse_place, allow_hyphen_values = true)]
     volume: Vec<Place>,
     /// Density function of all volumes [default: the scene's]

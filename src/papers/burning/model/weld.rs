@@ -1,6 +1,6 @@
 //! Coincident corners become one simulated vertex, so that nothing rips along a seam of normals or texture coordinates.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DVec3, Vec3};
 
@@ -66,14 +66,9 @@ impl Welded {
 
     /// Whether each edge has two triangles, which run along it in opposite ways.
     pub fn is_closed(&self) -> bool {
-        let mut ways: HashMap<[u32; 2], i32> = HashMap::new();
-        for triangle in &self.triangles {
-            let [a, b, c] = triangle.map(|corner| self.welds[corner as usize]);
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                let (edge, way) = if from < to { ([from, to], 1) } else { ([to, from], 1 << 16) };
-                *ways.entry(edge).or_default() += way;
-            }
-        }
-        ways.values().all(|&count| count == (1 << 16) + 1)
+        let vertices = |triangle: &[u32; 3]| triangle.map(|corner| self.welds[corner as usize]);
+        let sides = || self.triangles.iter().map(vertices).flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let mut ways = HashSet::new();
+        sides().all(|way| ways.insert(way)) && sides().all(|[from, to]| ways.contains(&[to, from]))
     }
 }
