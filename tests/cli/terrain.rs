@@ -55,6 +55,25 @@ fn the_mesh_of_a_map_that_is_too_large_is_a_row_without_times() {
     assert!(ended.stdout.contains("the mesh stops at 4096"), "{}", ended.stdout);
 }
 
+#[test]
+fn screens_and_interpolations_are_swept() {
+    let out = folder();
+    let sweep = "experiment screen --counts 32,64 --resolution 64 --variant cpu,gpu-fragment --out .";
+    terrain(sweep).on_test_device().args(ONCE).inside(out.path()).run().succeeded();
+    let record = read_json(&out.path().join("terrain-screen.json"));
+    assert_schema(&record);
+    let widths: Vec<_> = record["runs"].as_array().unwrap().iter().map(|run| run["width"].as_u64().unwrap()).collect();
+    assert_eq!(widths, [32, 32, 64, 64]);
+    let sweep = "experiment interpolation --resolution 64 --variant gpu-compute --out .";
+    small(sweep).args(ONCE).inside(out.path()).run().succeeded();
+    let record = read_json(&out.path().join("terrain-interpolation.json"));
+    assert_schema(&record);
+    assert_eq!(record["runs"].as_array().unwrap().len(), 4);
+    let picture = |name: &str| fs::read(out.path().join(format!("terrain-interpolation-{name}.png"))).unwrap();
+    assert!(picture("bilinear-exact") != picture("bicubic-exact"));
+    assert!(picture("bilinear-pixel") != picture("bicubic-pixel"));
+}
+
 /// One ramp for all sizes: only a ray that took the most steps is the lightest, and rays that met no map are black.
 #[test]
 fn steps_are_drawn_as_heat() {
