@@ -2,13 +2,13 @@
 //! water coarse, so that the device has next to nothing to do.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fumarole::experiment::bench::build;
-use fumarole::experiment::caustics::Setup;
-use fumarole::experiment::machine::{Machine, MachineOptions};
-use fumarole::experiment::study::Study;
 use fumarole::gpu::Mode;
+use fumarole::measure::bench::build;
+use fumarole::measure::machine::{Machine, MachineOptions};
+use fumarole::measure::study::Study;
+use fumarole::measure::{Paper, Variant as _};
+use fumarole::papers::caustics::setup::Setup;
 use fumarole::papers::caustics::{NEEDS, Parameters, Variant};
-use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::MeshSource;
 
 fn recording(criterion: &mut Criterion) {
@@ -26,7 +26,7 @@ fn recording(criterion: &mut Criterion) {
     let scene = setup.load().expect("the box loads");
     for variant in [Variant::LevelMap, Variant::Volumetric] {
         let mut built = build(&machine, &setup, &scene, variant).expect("it builds");
-        criterion.bench_function(&format!("frame of 101 planes, {}", variant.word()), |bencher| {
+        criterion.bench_function(&format!("frame of 101 planes, {}", variant.as_str()), |bencher| {
             bencher.iter(|| {
                 let frame = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0));
                 frame.expect("it runs").frame_ms

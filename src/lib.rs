@@ -16,9 +16,9 @@
 //! the paper's `reference`, in `f64`, written from the equations.
 
 pub mod cli;
-pub mod experiment;
 pub mod gpu;
 pub mod image;
+pub mod measure;
 pub mod papers;
 pub mod report;
 pub mod scene;

@@ -7,7 +7,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::options::parse_share;
 use super::outcome;
-use crate::experiment::compare::{Input, compare, render};
+use crate::measure::compare::{Input, compare, render};
 use crate::report::{json, output};
 
 #[derive(Debug, Clone, Args)]

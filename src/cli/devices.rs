@@ -5,10 +5,13 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::outcome;
-use crate::experiment::study::Study;
-use crate::experiment::{burning, caustics, gas, lava, terrain};
 use crate::gpu::physical::BASELINE;
 use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
+use crate::measure::study::Study;
+use crate::papers::{
+    burning::setup as burning, caustics::setup as caustics, gas::setup as gas, lava::setup as lava,
+    terrain::setup as terrain,
+};
 
 #[derive(Debug, Clone, Args)]
 pub struct DevicesArgs {
@@ -42,7 +45,7 @@ pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
 
 fn json_of(device: &PhysicalDevice) -> Value {
     let features: serde_json::Map<String, Value> =
-        Feature::ALL.iter().map(|&f| (f.word().to_owned(), json!(device.has(f)))).collect();
+        Feature::ALL.iter().map(|&f| (f.as_str().to_owned(), json!(device.has(f)))).collect();
     let papers: serde_json::Map<String, Value> = PAPERS
         .iter()
         .map(|(name, needs)| {
@@ -52,7 +55,7 @@ fn json_of(device: &PhysicalDevice) -> Value {
         .collect();
     let limits = &device.limits;
     json!({
-        "index": device.index, "name": device.name, "type": device.device_type.word(), "uuid": device.uuid_text(),
+        "index": device.index, "name": device.name, "type": device.device_type.as_str(), "uuid": device.uuid_text(),
         "driver": device.driver_name, "driver_version": device.driver_info,
         "api_version": device.api_version_text(),
         "limits": {
@@ -68,20 +71,20 @@ fn json_of(device: &PhysicalDevice) -> Value {
 }
 
 fn words(needs: &[Feature]) -> Vec<&'static str> {
-    BASELINE.iter().chain(needs).map(|f| f.word()).collect()
+    BASELINE.iter().chain(needs).map(|f| f.as_str()).collect()
 }
 
 fn text_of(device: &PhysicalDevice) -> String {
     let style = outcome::style();
     let mut lines = vec![
         style.bold(&format!("{}: {}", device.index, device.name)),
-        format!("  type     {}", device.device_type.word()),
+        format!("  type     {}", device.device_type.as_str()),
         format!("  uuid     {}", device.uuid_text()),
         format!("  driver   {} {}", device.driver_name, device.driver_info),
         format!("  vulkan   {}", device.api_version_text()),
     ];
-    let has: Vec<&str> = Feature::ALL.iter().filter(|&&f| device.has(f)).map(|f| f.word()).collect();
-    let lacks: Vec<&str> = Feature::ALL.iter().filter(|&&f| !device.has(f)).map(|f| f.word()).collect();
+    let has: Vec<&str> = Feature::ALL.iter().filter(|&&f| device.has(f)).map(|f| f.as_str()).collect();
+    let lacks: Vec<&str> = Feature::ALL.iter().filter(|&&f| !device.has(f)).map(|f| f.as_str()).collect();
     lines.push(format!("  has      {}", has.join(", ")));
     if !lacks.is_empty() {
         lines.push(format!("  lacks    {}", lacks.join(", ")));

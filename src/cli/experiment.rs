@@ -11,11 +11,11 @@ use super::failure::Failure;
 use super::options::{CommonArgs, OutputArgs};
 use super::outcome;
 use super::watch::watched;
-use crate::experiment::facts::Facts;
-use crate::experiment::machine::Machine;
-use crate::experiment::study::Study;
-use crate::experiment::sweep::{Plan, Point, Swept};
 use crate::image::{self, Raster, Rgba8, write_png};
+use crate::measure::machine::Machine;
+use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study;
+use crate::measure::sweep::{Plan, Point, Swept};
 use crate::report::output::check_writable;
 use crate::report::record::Run;
 use crate::report::{Record, csv};
@@ -55,7 +55,7 @@ pub trait ExperimentArgs: Args + Debug + 'static {
     /// What was typed: the list, or one experiment after a look at its options and files.
     fn run(&self) -> Result<(), Failure> {
         let (Some(name), false) = (&self.asked().name, self.asked().list) else { return list::<Self::Name>() };
-        let publication = Publication { output: &self.common().output, paper: Self::Study::PAPER, name: word(name) };
+        let publication = Publication { output: &self.common().output, paper: Self::Study::PAPER, name: name_of(name) };
         refuse(self.common(), &self.unsuited(name.clone()))?;
         publication.check()?;
         self.perform(name.clone(), &publication)
@@ -84,7 +84,7 @@ pub trait ExperimentArgs: Args + Debug + 'static {
 }
 
 /// The word of an experiment.
-pub fn word(name: &impl ValueEnum) -> String {
+pub fn name_of(name: &impl ValueEnum) -> String {
     name.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
 }
 
@@ -171,7 +171,7 @@ impl Publication<'_> {
     }
 
     /// A table without times: JSON and CSV as files, and the table or the JSON on standard output.
-    pub fn facts(&self, machine: &Machine, facts: &Facts) -> Result<(), Failure> {
+    pub fn facts(&self, machine: &Machine, facts: &ResultTable) -> Result<(), Failure> {
         let document = json!({
             "experiment": self.name, "environment": machine.environment(),
             "command": std::env::args().collect::<Vec<_>>(), "table": facts.json(),

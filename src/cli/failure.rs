@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::outcome;
-use crate::experiment::compare::CompareError;
-use crate::experiment::{self, Error};
+use crate::measure::Error;
+use crate::measure::compare::CompareError;
 use crate::report::json::ReadError;
 use crate::report::output::OutputError;
 use crate::{gpu, image};
@@ -59,8 +59,8 @@ impl From<gpu::Error> for Failure {
     }
 }
 
-impl From<experiment::Error> for Failure {
-    fn from(error: experiment::Error) -> Self {
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
         match error {
             Error::Gpu(error) => error.into(),
             Error::Image(error) => error.into(),

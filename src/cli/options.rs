@@ -7,10 +7,10 @@ use clap::{Args, ValueEnum};
 use glam::Vec3;
 
 use super::failure::Failure;
-use crate::experiment::limits;
-use crate::experiment::machine::{Machine, MachineOptions};
-use crate::experiment::measure::Schedule;
 use crate::gpu::Compiler;
+use crate::measure::limits;
+use crate::measure::machine::{Machine, MachineOptions};
+use crate::measure::measure::Schedule;
 use crate::report::record::Limits;
 
 /// The options of a verb that measures.

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::failure::Failure;
 use super::options::OutputArgs;
-use crate::experiment::machine::Machine;
 use crate::image;
+use crate::measure::machine::Machine;
 use crate::report::output::{check_writable, write};
 use crate::report::record::Record;
 use crate::report::table::Style;

@@ -11,8 +11,8 @@ use super::experiment::ExperimentArgs;
 use super::failure::Failure;
 use super::passes::{self, PassesArgs};
 use super::render::{self, RenderArgs};
-use crate::experiment::study::Study;
-use crate::papers::Variant;
+use crate::measure::Variant;
+use crate::measure::study::Study;
 
 /// A paper's scene options.
 pub trait PaperArgs: Args + Clone + Debug + 'static {
@@ -70,19 +70,19 @@ pub enum VariantWord<V> {
 }
 
 fn find<V: Variant>(word: &str) -> Option<V> {
-    V::ALL.iter().copied().find(|v| v.word() == word)
+    V::ALL.iter().copied().find(|v| v.as_str() == word)
 }
 
 /// The words of a list of variants: each variant's, and `all`.
 pub fn variant_words<V: Variant>() -> impl TypedValueParser<Value = VariantWord<V>> {
-    PossibleValuesParser::new(V::ALL.iter().map(|v| v.word()).chain(["all"]))
+    PossibleValuesParser::new(V::ALL.iter().map(|v| v.as_str()).chain(["all"]))
         .map(|word| find(&word).map_or(VariantWord::All, VariantWord::One))
 }
 
 /// The word of one variant.
 pub fn variant_word<V: Variant>() -> impl TypedValueParser<Value = V> {
     // The parser has let through no other word than a variant's.
-    PossibleValuesParser::new(V::ALL.iter().map(|v| v.word())).map(|word| find(&word).unwrap_or(V::ALL[0]))
+    PossibleValuesParser::new(V::ALL.iter().map(|v| v.as_str())).map(|word| find(&word).unwrap_or(V::ALL[0]))
 }
 
 /// The variants that a list of words means, in the paper's order, each once.

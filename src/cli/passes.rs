@@ -7,12 +7,12 @@ use super::failure::Failure;
 use super::options::MachineArgs;
 use super::outcome;
 use super::paper::{PaperArgs, VariantOf, VariantWord, chosen, variant_words};
-use crate::experiment::bench::build;
-use crate::experiment::machine::Machine;
-use crate::experiment::study::Study;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Mode, PassInfo};
-use crate::papers::{Kind, Paper, Target, Variant};
+use crate::measure::bench::build;
+use crate::measure::machine::Machine;
+use crate::measure::study::Study;
+use crate::measure::{Kind, Paper, Target, Variant};
 use crate::report::table::{Align, Table};
 
 #[derive(Debug, Clone, Args)]
@@ -46,7 +46,7 @@ pub fn run<P: PaperArgs>(arguments: &PassesArgs<P>) -> Result<(), Failure> {
         let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
         let passes = sample.passes.iter().map(|p| (p.info.clone(), p.calls)).collect();
         let targets = built.paper.targets();
-        listed.push(Listed { paper: P::Study::PAPER, variant: variant.word(), passes, targets });
+        listed.push(Listed { paper: P::Study::PAPER, variant: variant.as_str(), passes, targets });
     }
     machine.check_validation()?;
     if arguments.json {
@@ -64,7 +64,7 @@ fn json_of(listed: &Listed) -> Value {
         .enumerate()
         .map(|(order, (info, calls))| {
             json!({
-                "order": order + 1, "name": info.name, "kind": info.kind.word(), "section": info.section,
+                "order": order + 1, "name": info.name, "kind": info.kind.as_str(), "section": info.section,
                 "calls": calls, "shaders": info.shaders, "reads": info.reads, "writes": info.writes,
                 "blend": info.blend, "depth": info.depth, "counting": info.counting,
                 "shader_compiler": info.compiler.map(|c| c.to_string()),
@@ -98,7 +98,7 @@ fn text_of(listed: &Listed) -> String {
         table.push(vec![
             (order + 1).to_string(),
             info.name.to_owned(),
-            info.kind.word().to_owned(),
+            info.kind.as_str().to_owned(),
             info.section.to_owned(),
             calls.to_string(),
             info.shaders.join(" "),

@@ -9,12 +9,12 @@ use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, VariantOf, variant_word};
 use super::watch::{interrupted, progress_bar};
-use crate::experiment::bench::build;
-use crate::experiment::machine::Machine;
-use crate::experiment::picture;
-use crate::experiment::study::Study;
 use crate::image;
-use crate::papers::{Paper, Variant};
+use crate::measure::bench::build;
+use crate::measure::machine::Machine;
+use crate::measure::picture;
+use crate::measure::study::Study;
+use crate::measure::{Paper, Variant};
 
 #[derive(Debug, Clone, Args)]
 pub struct RenderArgs<P: PaperArgs> {
@@ -96,7 +96,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     let picture_path = |number: u32| match &arguments.image {
         Some(path) if is_range => numbered(path, number),
         Some(path) => path.clone(),
-        None => arguments.out.join(format!("{}-{}-{number:04}.png", P::Study::PAPER, variant.word())),
+        None => arguments.out.join(format!("{}-{}-{number:04}.png", P::Study::PAPER, variant.as_str())),
     };
     for dump in &arguments.dump {
         image::Format::of(&dump.file)?;

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::experiment::measure::Watch;
+use crate::measure::measure::Watch;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 

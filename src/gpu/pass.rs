@@ -270,7 +270,7 @@ impl PassBuilder {
         let name = sentence.name;
         let has_geometry = sentence.shaders.iter().any(|s| s.ends_with(".geom"));
         if has_geometry && !device.physical().has(Feature::GeometryShader) {
-            let missing = Feature::GeometryShader.word().to_owned();
+            let missing = Feature::GeometryShader.as_str().to_owned();
             return Err(Error::MissingFeature { device: device.physical().name.clone(), missing });
         }
         let load = |shader: &str| {
@@ -487,9 +487,9 @@ fn describe(sentence: &Sentence, program: &Program, uses: &[Use]) -> PassInfo {
         shaders: sentence.shaders.iter().chain(sentence.counting.iter().map(|(shader, _)| shader)).cloned().collect(),
         reads: names(false),
         writes: names(true),
-        blend: sentence.targets.colors.iter().map(|(_, blend)| blend.word()).collect(),
-        depth: sentence.targets.depth.as_ref().map(|(_, test)| test.word()),
-        counting: sentence.counting.as_ref().map(|(_, test)| test.word()),
+        blend: sentence.targets.colors.iter().map(|(_, blend)| blend.as_str()).collect(),
+        depth: sentence.targets.depth.as_ref().map(|(_, test)| test.as_str()),
+        counting: sentence.counting.as_ref().map(|(_, test)| test.as_str()),
         compiler: Some(program.compiler()),
     }
 }

@@ -14,7 +14,7 @@ pub enum PassKind {
 }
 
 impl PassKind {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             PassKind::Graphics => "graphics",
             PassKind::Compute => "compute",

@@ -18,7 +18,7 @@ pub enum DeviceType {
 }
 
 impl DeviceType {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             DeviceType::Discrete => "discrete",
             DeviceType::Integrated => "integrated",
@@ -81,7 +81,7 @@ impl Feature {
     ];
 
     /// The name that the capability report and the error messages use.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Feature::Synchronization2 => "synchronization2",
             Feature::HostQueryReset => "host-query-reset",
@@ -201,7 +201,7 @@ impl PhysicalDevice {
         if self.queue.is_none() {
             missing.push("a queue with graphics and compute");
         }
-        missing.extend(BASELINE.iter().chain(needed).filter(|&&f| !self.has(f)).map(|f| f.word()));
+        missing.extend(BASELINE.iter().chain(needed).filter(|&&f| !self.has(f)).map(|f| f.as_str()));
         missing.dedup();
         missing
     }

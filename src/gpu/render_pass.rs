@@ -39,7 +39,7 @@ pub enum Blend {
 }
 
 impl Blend {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Blend::Replace => "replace",
             Blend::Add => "add",
@@ -93,7 +93,7 @@ pub enum DepthTest {
 }
 
 impl DepthTest {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             DepthTest::LessWrite => "less, write",
             DepthTest::LessReadOnly => "less, read only",

@@ -7,6 +7,7 @@
 //! ```
 
 pub mod compare;
+pub mod contact_sheet;
 mod error;
 mod exr;
 pub mod golden;
@@ -16,7 +17,6 @@ mod png;
 mod raster;
 mod replace;
 pub mod srgb;
-pub mod strip;
 mod view;
 
 pub use self::compare::{Difference, compare};

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::record::*;
-use crate::experiment::statistics::summarize;
+use crate::measure::statistics::summarize;
 
 fn object(value: Value) -> Map<String, Value> {
     match value {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_buffer;
 use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Burning, Counts, Parameters, Variant};
 use fumarole::scene::{Mesh, shapes};

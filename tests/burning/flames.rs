@@ -1,7 +1,7 @@
 //! Flame groups and their particles (3.6).
 
 use fumarole::gpu::transfer::read_image;
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::burning::{Group, Parameters, Particle, Variant};
 
 use crate::common::gpu_test;

@@ -1,6 +1,6 @@
 //! What holds in every fire, whatever the numbers.
 
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::burning::{Parameters, Variant};
 
 use crate::common::gpu_test;

@@ -4,9 +4,9 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
+use fumarole::measure::{Paper, Variant as _};
 use fumarole::papers::burning::model::{Model, with_triangles};
 use fumarole::papers::burning::{Parameters, Variant};
-use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::{UVec2, Vec2, Vec3};
 

@@ -5,9 +5,9 @@ use std::path::Path;
 use fumarole::gpu::transfer::read_image;
 use fumarole::image::Rgba8;
 use fumarole::image::golden::{self, Tolerance};
+use fumarole::measure::{Paper, Variant as _};
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Parameters, Shading, Variant};
-use fumarole::papers::{Paper, Variant as _};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 
 use crate::common::gpu_test;
@@ -85,7 +85,7 @@ fn the_pictures_are_the_golden_ones() {
             let view = fire.paper.picture();
             let texels = read_image(device, view).unwrap();
             let picture = Rgba8::new(view.width(), view.height(), texels).unwrap();
-            let file = format!("tests/golden/burning-{}.png", variant.word());
+            let file = format!("tests/golden/burning-{}.png", variant.as_str());
             let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
             if let Err(error) = golden::check(&picture, &golden, TOLERANCE, Path::new(env!("CARGO_TARGET_TMPDIR"))) {
                 panic!("{error}");

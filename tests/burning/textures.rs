@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use fumarole::experiment::burning::texture::with_levels;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device};
 use fumarole::image::{Rgba8, srgb};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
+use fumarole::papers::burning::experiments::texture::with_levels;
 use fumarole::papers::burning::model::Model;
 use fumarole::papers::burning::{Parameters, Texture, Variant};
 use fumarole::scene::{Mesh, shapes};

@@ -1,6 +1,6 @@
 //! The state depends on the simulated time alone.
 
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::burning::{Parameters, Variant};
 
 use crate::common::gpu_test;

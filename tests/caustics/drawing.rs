@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use fumarole::experiment::picture::read_target;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Mode, PassSample, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
+use fumarole::measure::picture::read_target;
+use fumarole::measure::{Paper, Target};
 use fumarole::papers::caustics::water::Grid;
 use fumarole::papers::caustics::{Caustics, Parameters, ReceiverInput, Variant};
-use fumarole::papers::{Paper, Target};
 
 /// The frame that is drawn: not the first, so that the water has moved.
 pub const FRAME: u32 = 3;

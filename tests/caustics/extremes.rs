@@ -2,7 +2,7 @@
 
 use std::slice::from_ref;
 
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaveParameters};
 use fumarole::scene::{Light, Mesh};
 use glam::{DVec3, Mat4, Vec3};

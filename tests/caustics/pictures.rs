@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fumarole::image::golden::{self, Tolerance};
 use fumarole::image::srgb;
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::caustics::{Parameters, Variant};
 use fumarole::scene::{Camera, Light};
 use glam::Vec3;
@@ -25,7 +25,7 @@ fn the_pictures_are_the_golden_ones() {
         let through_water = [Variant::LevelMap, Variant::Volumetric].map(|variant| ("above", &above, variant));
         for (view, parameters, variant) in views.into_iter().chain(through_water) {
             let drawing = Drawing::of(device, variant, parameters, &[teapot(), floor()]);
-            let file = format!("tests/golden/caustics-{view}-{}.png", variant.word());
+            let file = format!("tests/golden/caustics-{view}-{}.png", variant.as_str());
             let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
             let output_dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
             if let Err(error) = golden::check(&drawing.picture, &golden, TOLERANCE, output_dir) {

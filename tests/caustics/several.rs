@@ -1,6 +1,6 @@
 //! Several receivers, concave ones too, under several lights.
 
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant};
 use fumarole::scene::{Camera, Light};
 use glam::{Mat4, Vec3};
@@ -66,7 +66,7 @@ fn lights_add_up_over_ambient_light_that_counts_once() {
                 assert!(
                     (found - expected).abs().cmple(tolerance).all(),
                     "{}, pixel {pixel}: {found} instead of {expected}",
-                    variant.word()
+                    variant.as_str()
                 );
                 if !is_receiver {
                     assert_eq!(found, unlit);
@@ -78,7 +78,7 @@ fn lights_add_up_over_ambient_light_that_counts_once() {
                     lit_by[receiver][light] += u32::from(parts[light].max_element() > 0.02);
                 }
             }
-            println!("{}: pixels of each receiver lit by each light: {lit_by:?}", variant.word());
+            println!("{}: pixels of each receiver lit by each light: {lit_by:?}", variant.as_str());
             assert!(lit_by.iter().flatten().all(|&pixels| pixels > 50), "{lit_by:?}");
         }
     });

@@ -4,7 +4,7 @@ use std::slice::from_ref;
 
 use fumarole::gpu::Compiler;
 use fumarole::image::compare;
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::caustics::{Parameters, Variant};
 use glam::Vec3;
 
@@ -124,7 +124,7 @@ fn both_shader_compilers_draw_one_picture() {
                 drawing.picture
             });
             let difference = compare(&glslang, &naga, None).unwrap();
-            println!("{}: {difference:?}", variant.word());
+            println!("{}: {difference:?}", variant.as_str());
             assert!(difference.mean <= 0.01 && difference.p99 <= 0.5, "{difference:?}");
         }
     });

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use fumarole::gpu::{Compiler, Device};
 use fumarole::image::compare;
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::caustics::reference::{spherical_cap_focus, spherical_cap_vertex};
 use fumarole::papers::caustics::water::{LEVEL_M, waves};
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaterMap, WaveParameters};
@@ -119,8 +119,8 @@ fn a_map_of_the_waves_gives_the_waves_picture() {
             let from_flat = compare(&by_waves.picture, &flat.picture, None).unwrap().mean;
             by_map.assert_finite();
             let difference = compare(&by_waves.picture, &by_map.picture, None).unwrap();
-            println!("{} from {view}: {difference:?}, {from_flat} from flat", variant.word());
-            assert!(difference.mean <= 0.35 * from_flat, "{} from {view}: {difference:?}", variant.word());
+            println!("{} from {view}: {difference:?}, {from_flat} from flat", variant.as_str());
+            assert!(difference.mean <= 0.35 * from_flat, "{} from {view}: {difference:?}", variant.as_str());
             let naga = Drawing::compiled_by(Compiler::Naga, device, variant, &still, &receivers);
             assert!(compare(&naga.picture, &by_map.picture, None).unwrap().mean <= 0.01);
         }

@@ -1,7 +1,7 @@
 //! Fragments: coverage, masks, order, against cutting in double precision.
 
 use fumarole::gpu::{Compiler, Mode, Recorder, ShaderLibrary};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::reference::coverage::{area, cut};
 use fumarole::papers::gas::{Capacity, Gas, Parameters, Variant};

@@ -25,7 +25,7 @@ fn the_pictures_are_the_golden_ones() {
             let (parameters, objects) = small(preset);
             let frame = preset.bench_frame();
             let drawing = Drawing::frame(device, Compiler::Glslang, preset.variant(), &parameters, &objects, frame);
-            let file = format!("tests/golden/gas-{}.png", preset.word());
+            let file = format!("tests/golden/gas-{}.png", preset.as_str());
             let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
             let output_dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
             if let Err(error) = golden::check(&drawing.picture, &golden, TOLERANCE, output_dir) {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fumarole::gpu::{Compiler, Device, Error, Feature, PhysicalDevice, ShaderLibrary};
 use fumarole::gpu::{Mode, Recorder};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture};
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::Rays;

@@ -165,7 +165,7 @@ fn the_blend_states_do_what_they_say() {
                 .color(&target, Load::Clear([0.25, 0.5, 0.25, 0.25]), blend)
                 .build(&shaders(device))
                 .unwrap();
-            assert_eq!(pass.info().blend, [blend.word()]);
+            assert_eq!(pass.info().blend, [blend.as_str()]);
             run(device, Mode::Plain, |frame| {
                 frame.graphics(&pass, |draw| {
                     draw.constants(&Paint { value: [0.5, 0.25, 1.0, 0.5] }).vertices(3);

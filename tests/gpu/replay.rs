@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use ash::vk;
-use fumarole::experiment::measure::{Schedule, Watch, measure};
 use fumarole::gpu::{Blend, Device, Error, Frame, ImageView, Load, Pass, Recorder};
-use fumarole::papers::{Paper, Target};
+use fumarole::measure::measure::{Schedule, Watch, measure};
+use fumarole::measure::{Paper, Target};
 
 use crate::common::gpu_test;
 use crate::fixtures::{color_target, shaders};

@@ -2,7 +2,7 @@
 
 use fumarole::gpu::bindings::Resource;
 use fumarole::gpu::{Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder, ShaderLibrary};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock};
 use fumarole::scene::Camera;
 use glam::Vec3;

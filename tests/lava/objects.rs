@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Device;
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
 use fumarole::scene::{Camera, Mesh, shapes};
 use glam::{DMat4, DVec3, Mat4, Vec3};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fumarole::gpu::Device;
 use fumarole::image::Rgba8;
 use fumarole::image::golden::{self, Tolerance};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::lava::{CAMERAS, Lava, Parameters, Shading};
 use fumarole::scene::Camera;
 use glam::{Mat4, Vec3};

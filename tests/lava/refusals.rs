@@ -13,7 +13,7 @@ fn parameters_outside_their_range_are_named() {
     let good = parameters();
     assert_eq!(good.validate(), Ok(()));
     for preset in Preset::ALL {
-        assert!(preset.configurations().iter().all(|p| p.validate().is_ok()), "{}", preset.word());
+        assert!(preset.configurations().iter().all(|p| p.validate().is_ok()), "{}", preset.as_str());
     }
     let nan = f32::NAN;
     let cases = [

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, FrameSample, ImageView, Mode, Recorder, ShaderLibrary};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::Grid;
 use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
 use glam::{DVec3, Vec3};

@@ -1,6 +1,6 @@
 //! Heights and normals: eq. 6.3 and section 6.4.
 
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::{Grid, Surface};
 use fumarole::papers::lava::{Parameters, Particles};
 use glam::{DVec3, Vec3};

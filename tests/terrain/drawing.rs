@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use fumarole::experiment::picture::read_target;
 use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
-use fumarole::papers::Paper;
+use fumarole::measure::Paper;
+use fumarole::measure::picture::read_target;
 use fumarole::papers::terrain::{Hit, Inputs, MapInput, Parameters, Terrain, Variant, View};
 use fumarole::scene::Camera;
 

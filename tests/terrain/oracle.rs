@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use fumarole::gpu::{Compiler, Device};
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::terrain::{Base, Inputs, Interpolation, MapInput, Placement, Rays, Variant};
 use fumarole::scene::Camera;
 use fumarole::scene::random::Random;
@@ -64,7 +64,7 @@ impl<'a> Trials<'a> {
             let mut painter = Painter::new(device, *compiler, *variant, &parameters, &inputs);
             for (camera, stand, judge) in &judges {
                 let mut tally = judge.tally(&painter.from(*camera));
-                let place = format!("{} {stand} {} {compiler:?}", world.name, variant.word());
+                let place = format!("{} {stand} {} {compiler:?}", world.name, variant.as_str());
                 for reasons in [&mut tally.wrong, &mut tally.hairs] {
                     *reasons = reasons.iter().take(3).map(|reason| format!("{place}: {reason}")).collect();
                 }
@@ -75,7 +75,7 @@ impl<'a> Trials<'a> {
 
     fn assert_none_wrong(&self) {
         for Trial { variant, tally, .. } in &self.trials {
-            assert!(tally.wrong.is_empty(), "{}:\n{}", variant.word(), tally.wrong.join("\n"));
+            assert!(tally.wrong.is_empty(), "{}:\n{}", variant.as_str(), tally.wrong.join("\n"));
         }
     }
 
@@ -83,7 +83,7 @@ impl<'a> Trials<'a> {
     fn assert(&self, kinds: [bool; 5]) {
         self.assert_none_wrong();
         for Trial { variant, tally, .. } in &self.trials {
-            let word = variant.word();
+            let word = variant.as_str();
             let hairs = tally.hairs.join("\n");
             assert!(tally.elsewhere * 1000 < tally.rays, "{word}: {} of {}:\n{hairs}", tally.elsewhere, tally.rays);
             let is_seen = tally.seen.iter().zip(kinds).all(|(&seen, wanted)| !wanted || seen >= 20);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use fumarole::image::golden::{self, Tolerance};
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::terrain::{Lod, Parameters, Variant, View};
 
 use crate::common::gpu_test;
@@ -20,7 +20,7 @@ fn the_pictures_are_the_golden_ones() {
             for variant in [Variant::GpuCompute, Variant::Mesh] {
                 let parameters = Parameters { view, shadows: true, width: 128, height: 96, ..Parameters::default() };
                 let drawing = Drawing::of(device, variant, &parameters, &alone(volcano(100)));
-                let file = format!("tests/golden/terrain-{name}-{}.png", variant.word());
+                let file = format!("tests/golden/terrain-{name}-{}.png", variant.as_str());
                 let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
                 let output_dir = Path::new(env!("CARGO_TARGET_TMPDIR"));
                 if let Err(error) = golden::check(&drawing.picture, &golden, TOLERANCE, output_dir) {

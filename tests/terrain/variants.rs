@@ -1,7 +1,7 @@
 //! The variants see the same land.
 
 use fumarole::gpu::Compiler;
-use fumarole::papers::Variant as _;
+use fumarole::measure::Variant as _;
 use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, MapInput, Parameters, Surface, Variant, View};
 
 use fumarole::scene::shapes;
@@ -33,7 +33,7 @@ fn all_variants_find_the_same_hits() {
                     let compute = Drawing::of(device, Variant::GpuCompute, &parameters, &maps);
                     for variant in [Variant::GpuFragment, Variant::Cpu] {
                         let other = Drawing::of(device, variant, &parameters, &maps);
-                        assert_agree(&format!("{name} {lod:?} {view:?} {}", variant.word()), &compute, &other);
+                        assert_agree(&format!("{name} {lod:?} {view:?} {}", variant.as_str()), &compute, &other);
                     }
                 }
             }
@@ -59,7 +59,7 @@ fn all_variants_agree_on_every_base_and_interpolation() {
                     for variant in [Variant::GpuFragment, Variant::Cpu] {
                         let other = Drawing::of(device, variant, &parameters, &maps);
                         assert_agree(
-                            &format!("{base:?} {interpolation:?} {lod:?} {}", variant.word()),
+                            &format!("{base:?} {interpolation:?} {lod:?} {}", variant.as_str()),
                             &compute,
                             &other,
                         );
@@ -101,11 +101,11 @@ fn both_compilers_draw_one_picture() {
                     Painter::new(device, compiler, variant, &parameters, &inputs).draw()
                 };
                 let [glslang, naga] = [Compiler::Glslang, Compiler::Naga].map(of);
-                assert_agree(variant.word(), &glslang, &naga);
+                assert_agree(variant.as_str(), &glslang, &naga);
                 let [a, b] = [&glslang, &naga].map(|drawing| drawing.picture.pixels().as_chunks::<4>().0);
                 let pixels = a.iter().zip(b);
                 let differing = pixels.filter(|(a, b)| (0..3).any(|i| a[i].abs_diff(b[i]) > 6)).count();
-                assert!(differing * 1000 <= glslang.hits.len(), "{}: {differing} colours differ", variant.word());
+                assert!(differing * 1000 <= glslang.hits.len(), "{}: {differing} colours differ", variant.as_str());
             }
         }
     });

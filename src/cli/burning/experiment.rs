@@ -9,16 +9,16 @@ use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
 use crate::cli::watch::watched;
-use crate::experiment::burning::Setup;
-use crate::experiment::burning::course::{Look, follow};
-use crate::experiment::burning::rates::{CLAIMS, Claim};
-use crate::experiment::burning::refining::{self, Line, Measured, is_half_refined};
-use crate::experiment::burning::strips::{FIGURES, Figure};
-use crate::experiment::burning::sweeps::{self, Limited};
-use crate::experiment::facts::Facts;
-use crate::experiment::machine::Machine;
-use crate::experiment::sweep::{Point, Row, Swept};
+use crate::measure::machine::Machine;
+use crate::measure::result_table::ResultTable;
+use crate::measure::sweep::{Point, Row, Swept};
 use crate::papers::burning::Variant;
+use crate::papers::burning::experiments::course::{Look, follow};
+use crate::papers::burning::experiments::rates::{CLAIMS, Claim};
+use crate::papers::burning::experiments::refining::{self, Line, Measured, is_half_refined};
+use crate::papers::burning::experiments::strips::{FIGURES, Figure};
+use crate::papers::burning::experiments::sweeps::{self, Limited};
+use crate::papers::burning::setup::Setup;
 
 /// The tables and figures that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -218,7 +218,7 @@ impl Experiments {
         let facts = sweeps::block_table(&mut swept.rows);
         let plot = facts
             .bars("ms", &["weights ms", "rotation ms", "mapping ms", "flames ms"])
-            .map_err(crate::experiment::Error::from)?;
+            .map_err(crate::measure::Error::from)?;
         publish_facts(publication, &machine, swept.rows, &facts, &[(".svg".to_owned(), plot)])?;
         machine.check_validation()?;
         swept.stopped.map_or(Ok(()), |error| Err(error.into()))
@@ -318,7 +318,7 @@ fn publish_facts(
     publication: &Publication<'_>,
     machine: &Machine,
     rows: Vec<Row>,
-    facts: &Facts,
+    facts: &ResultTable,
     plots: &[(String, String)],
 ) -> Result<(), Failure> {
     publish(publication, machine, rows, facts.render(outcome::style()), plots)

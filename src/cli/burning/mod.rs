@@ -12,8 +12,8 @@ use self::experiment::Experiments;
 use super::failure::Failure;
 use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
-use crate::experiment::burning::Setup;
-use crate::experiment::burning::presets::Preset;
+use crate::papers::burning::experiments::presets::Preset;
+use crate::papers::burning::setup::Setup;
 use crate::papers::burning::{Material, Shading, Variant, seen_from};
 use crate::scene::MeshSource;
 

@@ -9,17 +9,17 @@ use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
 use crate::cli::paper::PaperArgs;
-use crate::experiment::bench::build;
-use crate::experiment::caustics::slicing;
-use crate::experiment::caustics::sweep::{
+use crate::measure::Variant as _;
+use crate::measure::bench::build;
+use crate::measure::machine::Machine;
+use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study;
+use crate::measure::{Error, picture};
+use crate::papers::caustics::experiments::slicing;
+use crate::papers::caustics::experiments::sweep::{
     ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome,
 };
-use crate::experiment::caustics::{self, NamedMesh, Setup};
-use crate::experiment::facts::Facts;
-use crate::experiment::machine::Machine;
-use crate::experiment::study::Study;
-use crate::experiment::{self, picture};
-use crate::papers::Variant as _;
+use crate::papers::caustics::setup::{NamedMesh, Setup, sample_meshes};
 use crate::papers::caustics::{Parameters, Variant};
 use crate::report::plot::PlotError;
 use crate::scene::MeshSource;
@@ -118,8 +118,8 @@ impl ExperimentArgs for Experiments {
         };
         let mut setup = self.scene.resolve(self.common.measure.process)?;
         setup.preset = Some(publication.name.clone());
-        setup.parameters.validate().map_err(experiment::Error::from)?;
-        let meshes = if self.scene.names_meshes() { setup.meshes.clone() } else { caustics::sample_meshes() };
+        setup.parameters.validate().map_err(Error::from)?;
+        let meshes = if self.scene.names_meshes() { setup.meshes.clone() } else { sample_meshes() };
         check_input(&setup, &meshes, &counts)?;
         let machine = self.open()?;
         let mut experiment = Experiment { arguments: self, name, publication, setup, meshes, counts, machine };
@@ -130,7 +130,7 @@ impl ExperimentArgs for Experiments {
 }
 
 /// Looks at every count and every mesh before anything is measured: a sweep takes long to come to the last.
-fn check_input(setup: &Setup, meshes: &[MeshSource], counts: &[u32]) -> Result<(), experiment::Error> {
+fn check_input(setup: &Setup, meshes: &[MeshSource], counts: &[u32]) -> Result<(), Error> {
     for &planes in counts {
         Parameters { planes, ..setup.parameters.clone() }.validate()?;
     }
@@ -176,8 +176,8 @@ impl Experiment<'_> {
     }
 
     /// A table without times, and its plot.
-    fn publish(&self, facts: &Facts, plot: Result<String, PlotError>) -> Result<(), Failure> {
-        let svg = plot.map_err(experiment::Error::from)?;
+    fn publish(&self, facts: &ResultTable, plot: Result<String, PlotError>) -> Result<(), Failure> {
+        let svg = plot.map_err(Error::from)?;
         self.publication.save(&self.publication.file(".svg"), svg.as_bytes())?;
         self.publication.facts(&self.machine, facts)
     }
@@ -206,13 +206,15 @@ impl Experiment<'_> {
             let histogram = slicing::depth_profile(&mut self.machine, &setup, &scene)?;
             let levels = histogram.iter().enumerate();
             rows.extend(levels.map(|(level, texels)| vec![json!(name), json!(level + 1), json!(texels)]));
-            let svg = slicing::profile_chart(&name, &histogram).to_svg().map_err(experiment::Error::from)?;
+            let svg = slicing::profile_chart(&name, &histogram).to_svg().map_err(Error::from)?;
             self.publication.save(&self.publication.file(&format!("-{name}-profile.svg")), svg.as_bytes())?;
         }
         if self.name == Name::DepthProfile {
             let columns = &["mesh", "level", "texels"];
-            self.publication
-                .facts(&self.machine, &Facts { title: "Figure 5-12: texels in each depth level", columns, rows })?;
+            self.publication.facts(
+                &self.machine,
+                &ResultTable { title: "Figure 5-12: texels in each depth level", columns, rows },
+            )?;
         }
         Ok(())
     }
@@ -231,7 +233,7 @@ impl Experiment<'_> {
             rows.push(vec![json!(name), json!(d.mean), json!(d.p99), json!(d.max), json!(d.pixels)]);
         }
         let columns = &["mesh", "mean", "p99", "max", "pixels"];
-        let facts = Facts { title: "Figure 5-13: Luv difference of the picture pair", columns, rows };
+        let facts = ResultTable { title: "Figure 5-13: Luv difference of the picture pair", columns, rows };
         let plot = facts.bars("Luv difference", &["mean", "p99"]);
         self.publish(&facts, plot)
     }
@@ -244,7 +246,7 @@ impl Experiment<'_> {
             for variant in [Variant::Volumetric, Variant::LevelMap, Variant::LevelMapSmart] {
                 let mut built = build(&self.machine, &setup, &scene, variant)?;
                 let rendered = picture::render(&mut self.machine, &mut built.paper, 0)?;
-                self.publication.picture(&format!("-{}-{}.png", name, variant.word()), &rendered)?;
+                self.publication.picture(&format!("-{}-{}.png", name, variant.as_str()), &rendered)?;
             }
         }
         Ok(())

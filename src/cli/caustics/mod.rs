@@ -11,9 +11,9 @@ use self::experiment::Experiments;
 use super::failure::Failure;
 use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
-use crate::experiment::Error;
-use crate::experiment::caustics::{Setup, water_map};
-use crate::papers::ParameterError;
+use crate::measure::Error;
+use crate::measure::ParameterError;
+use crate::papers::caustics::setup::{Setup, water_map};
 use crate::papers::caustics::{Parameters, SmartPlacement};
 use crate::scene::{Camera, HeightMapSource, Light, MeshSource};
 
@@ -51,7 +51,7 @@ pub enum Preset {
 }
 
 impl Preset {
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         match self {
             Preset::Table51 => "5-1",
         }
@@ -221,7 +221,7 @@ impl PaperArgs for CausticsArgs {
             parameters: p,
             meshes,
             floor: self.floor,
-            preset: self.preset.map(|p| p.word().to_owned()),
+            preset: self.preset.map(|p| p.as_str().to_owned()),
             process,
         })
     }

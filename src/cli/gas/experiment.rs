@@ -8,18 +8,18 @@ use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication};
 use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::experiment::Error;
-use crate::experiment::bench::{build, load};
-use crate::experiment::facts::Facts;
-use crate::experiment::gas::Setup;
-use crate::experiment::gas::tables::{Number, Outcome, Trade};
-use crate::experiment::picture;
-use crate::experiment::study::Study;
-use crate::experiment::sweep::Point;
-use crate::image::strip::{below_each_other, side_by_side};
+use crate::image::contact_sheet::{below_each_other, side_by_side};
+use crate::measure::Error;
+use crate::measure::bench::{build, load};
+use crate::measure::picture;
+use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study;
+use crate::measure::sweep::Point;
 use crate::papers::gas::Variant;
+use crate::papers::gas::experiments::tables::{Number, Outcome, Trade};
 use crate::papers::gas::model::DensityFunction;
 use crate::papers::gas::scenes::Preset;
+use crate::papers::gas::setup::Setup;
 
 /// The tables and figures that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -157,7 +157,7 @@ impl Experiments {
         };
         let (turbulent, constant) = (volume_ms("turbulent"), volume_ms("constant"));
         let share = turbulent.zip(constant).map(|(t, c)| (t - c) / t);
-        let facts = Facts {
+        let facts = ResultTable {
             title: "The share of turbulence in the volume's time",
             columns: &["turbulent ms", "constant ms", "share", "paper"],
             rows: vec![vec![json!(turbulent), json!(constant), json!(share), json!(0.65)]],
@@ -179,12 +179,12 @@ impl Experiments {
                 setup.parameters.first_frame = frame;
                 let mut built = build(&machine, &setup, &surfaces, scene.variant())?;
                 let drawn = picture::render(&mut machine, &mut built.paper, 0)?;
-                publication.picture(&format!("-{}-{frame:04}.png", scene.word()), &drawn)?;
+                publication.picture(&format!("-{}-{frame:04}.png", scene.as_str()), &drawn)?;
                 pictures.push(drawn);
             }
             let rows = pictures.chunks(PICTURES_A_ROW).map(side_by_side).collect::<Result<Vec<_>, _>>();
             let strip = rows.and_then(|rows| below_each_other(&rows)).map_err(Error::from)?;
-            publication.picture(&format!("-{}.png", scene.word()), &strip)?;
+            publication.picture(&format!("-{}.png", scene.as_str()), &strip)?;
         }
         machine.check_validation()?;
         Ok(())

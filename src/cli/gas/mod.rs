@@ -13,9 +13,9 @@ use self::volumes::VolumeArgs;
 use super::failure::Failure;
 use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
-use crate::experiment::gas::Setup;
 use crate::papers::gas::Variant;
 use crate::papers::gas::scenes::Preset;
+use crate::papers::gas::setup::Setup;
 use crate::scene::{Light, MeshSource};
 
 /// The figures' scenes.

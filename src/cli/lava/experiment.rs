@@ -3,15 +3,15 @@
 use clap::{Args, ValueEnum};
 
 use super::LavaArgs;
-use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication, word};
+use crate::cli::experiment::{ExperimentArgs, NameArgs, Publication, name_of};
 use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
-use crate::experiment::lava::figures::{Drawing, Drawn, Figure};
-use crate::experiment::lava::scaling::{self, Axis};
-use crate::experiment::lava::{Setup, results};
-use crate::experiment::machine::Machine;
-use crate::experiment::sweep::{Point, Swept};
+use crate::measure::machine::Machine;
+use crate::measure::sweep::{Point, Swept};
+use crate::papers::lava::experiments::figures::{Drawing, Drawn, Figure};
+use crate::papers::lava::experiments::scaling::{self, Axis};
+use crate::papers::lava::{experiments::results, setup::Setup};
 
 /// The figures and tables that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -99,7 +99,7 @@ impl ExperimentArgs for Experiments {
     }
 
     fn unsuited(&self, name: Name) -> Vec<(bool, &'static str)> {
-        let is_figure = Figure::named(&word(&name)).is_some();
+        let is_figure = Figure::named(&name_of(&name)).is_some();
         let output = &self.common.output;
         vec![
             (!is_figure && self.frame > 0, "--frame: this experiment measures frames from 0 on; give --frames"),
@@ -175,7 +175,7 @@ impl Experiments {
                 .into_iter()
                 .filter_map(|axis| {
                     let svg = scaling::plot(&rows, axis).transpose()?;
-                    Some(svg.map(|svg| (format!("-{}.svg", axis.word().replace(' ', "-")), svg)))
+                    Some(svg.map(|svg| (format!("-{}.svg", axis.as_str().replace(' ', "-")), svg)))
                 })
                 .collect::<Result<Vec<_>, _>>()?;
             let runs = rows.into_iter().map(|row| row.run).collect();

@@ -12,7 +12,7 @@ use self::experiment::Experiments;
 use super::failure::Failure;
 use super::options::{Size, parse_extents, parse_eye_and_target, parse_finite, parse_numbers, parse_size, set};
 use super::paper::PaperArgs;
-use crate::experiment::lava::Setup;
+use crate::papers::lava::setup::Setup;
 use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading};
 use crate::scene::{Camera, MeshSource};
 
@@ -155,7 +155,7 @@ impl PaperArgs for LavaArgs {
     }
 
     fn resolve(&self, process: u32) -> Result<Setup, Failure> {
-        Ok(Setup { process, ..self.over(self.preset_parameters(), self.preset.map(|word| word.preset().word())) })
+        Ok(Setup { process, ..self.over(self.preset_parameters(), self.preset.map(|word| word.preset().as_str())) })
     }
 }
 

@@ -10,8 +10,8 @@ use super::land::LandArgs;
 use crate::cli::failure::Failure;
 use crate::cli::outcome;
 use crate::cli::paper::OwnVerbs;
-use crate::experiment::terrain::Setup;
-use crate::experiment::terrain::collisions::{Body, Collision, collide};
+use crate::papers::terrain::experiments::collisions::{Body, Collision, collide};
+use crate::papers::terrain::setup::Setup;
 use crate::report::output::{check_writable, write};
 
 /// The verbs that no other paper has.

@@ -8,11 +8,11 @@ use crate::cli::failure::Failure;
 use crate::cli::options::CommonArgs;
 use crate::cli::outcome;
 use crate::cli::paper::{PaperArgs, VariantWord, resolve, variant_words};
-use crate::experiment::study::Study;
-use crate::experiment::sweep::Point;
-use crate::experiment::terrain::table::{self, Axis, Outcome};
-use crate::experiment::terrain::{Setup, figures};
+use crate::measure::study::Study;
+use crate::measure::sweep::Point;
+use crate::papers::terrain::experiments::table::{self, Axis, Outcome};
 use crate::papers::terrain::{Variant, View};
+use crate::papers::terrain::{experiments::figures, setup::Setup};
 
 /// The figures and tables that are reproduced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

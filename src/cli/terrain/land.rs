@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::cli::failure::Failure;
 use crate::cli::options::{parse_finite, parse_numbers};
-use crate::experiment::terrain::{PlacedMap, Setup};
+use crate::papers::terrain::setup::{PlacedMap, Setup};
 use crate::papers::terrain::{Base, Interpolation, Parameters, Placement};
 use crate::scene::HeightMapSource;
 

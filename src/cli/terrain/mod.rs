@@ -16,8 +16,8 @@ use self::land::LandArgs;
 use super::failure::Failure;
 use super::options::{Size, parse_eye_and_target, parse_finite, parse_numbers, parse_size};
 use super::paper::PaperArgs;
-use crate::experiment::terrain::{Setup, figures};
 use crate::papers::terrain::{Interpolation, Lod, Parameters, Sun, View};
+use crate::papers::terrain::{experiments::figures, setup::Setup};
 use crate::scene::{Camera, MeshSource};
 
 /// Where the picture is seen from.
@@ -48,7 +48,7 @@ enum Preset {
 }
 
 impl Preset {
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         match self {
             Preset::Figure1 => "figure-1",
             Preset::Figure2 => "figure-2",
@@ -127,7 +127,7 @@ impl PaperArgs for TerrainArgs {
             setup.resolution = figures::SIDE;
             p.view = preset.view();
             p.interpolation = Interpolation::Bilinear;
-            setup.preset = Some(preset.word().to_owned());
+            setup.preset = Some(preset.as_str().to_owned());
         }
         if let Some(lod) = self.lod {
             p.lod = match lod {

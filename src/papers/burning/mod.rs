@@ -14,6 +14,7 @@
 mod blocks;
 mod deformation;
 mod drawing;
+pub mod experiments;
 mod flames;
 mod framing;
 mod heat;
@@ -26,6 +27,7 @@ pub mod parameters;
 pub mod reference;
 mod refinement;
 mod removal;
+pub mod setup;
 mod state;
 mod texture;
 mod wire;
@@ -42,9 +44,9 @@ use self::normals::Normals;
 use self::refinement::Refinement;
 use self::removal::SurfaceRemoval;
 use self::wire::Wire;
-use super::{Paper, Target};
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
+use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
 pub use self::flames::{Flames, Group, Particle};

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::texture::Texture;
-use crate::papers::ParameterError;
-use crate::papers::parameter::components;
+use crate::measure::ParameterError;
+use crate::measure::components;
 use crate::scene::Camera;
 
 /// The methods, one a chapter.
@@ -24,11 +24,11 @@ pub enum Variant {
     Melting,
 }
 
-impl crate::papers::Variant for Variant {
+impl crate::measure::Variant for Variant {
     const ALL: &'static [Variant] =
         &[Variant::Shell, Variant::LowPoly, Variant::FullySubdivided, Variant::Solid, Variant::Melting];
 
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         match self {
             Variant::Shell => "shell",
             Variant::LowPoly => "low-poly",
@@ -63,7 +63,7 @@ pub enum Material {
 impl Material {
     pub const ALL: [Material; 2] = [Material::Plain, Material::Wood];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Material::Plain => "plain",
             Material::Wood => "wood",
@@ -89,7 +89,7 @@ pub enum Shading {
 impl Shading {
     pub const ALL: [Shading; 5] = [Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals, Shading::Wire];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Shading::Lit => "lit",
             Shading::Areas => "areas",

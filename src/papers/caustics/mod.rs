@@ -10,6 +10,7 @@
 //! ```
 
 mod cast;
+pub mod experiments;
 mod illumination;
 #[cfg(test)]
 mod layouts;
@@ -21,6 +22,7 @@ mod planar;
 mod planes;
 mod receiver;
 pub mod reference;
+pub mod setup;
 mod stencil;
 mod view;
 mod volumetric;
@@ -40,8 +42,8 @@ use self::receiver::Receiver;
 use self::stencil::{DEPTH_STENCIL, Stencil};
 use self::view::View;
 use self::water::{Grid, Water};
-use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
+use crate::measure::{Paper, Target};
 
 pub use self::parameters::{Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;

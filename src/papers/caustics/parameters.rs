@@ -6,7 +6,7 @@ use glam::Vec3;
 
 pub use super::planes::SmartPlacement;
 use super::water_map::WaterMap;
-use crate::papers::{ParameterError, components};
+use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
 /// The methods that the thesis compares.
@@ -22,10 +22,10 @@ pub enum Variant {
     Stencil,
 }
 
-impl crate::papers::Variant for Variant {
+impl crate::measure::Variant for Variant {
     const ALL: &'static [Variant] = &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric, Variant::Stencil];
 
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         match self {
             Variant::LevelMap => "level-map",
             Variant::LevelMapSmart => "level-map-smart",

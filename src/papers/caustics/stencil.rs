@@ -16,7 +16,7 @@ use super::water::Water;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
 use crate::host_block;
-use crate::papers::Target;
+use crate::measure::Target;
 use crate::scene::Light;
 
 /// Vertices of a volume: a prism's eight triangles.

@@ -10,6 +10,7 @@
 
 mod blocks;
 mod capacity;
+pub mod experiments;
 mod geometry;
 #[cfg(test)]
 mod layouts;
@@ -20,6 +21,7 @@ pub mod parameters;
 pub mod reference;
 mod resolve;
 pub mod scenes;
+pub mod setup;
 mod tables;
 
 use std::sync::Arc;
@@ -31,8 +33,8 @@ use self::lists::Lists;
 use self::march::March;
 use self::model::Object;
 use self::resolve::Resolve;
-use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::measure::{Paper, Target};
 
 pub use self::capacity::Capacity;
 pub use self::lists::Fragment;

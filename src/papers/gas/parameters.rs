@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
-use crate::papers::{ParameterError, components};
+use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
 /// How the gas is shadowed (section "Shadowing of the gas", figure 8).
@@ -21,11 +21,11 @@ pub enum Variant {
     Table,
 }
 
-impl crate::papers::Variant for Variant {
+impl crate::measure::Variant for Variant {
     const ALL: &'static [Variant] =
         &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table];
 
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         match self {
             Variant::NoVolume => "no-volume",
             Variant::None => "none",

@@ -14,6 +14,7 @@
 
 mod animation;
 mod clusters;
+pub mod experiments;
 mod floors;
 mod isosurface;
 #[cfg(test)]
@@ -25,6 +26,7 @@ mod pattern;
 mod points;
 pub mod reference;
 mod rock;
+pub mod setup;
 mod splatting;
 mod targets;
 
@@ -32,8 +34,8 @@ use std::sync::Arc;
 
 use self::objects::Objects;
 use self::points::Points;
-use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::measure::{Paper, Target};
 use crate::scene::Mesh;
 
 pub use self::animation::Animation;

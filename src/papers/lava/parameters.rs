@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::papers::{ParameterError, components};
+use crate::measure::{ParameterError, components};
 use crate::scene::Camera;
 
 /// The methods that are compared: the thesis has one.
@@ -12,10 +12,10 @@ pub enum Variant {
     Paper,
 }
 
-impl crate::papers::Variant for Variant {
+impl crate::measure::Variant for Variant {
     const ALL: &'static [Variant] = &[Variant::Paper];
 
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         "paper"
     }
 }
@@ -34,7 +34,7 @@ pub enum Preset {
 impl Preset {
     pub const ALL: [Preset; 3] = [Preset::Results, Preset::Fig62, Preset::Fig85];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Preset::Results => "results",
             Preset::Fig62 => "fig-6.2",
@@ -77,7 +77,7 @@ impl Shading {
     pub const ALL: [Shading; 6] =
         [Shading::Lava, Shading::Color, Shading::Rock, Shading::Normals, Shading::Heights, Shading::Particles];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Shading::Lava => "lava",
             Shading::Color => "color",

@@ -7,7 +7,7 @@ use ash::vk;
 use super::targets::desc;
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Error, Image, ImageView, ShaderLibrary};
-use crate::papers::ParameterError;
+use crate::measure::ParameterError;
 
 /// Texels of a rock, rows from the top, sRGB with an alpha that is ignored. It repeats in both directions.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -19,7 +19,7 @@ use super::stage::Stage;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location};
 use crate::gpu::{Pass, PassInfo, ShaderLibrary};
 use crate::host_block;
-use crate::papers::Target;
+use crate::measure::Target;
 use crate::scene::HeightMap;
 
 host_block! {

@@ -2,7 +2,7 @@
 
 use glam::{UVec2, Vec2, Vec3};
 
-use crate::papers::ParameterError;
+use crate::measure::ParameterError;
 
 /// A picture over the first map, its corners on the map's.
 #[derive(Debug, Clone, PartialEq)]

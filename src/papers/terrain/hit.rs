@@ -30,7 +30,7 @@ impl Surface {
     ];
 
     /// As a record has it.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Surface::Sky => "sky",
             Surface::Base => "base",

@@ -9,7 +9,7 @@ use super::scene::DeviceScene;
 use super::shadows::Shadows;
 use super::stage::Stage;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, ShaderLibrary};
-use crate::papers::Target;
+use crate::measure::Target;
 
 /// The passes `normal`, once for each map, and `illumination`.
 pub struct Lighting {
@@ -39,7 +39,7 @@ impl Lighting {
         };
         let normal = image("normal", vk::Format::R32G32B32A32_SFLOAT)?;
         let picture = image("picture", vk::Format::R8G8B8A8_UNORM)?;
-        let program = format!("normal-{}", parameters.interpolation.word());
+        let program = format!("normal-{}", parameters.interpolation.as_str());
         let mut normal_passes = Vec::new();
         for (i, map) in scene.maps.iter().enumerate() {
             let load = if i == 0 { Load::Discard } else { Load::Keep };

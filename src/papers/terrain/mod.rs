@@ -12,6 +12,7 @@ mod collision;
 mod cpu;
 mod curve;
 mod drape;
+pub mod experiments;
 mod ground;
 mod hit;
 mod levels;
@@ -27,6 +28,7 @@ mod ray_cast;
 pub mod reference;
 mod relief;
 mod scene;
+pub mod setup;
 mod shading;
 mod shadows;
 mod solid;
@@ -53,8 +55,8 @@ use self::ray_cast::RayCast;
 use self::scene::{DeviceScene, Scene};
 pub use self::scene::{Inputs, MapInput};
 use self::stage::Stage;
-use super::{Paper, Target};
 use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, ShaderLibrary};
+use crate::measure::{Paper, Target};
 use crate::scene::HeightMap;
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.

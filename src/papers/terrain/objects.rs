@@ -13,7 +13,7 @@ use super::stage::Stage;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
-use crate::papers::Target;
+use crate::measure::Target;
 use crate::scene::Mesh;
 
 host_block! {

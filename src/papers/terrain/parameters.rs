@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 
 use super::placement::{Extent, Placement};
-use crate::papers::{self, ParameterError, components};
+use crate::measure;
+use crate::measure::{ParameterError, components};
 use crate::scene::Camera;
 
 /// The applications of section 4, and what a user would do without them.
@@ -21,10 +22,10 @@ pub enum Variant {
     Mesh,
 }
 
-impl papers::Variant for Variant {
+impl measure::Variant for Variant {
     const ALL: &'static [Variant] = &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh];
 
-    fn word(self) -> &'static str {
+    fn as_str(self) -> &'static str {
         match self {
             Variant::Cpu => "cpu",
             Variant::GpuCompute => "gpu-compute",
@@ -46,7 +47,7 @@ pub enum Lod {
 impl Lod {
     pub const ALL: [Lod; 2] = [Lod::Exact, Lod::Pixel];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Lod::Exact => "exact",
             Lod::Pixel => "pixel",
@@ -66,7 +67,7 @@ pub enum Interpolation {
 impl Interpolation {
     pub const ALL: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Interpolation::Bilinear => "bilinear",
             Interpolation::Bicubic => "bicubic",

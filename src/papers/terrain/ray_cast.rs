@@ -30,7 +30,7 @@ impl RayCast {
         let device = shaders.device();
         let format = vk::Format::R32G32B32A32_SFLOAT;
         let Parameters { base, interpolation, lod, .. } = parameters;
-        let program = format!("depth-{}-{}-{}", base.kind(), interpolation.word(), lod.word());
+        let program = format!("depth-{}-{}-{}", base.kind(), interpolation.as_str(), lod.as_str());
         let size = (parameters.width, parameters.height);
         let depths = (0..scene.maps.len().min(2))
             .map(|_| stage.image(device, format!("{label}/depth"), format, size))

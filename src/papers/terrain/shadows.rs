@@ -42,7 +42,7 @@ impl Shadows {
         depth: &Arc<ImageView>,
     ) -> Result<Self, Error> {
         let device = shaders.device();
-        let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.word());
+        let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.as_str());
         let size = (parameters.width, parameters.height);
         let targets = (0..scene.maps.len().min(2))
             .map(|turn| stage.image(device, format!("{label}/{name}-{turn}"), vk::Format::R32_SFLOAT, size))

@@ -47,7 +47,7 @@ impl Preset {
         [Preset::Fig3, Preset::Fig4, Preset::Fig5, Preset::Fig6, Preset::Fig7, Preset::Fig8, Preset::Solid];
 
     /// The word that the command line knows it by.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Preset::Fig3 => "fig-3",
             Preset::Fig4 => "fig-4",

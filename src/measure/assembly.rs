@@ -1,0 +1,135 @@
+//! A measurement turned into a run of the record.
+
+use serde_json::{Map, Value};
+
+use super::measure::{MeasuredPass, Measurement, Schedule};
+use super::statistics::{median, repetition_noise, summarize};
+use super::study::Identity;
+use crate::gpu::PassKind;
+use crate::gpu::live::MemoryUse;
+use crate::report::record::{self, Limits, Memory, Pass, ResourceMemory, Run, Statistics, Validation};
+use crate::report::trace::{TraceEvent, TraceRun, Track};
+
+/// Repetitions that scatter more than this are called noisy.
+const NOISY: f64 = 0.05;
+
+/// What a run says beside its measurement.
+pub struct RunMetadata {
+    pub paper: &'static str,
+    pub variant: String,
+    pub identity: Identity,
+    pub config: Map<String, Value>,
+    pub load_ms: f64,
+    pub build_ms: f64,
+    pub memory: Vec<MemoryUse>,
+    pub peak_bytes: u64,
+    pub results: Map<String, Value>,
+    pub limits: Option<Limits>,
+    pub stamp_floor_ms: Option<f64>,
+    pub validation: Validation,
+    pub warnings: Vec<String>,
+}
+
+/// Assembles the run.
+pub fn assemble(subject: RunMetadata, measurement: &Measurement, schedule: Schedule) -> Run {
+    let passes: Vec<Pass> = measurement.passes.iter().map(pass).collect();
+    let frame_ms = summarize(&measurement.frame_ms);
+    let of_passes = |times: fn(&Pass) -> Option<f64>| passes.iter().filter_map(times).sum::<f64>();
+    let gpu_ms = of_passes(|p| p.gpu_ms.as_ref().map(|s| s.median));
+    let host_ms = of_passes(|p| p.host_ms.as_ref().map(|s| s.median));
+    let is_stamped = passes.iter().any(|p| p.gpu_ms.is_some());
+    let mut warnings = subject.warnings;
+    if let Some(noise) = repetition_noise(&measurement.frame_ms, schedule.frames as usize).filter(|&n| n > NOISY) {
+        warnings.push(format!("noisy: repetitions of one frame scatter by {:.0} %", noise * 100.0));
+    }
+    if measurement.repeat < schedule.repeat {
+        warnings.push(format!("interrupted after {} of {} repetitions", measurement.repeat, schedule.repeat));
+    }
+    let sum = |host: bool| Some(subject.memory.iter().filter(|m| m.host_visible == host).map(|m| m.bytes).sum::<u64>());
+    Run {
+        paper: subject.paper.to_owned(),
+        variant: subject.variant,
+        preset: subject.identity.preset,
+        config: subject.config,
+        width: subject.identity.width,
+        height: subject.identity.height,
+        seed: subject.identity.seed,
+        warmup: schedule.warmup.max(1),
+        frames: schedule.frames,
+        repeat: measurement.repeat.max(1),
+        process: subject.identity.process,
+        overlap_ms: median(&measurement.bracket_ms).filter(|_| is_stamped).map(|bracket| gpu_ms - bracket),
+        unaccounted_ms: frame_ms.as_ref().filter(|_| is_stamped).map(|frame| frame.median - gpu_ms - host_ms),
+        stamp_floor_ms: subject.stamp_floor_ms,
+        load_ms: Some(subject.load_ms),
+        pipeline_ms: Some(subject.build_ms + measurement.first_frame_ms),
+        memory: Memory {
+            device_bytes: sum(false),
+            host_bytes: sum(true),
+            peak_bytes: Some(subject.peak_bytes),
+            by_resource: subject
+                .memory
+                .iter()
+                .map(|m| ResourceMemory { name: m.name.clone(), bytes: m.bytes })
+                .collect(),
+        },
+        limits: subject.limits,
+        results: subject.results,
+        experiment: None,
+        validation: subject.validation,
+        warnings,
+        image: None,
+        frame_ms,
+        passes,
+    }
+}
+
+fn pass(measured: &MeasuredPass) -> Pass {
+    let info = &measured.info;
+    let is_host = info.kind == PassKind::Host;
+    Pass {
+        name: info.name.to_owned(),
+        section: (!info.section.is_empty()).then(|| info.section.to_owned()),
+        kind: match info.kind {
+            PassKind::Graphics => record::PassKind::Graphics,
+            PassKind::Compute => record::PassKind::Compute,
+            PassKind::Transfer => record::PassKind::Transfer,
+            PassKind::Host => record::PassKind::Host,
+        },
+        calls: measured.calls,
+        submission: (!is_host).then_some(measured.submission),
+        shader_compiler: info.compiler.map(|c| c.to_string()),
+        gpu_ms: summarize(&measured.gpu_ms),
+        host_ms: summarize(&measured.host_ms),
+        wait_ms: summarize(&measured.wait_ms),
+        statistics: measured.counts.map(|c| Statistics {
+            vertices: c.vertices,
+            primitives: c.primitives,
+            fragments: c.fragments,
+            compute_invocations: c.compute_invocations,
+            samples_passed: c.samples_passed,
+        }),
+        bytes: None,
+    }
+}
+
+/// The last stamped frame as a trace.
+pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
+    let events = measurement
+        .spans
+        .iter()
+        .filter_map(|span| {
+            let pass = measurement.passes.get(span.pass)?;
+            let mut args = Map::new();
+            args.insert("section".into(), pass.info.section.into());
+            Some(TraceEvent {
+                name: pass.info.name.to_owned(),
+                track: if span.on_gpu { Track::Gpu } else { Track::Host },
+                start_us: span.start_ms * 1e3,
+                duration_us: span.duration_ms * 1e3,
+                args,
+            })
+        })
+        .collect();
+    TraceRun { name, events }
+}

@@ -1,0 +1,134 @@
+//! One configuration of a paper, measured in one or more variants.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::assembly::{self, RunMetadata, assemble};
+use super::error::Error;
+use super::machine::Machine;
+use super::measure::{Schedule, Watch, measure};
+use super::study::Study;
+use crate::gpu::live::MemoryUse;
+use crate::measure::{Paper, Variant};
+use crate::report::record::{Limits, Run};
+use crate::report::trace::TraceRun;
+
+/// The input of a study with the time that loading it took.
+pub struct Loaded<S: Study> {
+    pub scene: S::Scene,
+    pub load_ms: f64,
+}
+
+/// Loads a study's input.
+///
+/// # Errors
+/// As [`Study::load`].
+pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
+    let started = Instant::now();
+    let scene = study.load()?;
+    Ok(Loaded { scene, load_ms: started.elapsed().as_secs_f64() * 1e3 })
+}
+
+/// A variant with its resources, and what they cost.
+pub struct Built<S: Study> {
+    pub variant: S::Variant,
+    pub paper: S::Paper,
+    pub build_ms: f64,
+    pub memory: Vec<MemoryUse>,
+    pub peak_bytes: u64,
+}
+
+/// Makes the resources of a variant.
+///
+/// # Errors
+/// [`Error::Gpu`].
+pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: S::Variant) -> Result<Built<S>, Error> {
+    let live = Arc::clone(machine.device.live());
+    let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
+    live.reset_peak();
+    let started = Instant::now();
+    let paper = study.make(&machine.shaders, variant.as_str(), scene, variant)?;
+    let build_ms = started.elapsed().as_secs_f64() * 1e3;
+    let prefix = format!("{}/", variant.as_str());
+    let memory = live
+        .memory()
+        .into_iter()
+        .filter_map(|mut m| {
+            m.name = m.name.strip_prefix(&prefix)?.to_owned();
+            Some(m)
+        })
+        .collect();
+    Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before })
+}
+
+/// What is to be measured.
+pub struct Bench<'a, S: Study> {
+    pub study: &'a S,
+    pub loaded: &'a Loaded<S>,
+    pub variants: &'a [S::Variant],
+    pub schedule: Schedule,
+    /// The device's own limits, where they were measured.
+    pub limits: Option<&'a Limits>,
+}
+
+/// One variant's run with its trace.
+pub struct VariantRun {
+    pub run: Run,
+    pub trace: TraceRun,
+}
+
+impl<S: Study> Bench<'_, S> {
+    /// Measures the variants, interleaved.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`]; [`Error::Interrupted`] when not one frame was measured.
+    pub fn measure(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Vec<VariantRun>, Error> {
+        let Bench { study, loaded, variants, schedule, .. } = *self;
+        let mut built = variants
+            .iter()
+            .map(|&variant| build(machine, study, &loaded.scene, variant))
+            .collect::<Result<Vec<_>, _>>()?;
+        machine.device.wait_idle()?;
+        let stamp_floor_ms = machine.recorder.stamp_floor_ms()?;
+        let measurements = loop {
+            let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
+            let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
+            machine.device.wait_idle()?;
+            if measurements.iter().any(|m| m.frame_ms.is_empty()) {
+                return Err(Error::Interrupted);
+            }
+            let mut are_settled = true;
+            for paper in papers {
+                are_settled &= paper.settle(&machine.shaders)?;
+            }
+            if are_settled {
+                break measurements;
+            }
+        };
+        let mut measured: Vec<_> = built.into_iter().zip(measurements).collect();
+        let metrics = study.metrics(machine, &mut measured)?;
+        let validation = machine.check_validation()?;
+        let warnings = machine.warnings();
+        let identity = study.identity();
+        let runs = measured.iter().zip(metrics).map(|((built, measurement), metrics)| {
+            let subject = RunMetadata {
+                paper: S::PAPER,
+                variant: built.variant.as_str().to_owned(),
+                identity: identity.clone(),
+                config: study.config(&loaded.scene, &built.paper),
+                load_ms: loaded.load_ms,
+                build_ms: built.build_ms,
+                memory: built.memory.clone(),
+                peak_bytes: built.peak_bytes,
+                results: metrics.results,
+                limits: self.limits.cloned(),
+                stamp_floor_ms,
+                validation,
+                warnings: warnings.iter().cloned().chain(metrics.warnings).collect(),
+            };
+            let name = format!("{} {} {}", S::PAPER, built.variant.as_str(), study.summary());
+            VariantRun { run: assemble(subject, measurement, schedule), trace: assembly::trace(name, measurement) }
+        });
+        Ok(runs.collect())
+    }
+}

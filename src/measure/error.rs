@@ -1,0 +1,26 @@
+//! What can fail while a user's wish is carried out; the command line maps each kind to its exit code.
+
+use crate::report::output::OutputError;
+use crate::report::plot::PlotError;
+use crate::{gpu, image, scene};
+
+/// An error of an experiment.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    #[error(transparent)]
+    Gpu(#[from] gpu::Error),
+    #[error(transparent)]
+    Scene(#[from] scene::Error),
+    #[error(transparent)]
+    Parameter(#[from] crate::measure::ParameterError),
+    #[error(transparent)]
+    Image(#[from] image::Error),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    #[error("{0}")]
+    Input(String),
+    #[error("interrupted before anything was measured")]
+    Interrupted,
+}

@@ -1,0 +1,123 @@
+//! The machine that measures: one device, its shaders, its recorder, and what the record says about it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::gpu::physical::{DeviceType, choose};
+use crate::gpu::{Compiler, Device, Error, Feature, Instance, PhysicalDevice, Recorder, ShaderLibrary};
+use crate::report::environment;
+use crate::report::record::{self, DeviceKind, Environment, Validation};
+
+/// What a user chose about the machine.
+#[derive(Debug, Clone, Default)]
+pub struct MachineOptions {
+    /// Index, part of the name, or UUID.
+    pub device: Option<String>,
+    /// The validation layer with synchronization validation; any message is a failure.
+    pub validate: bool,
+    pub compiler: Compiler,
+    /// Shaders compiled at start in place of the built-in ones.
+    pub shader_dir: Option<PathBuf>,
+}
+
+/// An open machine.
+pub struct Machine {
+    pub recorder: Recorder,
+    pub shaders: ShaderLibrary,
+    pub device: Arc<Device>,
+    /// RFC 3339, when it was opened.
+    opened: String,
+}
+
+impl Machine {
+    /// Opens the device that the options name, or the best one that has `needed`.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers, [`Error::Shader`] for a shader directory that does not compile.
+    pub fn open(options: &MachineOptions, needed: &[Feature]) -> Result<Self, Error> {
+        let instance = Instance::new(options.validate)?;
+        let physical = choose(PhysicalDevice::enumerate(&instance)?, options.device.as_deref(), needed)?;
+        let device = Device::open(&instance, physical)?;
+        Ok(Machine {
+            recorder: Recorder::new(&device)?,
+            shaders: ShaderLibrary::new(&device, options.compiler, options.shader_dir.as_deref())?,
+            device,
+            opened: environment::date(),
+        })
+    }
+
+    /// One line that names the device.
+    pub fn description(&self) -> String {
+        let p = self.device.physical();
+        format!("{} ({}, {} {})", p.name, p.device_type.as_str(), p.driver_name, p.driver_info)
+    }
+
+    /// What the record says about device, host and build.
+    pub fn environment(&self) -> Environment {
+        let physical = self.device.physical();
+        let bits = physical.queue.map(|q| q.1).filter(|&bits| bits > 0);
+        let some = |text: &str| (!text.is_empty()).then(|| text.to_owned());
+        Environment {
+            date: self.opened.clone(),
+            device: record::Device {
+                name: physical.name.clone(),
+                kind: device_kind(physical.device_type),
+                uuid: Some(physical.uuid_text()),
+                driver: some(&physical.driver_name),
+                driver_version: some(&physical.driver_info),
+                api_version: physical.api_version_text(),
+                timestamp_period: bits.map(|_| f64::from(physical.limits.timestamp_period)),
+                timestamp_bits: bits,
+            },
+            host: environment::host(),
+            loader: Some(self.device.instance().loader_version()),
+            layers: self.device.instance().layers().to_vec(),
+            build: environment::build(),
+        }
+    }
+
+    /// Fails if the validation layer said anything, else tells whether it listened.
+    ///
+    /// # Errors
+    /// [`Error::Validation`].
+    pub fn check_validation(&self) -> Result<Validation, Error> {
+        let instance = self.device.instance();
+        instance.check_messages()?;
+        Ok(if instance.validates() { Validation::Clean } else { Validation::Off })
+    }
+
+    /// What makes figures of this machine doubtful, one line each.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if cfg!(debug_assertions) {
+            warnings.push("debug build: host times are not those of a release build".to_owned());
+        }
+        if self.device.instance().validates() {
+            warnings.push("the validation layer is on: times include it".to_owned());
+        }
+        for variable in ["VK_INSTANCE_LAYERS", "VK_LOADER_LAYERS_ENABLE"] {
+            if let Some(layers) = std::env::var_os(variable).filter(|v| !v.is_empty()) {
+                warnings.push(format!("foreign layers are on ({variable}={})", layers.to_string_lossy()));
+            }
+        }
+        let is_cpu = self.device.physical().device_type == DeviceType::Cpu;
+        if is_cpu && std::env::var_os("LP_NUM_THREADS").is_none() {
+            warnings.push("LP_NUM_THREADS is not set: the driver takes as many threads as it likes".to_owned());
+        }
+        if self.device.physical().queue.is_none_or(|(_, bits)| bits == 0) {
+            warnings.push("the device has no time stamps: GPU times are absent".to_owned());
+        }
+        warnings
+    }
+}
+
+/// The record's word for a device's type.
+pub fn device_kind(device_type: DeviceType) -> DeviceKind {
+    match device_type {
+        DeviceType::Discrete => DeviceKind::Discrete,
+        DeviceType::Integrated => DeviceKind::Integrated,
+        DeviceType::Virtual => DeviceKind::Virtual,
+        DeviceType::Cpu => DeviceKind::Cpu,
+        DeviceType::Other => DeviceKind::Other,
+    }
+}

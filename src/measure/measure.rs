@@ -1,0 +1,179 @@
+//! The measured loop: warm up, wait idle, then repetitions of the same frames, plain, stamped and bracketed in turn, the
+//! subjects interleaved frame by frame so that drift hits all alike.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, Recorder, Span};
+use crate::measure::Paper;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    /// Frames of each subject before anything counts, at least 1: the first use of a pipeline compiles it.
+    pub warmup: u32,
+    /// Frames in one repetition, at least 1.
+    pub frames: u32,
+    /// Repetitions of those frames, at least 1.
+    pub repeat: u32,
+    /// Repetitions go on until every subject has run plain frames for this long, in seconds.
+    pub min_time_s: f64,
+}
+
+/// No run repeats its frames more often than this, however long it is asked to take.
+const MOST_REPETITIONS: u32 = 10_000;
+
+/// What was measured of one pass: one sample a frame, repetition after repetition.
+#[derive(Debug, Clone)]
+pub struct MeasuredPass {
+    pub info: Arc<PassInfo>,
+    pub calls: u32,
+    pub submission: u32,
+    pub gpu_ms: Vec<f64>,
+    pub host_ms: Vec<f64>,
+    pub wait_ms: Vec<f64>,
+    pub counts: Option<Counts>,
+}
+
+/// What was measured of one subject.
+#[derive(Debug, Clone, Default)]
+pub struct Measurement {
+    /// Whole repetitions that were finished; 0 when even the first was interrupted.
+    pub repeat: u32,
+    pub frame_ms: Vec<f64>,
+    /// GPU time of whole frames with their overlap.
+    pub bracket_ms: Vec<f64>,
+    pub passes: Vec<MeasuredPass>,
+    /// Time of the first frame less the median of the others: what first use costs.
+    pub first_frame_ms: f64,
+    /// The passes' stretches of time in the last stamped frame.
+    pub spans: Vec<Span>,
+}
+
+/// What the loop tells and asks while it runs.
+pub struct Watch<'a> {
+    /// Set when the user wants no more; the frames finished so far are kept.
+    pub interrupted: &'a AtomicBool,
+    /// Called after every frame with the frames done and expected.
+    pub progress: &'a mut dyn FnMut(u64, u64),
+}
+
+/// Measures `subjects`, interleaved.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn measure(
+    recorder: &mut Recorder,
+    subjects: &mut [&mut dyn Paper],
+    schedule: Schedule,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Measurement>, Error> {
+    const MODES: [Mode; 3] = [Mode::Plain, Mode::Stamped, Mode::Bracketed];
+    let mut results = vec![Measurement::default(); subjects.len()];
+    let count = subjects.len() as u64;
+    let a_repetition = MODES.len() as u64 * u64::from(schedule.frames) * count;
+    let mut expected = u64::from(schedule.warmup) * count + a_repetition * u64::from(schedule.repeat) + count;
+    let mut done = 0;
+    let mut tick = |expected: u64| {
+        done += 1;
+        (watch.progress)(done, expected.max(done));
+    };
+    let stopped = || watch.interrupted.load(Ordering::Relaxed);
+
+    restart(subjects)?;
+    for number in 0..schedule.warmup.max(1) {
+        for (paper, result) in subjects.iter_mut().zip(&mut results) {
+            if stopped() {
+                return Ok(results);
+            }
+            // The counters compile nothing new, but a driver may make its stamps' first use slow.
+            let mode = if number == 0 { Mode::Plain } else { MODES[number as usize % MODES.len()] };
+            let sample = recorder.run(mode, |frame| paper.record(frame, number))?;
+            if number == 0 {
+                result.first_frame_ms = sample.frame_ms;
+            }
+            tick(expected);
+        }
+    }
+
+    let mut repetition = 0;
+    while repetition < schedule.repeat || (repetition < MOST_REPETITIONS && is_short(&results, schedule.min_time_s)) {
+        if repetition >= schedule.repeat {
+            expected += a_repetition;
+        }
+        for mode in MODES {
+            restart(subjects)?;
+            for number in 0..schedule.frames {
+                for (paper, result) in subjects.iter_mut().zip(&mut results) {
+                    if stopped() {
+                        return Ok(results);
+                    }
+                    let sample = recorder.run(mode, |frame| paper.record(frame, number))?;
+                    result.take(mode, sample);
+                    tick(expected);
+                }
+            }
+        }
+        repetition += 1;
+        results.iter_mut().for_each(|r| r.repeat = repetition);
+    }
+
+    restart(subjects)?;
+    for (paper, result) in subjects.iter_mut().zip(&mut results) {
+        let sample = recorder.run(Mode::Counted, |frame| paper.record(frame, 0))?;
+        for pass in &sample.passes {
+            result.pass(pass).counts = pass.counts;
+        }
+        tick(expected);
+    }
+    Ok(results)
+}
+
+/// Every repetition replays the same frames.
+fn restart(subjects: &mut [&mut dyn Paper]) -> Result<(), Error> {
+    subjects.iter_mut().try_for_each(|paper| paper.restart())
+}
+
+fn is_short(results: &[Measurement], min_time_s: f64) -> bool {
+    results.iter().any(|r| r.frame_ms.iter().sum::<f64>() < min_time_s * 1e3)
+}
+
+impl Measurement {
+    fn pass(&mut self, sample: &crate::gpu::PassSample) -> &mut MeasuredPass {
+        let at = self.passes.iter().position(|p| p.info.name == sample.info.name).unwrap_or_else(|| {
+            self.passes.push(MeasuredPass {
+                info: sample.info.clone(),
+                calls: sample.calls,
+                submission: sample.submission,
+                gpu_ms: Vec::new(),
+                host_ms: Vec::new(),
+                wait_ms: Vec::new(),
+                counts: None,
+            });
+            self.passes.len() - 1
+        });
+        &mut self.passes[at]
+    }
+
+    fn take(&mut self, mode: Mode, sample: &FrameSample) {
+        match mode {
+            Mode::Plain => {
+                self.frame_ms.push(sample.frame_ms);
+                // Host work and waits are timed where nothing disturbs them.
+                for pass in &sample.passes {
+                    let measured = self.pass(pass);
+                    measured.host_ms.extend(pass.host_ms);
+                    measured.wait_ms.extend(pass.wait_ms);
+                }
+            }
+            Mode::Bracketed => self.bracket_ms.extend(sample.bracket_ms),
+            Mode::Stamped => {
+                for pass in &sample.passes {
+                    self.pass(pass).gpu_ms.extend(pass.gpu_ms);
+                }
+                self.spans.clone_from(&sample.spans);
+            }
+            Mode::Counted => {}
+        }
+    }
+}

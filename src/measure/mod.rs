@@ -1,0 +1,22 @@
+//! The measured loop, set-ups and sweeps, statistics, limits and comparisons, by the trait of a paper.
+
+pub mod assembly;
+pub mod bench;
+pub mod compare;
+pub mod config;
+mod error;
+pub mod limits;
+pub mod machine;
+#[allow(clippy::module_inception)]
+pub mod measure;
+pub mod paper;
+pub mod parameter;
+pub mod picture;
+pub mod result_table;
+pub mod statistics;
+pub mod study;
+pub mod sweep;
+
+pub use error::Error;
+pub use paper::{Kind, Paper, Target, Variant};
+pub use parameter::{ParameterError, components};

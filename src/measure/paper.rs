@@ -1,0 +1,99 @@
+//! A paper's method as the measured loop sees it: frames to record, a picture, targets to dump.
+
+use std::sync::Arc;
+
+use crate::gpu::bindings::Resource;
+use crate::gpu::{Buffer, Error, Frame, ImageView, ShaderLibrary};
+
+/// The methods that a paper compares.
+pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
+    /// In the paper's order.
+    const ALL: &'static [Self];
+
+    /// The word that the command line and the record know it by.
+    fn as_str(self) -> &'static str;
+}
+
+/// A paper's method with its resources, ready to record frames.
+pub trait Paper {
+    /// Returns to the state before frame 0, where there is state; no measured frame contains this.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    fn restart(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Records frame `number`; the simulated time is that many fixed time steps. Numbers rise after a restart. A paper whose
+    /// state advances catches up with frames that were left out, so that the picture depends on the number alone.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
+
+    /// Records frame `number` with what a finished picture needs beyond the passes that the paper times.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
+
+    /// Whether every frame so far had room for all that it made. If not, its pictures have gaps: the paper has made more room,
+    /// and the frames must be recorded again.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where there cannot be enough room on this device.
+    fn settle(&mut self, _shaders: &ShaderLibrary) -> Result<bool, Error> {
+        Ok(true)
+    }
+
+    /// What a user should know of the input and of the frames so far, one line each.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The finished picture, 8-bit sRGB.
+    fn picture(&self) -> &Arc<ImageView>;
+
+    /// The intermediate targets and buffers that `--dump` knows.
+    fn targets(&self) -> Vec<Target>;
+}
+
+/// A target or buffer that can be written out.
+pub struct Target {
+    pub name: String,
+    pub resource: Resource,
+    /// Values a row, for a buffer; images have their own shape.
+    pub columns: u32,
+    /// Of a buffer's values; images have their own format.
+    pub kind: Kind,
+}
+
+/// What the 32-bit values of a buffer are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    F32,
+    U32,
+    I32,
+}
+
+impl Target {
+    /// An image.
+    pub fn image(name: impl Into<String>, view: &Arc<ImageView>) -> Self {
+        Target { name: name.into(), resource: view.into(), columns: 0, kind: Kind::F32 }
+    }
+
+    /// A buffer of rows of `columns` 32-bit floats.
+    pub fn table(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
+        Target { name: name.into(), resource: buffer.into(), columns, kind: Kind::F32 }
+    }
+
+    /// A buffer of rows of `columns` unsigned 32-bit integers.
+    pub fn words(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
+        Target { kind: Kind::U32, ..Self::table(name, buffer, columns) }
+    }
+
+    /// A buffer of rows of `columns` signed 32-bit integers.
+    pub fn integers(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
+        Target { kind: Kind::I32, ..Self::table(name, buffer, columns) }
+    }
+}

@@ -1,0 +1,78 @@
+//! Pictures and dumps of a frame, read back after it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use ash::vk;
+use sha2::{Digest, Sha256};
+
+use super::error::Error;
+use super::machine::Machine;
+use crate::gpu::bindings::Resource;
+use crate::gpu::{Device, Mode, transfer};
+use crate::image::{self, Raster, Rgba8};
+use crate::measure::{Kind, Paper, Target};
+
+/// Records frame `number` and reads its picture; numbers rise, unless the paper is restarted.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Image`].
+pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
+    loop {
+        machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
+        if paper.settle(&machine.shaders)? {
+            break;
+        }
+    }
+    let view = paper.picture();
+    let texels = transfer::read_image(&machine.device, view)?;
+    Ok(Rgba8::new(view.width(), view.height(), texels)?)
+}
+
+/// Reads a target of the last frame at full precision.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Image`].
+pub fn read_target(device: &Arc<Device>, target: &Target) -> Result<Raster, Error> {
+    match &target.resource {
+        Resource::Buffer(view) => {
+            let bytes = transfer::read_buffer(device, view.buffer())?;
+            let columns = (target.columns as usize).max(1);
+            let rows = bytes.len() / 4 / columns;
+            let raster = match target.kind {
+                Kind::F32 => Raster::table(rows, columns, bytemuck::pod_collect_to_vec::<u8, f32>(&bytes)),
+                Kind::U32 => Raster::table(rows, columns, bytemuck::pod_collect_to_vec::<u8, u32>(&bytes)),
+                Kind::I32 => Raster::table(rows, columns, bytemuck::pod_collect_to_vec::<u8, i32>(&bytes)),
+            };
+            Ok(raster?)
+        }
+        Resource::Image(view) => {
+            let bytes = transfer::read_image(device, view)?;
+            let (width, height, layers) = (view.width(), view.height(), view.layer_count());
+            let floats = || bytemuck::pod_collect_to_vec::<u8, f32>(&bytes);
+            let raster = match view.image().desc().format {
+                vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT => {
+                    Raster::image(width, height, 1, layers, floats())
+                }
+                vk::Format::R32G32B32A32_SFLOAT => Raster::image(width, height, 4, layers, floats()),
+                vk::Format::R16G16B16A16_SFLOAT => {
+                    let halves: Vec<half::f16> = bytemuck::pod_collect_to_vec(&bytes);
+                    let values: Vec<f32> = halves.into_iter().map(half::f16::to_f32).collect();
+                    Raster::image(width, height, 4, layers, values)
+                }
+                _ => Raster::image(width, height, 4, layers, bytes),
+            };
+            Ok(raster?)
+        }
+        Resource::Sampler(_) => Err(Error::Input(format!("{} holds no values", target.name))),
+    }
+}
+
+/// SHA-256 of a file, in hexadecimal.
+///
+/// # Errors
+/// [`Error::Image`] when it cannot be read.
+pub fn file_sha256(path: &Path) -> Result<String, Error> {
+    let bytes = std::fs::read(path).map_err(|e| image::Error::Open { path: path.into(), reason: e.to_string() })?;
+    Ok(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect())
+}

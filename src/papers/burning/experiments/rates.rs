@@ -1,0 +1,107 @@
+//! The dissertation's frame rates, ours beside them (3.8, 5.5, 6.5), at the frame of a fire with most particles.
+
+use super::super::setup::Setup;
+use super::course::{Look, busiest, frame_before};
+use super::presets::Preset;
+use crate::measure::Error;
+use crate::measure::sweep::Point;
+use crate::report::plot::{BarChart, BarSeries};
+use crate::report::record::{ExperimentRow, Run, Summary};
+use crate::report::table::{Align, Style, Table, number};
+
+/// A frame rate that the dissertation reports, by a GeForce 9800 GTS.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Claim {
+    pub section: &'static str,
+    pub preset: Preset,
+    pub frames_per_s: f64,
+}
+
+pub const CLAIMS: [Claim; 3] = [
+    Claim { section: "3.8", preset: Preset::Results38, frames_per_s: 70.0 },
+    Claim { section: "5.5", preset: Preset::Solid45k, frames_per_s: 60.0 },
+    Claim { section: "6.5", preset: Preset::Melt40k, frames_per_s: 60.0 },
+];
+
+impl Claim {
+    /// The point to measure: the fire at its busiest.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a fire without a look at it.
+    pub fn point(&self, setup: &Setup, looks: &[Look]) -> Result<Point<Setup>, Error> {
+        let tick = busiest(looks).map(|look| look.counts.tick);
+        let tick = tick.ok_or_else(|| Error::Input("no tick of the fire was looked at".to_owned()))?;
+        let mut study = setup.clone();
+        study.parameters.first_frame = frame_before(&setup.parameters, tick);
+        Ok(Point {
+            label: format!("tick {tick}"),
+            x: f64::from(tick),
+            study,
+            variants: vec![self.preset.variant()],
+            left_out: Vec::new(),
+        })
+    }
+
+    /// Notes the dissertation's figure beside ours.
+    pub fn note(&self, run: &mut Run) {
+        let ours = run.median_frame_ms().map(|ms| 1e3 / ms);
+        run.experiment = Some(ExperimentRow {
+            row: format!("{}: frames per second", self.section),
+            paper: Some(self.frames_per_s),
+            ours,
+            ratio: ours.map(|ours| ours / self.frames_per_s),
+        });
+    }
+
+    /// The table: passes with their times, what is burning, the frame rate beside the dissertation's.
+    pub fn render(&self, label: &str, run: &Run, style: Style) -> String {
+        let mut table = Table::new(&[
+            ("pass", Align::Left),
+            ("section", Align::Left),
+            ("calls", Align::Right),
+            ("gpu ms", Align::Right),
+        ]);
+        for pass in &run.passes {
+            let section = pass.section.clone().unwrap_or_default();
+            table.push(vec![pass.name.clone(), section, pass.calls.to_string(), number(median(&pass.gpu_ms), 2)]);
+        }
+        let title = format!("Section {}: {}, {label}", self.section, self.preset.as_str());
+        let count = |name: &str| run.results.get(name).map(ToString::to_string).unwrap_or_default();
+        format!(
+            "{}\n{}{} of {} triangles active, {} drawn, {} removed, {} fire and {} smoke particles\n\
+             frame {} ms, {} frames a second; the dissertation: {} (GeForce 9800 GTS)\n",
+            style.bold(&title),
+            table.render(style),
+            count("active_triangles"),
+            count("finest_triangles"),
+            count("drawn_triangles"),
+            count("removed_triangles"),
+            count("fire_particles"),
+            count("smoke_particles"),
+            number(run.median_frame_ms(), 1),
+            number(run.experiment.as_ref().and_then(|row| row.ours), 1),
+            self.frames_per_s,
+        )
+    }
+
+    /// Milliseconds of every pass.
+    ///
+    /// # Errors
+    /// [`Error::Plot`].
+    pub fn plot(&self, run: &Run) -> Result<String, Error> {
+        let chart = BarChart {
+            title: format!("{}: where a frame's time goes", self.preset.as_str()),
+            y_label: "ms".to_owned(),
+            groups: run.passes.iter().map(|p| p.name.clone()).collect(),
+            series: vec![BarSeries {
+                name: "gpu".to_owned(),
+                values: run.passes.iter().map(|p| median(&p.gpu_ms)).collect(),
+            }],
+        };
+        Ok(chart.to_svg()?)
+    }
+}
+
+fn median(summary: &Option<Summary>) -> Option<f64> {
+    summary.as_ref().map(|s| s.median)
+}

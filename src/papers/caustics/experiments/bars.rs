@@ -1,0 +1,335 @@
+//! What the level maps have to reach from 11 planes on, row by row: not to be slower than the volumetric method and to need
+//! less memory, and with smart slicing to cost no more and no less than the share of planes that is drawn.
+
+use serde_json::{Map, Value, json};
+
+use crate::measure::Variant as _;
+use crate::measure::compare::{Ratio, ratio_within_process};
+use crate::measure::config::entries;
+use crate::measure::statistics::median;
+use crate::papers::caustics::Variant;
+use crate::report::record::{Pass, Run};
+use crate::report::table::{Align, Style, Table, interval, number};
+
+/// Fewer samples a method say nothing of their noise.
+pub const LEAST_SAMPLES: usize = 5;
+/// With fewer planes the work that no plane causes dominates.
+const LEAST_PLANES: u32 = 11;
+/// What the upper end of level map over volumetric may be.
+const SLOWEST: f64 = 1.05;
+/// How far the cost of smart slicing may lie from the share of planes.
+const FROM_SHARE: f64 = 0.15;
+
+/// Whether a row reaches what it has to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    Holds,
+    Missed,
+    /// The interval reaches both sides, or there are too few samples for one.
+    Undecided,
+}
+
+impl Verdict {
+    fn as_str(self) -> &'static str {
+        match self {
+            Verdict::Holds => "holds",
+            Verdict::Missed => "missed",
+            Verdict::Undecided => "undecided",
+        }
+    }
+}
+
+/// A ratio, and its interval where there are samples enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Measured {
+    ratio: f64,
+    interval: Option<[f64; 2]>,
+}
+
+impl Measured {
+    /// `over` / `base`.
+    fn of(over: &[f64], base: &[f64]) -> Option<Self> {
+        let Ratio { ratio, interval, .. } = ratio_within_process(base, over)?;
+        let is_enough = over.len().min(base.len()) >= LEAST_SAMPLES;
+        Some(Measured { ratio, interval: is_enough.then_some(interval) })
+    }
+}
+
+/// Level map against volumetric at one count of planes.
+struct AgainstVolumetric {
+    time: Measured,
+    has_less_memory: Option<bool>,
+    verdict: Option<Verdict>,
+}
+
+/// Smart slicing against slicing normally at one count of planes.
+struct AgainstNormal {
+    /// Planes drawn of those that slicing normally draws.
+    share: f64,
+    /// GPU time of the caustics maps, which depends on the planes alone.
+    caustics_map: Option<Measured>,
+    /// Frame less profiling and readback over the normal frame.
+    cost: Option<Measured>,
+    verdict: Option<Verdict>,
+}
+
+/// The bars of one mesh at one count of planes, as far as the methods were measured that they compare.
+pub struct Bars {
+    mesh: String,
+    planes: u32,
+    against_volumetric: Option<AgainstVolumetric>,
+    against_normal: Option<AgainstNormal>,
+}
+
+impl Bars {
+    /// From interleaved runs of one configuration, whose results it notes the figures in.
+    pub fn of(mesh: &str, planes: u32, runs: &mut [Run]) -> Self {
+        let [level, smart, volumetric] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric]
+            .map(|variant| runs.iter().position(|run| run.variant == variant.as_str()));
+        let pair = |base: Option<usize>, over: Option<usize>| Some((&runs[base?], &runs[over?]));
+        let against_volumetric =
+            pair(level, volumetric).and_then(|(level, other)| against_volumetric(planes, level, other));
+        let against_normal = pair(level, smart).and_then(|(level, smart)| against_normal(planes, level, smart));
+        if let (Some(bar), Some(at)) = (&against_volumetric, volumetric) {
+            runs[at].results.extend(bar.figures());
+        }
+        if let (Some(bar), Some(at)) = (&against_normal, smart) {
+            runs[at].results.extend(bar.figures());
+        }
+        Bars { mesh: mesh.to_owned(), planes, against_volumetric, against_normal }
+    }
+}
+
+fn pass<'a>(run: &'a Run, name: &str) -> Option<&'a Pass> {
+    run.passes.iter().find(|pass| pass.name == name)
+}
+
+fn against_volumetric(planes: u32, level: &Run, volumetric: &Run) -> Option<AgainstVolumetric> {
+    let time = Measured::of(level.frame_samples(), volumetric.frame_samples())?;
+    let bytes = level.memory.device_bytes.zip(volumetric.memory.device_bytes);
+    let has_less_memory = bytes.map(|(level, volumetric)| level < volumetric);
+    let verdict = match (time.interval, has_less_memory) {
+        (_, Some(false)) => Verdict::Missed,
+        (Some([_, high]), Some(true)) if high <= SLOWEST => Verdict::Holds,
+        (Some(_), Some(true)) => Verdict::Missed,
+        _ => Verdict::Undecided,
+    };
+    Some(AgainstVolumetric { time, has_less_memory, verdict: (planes >= LEAST_PLANES).then_some(verdict) })
+}
+
+fn against_normal(planes: u32, level: &Run, smart: &Run) -> Option<AgainstNormal> {
+    let drawn = |run: &Run| run.results.get("planes_drawn").and_then(Value::as_f64).filter(|&planes| planes > 0.0);
+    let share = drawn(smart)? / drawn(level)?;
+    fn gpu_ms(run: &Run) -> Option<&[f64]> {
+        Some(&pass(run, "caustics-map")?.gpu_ms.as_ref()?.samples)
+    }
+    let caustics_map = gpu_ms(smart).zip(gpu_ms(level)).and_then(|(smart, level)| Measured::of(smart, level));
+    let cost = without_profiling(smart).and_then(|smart| Measured::of(&smart, level.frame_samples()));
+    let verdict = match cost.and_then(|cost| cost.interval).map(|interval| interval.map(|end| end / share - 1.0)) {
+        Some([low, high]) if low >= -FROM_SHARE && high <= FROM_SHARE => Verdict::Holds,
+        Some([low, high]) if high < -FROM_SHARE || low > FROM_SHARE => Verdict::Missed,
+        _ => Verdict::Undecided,
+    };
+    Some(AgainstNormal { share, caustics_map, cost, verdict: (planes >= LEAST_PLANES).then_some(verdict) })
+}
+
+/// Frame times of smart slicing without what it does beyond slicing normally: the profile, and the wait for the position
+/// map. That wait contains the drawing of the maps, which slicing normally does too: their GPU time stays.
+fn without_profiling(smart: &Run) -> Option<Vec<f64>> {
+    let profile = &pass(smart, "depth-profile")?.host_ms.as_ref()?.samples;
+    let wait = &pass(smart, "read-positions")?.wait_ms.as_ref()?.samples;
+    let maps = ["position-diffuse-map", "position-map", "diffuse-map"].into_iter().filter_map(|name| pass(smart, name));
+    let maps_ms: f64 = maps.map(|map| median(&map.gpu_ms.as_ref()?.samples)).sum::<Option<f64>>()?;
+    let frames = smart.frame_samples();
+    if frames.len() != profile.len() || frames.len() != wait.len() {
+        return None;
+    }
+    Some(
+        frames.iter().zip(profile).zip(wait).map(|((frame, profile), wait)| frame - profile - wait + maps_ms).collect(),
+    )
+}
+
+impl AgainstVolumetric {
+    fn figures(&self) -> Map<String, Value> {
+        entries([
+            ("level_map_over_volumetric", json!(self.time.ratio)),
+            ("level_map_over_volumetric_interval", json!(self.time.interval)),
+            ("level_map_has_less_memory", json!(self.has_less_memory)),
+            ("level_map_bar", json!(self.verdict.map(Verdict::as_str))),
+        ])
+    }
+}
+
+impl AgainstNormal {
+    fn figures(&self) -> Map<String, Value> {
+        entries([
+            ("planes_share", json!(self.share)),
+            ("caustics_map_over_normal", json!(self.caustics_map.map(|m| m.ratio))),
+            ("caustics_map_over_normal_interval", json!(self.caustics_map.and_then(|m| m.interval))),
+            ("cost_over_normal", json!(self.cost.map(|m| m.ratio))),
+            ("cost_over_normal_interval", json!(self.cost.and_then(|m| m.interval))),
+            ("cost_over_share", json!(self.cost.map(|m| m.ratio / self.share))),
+            ("smart_bar", json!(self.verdict.map(Verdict::as_str))),
+        ])
+    }
+}
+
+/// The bars of a sweep as tables; nothing where it compares neither.
+pub fn render(bars: &[Bars], style: Style) -> String {
+    let mut text = String::new();
+    let verdict = |verdict: Option<Verdict>| verdict.map_or("", Verdict::as_str).to_owned();
+    if bars.iter().any(|bars| bars.against_volumetric.is_some()) {
+        let mut table = Table::new(&[
+            ("mesh", Align::Left),
+            ("planes", Align::Right),
+            ("level-map / volumetric", Align::Right),
+            ("95 % interval", Align::Left),
+            ("less memory", Align::Left),
+            ("bar", Align::Left),
+        ]);
+        for Bars { mesh, planes, against_volumetric, .. } in bars {
+            let Some(bar) = against_volumetric else { continue };
+            table.push(vec![
+                mesh.clone(),
+                planes.to_string(),
+                number(Some(bar.time.ratio), 3),
+                interval(bar.time.interval),
+                bar.has_less_memory.map_or("", |less| if less { "yes" } else { "no" }).to_owned(),
+                verdict(bar.verdict),
+            ]);
+        }
+        text.push_str(&table.render(style));
+        text.push_str(&format!(
+            "bar: from {LEAST_PLANES} planes on the interval's upper end is at most {SLOWEST}, and the level map needs less \
+             memory\n"
+        ));
+    }
+    if bars.iter().any(|bars| bars.against_normal.is_some()) {
+        let mut table = Table::new(&[
+            ("mesh", Align::Left),
+            ("planes", Align::Right),
+            ("share drawn", Align::Right),
+            ("caustics-map", Align::Right),
+            ("95 % interval", Align::Left),
+            ("cost", Align::Right),
+            ("95 % interval", Align::Left),
+            ("cost / share", Align::Right),
+            ("bar", Align::Left),
+        ]);
+        for Bars { mesh, planes, against_normal, .. } in bars {
+            let Some(bar) = against_normal else { continue };
+            table.push(vec![
+                mesh.clone(),
+                planes.to_string(),
+                format!("{:.3}", bar.share),
+                number(bar.caustics_map.map(|m| m.ratio), 3),
+                interval(bar.caustics_map.and_then(|m| m.interval)),
+                number(bar.cost.map(|m| m.ratio), 3),
+                interval(bar.cost.and_then(|m| m.interval)),
+                number(bar.cost.map(|m| m.ratio / bar.share), 3),
+                verdict(bar.verdict),
+            ]);
+        }
+        text.push_str(&table.render(style));
+        text.push_str(&format!(
+            "smart slicing over slicing normally. caustics-map: GPU time of that pass. cost: frame less depth-profile and the \
+             wait for the position map, but for the maps' own GPU time\nbar: from {LEAST_PLANES} planes on the interval of \
+             cost / share lies within {:.0} % of 1\n",
+            100.0 * FROM_SHARE
+        ));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::statistics::summarize;
+    use crate::report::example;
+    use crate::report::record::PassKind;
+
+    /// Frames that differ by 1 %.
+    fn frames(median_ms: f64, count: usize) -> Vec<f64> {
+        (0..count).map(|i| median_ms * (0.99 + 0.02 * i as f64 / (count - 1) as f64)).collect()
+    }
+
+    fn run(variant: Variant, frame_ms: &[f64], planes: u32, device_bytes: u64) -> Run {
+        let mut run = Run { variant: variant.as_str().to_owned(), frame_ms: summarize(frame_ms), ..example::run() };
+        run.results = entries([("planes_drawn", json!(planes))]);
+        run.memory.device_bytes = Some(device_bytes);
+        run
+    }
+
+    fn verdict(runs: &[Run], variant: Variant, bar: &str) -> Value {
+        runs.iter().find(|run| run.variant == variant.as_str()).unwrap().results[bar].clone()
+    }
+
+    #[test]
+    fn the_level_map_may_be_slower_by_a_twentieth_and_needs_less_memory() {
+        let of = |planes: u32, level_ms: f64, count: usize, bytes: u64| {
+            let mut runs = [
+                run(Variant::LevelMap, &frames(level_ms, count), planes, bytes),
+                run(Variant::Volumetric, &frames(10.0, count), planes, 100),
+            ];
+            Bars::of("sphere", planes, &mut runs);
+            verdict(&runs, Variant::Volumetric, "level_map_bar")
+        };
+        assert_eq!(of(11, 9.0, 9, 50), "holds");
+        assert_eq!(of(11, 10.2, 9, 50), "holds");
+        assert_eq!(of(11, 11.0, 9, 50), "missed");
+        assert_eq!(of(11, 9.0, 9, 100), "missed");
+        assert_eq!(of(11, 9.0, 3, 50), "undecided");
+        assert_eq!(of(3, 11.0, 9, 50), Value::Null);
+    }
+
+    fn timed(name: &str, time: impl Fn(&mut Pass)) -> Pass {
+        let mut pass = example::pass(name, PassKind::Host);
+        time(&mut pass);
+        pass
+    }
+
+    /// 10 of 20 planes: 10 ms of a frame of 20 ms are the planes', 2 ms the maps'.
+    fn sliced(smart_frame_ms: f64) -> [Run; 2] {
+        let mut level = run(Variant::LevelMap, &frames(20.0, 9), 20, 100);
+        level.passes.push(timed("caustics-map", |p| p.gpu_ms = summarize(&frames(10.0, 9))));
+        let mut smart = run(Variant::LevelMapSmart, &frames(smart_frame_ms, 9), 10, 100);
+        smart.passes = vec![
+            timed("position-diffuse-map", |p| p.gpu_ms = summarize(&[2.0; 9])),
+            timed("read-positions", |p| p.wait_ms = summarize(&[5.0; 9])),
+            timed("depth-profile", |p| p.host_ms = summarize(&[1.0; 9])),
+            timed("caustics-map", |p| p.gpu_ms = summarize(&frames(6.0, 9))),
+        ];
+        [smart, level]
+    }
+
+    #[test]
+    fn smart_slicing_costs_its_share_without_what_profiling_takes() {
+        // Less 1 ms of profile and 5 ms of waiting, of which 2 ms draw the maps.
+        let mut runs = sliced(14.0);
+        let bars = [Bars::of("sphere", 20, &mut runs)];
+        let results = &runs[0].results;
+        let of = |name: &str| results[name].as_f64().unwrap();
+        assert_eq!(of("planes_share"), 0.5);
+        assert!((of("caustics_map_over_normal") - 0.6).abs() < 1e-9);
+        assert!((of("cost_over_normal") - 0.5).abs() < 1e-9);
+        assert!((of("cost_over_share") - 1.0).abs() < 1e-9);
+        assert_eq!(results["smart_bar"], "holds");
+        assert!(render(&bars, Style::default()).contains("holds"));
+
+        for (frame_ms, expected) in [(18.0, "missed"), (10.0, "missed"), (15.5, "undecided")] {
+            let mut runs = sliced(frame_ms);
+            Bars::of("sphere", 20, &mut runs);
+            assert_eq!(runs[0].results["smart_bar"], expected, "{frame_ms}");
+        }
+    }
+
+    #[test]
+    fn what_was_not_timed_is_absent() {
+        let mut runs = sliced(14.0);
+        runs[0].passes.retain(|pass| pass.name != "depth-profile");
+        let bars = [Bars::of("sphere", 20, &mut runs)];
+        assert_eq!(runs[0].results["cost_over_normal"], Value::Null);
+        assert_eq!(runs[0].results["smart_bar"], "undecided");
+        assert!(render(&bars, Style::default()).contains("undecided"));
+    }
+}

@@ -1,0 +1,224 @@
+//! What smart slicing does, without times: the planes it needs (table 5-4), what it changes in the picture (table 5-5,
+//! figure 5-13), the depth profiles (figure 5-12), and the memory of the methods (section 5.1).
+
+use serde_json::json;
+
+use super::super::setup::{NamedMesh, Scene, Setup};
+use super::thesis::{TABLE_5_2, TABLE_5_4};
+use crate::gpu::Mode;
+use crate::image::{Difference, Rgba8, Samples, compare};
+use crate::measure::Error;
+use crate::measure::bench::build;
+use crate::measure::machine::Machine;
+use crate::measure::picture;
+use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study;
+use crate::measure::{Paper, Variant as _};
+use crate::papers::caustics::{SmartPlacement, Variant};
+use crate::report::plot::{BarChart, BarSeries};
+use crate::scene::MeshSource;
+
+fn for_each_mesh(
+    setup: &Setup,
+    meshes: &[MeshSource],
+    mut visit: impl FnMut(&NamedMesh, &mut Setup, &Scene) -> Result<(), Error>,
+) -> Result<(), Error> {
+    for mesh in NamedMesh::all(meshes) {
+        let mut setup = Setup { meshes: vec![mesh.source.clone()], ..setup.clone() };
+        let scene = setup.load()?;
+        visit(&mesh, &mut setup, &scene)?;
+    }
+    Ok(())
+}
+
+/// Table 5-2: polygons of the models.
+///
+/// # Errors
+/// [`Error::Scene`].
+pub fn polygon_counts(setup: &Setup, meshes: &[MeshSource]) -> Result<ResultTable, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, _, scene| {
+        let thesis = TABLE_5_2.iter().find(|(name, _)| *name == mesh.model).map(|(_, count)| *count);
+        rows.push(vec![json!(mesh.name), json!(scene.receivers[0].mesh.triangle_count()), json!(thesis)]);
+        Ok(())
+    })?;
+    Ok(ResultTable { title: "Table 5-2: polygons of the models", columns: &["mesh", "triangles", "thesis"], rows })
+}
+
+/// Table 5-4: planes that smart slicing draws of those specified, in both placements.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`].
+pub fn actual_planes(
+    machine: &mut Machine,
+    setup: &Setup,
+    meshes: &[MeshSource],
+    counts: &[u32],
+) -> Result<ResultTable, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.validate()?;
+            let mut drawn = |placement| -> Result<usize, Error> {
+                setup.parameters.smart.placement = placement;
+                let mut built = build(machine, setup, scene, Variant::LevelMapSmart)?;
+                machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+                Ok(built.paper.plane_counts().iter().sum())
+            };
+            let fitted = drawn(SmartPlacement::Fitted { epsilon_m: None })?;
+            let kept = drawn(SmartPlacement::Kept)?;
+            let thesis = TABLE_5_4.get(&mesh.model, planes);
+            rows.push(vec![
+                json!(mesh.name),
+                json!(planes),
+                json!(fitted),
+                json!(kept),
+                json!(thesis.map(|t| t as u64)),
+            ]);
+        }
+        Ok(())
+    })?;
+    Ok(ResultTable {
+        title: "Table 5-4: planes that smart slicing draws",
+        columns: &["mesh", "specified", "fitted", "kept", "thesis"],
+        rows,
+    })
+}
+
+/// A frame's picture by normal slicing and by smart slicing, and how far they differ over the object's pixels.
+pub struct PicturePair {
+    pub normal: Rgba8,
+    pub smart: Rgba8,
+    pub difference: Difference,
+}
+
+/// Renders the pair of figure 5-13.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Image`]: when the object is nowhere in the picture.
+pub fn picture_pair(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Result<PicturePair, Error> {
+    let mut render = |variant| -> Result<(Rgba8, Vec<bool>), Error> {
+        let mut built = build(machine, setup, scene, variant)?;
+        let rendered = picture::render(machine, &mut built.paper, 0)?;
+        let targets = built.paper.targets();
+        let depth = targets.iter().find(|t| t.name == "underwater-depth");
+        let mask =
+            match depth.map(|t| picture::read_target(&machine.device, t)).transpose()?.map(|r| r.samples().clone()) {
+                Some(Samples::F32(depth)) => depth.iter().map(|&d| d < 1.0).collect(),
+                _ => Vec::new(),
+            };
+        Ok((rendered, mask))
+    };
+    let (normal, mask) = render(Variant::LevelMap)?;
+    let (smart, _) = render(Variant::LevelMapSmart)?;
+    let difference = compare(&normal, &smart, Some(&mask))?;
+    Ok(PicturePair { normal, smart, difference })
+}
+
+/// Table 5-5: mean Luv difference (eq. 2-9) between normal and smart slicing, in both placements.
+///
+/// # Errors
+/// As [`picture_pair`].
+pub fn intensity_difference(
+    machine: &mut Machine,
+    setup: &Setup,
+    meshes: &[MeshSource],
+    counts: &[u32],
+) -> Result<ResultTable, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.validate()?;
+            let mut row = vec![json!(mesh.name), json!(planes)];
+            for placement in [SmartPlacement::Fitted { epsilon_m: None }, SmartPlacement::Kept] {
+                setup.parameters.smart.placement = placement;
+                let Difference { mean, p99, .. } = picture_pair(machine, setup, scene)?.difference;
+                row.extend([json!(mean), json!(p99)]);
+            }
+            let thesis = TABLE_5_4.get(&mesh.model, planes).map(|_| 0);
+            row.push(json!(thesis));
+            rows.push(row);
+        }
+        Ok(())
+    })?;
+    Ok(ResultTable {
+        title: "Table 5-5: Luv difference between normal and smart slicing, over the object's pixels",
+        columns: &["mesh", "planes", "fitted mean", "fitted p99", "kept mean", "kept p99", "thesis"],
+        rows,
+    })
+}
+
+/// Figure 5-12: texels in each depth level of a mesh.
+///
+/// # Errors
+/// [`Error::Gpu`].
+pub fn depth_profile(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Result<Vec<u32>, Error> {
+    let mut setup = setup.clone();
+    setup.parameters.smart.placement = SmartPlacement::Fitted { epsilon_m: None };
+    let mut built = build(machine, &setup, scene, Variant::LevelMapSmart)?;
+    machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+    Ok(built.paper.depth_profile().unwrap_or_default().to_vec())
+}
+
+/// The histogram of figure 5-12.
+pub fn profile_chart(mesh: &str, histogram: &[u32]) -> BarChart {
+    // About ten levels have their number under them.
+    let step = histogram.len().div_ceil(10).max(1);
+    let label = |level: usize| if level == 1 || level.is_multiple_of(step) { level.to_string() } else { String::new() };
+    BarChart {
+        title: format!("Figure 5-12: depth profile of {mesh}, level 1 nearest to the light"),
+        y_label: "texels".to_owned(),
+        groups: (1..=histogram.len()).map(label).collect(),
+        series: vec![BarSeries {
+            name: "texels".to_owned(),
+            values: histogram.iter().map(|&texels| Some(f64::from(texels))).collect(),
+        }],
+    }
+}
+
+/// Section 5.1: device memory of the methods by number of planes; only the volumetric method grows.
+///
+/// # Errors
+/// [`Error::Gpu`], [`Error::Scene`], [`Error::Parameter`].
+pub fn memory(
+    machine: &mut Machine,
+    setup: &Setup,
+    meshes: &[MeshSource],
+    counts: &[u32],
+) -> Result<ResultTable, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.validate()?;
+            for &variant in Variant::ALL {
+                let built = build(machine, setup, scene, variant)?;
+                let of = |test: fn(&str) -> bool| {
+                    built.memory.iter().filter(|m| test(&m.name)).map(|m| m.bytes).sum::<u64>()
+                };
+                rows.push(vec![
+                    json!(mesh.name),
+                    json!(planes),
+                    json!(variant.as_str()),
+                    json!(of(is_map)),
+                    json!(of(|_| true)),
+                ]);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(ResultTable {
+        title: "Section 5.1: memory by method",
+        columns: &["mesh", "planes", "method", "maps, bytes", "all, bytes"],
+        rows,
+    })
+}
+
+/// Whether a method keeps the resource for its own light: its maps and their depth, the stencil method's images of what is
+/// seen. The cast's target, the water and the receivers are all methods' alike.
+fn is_map(resource: &str) -> bool {
+    let is_depth = resource.ends_with("-depth") && resource != "underwater-depth";
+    resource != "water-map" && resource.ends_with("-map") || is_depth || resource.starts_with("surface-")
+}

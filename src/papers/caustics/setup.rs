@@ -1,0 +1,306 @@
+//! The experiments of the `caustics` paper: what a user set up, its scene, its measured runs.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
+use serde_json::{Map, Value, json};
+
+use crate::gpu::{self, Feature, Mode, ShaderLibrary};
+use crate::measure::Error;
+use crate::measure::bench::Built;
+use crate::measure::config::{self, entries};
+use crate::measure::machine::Machine;
+use crate::measure::measure::Measurement;
+use crate::measure::study::{Identity, Metrics, Study};
+use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
+use crate::scene::{Bounds, HeightMap, HeightMapSource, MeshSource, Samples, shapes};
+
+/// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
+/// over it.
+const RECEIVER_SIZE_M: f32 = 2.0;
+/// Gap between receivers in metres.
+const GAP_M: f32 = 0.3;
+/// Cells a side of the pool's floor: its map needs no more than its normals and edges.
+const FLOOR_CELLS: u32 = 8;
+/// Side of the pool's floor in receivers.
+const FLOOR_SIZE: f32 = 3.0;
+
+/// What a user set up.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    pub parameters: Parameters,
+    pub meshes: Vec<MeshSource>,
+    /// Whether the pool's floor receives caustics as well.
+    pub floor: bool,
+    pub preset: Option<String>,
+    /// Which of several fresh processes this is.
+    pub process: u32,
+}
+
+/// A setup with its meshes loaded and placed.
+pub struct Scene {
+    pub receivers: Vec<ReceiverInput>,
+}
+
+impl Study for Setup {
+    const PAPER: &'static str = "caustics";
+    const NEEDS: &'static [Feature] = &NEEDS;
+
+    type Variant = Variant;
+    type Scene = Scene;
+    type Paper = Caustics;
+
+    /// Checks the parameters, loads the meshes, scales each to two metres and stands it on the pool's floor, one beside
+    /// the other. A mesh too small or too large to be scaled is an [`Error::Input`].
+    fn load(&self) -> Result<Scene, Error> {
+        self.parameters.validate()?;
+        let floor_m = -self.parameters.water_depth_m;
+        let mut receivers = Vec::new();
+        let mut next_x = 0.0;
+        for source in &self.meshes {
+            let mesh = source.load()?;
+            let bounds = mesh.bounds();
+            let longest = bounds.diagonal().max_element();
+            let scale = RECEIVER_SIZE_M / longest;
+            if !scale.is_normal() {
+                return Err(Error::Input(format!(
+                    "placing mesh {source}: a side of {longest:e} cannot be scaled to {RECEIVER_SIZE_M} m; rescale the file"
+                )));
+            }
+            let size = bounds.diagonal() * scale;
+            let foot = Vec3::new(bounds.min.x, bounds.min.y, bounds.center().z) * scale;
+            let place =
+                Mat4::from_translation(Vec3::new(next_x, floor_m, 0.0) - foot) * Mat4::from_scale(Vec3::splat(scale));
+            next_x += size.x + GAP_M;
+            receivers.push(ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.75, 0.75, 0.72) });
+        }
+        let width = next_x - GAP_M;
+        let center = Mat4::from_translation(Vec3::new(-width / 2.0, 0.0, 0.0));
+        for receiver in &mut receivers {
+            receiver.mesh = receiver.mesh.transformed(&center);
+        }
+        if self.floor {
+            receivers.push(floor(&receivers, floor_m));
+        }
+        Ok(Scene { receivers })
+    }
+
+    fn make(
+        &self,
+        shaders: &ShaderLibrary,
+        label: &str,
+        scene: &Scene,
+        variant: Variant,
+    ) -> Result<Caustics, gpu::Error> {
+        Caustics::new(shaders, label, variant, &self.parameters, &scene.receivers)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity {
+            preset: self.preset.clone(),
+            width: self.parameters.width,
+            height: self.parameters.height,
+            seed: self.parameters.seed,
+            process: self.process,
+        }
+    }
+
+    fn summary(&self) -> String {
+        format!("{} planes", self.parameters.planes)
+    }
+
+    fn metrics(
+        &self,
+        machine: &mut Machine,
+        measured: &mut [(Built<Self>, Measurement)],
+    ) -> Result<Vec<Metrics>, Error> {
+        let floors = floors_ms(machine, measured)?;
+        let metrics = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Metrics {
+            results: results(&built.paper, measurement, floor_ms),
+            warnings: self.small_map(&built.paper).into_iter().collect(),
+        });
+        Ok(metrics.collect())
+    }
+
+    fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Value> {
+        let p = &self.parameters;
+        let meshes: Vec<String> = self.meshes.iter().map(MeshSource::to_string).collect();
+        let triangles: usize = scene.receivers.iter().map(|r| r.mesh.triangle_count()).sum();
+        let lights: Vec<Value> = p.lights.iter().map(config::light).collect();
+        let (placement, epsilon) = match p.smart.placement {
+            SmartPlacement::Fitted { epsilon_m } => ("fitted", epsilon_m),
+            SmartPlacement::Kept => ("kept", None),
+        };
+        let waves = if p.water_map.is_none() { Some(p.waves) } else { None };
+        entries([
+            ("mesh", json!(meshes)),
+            ("receiver_triangles", json!(triangles)),
+            ("floor", json!(self.floor)),
+            ("planes", json!(p.planes)),
+            ("map_size", json!(p.map_size)),
+            ("water_triangles", json!(paper.grid().triangle_count())),
+            ("mrt", json!(p.mrt)),
+            ("levels", json!(p.smart.levels)),
+            ("smart_placement", json!(placement)),
+            ("epsilon", json!(epsilon)),
+            ("refraction_index", json!(p.refraction_index)),
+            ("absorption", json!(p.absorption_per_m)),
+            ("water_depth", json!(p.water_depth_m)),
+            ("waves", json!(waves.map(|w| w.count))),
+            ("amplitude", json!(waves.map(|w| w.amplitude_m))),
+            ("wavelength", json!(waves.map(|w| w.wavelength_m))),
+            ("water_map", json!(p.water_map.as_ref().map(map_value))),
+            ("lights", json!(lights)),
+            ("ambient", json!(p.ambient.to_array())),
+            ("camera", config::camera(&p.camera)),
+            ("time_step", json!(p.time_step_s)),
+        ])
+    }
+}
+
+/// Water by a height map: its heights as they are, metres about the water's level, or scaled so that they span `range_m`
+/// about it; samples as far apart as the map says, or `spacing_m`.
+///
+/// # Errors
+/// [`Error::Scene`] for a map that cannot be read; [`Error::Input`] for a flat map that is to span a range.
+pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Option<f32>) -> Result<WaterMap, Error> {
+    let mut map = source.load()?;
+    if let Some(range_m) = range_m {
+        let (low, high) = map.range_m();
+        let scale = range_m / (high - low);
+        if !scale.is_finite() {
+            return Err(Error::Input(format!("--water-map-range {range_m}: {source} is flat; leave the range out")));
+        }
+        let middle = low + (high - low) / 2.0;
+        let places = (0..map.height()).flat_map(|row| (0..map.width()).map(move |column| (column, row)));
+        let heights = places.map(|(column, row)| (map.height_m(column, row) - middle) * scale).collect();
+        map = HeightMap::new(map.width(), map.height(), Samples::Float(heights))?.with_spacing_m(map.spacing_m())?;
+    }
+    if let Some(spacing_m) = spacing_m {
+        map = map.with_spacing_m(DVec2::splat(f64::from(spacing_m)))?;
+    }
+    Ok(WaterMap::new(source.to_string(), Arc::new(map)))
+}
+
+impl Setup {
+    /// What to say when the light that reaches the receivers passes water beyond the border of a height map.
+    fn small_map(&self, paper: &Caustics) -> Option<String> {
+        let map = self.parameters.water_map.as_ref()?;
+        let (map_m, mesh_m) = (map.extent_m(), paper.grid().extent_m());
+        map_m.cmplt(mesh_m).any().then(|| {
+            format!(
+                "the water map {} covers {:.2} x {:.2} m of the water's mesh of {:.2} x {:.2} m; beyond its border the \
+                 border's heights go on",
+                map.name(),
+                map_m.x,
+                map_m.y,
+                mesh_m.x,
+                mesh_m.y
+            )
+        })
+    }
+}
+
+fn map_value(map: &WaterMap) -> Value {
+    let heights = map.heights();
+    let (low, high) = heights.range_m();
+    json!({
+        "name": map.name(), "columns": heights.width(), "rows": heights.height(),
+        "spacing": heights.spacing_m().to_array(), "lowest": low, "highest": high,
+    })
+}
+
+fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
+    let bounds = receivers.iter().map(|r| r.mesh.bounds()).reduce(|a, b| a.union(&b)).unwrap_or(Bounds::EMPTY);
+    let size = Vec2::splat(FLOOR_SIZE * RECEIVER_SIZE_M).max(Vec2::new(bounds.diagonal().x, bounds.diagonal().z) * 1.6);
+    let mesh = shapes::plane(size, UVec2::splat(FLOOR_CELLS));
+    // Just below the feet, so that no receiver's underside fights with it for the picture's depth.
+    let place = Mat4::from_translation(Vec3::new(0.0, floor_m - 1e-3 * RECEIVER_SIZE_M, 0.0));
+    ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
+}
+
+/// A mesh of an experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedMesh {
+    pub source: MeshSource,
+    /// Its word, or its file's name without folder and ending: what the thesis's tables may know it by.
+    pub model: String,
+    /// The same with a number where another mesh before it has that name: rows and files are told apart by it.
+    pub name: String,
+}
+
+impl NamedMesh {
+    /// The meshes in their order.
+    pub fn all(meshes: &[MeshSource]) -> Vec<NamedMesh> {
+        let mut named: Vec<NamedMesh> = Vec::with_capacity(meshes.len());
+        for source in meshes {
+            let model = match source {
+                MeshSource::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+                other => other.to_string(),
+            };
+            let is_taken = |name: &str| named.iter().any(|mesh| mesh.name == name);
+            let numbered = (2..).map(|number| format!("{model}-{number}"));
+            let name = std::iter::once(model.clone()).chain(numbered).find(|name| !is_taken(name)).unwrap_or_default();
+            named.push(NamedMesh { source: source.clone(), model, name });
+        }
+        named
+    }
+}
+
+/// The thesis's meshes that we have, a scanned one, and a modelled one from `assets/` where that folder is.
+pub fn sample_meshes() -> Vec<MeshSource> {
+    let wuson = Some(PathBuf::from("assets/meshes/wuson.stl")).filter(|path| path.is_file());
+    let built_in = [MeshSource::Teapot, MeshSource::Sphere, MeshSource::Bunny];
+    built_in.into_iter().chain(wuson.map(MeshSource::File)).collect()
+}
+
+/// Median time of each variant's caustics maps with an empty fragment stage, interleaved; `None` without stamps.
+fn floors_ms(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) -> Result<Vec<Option<f64>>, Error> {
+    const SAMPLES: usize = 5;
+    let mut times = vec![Vec::with_capacity(SAMPLES); measured.len()];
+    // The first round compiles the pipelines.
+    for round in 0..=SAMPLES {
+        for ((built, _), times) in measured.iter().zip(&mut times) {
+            let sample = machine.recorder.run(Mode::Stamped, |frame| built.paper.record_floor(frame))?;
+            if round > 0 {
+                times.extend(sample.passes.iter().find_map(|p| p.gpu_ms));
+            }
+        }
+    }
+    Ok(times.iter().map(|times| crate::measure::statistics::median(times)).collect())
+}
+
+/// The paper's own figures: the intersection triangles of a frame and how fast they are drawn.
+fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -> Map<String, Value> {
+    let planes = paper.plane_counts().iter().sum::<usize>() as u64;
+    let triangles = planes * u64::from(paper.grid().triangle_count());
+    let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
+    let time_ms = caustics_map.and_then(|p| crate::measure::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);
+    if planes == 0 {
+        return Map::new();
+    }
+    entries([
+        ("planes_drawn", json!(planes)),
+        ("caustics_map_floor_ms", json!(floor_ms)),
+        ("caustics_map_over_floor", json!(time_ms.zip(floor_ms).map(|(time, floor)| time / floor))),
+        ("intersection_triangles", json!(triangles)),
+        ("intersection_triangles_per_s", json!(time_ms.map(|ms| triangles as f64 / ms * 1e3))),
+    ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meshes_of_one_name_are_told_apart() {
+        let files = ["a/pot.obj", "b/pot.obj", "pot-2.stl", "pot.ply"];
+        let sources = files.map(|file| MeshSource::File(file.into()));
+        let named = NamedMesh::all(&[&sources[..], &[MeshSource::Teapot]].concat());
+        let names: Vec<&str> = named.iter().map(|mesh| mesh.name.as_str()).collect();
+        assert_eq!(names, ["pot", "pot-2", "pot-2-2", "pot-3", "teapot"]);
+        let models: Vec<&str> = named.iter().map(|mesh| mesh.model.as_str()).collect();
+        assert_eq!(models, ["pot", "pot", "pot-2", "pot", "teapot"]);
+    }
+}

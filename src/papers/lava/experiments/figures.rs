@@ -1,0 +1,184 @@
+//! The thesis's figures: textures of one frame, and pictures of it by other colours, cameras and splats.
+
+use super::super::setup::Setup;
+use crate::image::{Raster, Rgba8, Samples, Shape};
+use crate::measure::Error;
+use crate::measure::Paper;
+use crate::measure::bench::build;
+use crate::measure::machine::Machine;
+use crate::measure::picture;
+use crate::measure::study::Study;
+use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading, Variant};
+
+/// A part of a figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Part {
+    /// A texture of the frame, by its target's name.
+    Texture(&'static str),
+    /// The picture, coloured by one thing.
+    Shaded(Shading),
+    /// The picture with splats of this radius in metres.
+    Splats(f32),
+}
+
+/// A figure of the thesis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figure {
+    pub name: &'static str,
+    preset: Preset,
+    /// Each with what its file is called after the figure; nothing for a figure of one part.
+    parts: &'static [(&'static str, Part)],
+}
+
+const fn figure(name: &'static str, preset: Preset, parts: &'static [(&'static str, Part)]) -> Figure {
+    Figure { name, preset, parts }
+}
+
+/// In the thesis's order.
+pub const FIGURES: [Figure; 16] = {
+    use Part::{Shaded, Splats, Texture};
+    use Preset::{Fig62, Results};
+    const PICTURE: &[(&str, Part)] = &[("", Shaded(Shading::Lava))];
+    [
+        figure("fig-4.1", Results, &[("-position", Texture("positions")), ("-velocity", Texture("velocities"))]),
+        figure(
+            "fig-4.2",
+            Results,
+            &[
+                ("a-density", Texture("density")),
+                ("b-normal-height", Texture("normal-height")),
+                ("c-heights", Shaded(Shading::Heights)),
+            ],
+        ),
+        figure(
+            "fig-4.3",
+            Results,
+            &[
+                ("a-depth", Texture("visibility")),
+                ("b-color", Shaded(Shading::Color)),
+                ("b-rock", Shaded(Shading::Rock)),
+                ("c-lava", Shaded(Shading::Lava)),
+            ],
+        ),
+        figure("fig-5.1", Fig62, &[("", Texture("positions"))]),
+        figure("fig-5.2", Fig62, &[("", Shaded(Shading::Particles))]),
+        figure("fig-6.2", Fig62, &[("", Texture("density"))]),
+        figure("fig-6.3", Results, &[("", Texture("normal-height"))]),
+        figure("fig-6.4", Results, &[("-normals", Shaded(Shading::Normals)), ("-heights", Shaded(Shading::Heights))]),
+        figure("fig-7.1", Results, &[("", Texture("visibility"))]),
+        figure("fig-7.2", Results, &[("", Shaded(Shading::Rock))]),
+        figure("fig-7.3", Results, &[("-color", Shaded(Shading::Color)), ("-lava", Shaded(Shading::Lava))]),
+        figure("fig-8.1", Results, PICTURE),
+        figure("fig-8.2", Results, PICTURE),
+        figure("fig-8.3", Results, PICTURE),
+        figure("fig-8.4", Results, PICTURE),
+        figure(
+            "fig-8.5",
+            Preset::Fig85,
+            &[
+                ("-0.001875", Splats(0.001875)),
+                ("-0.004375", Splats(0.004375)),
+                ("-0.008125", Splats(0.008125)),
+                ("-0.020625", Splats(0.020625)),
+            ],
+        ),
+    ]
+};
+
+/// What a part looks like.
+pub enum Drawn {
+    Picture(Rgba8),
+    /// A texture, scaled to be looked at.
+    Texture(Raster),
+}
+
+/// A figure of one frame.
+pub struct Drawing {
+    /// Each with what its file is called.
+    pub parts: Vec<(&'static str, Drawn)>,
+    /// What makes it doubtful, one line each.
+    pub warnings: Vec<String>,
+}
+
+impl Figure {
+    /// The figure of that name.
+    pub fn named(name: &str) -> Option<Figure> {
+        FIGURES.into_iter().find(|figure| figure.name == name)
+    }
+
+    /// The numbers that the figure is made with; its own camera for the figures of chapter 8.
+    pub fn parameters(&self) -> Parameters {
+        let mut parameters = self.preset.configurations().swap_remove(0);
+        if let Some((_, camera)) = CAMERAS.iter().find(|(name, _)| *name == self.name) {
+            parameters.camera = *camera;
+        }
+        parameters
+    }
+
+    /// What each part is drawn from.
+    fn setups<'a>(&self, setup: &'a Setup) -> impl Iterator<Item = Setup> + use<'a> {
+        self.parts.iter().map(move |(_, part)| {
+            let mut setup = setup.clone();
+            match *part {
+                Part::Texture(_) => {}
+                Part::Shaded(shading) => setup.parameters.shading = shading,
+                Part::Splats(radius_m) => setup.parameters.splat_radius_m = radius_m,
+            }
+            setup
+        })
+    }
+
+    /// Checks every part before the first is drawn.
+    ///
+    /// # Errors
+    /// As [`Setup::check`].
+    pub fn check(&self, setup: &Setup) -> Result<(), Error> {
+        self.setups(setup).try_for_each(|setup| setup.check())
+    }
+
+    /// Draws the parts from frame `number` of `setup`.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`], [`Error::Image`], [`Error::Parameter`], [`Error::Input`].
+    pub fn draw(&self, machine: &mut Machine, setup: &Setup, number: u32) -> Result<Drawing, Error> {
+        let scene = setup.load()?;
+        let mut parts = Vec::new();
+        let mut warnings = Vec::new();
+        for (&(suffix, part), setup) in self.parts.iter().zip(self.setups(setup)) {
+            setup.check()?;
+            let mut built = build(machine, &setup, &scene, Variant::Paper)?;
+            let picture = picture::render(machine, &mut built.paper, number)?;
+            warnings.extend(built.paper.warnings());
+            let targets = built.paper.targets();
+            let texture = match part {
+                Part::Texture(name) => targets.iter().find(|t| t.name == name),
+                _ => None,
+            };
+            parts.push(match texture {
+                Some(target) => (suffix, Drawn::Texture(visible(picture::read_target(&machine.device, target)?)?)),
+                None => (suffix, Drawn::Picture(picture)),
+            });
+        }
+        // The parts are of one frame.
+        warnings.dedup();
+        Ok(Drawing { parts, warnings })
+    }
+}
+
+/// A texture with its values where a picture shows them: several channels by the share of their largest value; of a depth,
+/// the background as far as the farthest surface.
+fn visible(texture: Raster) -> Result<Raster, Error> {
+    let (Shape::Image { layers, height, width, channels }, Samples::F32(values)) = (texture.shape(), texture.samples())
+    else {
+        return Ok(texture);
+    };
+    let largest_below = |limit: f32| values.iter().copied().filter(|&v| v < limit).fold(0.0, f32::max);
+    let shown: Vec<f32> = if channels == 1 {
+        let farthest = largest_below(1.0);
+        values.iter().map(|v| v.min(farthest)).collect()
+    } else {
+        let largest = largest_below(f32::INFINITY).max(f32::MIN_POSITIVE);
+        values.iter().map(|v| v / largest).collect()
+    };
+    Ok(Raster::image(width, height, channels, layers, shown)?)
+}

@@ -1,0 +1,158 @@
+//! "Detection of spatial collisions" (section 1): what bodies meet in a setup's land.
+
+use glam::DVec3;
+use serde_json::{Value, json};
+
+use super::super::setup::Setup;
+use crate::measure::Error;
+use crate::measure::ParameterError;
+use crate::measure::study::Study;
+use crate::papers::terrain::{Collider, Inputs, Surface};
+
+/// A coordinate's and a radius' largest value, metres.
+const FAR_M: f64 = 1.0e8;
+
+/// What may meet the ground, in the maps' frame: metres east, up from the base, south.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Body {
+    /// A point that moves straight from one place to another.
+    Segment {
+        from: DVec3,
+        to: DVec3,
+    },
+    Sphere {
+        center: DVec3,
+        radius_m: f64,
+    },
+}
+
+/// What a body meets first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Meeting {
+    /// The part of the segment before it, 0 to 1; none for a sphere.
+    pub parameter: Option<f64>,
+    /// From the start of the segment, or from the centre of the sphere, metres.
+    pub distance_m: f64,
+    pub point: DVec3,
+    /// A unit vector.
+    pub normal: DVec3,
+    pub surface: Surface,
+    pub map: u32,
+    /// Pieces and blocks that were looked at.
+    pub steps: u32,
+}
+
+/// A body and what it meets; none where that is nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Collision {
+    pub body: Body,
+    pub meeting: Option<Meeting>,
+}
+
+impl Body {
+    fn check(&self) -> Result<(), Error> {
+        let (name, places, is_body, what) = match *self {
+            Body::Segment { from, to } => ("--segment", vec![from, to], from != to, "has no length"),
+            Body::Sphere { center, radius_m } => (
+                "--sphere",
+                vec![center],
+                radius_m > 0.0 && radius_m <= FAR_M,
+                "needs a radius of more than 0 to 100000 km",
+            ),
+        };
+        let value = self.to_string();
+        ParameterError::check(is_body, name, &value, what)?;
+        let is_near = places.iter().all(|place| place.is_finite() && place.abs().max_element() <= FAR_M);
+        ParameterError::check(is_near, name, &value, "must lie within 100000 km")?;
+        Ok(())
+    }
+
+    fn meet(&self, collider: &Collider) -> Option<Meeting> {
+        match *self {
+            Body::Segment { from, to } => collider.segment(from, to).map(|contact| Meeting {
+                parameter: Some(contact.part),
+                distance_m: contact.part * from.distance(to),
+                point: contact.point,
+                normal: contact.normal,
+                surface: contact.surface,
+                map: contact.map,
+                steps: contact.steps,
+            }),
+            Body::Sphere { center, radius_m } => collider.sphere(center, radius_m).map(|touch| Meeting {
+                parameter: None,
+                distance_m: touch.distance_m,
+                point: touch.point,
+                normal: touch.normal,
+                surface: touch.surface,
+                map: touch.map,
+                steps: touch.steps,
+            }),
+        }
+    }
+}
+
+impl std::fmt::Display for Body {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Body::Segment { from, to } => {
+                write!(formatter, "{},{},{},{},{},{}", from.x, from.y, from.z, to.x, to.y, to.z)
+            }
+            Body::Sphere { center, radius_m } => {
+                write!(formatter, "{},{},{},{radius_m}", center.x, center.y, center.z)
+            }
+        }
+    }
+}
+
+/// What each body meets, in their order.
+///
+/// # Errors
+/// [`Error::Parameter`] for a body without extent or too far away, [`Error::Scene`].
+pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<Vec<Collision>, Error> {
+    bodies.iter().try_for_each(Body::check)?;
+    let scene = setup.load()?;
+    let collider = Collider::new(&setup.parameters, &Inputs { maps: &scene.maps, ..Inputs::default() });
+    Ok(bodies.iter().map(|body| Collision { body: *body, meeting: body.meet(&collider) }).collect())
+}
+
+impl Collision {
+    pub fn json(&self) -> Value {
+        let meeting = self.meeting.map(|m| {
+            json!({
+                "surface": m.surface.as_str(), "map": m.map, "parameter": m.parameter, "distance_m": m.distance_m,
+                "point": m.point.to_array(), "normal": m.normal.to_array(), "steps": m.steps,
+            })
+        });
+        match self.body {
+            Body::Segment { from, to } => json!({"segment": [from.to_array(), to.to_array()], "meets": meeting}),
+            Body::Sphere { center, radius_m } => {
+                json!({"sphere": {"center": center.to_array(), "radius_m": radius_m}, "meets": meeting})
+            }
+        }
+    }
+
+    /// One line.
+    pub fn text(&self) -> String {
+        let kind = match self.body {
+            Body::Segment { .. } => "segment",
+            Body::Sphere { .. } => "sphere",
+        };
+        let body = &self.body;
+        let Some(m) = self.meeting else { return format!("{kind} {body}: meets nothing\n") };
+        let what = match m.surface {
+            Surface::Base => "meets the base".to_owned(),
+            Surface::Inside if m.parameter.is_some() => "begins in the ground".to_owned(),
+            Surface::Inside => "has its centre in the ground".to_owned(),
+            surface => format!("meets the {} of map {}", surface.as_str(), m.map),
+        };
+        // No minus before a zero.
+        let rounded = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
+        let three = |v: DVec3, digits: usize| v.to_array().map(|c| format!("{:.digits$}", rounded(c))).join(",");
+        let place = match m.parameter {
+            Some(parameter) => format!("parameter {parameter:.6}, {:.3} m from its start", m.distance_m),
+            None => format!("{:.6} m from its centre", m.distance_m),
+        };
+        let (point, normal) = (three(m.point, 3), three(m.normal, 6));
+        format!("{kind} {body}: {what} at {point}, {place}, normal {normal}, {} steps\n", m.steps)
+    }
+}
