@@ -1,5 +1,5 @@
-//! Access words and the one table that turns them into stages, access masks and layouts; and the derivation of a
-//! barrier from the accesses before and after it.
+//! Accesses and the one table of their stages, access masks and layouts; and the derivation of a barrier from the
+//! accesses before and after it.
 
 use std::ops::BitOr;
 
@@ -10,12 +10,18 @@ use ash::vk;
 pub struct Stages(u8);
 
 impl Stages {
+    /// No stage.
     pub const NONE: Stages = Stages(0);
+    /// The vertex stage.
     pub const VERTEX: Stages = Stages(1);
+    /// The geometry stage.
     pub const GEOMETRY: Stages = Stages(2);
+    /// The fragment stage.
     pub const FRAGMENT: Stages = Stages(4);
+    /// The compute stage.
     pub const COMPUTE: Stages = Stages(8);
 
+    /// True when all of `other` is among them.
     pub fn contains(self, other: Stages) -> bool {
         self.0 & other.0 == other.0
     }
@@ -48,7 +54,7 @@ impl BitOr for Stages {
     }
 }
 
-/// How a pass uses a view of a resource.
+/// The use of a view of a resource by a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
     /// Written, and with blending or a loaded content read, as a colour attachment.
@@ -71,25 +77,30 @@ pub enum Access {
     IndexRead,
     /// Read as the parameters of an indirect draw or dispatch.
     IndirectRead,
+    /// Read by a copy.
     CopySource,
+    /// Written by a copy.
     CopyDestination,
     /// Read by the host after the submission's fence.
     HostRead,
 }
 
-/// What an access means to Vulkan.
+/// Stages, access mask and layout of an [`Access`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Words {
+pub struct AccessInfo {
+    /// Pipeline stages that access the resource.
     pub stages: vk::PipelineStageFlags2,
+    /// Kinds of access that those stages make.
     pub access: vk::AccessFlags2,
     /// The layout an image must be in; buffers ignore it.
     pub layout: vk::ImageLayout,
+    /// Set for an access that writes.
     pub writes: bool,
 }
 
 impl Access {
     /// The total table.
-    pub fn words(self) -> Words {
+    pub fn info(self) -> AccessInfo {
         use vk::{AccessFlags2 as A, ImageLayout as L, PipelineStageFlags2 as S};
         let depth_stages = S::EARLY_FRAGMENT_TESTS | S::LATE_FRAGMENT_TESTS;
         let (stages, access, layout, writes) = match self {
@@ -121,11 +132,11 @@ impl Access {
             Access::CopyDestination => (S::COPY, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL, true),
             Access::HostRead => (S::HOST, A::HOST_READ, L::GENERAL, false),
         };
-        Words { stages, access, layout, writes }
+        AccessInfo { stages, access, layout, writes }
     }
 }
 
-/// What has happened to a piece of a resource so far, as far as a later access must know.
+/// The accesses to a piece of a resource so far, as far as a later access must know of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
     /// The last write, or layout transition.
@@ -135,7 +146,7 @@ pub struct State {
     read_stages: vk::PipelineStageFlags2,
     read_access: vk::AccessFlags2,
     layout: vk::ImageLayout,
-    /// Whether it holds anything that may be read.
+    /// Set once it holds anything that may be read.
     written: bool,
 }
 
@@ -153,7 +164,7 @@ impl State {
     /// Contents written by the host before any submission: visible to all of it without a barrier.
     pub const HOST_WRITTEN: State = State { written: true, ..State::NEW };
 
-    /// Whether a pass has written it.
+    /// True once a pass, a copy or the host has written it.
     pub fn is_written(&self) -> bool {
         self.written
     }
@@ -162,11 +173,17 @@ impl State {
 /// The masks and layouts of one barrier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Barrier {
+    /// Stages that must have finished.
     pub src_stages: vk::PipelineStageFlags2,
+    /// Writes of those stages that are made available.
     pub src_access: vk::AccessFlags2,
+    /// Stages that wait.
     pub dst_stages: vk::PipelineStageFlags2,
+    /// Accesses of those stages that see the writes.
     pub dst_access: vk::AccessFlags2,
+    /// Layout of the image before; `UNDEFINED` discards its contents and stands for a buffer's.
     pub old_layout: vk::ImageLayout,
+    /// Layout of the image after.
     pub new_layout: vk::ImageLayout,
 }
 
@@ -174,7 +191,7 @@ pub struct Barrier {
 ///
 /// `discard` says that `next` does not need the old contents (a cleared attachment, a whole overwrite): an image then
 /// comes from `UNDEFINED`. `is_image` decides whether layouts count.
-pub fn derive(state: &State, next: Words, discard: bool, is_image: bool) -> (Option<Barrier>, State) {
+pub fn derive(state: &State, next: AccessInfo, discard: bool, is_image: bool) -> (Option<Barrier>, State) {
     let layout = if is_image { next.layout } else { vk::ImageLayout::UNDEFINED };
     let changes_layout = is_image && (state.layout != layout);
     let nothing_before = state.write_stages.is_empty() && state.read_stages.is_empty();

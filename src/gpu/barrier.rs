@@ -1,8 +1,8 @@
-//! The barriers before a pass, derived from its uses and from what each piece of each resource has seen.
+//! The barriers before a pass, derived from its uses and from the state of each piece of each resource.
 
 use ash::vk;
 
-use super::access::{Words, derive};
+use super::access::{AccessInfo, derive};
 use super::bindings::{Resource, Use};
 use super::device::Device;
 use super::error::Error;
@@ -24,10 +24,10 @@ impl Barriers {
         self.images.clear();
         self.buffers.clear();
         for one in uses {
-            let words = one.access.words();
+            let info = one.access.info();
             let unwritten = match &one.resource {
-                Resource::Buffer(_) => self.buffer(one, words),
-                Resource::Image(_) => self.image(one, words),
+                Resource::Buffer(_) => self.buffer(one, info),
+                Resource::Image(_) => self.image(one, info),
                 Resource::Sampler(_) => false,
             };
             if unwritten {
@@ -37,13 +37,13 @@ impl Barriers {
         Ok(())
     }
 
-    fn buffer(&mut self, one: &Use, words: Words) -> bool {
+    fn buffer(&mut self, one: &Use, info: AccessInfo) -> bool {
         let Resource::Buffer(view) = &one.resource else { return false };
         let mut unwritten = false;
         let mut needed: Option<vk::BufferMemoryBarrier2<'static>> = None;
         view.buffer.with_states(view.range.clone(), |state| {
-            unwritten |= !words.writes && !state.is_written();
-            let (barrier, after) = derive(state, words, one.discard, false);
+            unwritten |= !info.writes && !state.is_written();
+            let (barrier, after) = derive(state, info, one.discard, false);
             *state = after;
             if let Some(b) = barrier {
                 let merged = needed.get_or_insert_with(|| {
@@ -64,15 +64,15 @@ impl Barriers {
         unwritten
     }
 
-    fn image(&mut self, one: &Use, words: Words) -> bool {
+    fn image(&mut self, one: &Use, info: AccessInfo) -> bool {
         let Resource::Image(view) = &one.resource else { return false };
         let image = &view.image;
         image.with_states(view.layers.clone(), |states| {
             let mut unwritten = false;
             for (layer, state) in (view.layers.start..).zip(states.iter_mut()) {
                 // An attachment that keeps its old contents reads them.
-                unwritten |= !state.is_written() && !one.discard && reads(words);
-                let (barrier, after) = derive(state, words, one.discard, true);
+                unwritten |= !state.is_written() && !one.discard && reads(info);
+                let (barrier, after) = derive(state, info, one.discard, true);
                 *state = after;
                 let Some(b) = barrier else { continue };
                 let barrier = vk::ImageMemoryBarrier2::default()
@@ -123,11 +123,11 @@ impl Barriers {
     }
 }
 
-/// Whether an access needs the old contents: everything but a pure copy into the resource or a storage write, which
+/// True when an access needs the old contents: everything but a pure copy into the resource or a storage write, which
 /// may be the first.
-fn reads(words: Words) -> bool {
+fn reads(info: AccessInfo) -> bool {
     let writes_alone = vk::AccessFlags2::TRANSFER_WRITE | vk::AccessFlags2::SHADER_STORAGE_WRITE;
-    !words.access.intersects(writes_alone)
+    !info.access.intersects(writes_alone)
 }
 
 /// A barrier between everything before and everything after.

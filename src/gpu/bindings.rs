@@ -1,4 +1,4 @@
-//! What a pass reads and writes through descriptors: resources by the names the shaders give them, written into one
+//! The descriptors of a pass: resources by the names the shaders give them, written into one
 //! set, once, when the pass is built.
 
 use std::sync::Arc;
@@ -17,12 +17,16 @@ use crate::shader_build::BindingKind;
 /// A view of something that a pass touches.
 #[derive(Clone)]
 pub enum Resource {
+    /// A byte range of a buffer.
     Buffer(BufferView),
+    /// Some layers of an image.
     Image(Arc<ImageView>),
+    /// A sampler, which has no memory.
     Sampler(Arc<Sampler>),
 }
 
 impl Resource {
+    /// The debug name of the buffer or image.
     pub fn name(&self) -> &str {
         match self {
             Resource::Buffer(view) => view.buffer.name(),
@@ -59,9 +63,11 @@ impl From<&Arc<Sampler>> for Resource {
 /// One thing that a pass does with one resource.
 #[derive(Clone)]
 pub struct Use {
+    /// The view that is touched.
     pub resource: Resource,
+    /// The access to it.
     pub access: Access,
-    /// The old contents are not needed.
+    /// Set where the old contents are not needed.
     pub discard: bool,
 }
 
@@ -177,7 +183,7 @@ impl Drop for Bindings {
     }
 }
 
-/// The access word that a descriptor of this kind means; `None` for a sampler, which has no memory.
+/// The access that a descriptor of this kind means; `None` for a sampler, which has no memory.
 fn access_of(slot: &Slot, resource: &Resource) -> Result<Option<Access>, String> {
     let stages = slot.stages;
     match (slot.kind, resource) {

@@ -12,7 +12,7 @@ use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
 
-/// Where a buffer's memory lies.
+/// The memory that a buffer lies in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Location {
     /// The device's own memory.
@@ -23,12 +23,16 @@ pub enum Location {
     Readback,
 }
 
-/// What a buffer is to be; [`Buffer::new`] makes it.
+/// The description of a buffer; [`Buffer::new`] makes it.
 #[derive(Debug, Clone)]
 pub struct BufferDesc {
+    /// Debug name.
     pub name: String,
+    /// Size in bytes.
     pub size_bytes: u64,
+    /// Every use that Vulkan is to allow of it.
     pub usage: vk::BufferUsageFlags,
+    /// The memory it lies in.
     pub location: Location,
 }
 
@@ -43,11 +47,13 @@ impl BufferDesc {
         }
     }
 
+    /// Adds uses to those of copies.
     pub fn usage(mut self, usage: vk::BufferUsageFlags) -> Self {
         self.usage |= usage;
         self
     }
 
+    /// Chooses the memory it lies in.
     pub fn location(mut self, location: Location) -> Self {
         self.location = location;
         self
@@ -107,10 +113,12 @@ impl Buffer {
         Ok(Arc::new(buffer))
     }
 
+    /// Debug name.
     pub fn name(&self) -> &str {
         &self.desc.name
     }
 
+    /// Size in bytes, at least 4.
     pub fn size_bytes(&self) -> u64 {
         self.desc.size_bytes
     }
@@ -229,6 +237,7 @@ pub struct BufferView {
 }
 
 impl BufferView {
+    /// The buffer that the range lies in.
     pub fn buffer(&self) -> &Arc<Buffer> {
         &self.buffer
     }

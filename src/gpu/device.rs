@@ -88,16 +88,17 @@ impl Device {
         }))
     }
 
-    /// What the device is and can do.
+    /// Properties, limits and features of the device.
     pub fn physical(&self) -> &PhysicalDevice {
         &self.physical
     }
 
+    /// The instance that the device was opened on.
     pub fn instance(&self) -> &Arc<Instance> {
         &self.instance
     }
 
-    /// The ledger of live objects and memory.
+    /// The counts of live objects and memory.
     pub fn live(&self) -> &Arc<LiveObjects> {
         self.instance.live()
     }

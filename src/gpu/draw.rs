@@ -1,4 +1,4 @@
-//! What the body of a pass may issue: draws inside its render pass, or dispatches.
+//! The commands that the body of a pass issues: draws inside its render pass, or dispatches.
 
 use ash::vk;
 use bytemuck::Pod;
@@ -21,7 +21,7 @@ impl Draw<'_> {
         self
     }
 
-    /// Makes the draws to come those of the pass's counting pipeline, or of its own again.
+    /// Binds the pass's counting pipeline for the draws to come, or its own.
     pub fn counting(&mut self, counting: bool) -> &mut Self {
         let pipeline = if counting { &self.inner.counting } else { &self.inner.pipeline };
         if let Some(pipeline) = pipeline {

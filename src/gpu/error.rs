@@ -1,4 +1,4 @@
-//! What can fail in the Vulkan layer. Every message names the operation, the object and the way out.
+//! Errors of the Vulkan layer. Every message names the operation, the object and the way out.
 
 use ash::vk;
 

@@ -1,5 +1,5 @@
 //! Recording a frame: the one envelope around every pass opens the debug label, places the barriers and takes the
-//! stamps, so that no pass can be unnamed, untimed or unsynchronised.
+//! timestamps, so that no pass can be unnamed, untimed or unsynchronised.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -32,16 +32,17 @@ impl Frame<'_> {
         r.keep.clear();
         r.intervals.clear();
         r.counted.clear();
-        for pool in
-            [&mut r.stamps, &mut r.samples_passed, &mut r.graphics_counts, &mut r.compute_counts].into_iter().flatten()
+        for pool in [&mut r.timestamps, &mut r.samples_passed, &mut r.graphics_counts, &mut r.compute_counts]
+            .into_iter()
+            .flatten()
         {
             pool.reset();
         }
         r.commands.begin()?;
-        if matches!(self.mode, Mode::Stamped | Mode::Bracketed)
-            && let Some(query) = r.stamps.as_mut().and_then(QueryPool::take)
+        if matches!(self.mode, Mode::Timestamped | Mode::Bracketed)
+            && let Some(query) = r.timestamps.as_mut().and_then(QueryPool::take)
         {
-            r.write_stamp(query);
+            r.write_timestamp(query);
         }
         Ok(())
     }
@@ -49,9 +50,9 @@ impl Frame<'_> {
     pub(super) fn finish(&mut self) -> Result<(), Error> {
         let r = &mut *self.recorder;
         if self.mode == Mode::Bracketed
-            && let Some(query) = r.stamps.as_mut().and_then(QueryPool::take)
+            && let Some(query) = r.timestamps.as_mut().and_then(QueryPool::take)
         {
-            r.write_stamp(query);
+            r.write_timestamp(query);
         }
         let submitted_ms = self.started.elapsed().as_secs_f64() * 1e3;
         let submitted = r.commands.submit_and_wait();
@@ -60,7 +61,7 @@ impl Frame<'_> {
         submitted?;
         match self.mode {
             Mode::Plain => Ok(()),
-            Mode::Stamped | Mode::Bracketed => r.read_stamps(self.mode, submitted_ms),
+            Mode::Timestamped | Mode::Bracketed => r.read_timestamps(self.mode, submitted_ms),
             Mode::Counted => r.read_counts(),
         }
     }
@@ -69,7 +70,7 @@ impl Frame<'_> {
     /// another submission.
     ///
     /// # Errors
-    /// What Vulkan answers.
+    /// Any error of Vulkan.
     pub fn wait_for(&mut self, pass: &Pass) -> Result<(), Error> {
         let at = self.sample_of(pass.info());
         let waiting = Instant::now();
@@ -214,8 +215,8 @@ impl Frame<'_> {
         }
         r.close_label();
         r.sample.passes[at].calls += calls;
-        if mode == Mode::Stamped {
-            r.stamp(at);
+        if mode == Mode::Timestamped {
+            r.timestamp(at);
         }
         Ok(())
     }

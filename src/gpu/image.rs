@@ -12,15 +12,22 @@ use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
 
-/// What an image is to be; [`Image::new`] makes it.
+/// The description of an image; [`Image::new`] makes it.
 #[derive(Debug, Clone)]
 pub struct ImageDesc {
+    /// Debug name.
     pub name: String,
+    /// Format of a texel.
     pub format: vk::Format,
+    /// Width in texels.
     pub width: u32,
+    /// Height in texels.
     pub height: u32,
+    /// Array layers, at least 1.
     pub layers: u32,
+    /// Every use that Vulkan is to allow of it.
     pub usage: vk::ImageUsageFlags,
+    /// Set for an image whose whole view is an array view.
     array: bool,
 }
 
@@ -45,6 +52,7 @@ impl ImageDesc {
         self
     }
 
+    /// Adds uses to those of copies.
     pub fn usage(mut self, usage: vk::ImageUsageFlags) -> Self {
         self.usage |= usage;
         self
@@ -124,10 +132,12 @@ impl Image {
         Ok(Arc::new(image))
     }
 
+    /// The description it was made from.
     pub fn desc(&self) -> &ImageDesc {
         &self.desc
     }
 
+    /// Debug name.
     pub fn name(&self) -> &str {
         &self.desc.name
     }
@@ -240,18 +250,22 @@ impl ImageView {
         Ok(Arc::new(ImageView { raw, image: image.clone(), layers }))
     }
 
+    /// The image that is viewed.
     pub fn image(&self) -> &Arc<Image> {
         &self.image
     }
 
+    /// Layers that the view shows.
     pub fn layer_count(&self) -> u32 {
         self.layers.end - self.layers.start
     }
 
+    /// Width in texels.
     pub fn width(&self) -> u32 {
         self.image.desc.width
     }
 
+    /// Height in texels.
     pub fn height(&self) -> u32 {
         self.image.desc.height
     }

@@ -113,12 +113,12 @@ impl Instance {
         Ok(Arc::new(instance))
     }
 
-    /// Whether the validation layer is on.
+    /// True when the validation layer is on.
     pub fn validates(&self) -> bool {
         self.messenger.is_some()
     }
 
-    /// Removes and returns what the validation layer said since the last call.
+    /// Removes and returns the messages of the validation layer since the last call.
     pub fn take_messages(&self) -> Vec<Message> {
         self.messages.take()
     }
@@ -135,7 +135,7 @@ impl Instance {
         }
     }
 
-    /// The ledger of live objects and memory.
+    /// The counts of live objects and memory.
     pub fn live(&self) -> &Arc<LiveObjects> {
         &self.live
     }

@@ -24,6 +24,7 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Every kind, in the order of its declaration.
     pub const ALL: [Kind; 16] = [
         Kind::Instance,
         Kind::Device,
@@ -44,14 +45,14 @@ impl Kind {
     ];
 }
 
-/// The ledger of one instance: counts by kind, memory by resource name, and the peak.
+/// The live objects of one instance: counts by kind, memory by resource name, and the peak.
 #[derive(Debug, Default)]
 pub struct LiveObjects {
-    ledger: Mutex<Ledger>,
+    counts: Mutex<LiveCounts>,
 }
 
 #[derive(Debug, Default)]
-struct Ledger {
+struct LiveCounts {
     counts: [usize; Kind::ALL.len()],
     memory: Vec<MemoryUse>,
     total_bytes: u64,
@@ -61,16 +62,18 @@ struct Ledger {
 /// Memory that the live resources of one name hold.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MemoryUse {
+    /// Debug name of the resources.
     pub name: String,
+    /// Bytes allocated for them, alignment included.
     pub bytes: u64,
-    /// Whether the memory lies where the host maps it.
+    /// Set for memory that the host maps.
     pub host_visible: bool,
     count: usize,
 }
 
 impl LiveObjects {
-    fn lock(&self) -> std::sync::MutexGuard<'_, Ledger> {
-        self.ledger.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    fn lock(&self) -> std::sync::MutexGuard<'_, LiveCounts> {
+        self.counts.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     pub(crate) fn add(&self, kind: Kind) {
@@ -78,40 +81,40 @@ impl LiveObjects {
     }
 
     pub(crate) fn remove(&self, kind: Kind) {
-        let mut ledger = self.lock();
-        let count = &mut ledger.counts[kind as usize];
+        let mut live = self.lock();
+        let count = &mut live.counts[kind as usize];
         *count = count.saturating_sub(1);
     }
 
     pub(crate) fn add_memory(&self, name: &str, bytes: u64, host_visible: bool) {
-        let mut ledger = self.lock();
-        ledger.total_bytes += bytes;
-        ledger.peak_bytes = ledger.peak_bytes.max(ledger.total_bytes);
-        match ledger.memory.iter_mut().find(|m| m.name == name && m.host_visible == host_visible) {
+        let mut live = self.lock();
+        live.total_bytes += bytes;
+        live.peak_bytes = live.peak_bytes.max(live.total_bytes);
+        match live.memory.iter_mut().find(|m| m.name == name && m.host_visible == host_visible) {
             Some(entry) => {
                 entry.bytes += bytes;
                 entry.count += 1;
             }
-            None => ledger.memory.push(MemoryUse { name: name.to_owned(), bytes, host_visible, count: 1 }),
+            None => live.memory.push(MemoryUse { name: name.to_owned(), bytes, host_visible, count: 1 }),
         }
     }
 
     pub(crate) fn remove_memory(&self, name: &str, bytes: u64, host_visible: bool) {
-        let mut ledger = self.lock();
-        ledger.total_bytes = ledger.total_bytes.saturating_sub(bytes);
-        if let Some(at) = ledger.memory.iter().position(|m| m.name == name && m.host_visible == host_visible) {
-            ledger.memory[at].bytes = ledger.memory[at].bytes.saturating_sub(bytes);
-            ledger.memory[at].count -= 1;
-            if ledger.memory[at].count == 0 {
-                ledger.memory.remove(at);
+        let mut live = self.lock();
+        live.total_bytes = live.total_bytes.saturating_sub(bytes);
+        if let Some(at) = live.memory.iter().position(|m| m.name == name && m.host_visible == host_visible) {
+            live.memory[at].bytes = live.memory[at].bytes.saturating_sub(bytes);
+            live.memory[at].count -= 1;
+            if live.memory[at].count == 0 {
+                live.memory.remove(at);
             }
         }
     }
 
     /// The kinds with live objects and how many; empty when nothing is alive.
     pub fn alive(&self) -> Vec<(Kind, usize)> {
-        let ledger = self.lock();
-        Kind::ALL.into_iter().map(|k| (k, ledger.counts[k as usize])).filter(|&(_, n)| n > 0).collect()
+        let live = self.lock();
+        Kind::ALL.into_iter().map(|k| (k, live.counts[k as usize])).filter(|&(_, n)| n > 0).collect()
     }
 
     /// Live memory by resource name, in order of first use; bytes include alignment.
@@ -126,7 +129,7 @@ impl LiveObjects {
 
     /// Starts a new peak at what is alive now.
     pub fn reset_peak(&self) {
-        let mut ledger = self.lock();
-        ledger.peak_bytes = ledger.total_bytes;
+        let mut live = self.lock();
+        live.peak_bytes = live.total_bytes;
     }
 }

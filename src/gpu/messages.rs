@@ -1,4 +1,4 @@
-//! What the validation layer says. The callback collects and lets the program go on; whoever asked for validation
+//! Messages of the validation layer. The callback collects and lets the program go on; whoever asked for validation
 //! drains the messages and fails.
 
 use std::ffi::{CStr, c_void};
@@ -9,9 +9,11 @@ use ash::vk;
 /// One message of the validation layer.
 #[derive(Debug, Clone)]
 pub struct Message {
+    /// Error or warning.
     pub severity: vk::DebugUtilsMessageSeverityFlagsEXT,
     /// The VUID or the synchronization hazard's identifier.
     pub id: String,
+    /// The layer's own words.
     pub text: String,
     /// The debug names of the objects concerned.
     pub objects: Vec<String>,

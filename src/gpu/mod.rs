@@ -1,6 +1,6 @@
 //! The explicit Vulkan layer. It knows no paper.
 //!
-//! - **Who validates**: the caller's sentence is checked against the shaders when a [`Pass`] is built (names, kinds,
+//! - **Who validates**: the description of a pass is checked against the shaders when a [`Pass`] is built (names, kinds,
 //!   block layouts); with validation on, the Khronos layer checks the rest, synchronization included, and any message
 //!   is a failure ([`Instance::check_messages`]).
 //! - **Who synchronises**: [`Frame`] alone. Each pass declares its reads and writes; barriers are derived from them

@@ -1,5 +1,5 @@
-//! A pass is a sentence: name, section of the paper, shaders, reads, writes, blend and depth state, constants,
-//! extent. It is built once; a frame records it through one envelope.
+//! A pass: name, section of the paper, shaders, reads, writes, blend and depth state, constants, extent. It is built
+//! once; a frame records it through one envelope.
 
 use std::sync::Arc;
 
@@ -29,12 +29,12 @@ pub struct Pass {
 pub(crate) struct Inner {
     /// `None` for a copy.
     pub pipeline: Option<Arc<Pipeline>>,
-    /// The pipeline of the draws that come first in turn, where there are such.
+    /// The pipeline of the draws that count into the stencil, where there are such.
     pub counting: Option<Arc<Pipeline>>,
     pub bindings: Option<Arc<Bindings>>,
     pub uses: Vec<Use>,
     pub body: Body,
-    sentence: Sentence,
+    desc: PassDesc,
 }
 
 pub(crate) enum Body {
@@ -54,9 +54,9 @@ pub(crate) enum Body {
     },
 }
 
-/// Everything that the builder was told; kept so that a pass can be said again about other resources.
+/// Everything that the builder was told; kept so that a pass can be rebound to other resources.
 #[derive(Clone)]
-struct Sentence {
+struct PassDesc {
     name: &'static str,
     section: &'static str,
     shaders: Vec<String>,
@@ -73,22 +73,22 @@ struct Sentence {
 type LayoutOf = fn(&str, &Program) -> Result<VertexLayout, Error>;
 type CheckConstants = fn(&str, &Program) -> Result<(), Error>;
 
-/// Says what a pass is; [`PassBuilder::build`] makes it.
+/// The description of a pass; [`PassBuilder::build`] makes it.
 #[derive(Clone)]
 pub struct PassBuilder {
-    sentence: Sentence,
+    desc: PassDesc,
     vertex_layout: Option<LayoutOf>,
     check_constants: Option<CheckConstants>,
 }
 
 impl Pass {
-    /// Begins the sentence of a pass that draws with a vertex and a fragment shader, and perhaps a
+    /// Describes a pass that draws with a vertex and a fragment shader, and perhaps a
     /// [geometry](PassBuilder::geometry) shader between them.
     pub fn graphics(name: &'static str, section: &'static str, vertex: &str, fragment: &str) -> PassBuilder {
         Self::builder(name, section, vec![vertex.to_owned(), fragment.to_owned()])
     }
 
-    /// Begins the sentence of a pass that dispatches a compute shader.
+    /// Describes a pass that dispatches a compute shader.
     pub fn compute(name: &'static str, section: &'static str, shader: &str) -> PassBuilder {
         Self::builder(name, section, vec![shader.to_owned()])
     }
@@ -113,7 +113,7 @@ impl Pass {
             counting: None,
             compiler: None,
         });
-        let sentence = Self::builder(name, section, Vec::new()).sentence;
+        let desc = Self::builder(name, section, Vec::new()).desc;
         Pass {
             info,
             inner: Arc::new(Inner {
@@ -122,14 +122,14 @@ impl Pass {
                 bindings: None,
                 uses,
                 body: Body::Copy { from, to: to.clone() },
-                sentence,
+                desc,
             }),
         }
     }
 
     fn builder(name: &'static str, section: &'static str, shaders: Vec<String>) -> PassBuilder {
         PassBuilder {
-            sentence: Sentence {
+            desc: PassDesc {
                 name,
                 section,
                 shaders,
@@ -178,8 +178,8 @@ impl Pass {
     }
 
     /// The same pass, with the same pipeline, about other resources.
-    pub fn again(&self) -> Again {
-        Again { pass: self.clone(), sentence: self.inner.sentence.clone() }
+    pub fn rebind(&self) -> RebindBuilder {
+        RebindBuilder { pass: self.clone(), desc: self.inner.desc.clone() }
     }
 }
 
@@ -187,13 +187,13 @@ impl PassBuilder {
     /// A geometry shader between the vertex and the fragment shader. naga has no such stage, so glslang compiles all
     /// stages of the pass.
     pub fn geometry(mut self, geometry: &str) -> Self {
-        self.sentence.shaders.insert(1, geometry.to_owned());
+        self.desc.shaders.insert(1, geometry.to_owned());
         self
     }
 
     /// A resource that the shaders read or write, by the name they give it. Their binaries say how it is accessed.
     pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
-        self.sentence.resources.push((name, resource.into()));
+        self.desc.resources.push((name, resource.into()));
         self
     }
 
@@ -205,56 +205,56 @@ impl PassBuilder {
 
     /// The vertex buffer, of `T`s; its fields feed the vertex stage's inputs of the same names.
     pub fn vertices<T: HostBlock>(mut self, buffer: &Arc<Buffer>) -> Self {
-        self.sentence.vertices = Some(buffer.view());
+        self.desc.vertices = Some(buffer.view());
         self.vertex_layout = Some(VertexLayout::of::<T>);
         self
     }
 
     /// As [`PassBuilder::vertices`], with one `T` for each instance.
     pub fn instances<T: HostBlock>(mut self, buffer: &Arc<Buffer>) -> Self {
-        self.sentence.vertex_rate = vk::VertexInputRate::INSTANCE;
+        self.desc.vertex_rate = vk::VertexInputRate::INSTANCE;
         self.vertices::<T>(buffer)
     }
 
     /// The index buffer, of 32-bit indices.
     pub fn indices(mut self, buffer: &Arc<Buffer>) -> Self {
-        self.sentence.indices = Some(buffer.view());
+        self.desc.indices = Some(buffer.view());
         self
     }
 
     /// The buffer that [`Draw::indices_indirect`](super::Draw::indices_indirect) takes its parameters from: a
     /// `VkDrawIndexedIndirectCommand` at its start.
     pub fn indirect(mut self, buffer: &Arc<Buffer>) -> Self {
-        self.sentence.indirect = Some(buffer.view());
+        self.desc.indirect = Some(buffer.view());
         self
     }
 
     pub fn topology(mut self, topology: Topology) -> Self {
-        self.sentence.topology = topology;
+        self.desc.topology = topology;
         self
     }
 
     /// The next colour attachment.
     pub fn color(mut self, view: &Arc<ImageView>, load: Load, blend: Blend) -> Self {
-        self.sentence.targets.colors.push((Target { view: view.clone(), load }, blend));
+        self.desc.targets.colors.push((Target { view: view.clone(), load }, blend));
         self
     }
 
     pub fn depth(mut self, view: &Arc<ImageView>, load: Load, test: DepthTest) -> Self {
-        self.sentence.targets.depth = Some((Target { view: view.clone(), load }, test));
+        self.desc.targets.depth = Some((Target { view: view.clone(), load }, test));
         self
     }
 
-    /// A second pipeline for draws that take turns with the pass's own inside its render pass: the same vertices, another
+    /// A second pipeline for draws that alternate with the pass's own inside its render pass: the same vertices, another
     /// fragment shader and depth state, colours masked. [`Draw::counting`](super::Draw::counting) chooses it.
     pub fn counting(mut self, fragment: &str, test: DepthTest) -> Self {
-        self.sentence.counting = Some((fragment.to_owned(), test));
+        self.desc.counting = Some((fragment.to_owned(), test));
         self
     }
 
     /// The extent of a pass that has no attachments.
     pub fn extent(mut self, width: u32, height: u32) -> Self {
-        self.sentence.targets.extent = Some((width, height));
+        self.desc.targets.extent = Some((width, height));
         self
     }
 
@@ -262,13 +262,13 @@ impl PassBuilder {
     /// shaders.
     ///
     /// # Errors
-    /// [`Error::Pass`] or [`Error::Shader`] for a sentence that does not fit its shaders; [`Error::MissingFeature`] for a
+    /// [`Error::Pass`] or [`Error::Shader`] for a description that does not fit its shaders; [`Error::MissingFeature`] for a
     /// geometry stage on a device without; what Vulkan answers.
     pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
         let device = shaders.device();
-        let PassBuilder { sentence, vertex_layout, check_constants } = self;
-        let name = sentence.name;
-        let has_geometry = sentence.shaders.iter().any(|s| s.ends_with(".geom"));
+        let PassBuilder { desc, vertex_layout, check_constants } = self;
+        let name = desc.name;
+        let has_geometry = desc.shaders.iter().any(|s| s.ends_with(".geom"));
         if has_geometry && !device.physical().has(Feature::GeometryShader) {
             let missing = Feature::GeometryShader.as_str().to_owned();
             return Err(Error::MissingFeature { device: device.physical().name.clone(), missing });
@@ -276,7 +276,7 @@ impl PassBuilder {
         let load = |shader: &str| {
             if has_geometry { shaders.module_by(shader, Compiler::Glslang) } else { shaders.module(shader) }
         };
-        let modules = sentence.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
+        let modules = desc.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
         let program = Program::new(device, name, modules)?;
         match check_constants {
             Some(check) => check(name, &program)?,
@@ -288,19 +288,19 @@ impl PassBuilder {
             }
             None => {}
         }
-        let is_compute = sentence.shaders.iter().any(|s| s.ends_with(".comp"));
+        let is_compute = desc.shaders.iter().any(|s| s.ends_with(".comp"));
         if is_compute {
             let pipeline = Pipeline::compute(device, name, &program)?;
-            return finish(device, sentence, Pipelines { own: pipeline, counting: None }, None);
+            return finish(device, desc, Pipelines { own: pipeline, counting: None }, None);
         }
         let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
-        layout.rate = sentence.vertex_rate;
-        let render_pass = RenderPass::new(device, name, &sentence.targets)?;
-        let targets = &sentence.targets;
+        layout.rate = desc.vertex_rate;
+        let render_pass = RenderPass::new(device, name, &desc.targets)?;
+        let targets = &desc.targets;
         let modules = &program.modules;
-        let topology = sentence.topology;
+        let topology = desc.topology;
         let own = Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology)?;
-        let counting = match &sentence.counting {
+        let counting = match &desc.counting {
             None => None,
             Some((fragment, test)) => {
                 let mut modules = modules.clone();
@@ -312,7 +312,7 @@ impl PassBuilder {
                 Some(made)
             }
         };
-        finish(device, sentence, Pipelines { own, counting }, Some(render_pass))
+        finish(device, desc, Pipelines { own, counting }, Some(render_pass))
     }
 }
 
@@ -322,26 +322,26 @@ struct Pipelines {
     counting: Option<Arc<Pipeline>>,
 }
 
-/// A pass said again: same shaders, state and formats, other resources.
-pub struct Again {
+/// Rebinds a pass to other resources: same shaders, state and formats.
+pub struct RebindBuilder {
     pass: Pass,
-    sentence: Sentence,
+    desc: PassDesc,
 }
 
-impl Again {
+impl RebindBuilder {
     /// Replaces the resource of that name.
     pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
         let resource = resource.into();
-        match self.sentence.resources.iter_mut().find(|(n, _)| *n == name) {
+        match self.desc.resources.iter_mut().find(|(n, _)| *n == name) {
             Some(slot) => slot.1 = resource,
-            None => self.sentence.resources.push((name, resource)),
+            None => self.desc.resources.push((name, resource)),
         }
         self
     }
 
     /// Replaces the colour attachment at `index`; its format is the old one's.
     pub fn color(mut self, index: usize, view: &Arc<ImageView>, load: Load) -> Self {
-        if let Some((target, _)) = self.sentence.targets.colors.get_mut(index) {
+        if let Some((target, _)) = self.desc.targets.colors.get_mut(index) {
             *target = Target { view: view.clone(), load };
         }
         self
@@ -349,19 +349,19 @@ impl Again {
 
     /// Replaces the depth attachment; its format is the old one's.
     pub fn depth(mut self, view: &Arc<ImageView>, load: Load) -> Self {
-        if let Some((target, _)) = &mut self.sentence.targets.depth {
+        if let Some((target, _)) = &mut self.desc.targets.depth {
             *target = Target { view: view.clone(), load };
         }
         self
     }
 
     pub fn vertices(mut self, buffer: &Arc<Buffer>) -> Self {
-        self.sentence.vertices = Some(buffer.view());
+        self.desc.vertices = Some(buffer.view());
         self
     }
 
     pub fn indices(mut self, buffer: &Arc<Buffer>) -> Self {
-        self.sentence.indices = Some(buffer.view());
+        self.desc.indices = Some(buffer.view());
         self
     }
 
@@ -373,78 +373,79 @@ impl Again {
         let render_pass = match &self.pass.inner.body {
             Body::Compute | Body::Copy { .. } => None,
             // Load operations alone may differ, which keeps the new render pass compatible with the pipeline.
-            Body::Graphics { .. } => {
-                Some(RenderPass::new(shaders.device(), self.sentence.name, &self.sentence.targets)?)
-            }
+            Body::Graphics { .. } => Some(RenderPass::new(shaders.device(), self.desc.name, &self.desc.targets)?),
         };
         let Some(pipeline) = self.pass.inner.pipeline.clone() else {
-            return Err(Error::Pass { pass: self.sentence.name.into(), problem: "a copy is not said again".into() });
+            return Err(Error::Pass {
+                pass: self.desc.name.into(),
+                problem: "a copy has no descriptors to rebind".into(),
+            });
         };
         let pipelines = Pipelines { own: pipeline, counting: self.pass.inner.counting.clone() };
-        finish(shaders.device(), self.sentence, pipelines, render_pass)
+        finish(shaders.device(), self.desc, pipelines, render_pass)
     }
 }
 
 fn finish(
     device: &Arc<Device>,
-    sentence: Sentence,
+    desc: PassDesc,
     pipelines: Pipelines,
     render_pass: Option<Arc<RenderPass>>,
 ) -> Result<Pass, Error> {
     let Pipelines { own: pipeline, counting } = pipelines;
-    let bindings = Bindings::new(device, sentence.name, &pipeline.program, &sentence.resources)?;
+    let bindings = Bindings::new(device, desc.name, &pipeline.program, &desc.resources)?;
     let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
     let body = match render_pass {
         None => Body::Compute,
         Some(render_pass) => {
-            add_fixed_function_uses(&sentence, &mut uses);
-            let extent = sentence.targets.extent().ok_or_else(|| Error::Pass {
-                pass: sentence.name.into(),
+            add_fixed_function_uses(&desc, &mut uses);
+            let extent = desc.targets.extent().ok_or_else(|| Error::Pass {
+                pass: desc.name.into(),
                 problem: "it has neither attachments nor an extent".into(),
             })?;
             Body::Graphics {
-                framebuffer: Framebuffer::new(device, sentence.name, &render_pass, &sentence.targets, extent)?,
+                framebuffer: Framebuffer::new(device, desc.name, &render_pass, &desc.targets, extent)?,
                 render_pass,
                 extent,
-                clears: sentence.targets.clear_values(),
-                vertices: sentence.vertices.clone(),
-                indices: sentence.indices.clone(),
-                indirect: sentence.indirect.clone(),
+                clears: desc.targets.clear_values(),
+                vertices: desc.vertices.clone(),
+                indices: desc.indices.clone(),
+                indirect: desc.indirect.clone(),
             }
         }
     };
-    check_conflicts(sentence.name, &uses)?;
-    if let Some(parameters) = &sentence.indirect {
+    check_conflicts(desc.name, &uses)?;
+    if let Some(parameters) = &desc.indirect {
         let wanted = size_of::<vk::DrawIndexedIndirectCommand>() as u64;
         let bytes = parameters.range.end - parameters.range.start;
         if bytes < wanted || !parameters.buffer.usage().contains(vk::BufferUsageFlags::INDIRECT_BUFFER) {
             let name = parameters.buffer.name();
             return Err(Error::Pass {
-                pass: sentence.name.into(),
+                pass: desc.name.into(),
                 problem: format!("{name} is no indirect buffer of {wanted} bytes"),
             });
         }
     }
-    let info = Arc::new(describe(&sentence, &pipeline.program, &uses));
-    let inner = Inner { pipeline: Some(pipeline), counting, bindings, uses, body, sentence };
+    let info = Arc::new(describe(&desc, &pipeline.program, &uses));
+    let inner = Inner { pipeline: Some(pipeline), counting, bindings, uses, body, desc };
     Ok(Pass { info, inner: Arc::new(inner) })
 }
 
-fn add_fixed_function_uses(sentence: &Sentence, uses: &mut Vec<Use>) {
+fn add_fixed_function_uses(desc: &PassDesc, uses: &mut Vec<Use>) {
     let mut add = |resource: Resource, access, discard| uses.push(Use { resource, access, discard });
-    if let Some(vertices) = &sentence.vertices {
+    if let Some(vertices) = &desc.vertices {
         add(vertices.into(), Access::VertexRead, false);
     }
-    if let Some(indices) = &sentence.indices {
+    if let Some(indices) = &desc.indices {
         add(indices.into(), Access::IndexRead, false);
     }
-    if let Some(parameters) = &sentence.indirect {
+    if let Some(parameters) = &desc.indirect {
         add(parameters.into(), Access::IndirectRead, false);
     }
-    for (target, _) in &sentence.targets.colors {
+    for (target, _) in &desc.targets.colors {
         add((&target.view).into(), Access::ColorTarget, target.load != Load::Keep);
     }
-    if let Some((target, test)) = &sentence.targets.depth {
+    if let Some((target, test)) = &desc.targets.depth {
         add((&target.view).into(), test.access(), target.load != Load::Keep);
     }
 }
@@ -457,7 +458,7 @@ fn check_conflicts(pass: &str, uses: &[Use]) -> Result<(), Error> {
                 && Arc::ptr_eq(&x.image, &y.image)
                 && x.layers.start < y.layers.end
                 && y.layers.start < x.layers.end
-                && a.access.words().layout != b.access.words().layout
+                && a.access.info().layout != b.access.info().layout
             {
                 return Err(Error::Pass {
                     pass: pass.to_owned(),
@@ -469,27 +470,23 @@ fn check_conflicts(pass: &str, uses: &[Use]) -> Result<(), Error> {
     Ok(())
 }
 
-fn describe(sentence: &Sentence, program: &Program, uses: &[Use]) -> PassInfo {
+fn describe(desc: &PassDesc, program: &Program, uses: &[Use]) -> PassInfo {
     let names = |writes: bool| {
         let mut names: Vec<String> =
-            uses.iter().filter(|u| u.access.words().writes == writes).map(|u| u.resource.name().to_owned()).collect();
+            uses.iter().filter(|u| u.access.info().writes == writes).map(|u| u.resource.name().to_owned()).collect();
         names.dedup();
         names
     };
     PassInfo {
-        name: sentence.name,
-        section: sentence.section,
-        kind: if sentence.shaders.iter().any(|s| s.ends_with(".comp")) {
-            PassKind::Compute
-        } else {
-            PassKind::Graphics
-        },
-        shaders: sentence.shaders.iter().chain(sentence.counting.iter().map(|(shader, _)| shader)).cloned().collect(),
+        name: desc.name,
+        section: desc.section,
+        kind: if desc.shaders.iter().any(|s| s.ends_with(".comp")) { PassKind::Compute } else { PassKind::Graphics },
+        shaders: desc.shaders.iter().chain(desc.counting.iter().map(|(shader, _)| shader)).cloned().collect(),
         reads: names(false),
         writes: names(true),
-        blend: sentence.targets.colors.iter().map(|(_, blend)| blend.as_str()).collect(),
-        depth: sentence.targets.depth.as_ref().map(|(_, test)| test.as_str()),
-        counting: sentence.counting.as_ref().map(|(_, test)| test.as_str()),
+        blend: desc.targets.colors.iter().map(|(_, blend)| blend.as_str()).collect(),
+        depth: desc.targets.depth.as_ref().map(|(_, test)| test.as_str()),
+        counting: desc.counting.as_ref().map(|(_, test)| test.as_str()),
         compiler: Some(program.compiler()),
     }
 }

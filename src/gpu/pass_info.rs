@@ -1,10 +1,10 @@
-//! What is said of a pass in tables and records.
+//! The description of a pass in tables and records.
 
 use std::sync::Arc;
 
 use super::shader::Compiler;
 
-/// What a pass keeps busy.
+/// The part of the machine that a pass keeps busy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PassKind {
     Graphics,
@@ -24,7 +24,7 @@ impl PassKind {
     }
 }
 
-/// What the pass table says of a pass.
+/// One row of the pass table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PassInfo {
     /// The paper's name for it, in kebab case; also the debug label, the timing tag and the report's column.
@@ -32,15 +32,19 @@ pub struct PassInfo {
     /// Section of the paper.
     pub section: &'static str,
     pub kind: PassKind,
+    /// Paths under `shaders/`, in the order of the stages.
     pub shaders: Vec<String>,
+    /// Names of the resources read, in the order of their bindings.
     pub reads: Vec<String>,
+    /// Names of the resources written, in the order of their bindings, then attachments.
     pub writes: Vec<String>,
     /// Blend state of each colour target.
     pub blend: Vec<&'static str>,
+    /// State of the depth and stencil test.
     pub depth: Option<&'static str>,
-    /// Depth and stencil state of the draws that take turns with the pass's own.
+    /// Depth and stencil state of the draws that alternate with the pass's own.
     pub counting: Option<&'static str>,
-    /// `None` where no shader runs.
+    /// The compiler of the binaries; `None` where no shader runs.
     pub compiler: Option<Compiler>,
 }
 

@@ -7,7 +7,7 @@ use ash::vk;
 use super::error::{Context, Error};
 use super::instance::{Instance, version_text};
 
-/// What kind of device it is, in the order of preference.
+/// The kinds of device, in the order of preference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DeviceType {
     Discrete,
@@ -18,6 +18,7 @@ pub enum DeviceType {
 }
 
 impl DeviceType {
+    /// The name that records and tables use.
     pub fn as_str(self) -> &'static str {
         match self {
             DeviceType::Discrete => "discrete",
@@ -34,7 +35,7 @@ impl DeviceType {
 pub enum Feature {
     /// `synchronization2` of Vulkan 1.3: every barrier is written with it.
     Synchronization2,
-    /// `hostQueryReset` of Vulkan 1.2: the time stamps are reset on the host.
+    /// `hostQueryReset` of Vulkan 1.2: the timestamps are reset on the host.
     HostQueryReset,
     /// Different blend states for the attachments of one pass.
     IndependentBlend,
@@ -54,7 +55,7 @@ pub enum Feature {
     PipelineStatistics,
     /// Exact counts of samples passed.
     PreciseOcclusion,
-    /// Time stamps on the graphics and compute queue.
+    /// Time timestamps on the graphics and compute queue.
     Timestamps,
     /// The depth and stencil format with 32 bits of depth.
     DepthStencil32,
@@ -63,6 +64,7 @@ pub enum Feature {
 }
 
 impl Feature {
+    /// Every feature, in the order of the capability report.
     pub const ALL: [Feature; 14] = [
         Feature::Synchronization2,
         Feature::HostQueryReset,
@@ -107,16 +109,25 @@ pub const BASELINE: [Feature; 3] = [Feature::Synchronization2, Feature::HostQuer
 /// A Vulkan device as it is found, before it is opened.
 pub struct PhysicalDevice {
     pub(crate) raw: vk::PhysicalDevice,
+    /// Position in the loader's list.
     pub index: usize,
+    /// The driver's name for the device.
     pub name: String,
+    /// Discrete, integrated, virtual, CPU or other.
     pub device_type: DeviceType,
+    /// Identifier that is the same in every process.
     pub uuid: [u8; 16],
+    /// Name of the driver.
     pub driver_name: String,
+    /// Version of the driver, in its maker's own words.
     pub driver_info: String,
+    /// Vulkan version of the device, packed.
     pub api_version: u32,
+    /// Limits that every size is checked against.
     pub limits: vk::PhysicalDeviceLimits,
+    /// Memory types and heaps.
     pub memory: vk::PhysicalDeviceMemoryProperties,
-    /// The family with graphics, compute and transfer, and its valid time-stamp bits.
+    /// The family with graphics, compute and transfer, and its valid timestamp bits.
     pub queue: Option<(u32, u32)>,
     features: Vec<Feature>,
 }
@@ -180,19 +191,19 @@ impl PhysicalDevice {
         }
     }
 
-    /// Whether the device has `feature`.
+    /// True when the device has `feature`.
     pub fn has(&self, feature: Feature) -> bool {
         self.features.contains(&feature)
     }
 
-    /// The device as if it lacked `feature`: opened, it does not enable it. What less capable devices get can be tried on
-    /// a more capable one.
+    /// The device as if it lacked `feature`: opened, it does not enable it. The fallbacks for less capable devices can be
+    /// tried on a more capable one.
     pub fn without(mut self, feature: Feature) -> Self {
         self.features.retain(|f| *f != feature);
         self
     }
 
-    /// What of `needed`, and of the layer's own baseline, the device lacks; empty when it is capable.
+    /// Names of those of `needed`, and of the layer's own baseline, that the device lacks; empty when it is capable.
     pub fn lacks(&self, needed: &[Feature]) -> Vec<&'static str> {
         let mut missing = Vec::new();
         if self.api_version < vk::API_VERSION_1_3 {

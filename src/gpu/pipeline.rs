@@ -17,17 +17,22 @@ use crate::shader_build::{Format, Scalar};
 /// One attribute of a vertex: location, format, byte offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Attribute {
+    /// Location in the vertex stage.
     pub location: u32,
+    /// Format of the field.
     pub format: vk::Format,
+    /// Offset in the vertex, in bytes.
     pub offset_bytes: u32,
 }
 
-/// How the vertices of a pass lie in their buffer.
+/// The layout of the vertices of a pass in their buffer.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct VertexLayout {
+    /// From one element to the next, in bytes.
     pub stride_bytes: u32,
-    /// Whether the buffer goes on with each vertex or with each instance.
+    /// The buffer advances with each vertex or with each instance.
     pub rate: vk::VertexInputRate,
+    /// Fields that the vertex stage reads.
     pub attributes: Vec<Attribute>,
 }
 
@@ -87,10 +92,14 @@ fn vertex_format(format: Format) -> vk::Format {
 /// The kind of primitive that a pass draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Topology {
+    /// Three vertices a triangle.
     #[default]
     Triangles,
+    /// A triangle for each vertex from the third on.
     TriangleStrip,
+    /// A point for each vertex.
     Points,
+    /// Two vertices a line.
     Lines,
 }
 
@@ -98,6 +107,7 @@ pub enum Topology {
 pub struct Pipeline {
     pub(crate) raw: vk::Pipeline,
     device: Arc<Device>,
+    /// Stages, descriptor layout and push constants.
     pub program: Arc<Program>,
 }
 

@@ -15,8 +15,11 @@ use crate::shader_build::BindingKind;
 /// One descriptor of a program's set 0.
 #[derive(Debug, Clone)]
 pub struct Slot {
+    /// Number of the binding.
     pub binding: u32,
+    /// Name in the shaders.
     pub name: String,
+    /// Kind of the descriptor.
     pub kind: BindingKind,
     /// The stages that use it.
     pub stages: Stages,
@@ -40,7 +43,9 @@ impl Slot {
 /// The stages of a pass with their layouts. All descriptors live in set 0.
 pub struct Program {
     device: Arc<Device>,
+    /// One module a stage.
     pub modules: Vec<Arc<ShaderModule>>,
+    /// Descriptors of set 0, by binding.
     pub slots: Vec<Slot>,
     pub(crate) push_stages: vk::ShaderStageFlags,
     pub(crate) push_bytes: u32,

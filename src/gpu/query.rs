@@ -1,4 +1,4 @@
-//! Query pools: time stamps and counters.
+//! Query pools: timestamps and counters.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
 
-/// What a pool of queries counts.
+/// The quantity that a pool of queries counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Counter {
     Timestamps,

@@ -1,4 +1,4 @@
-//! The recorder: command buffer, query pools and lists that frames reuse, and what is read from the queries after them.
+//! The recorder: command buffer, query pools and lists that frames reuse, and the reading of the queries after them.
 
 use std::ffi::CString;
 use std::sync::Arc;
@@ -18,21 +18,21 @@ use super::query::{Counter, QueryPool};
 use super::sample::{Counts, FrameSample, Mode, Span};
 
 /// Queries of one frame; a pass beyond them is reported as not measured.
-const STAMPS: u32 = 32_768;
+const TIMESTAMPS: u32 = 32_768;
 const COUNTERS: u32 = 16_384;
 
 /// Records and runs frames, one in flight. Buffers, pools and lists are reused from frame to frame.
 pub struct Recorder {
     pub(super) commands: Commands,
-    pub(super) stamps: Option<QueryPool>,
+    pub(super) timestamps: Option<QueryPool>,
     pub(super) samples_passed: Option<QueryPool>,
     pub(super) graphics_counts: Option<QueryPool>,
     pub(super) compute_counts: Option<QueryPool>,
-    pub(super) stamp_mask: u64,
+    pub(super) timestamp_mask: u64,
     pub(super) period_ns: f64,
     pub(super) barriers: Barriers,
     pub(super) keep: Vec<Pass>,
-    /// The pass, as an index into `sample.passes`, of each stamped interval and of each counter.
+    /// The pass, as an index into `sample.passes`, of each timestamped interval and of each counter.
     pub(super) intervals: Vec<usize>,
     pub(super) counted: Vec<Counted>,
     pub(super) labels: Vec<(&'static str, CString)>,
@@ -50,7 +50,7 @@ impl Recorder {
     /// Makes the command buffer, and the query pools that the device can fill.
     ///
     /// # Errors
-    /// What Vulkan answers.
+    /// Any error of Vulkan.
     pub fn new(device: &Arc<Device>) -> Result<Self, Error> {
         let physical = device.physical();
         let pool = |feature, counter, capacity| {
@@ -59,11 +59,11 @@ impl Recorder {
         let bits = physical.queue.map_or(0, |q| q.1);
         Ok(Recorder {
             commands: Commands::new(device, "frame")?,
-            stamps: pool(Feature::Timestamps, Counter::Timestamps, STAMPS)?,
+            timestamps: pool(Feature::Timestamps, Counter::Timestamps, TIMESTAMPS)?,
             samples_passed: pool(Feature::PreciseOcclusion, Counter::Samples, COUNTERS)?,
             graphics_counts: pool(Feature::PipelineStatistics, Counter::Graphics, COUNTERS)?,
             compute_counts: pool(Feature::PipelineStatistics, Counter::Compute, COUNTERS)?,
-            stamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
+            timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             period_ns: f64::from(physical.limits.timestamp_period),
             barriers: Barriers::default(),
             keep: Vec::new(),
@@ -94,41 +94,43 @@ impl Recorder {
         Ok(&self.sample)
     }
 
-    /// Time in milliseconds that two neighbouring stamps of the scheme show with nothing between them: the median of
-    /// 101, or `None` without stamps.
+    /// Time in milliseconds that two neighbouring timestamps of the scheme show with nothing between them: the median of
+    /// 101, or `None` without timestamps.
     ///
     /// # Errors
-    /// What Vulkan answers.
-    pub fn stamp_floor_ms(&mut self) -> Result<Option<f64>, Error> {
+    /// Any error of Vulkan.
+    pub fn timestamp_floor_ms(&mut self) -> Result<Option<f64>, Error> {
         let info = PassInfo::host("empty", "", &[], &[]);
         let mut floors = Vec::new();
-        self.run(Mode::Stamped, |frame| {
+        self.run(Mode::Timestamped, |frame| {
             for _ in 0..101 {
                 let at = frame.sample_of(&info);
-                frame.recorder.stamp(at);
+                frame.recorder.timestamp(at);
             }
             Ok::<(), Error>(())
         })?;
-        if let Some(pool) = &mut self.stamps {
-            let stamps = pool.read()?;
+        if let Some(pool) = &mut self.timestamps {
+            let timestamps = pool.read()?;
             floors.extend(
-                stamps.windows(2).map(|w| (w[1].wrapping_sub(w[0]) & self.stamp_mask) as f64 * self.period_ns * 1e-6),
+                timestamps
+                    .windows(2)
+                    .map(|w| (w[1].wrapping_sub(w[0]) & self.timestamp_mask) as f64 * self.period_ns * 1e-6),
             );
         }
         floors.sort_by(f64::total_cmp);
         Ok(floors.get(floors.len() / 2).copied())
     }
 
-    /// `full, stamp, full` after a pass.
-    pub(super) fn stamp(&mut self, pass: usize) {
-        if let Some(query) = self.stamps.as_mut().and_then(QueryPool::take) {
-            self.write_stamp(query);
+    /// `full, timestamp, full` after a pass.
+    pub(super) fn timestamp(&mut self, pass: usize) {
+        if let Some(query) = self.timestamps.as_mut().and_then(QueryPool::take) {
+            self.write_timestamp(query);
             self.intervals.push(pass);
         }
     }
 
-    pub(super) fn write_stamp(&self, query: u32) {
-        let Some(pool) = &self.stamps else { return };
+    pub(super) fn write_timestamp(&self, query: u32) {
+        let Some(pool) = &self.timestamps else { return };
         let device = &self.commands.device;
         barrier::full(device, self.commands.buffer);
         // SAFETY: recording outside a render pass; the query was reset and is used once.
@@ -143,19 +145,19 @@ impl Recorder {
         barrier::full(device, self.commands.buffer);
     }
 
-    pub(super) fn read_stamps(&mut self, mode: Mode, submitted_ms: f64) -> Result<(), Error> {
-        let Some(pool) = &mut self.stamps else { return Ok(()) };
-        let (mask, period_ns) = (self.stamp_mask, self.period_ns);
+    pub(super) fn read_timestamps(&mut self, mode: Mode, submitted_ms: f64) -> Result<(), Error> {
+        let Some(pool) = &mut self.timestamps else { return Ok(()) };
+        let (mask, period_ns) = (self.timestamp_mask, self.period_ns);
         let difference_ms = |w: &[u64]| (w[1].wrapping_sub(w[0]) & mask) as f64 * period_ns * 1e-6;
-        let stamps = pool.read()?;
+        let timestamps = pool.read()?;
         if mode == Mode::Bracketed {
-            if let [first, last] = stamps {
+            if let [first, last] = timestamps {
                 *self.sample.bracket_ms.get_or_insert(0.0) += difference_ms(&[*first, *last]);
             }
             return Ok(());
         }
         let mut start_ms = submitted_ms;
-        for (window, &pass) in stamps.windows(2).zip(&self.intervals) {
+        for (window, &pass) in timestamps.windows(2).zip(&self.intervals) {
             let duration_ms = difference_ms(window);
             *self.sample.passes[pass].gpu_ms.get_or_insert(0.0) += duration_ms;
             self.sample.spans.push(Span { pass, start_ms, duration_ms, on_gpu: true });

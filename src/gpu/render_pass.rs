@@ -11,20 +11,21 @@ use super::error::{Context, Error};
 use super::image::{ImageView, aspect_of};
 use super::live::Kind;
 
-/// What an attachment holds when a pass begins.
+/// Contents of an attachment when a pass begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
     /// A clear value: four colour components, or depth in the first.
     Clear([f32; 4]),
-    /// What the passes before left.
+    /// The contents that the passes before left.
     Keep,
     /// Anything: every texel is overwritten.
     Discard,
 }
 
-/// How a colour attachment takes the fragment's colour.
+/// Blend state of a colour attachment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Blend {
+    /// The fragment's colour.
     Replace,
     /// destination + source
     Add,
@@ -39,6 +40,7 @@ pub enum Blend {
 }
 
 impl Blend {
+    /// The name that pass tables use.
     pub fn as_str(self) -> &'static str {
         match self {
             Blend::Replace => "replace",
@@ -76,7 +78,7 @@ impl Blend {
     }
 }
 
-/// What a pass does with its depth attachment.
+/// Depth and stencil state of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DepthTest {
     /// Nearer fragments pass and are written.
@@ -93,6 +95,7 @@ pub enum DepthTest {
 }
 
 impl DepthTest {
+    /// The name that pass tables use.
     pub fn as_str(self) -> &'static str {
         match self {
             DepthTest::LessWrite => "less, write",
@@ -143,14 +146,18 @@ impl DepthTest {
 /// One attachment of a pass.
 #[derive(Clone)]
 pub struct Target {
+    /// The view drawn into.
     pub view: Arc<ImageView>,
+    /// Its contents when the pass begins.
     pub load: Load,
 }
 
 /// The attachments of a pass: colours with their blend state, and depth.
 #[derive(Clone, Default)]
 pub struct Targets {
+    /// Colour attachments by location.
     pub colors: Vec<(Target, Blend)>,
+    /// Depth (and stencil) attachment.
     pub depth: Option<(Target, DepthTest)>,
     /// The extent of a pass without attachments.
     pub extent: Option<(u32, u32)>,
@@ -228,9 +235,9 @@ impl RenderPass {
     pub(crate) fn new(device: &Arc<Device>, pass: &str, targets: &Targets) -> Result<Arc<Self>, Error> {
         targets.check(pass)?;
         let attachment = |target: &Target, access: Access| {
-            let layout = access.words().layout;
+            let layout = access.info().layout;
             // Storing is a write even of what was only tested, and no barrier waits for the write of a reader.
-            let store = if access.words().writes { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE };
+            let store = if access.info().writes { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE };
             let load = match target.load {
                 Load::Clear(_) => vk::AttachmentLoadOp::CLEAR,
                 Load::Keep => vk::AttachmentLoadOp::LOAD,
@@ -249,12 +256,12 @@ impl RenderPass {
         };
         let mut attachments: Vec<_> = targets.colors.iter().map(|(t, _)| attachment(t, Access::ColorTarget)).collect();
         let colors: Vec<_> = (0..attachments.len() as u32)
-            .map(|i| vk::AttachmentReference { attachment: i, layout: Access::ColorTarget.words().layout })
+            .map(|i| vk::AttachmentReference { attachment: i, layout: Access::ColorTarget.info().layout })
             .collect();
         let mut depth = vk::AttachmentReference::default();
         if let Some((target, test)) = &targets.depth {
             depth =
-                vk::AttachmentReference { attachment: attachments.len() as u32, layout: test.access().words().layout };
+                vk::AttachmentReference { attachment: attachments.len() as u32, layout: test.access().info().layout };
             attachments.push(attachment(target, test.access()));
         }
         let mut subpass = vk::SubpassDescription::default()

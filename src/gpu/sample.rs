@@ -1,23 +1,23 @@
-//! What is observed of a frame and of its passes.
+//! Measurements of a frame and of its passes.
 
 use std::sync::Arc;
 
 use super::pass_info::PassInfo;
 
-/// How a frame is observed.
+/// The measurement that a frame is recorded with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Not at all: the host's clock alone.
+    /// None: the host's clock alone.
     Plain,
-    /// One pair of stamps round each submission: the GPU's time with its overlap between passes.
+    /// One pair of timestamps round each submission: the GPU's time with its overlap between passes.
     Bracketed,
-    /// A stamp between full barriers after every pass: each pass's own time, without overlap.
-    Stamped,
+    /// A timestamp between full barriers after every pass: each pass's own time, without overlap.
+    Timestamped,
     /// Counters round every pass.
     Counted,
 }
 
-/// What the counters saw of one pass in one frame, summed over its calls; `None` where the device cannot count.
+/// Counters of one pass in one frame, summed over its calls; `None` where the device cannot count.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Vertex-stage invocations.
@@ -26,49 +26,53 @@ pub struct Counts {
     pub primitives: Option<u64>,
     /// Fragment-stage invocations; some devices count whole blocks.
     pub fragments: Option<u64>,
+    /// Compute-stage invocations, of whole workgroups.
     pub compute_invocations: Option<u64>,
     /// Samples that passed every test, discards included.
     pub samples_passed: Option<u64>,
 }
 
-/// What was observed of one pass in one frame, summed over its calls.
+/// Measurements of one pass in one frame, summed over its calls.
 #[derive(Debug, Clone)]
 pub struct PassSample {
+    /// The pass.
     pub info: Arc<PassInfo>,
     /// Draws or dispatches; for host work, executions.
     pub calls: u32,
     /// The submission of the frame that it was first part of.
     pub submission: u32,
-    /// GPU time in milliseconds, in a stamped frame.
+    /// GPU time in milliseconds, in a timestamped frame.
     pub gpu_ms: Option<f64>,
     /// Host time in milliseconds, of host work.
     pub host_ms: Option<f64>,
     /// Time in milliseconds that the host waited for the pass's results.
     pub wait_ms: Option<f64>,
-    /// In a counted frame.
+    /// Counters, in a counted frame.
     pub counts: Option<Counts>,
 }
 
-/// A stretch of time that a pass took, in milliseconds from the start of recording.
+/// The time span of one call of a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Index into [`FrameSample::passes`].
     pub pass: usize,
+    /// Start, in milliseconds from the start of recording.
     pub start_ms: f64,
+    /// Duration in milliseconds.
     pub duration_ms: f64,
-    /// On the GPU: its clock is laid so that the first stamp of a submission falls on the host's moment of submitting.
+    /// On the GPU: its clock is laid so that the first timestamp of a submission falls on the host's moment of submitting.
     pub on_gpu: bool,
 }
 
-/// What was observed of a frame.
+/// Measurements of a frame.
 #[derive(Debug, Clone, Default)]
 pub struct FrameSample {
     /// The host's clock from the start of recording to the last fence, in milliseconds.
     pub frame_ms: f64,
-    /// GPU time between the outer stamps, summed over the submissions, in a bracketed frame.
+    /// GPU time between the outer timestamps, summed over the submissions, in a bracketed frame.
     pub bracket_ms: Option<f64>,
     /// In the order of first recording.
     pub passes: Vec<PassSample>,
-    /// Each call's stretch of time: host work always, GPU work in a stamped frame.
+    /// The time span of each call: host work always, GPU work in a timestamped frame.
     pub spans: Vec<Span>,
 }

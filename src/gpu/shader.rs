@@ -14,7 +14,7 @@ use crate::shader_build::{self, EMBEDDED, Interface, Stage};
 
 pub use crate::shader_build::Compiler;
 
-/// Where the shaders come from: the program itself, or a directory compiled at start.
+/// The shaders embedded in the program, or those of a directory compiled at start in their place.
 pub struct ShaderLibrary {
     device: Arc<Device>,
     compiler: Compiler,
@@ -34,6 +34,7 @@ impl ShaderLibrary {
         Ok(ShaderLibrary { device: device.clone(), compiler, replaced })
     }
 
+    /// The device that the modules are made on.
     pub fn device(&self) -> &Arc<Device> {
         &self.device
     }
@@ -87,8 +88,11 @@ fn replace(dir: &Path) -> Result<Vec<shader_build::CompiledShader>, String> {
 pub struct ShaderModule {
     pub(crate) raw: vk::ShaderModule,
     device: Arc<Device>,
+    /// Path under `shaders/`.
     pub name: String,
+    /// Bindings, inputs, outputs and push constants.
     pub interface: Interface,
+    /// The compiler of the binary.
     pub compiler: Compiler,
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::access::{Access, State, Words, derive};
+use super::access::{Access, AccessInfo, State, derive};
 use super::physical::choose;
 use super::pipeline::{Attribute, Pipeline, Topology, VertexLayout};
 use super::program::Program;
@@ -37,7 +37,7 @@ crate::host_block! {
     }
 }
 
-/// What the layer says about a kernel that reads the sums of the one before; `forget` makes the barriers' ledger
+/// Messages of the layer about a kernel that reads the sums of the one before; `forget` makes the tracked state
 /// forget the write between them.
 fn sum_of_sums(device: &Arc<Device>, forget: bool) -> Vec<Message> {
     let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
@@ -78,7 +78,7 @@ fn a_missing_barrier_between_kernels_is_reported() {
     assert!(hazard.text.contains("sum-sums"), "the pass is named: {hazard}");
 }
 
-/// What the layer says about a copy of the target that a pass drew; `forget` makes the ledger forget who drew it.
+/// Messages of the layer about a copy of the target that a pass drew; `forget` makes the tracked state forget who drew it.
 fn draw_and_copy(device: &Arc<Device>, forget: bool) -> Vec<Message> {
     let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
     let target = color_target(device, "canvas", vk::Format::R8G8B8A8_UNORM);
@@ -89,8 +89,11 @@ fn draw_and_copy(device: &Arc<Device>, forget: bool) -> Vec<Message> {
     let readback = Buffer::new(device, BufferDesc::new("copy", 256).location(Location::Readback)).unwrap();
     let copy = Pass::copy("copy-out", "", &target, &readback);
     // In the layout that the pass left it in, but written by no stage.
-    let nobody =
-        Words { stages: vk::PipelineStageFlags2::NONE, access: vk::AccessFlags2::NONE, ..Access::ColorTarget.words() };
+    let nobody = AccessInfo {
+        stages: vk::PipelineStageFlags2::NONE,
+        access: vk::AccessFlags2::NONE,
+        ..Access::ColorTarget.info()
+    };
     let (_, forgotten) = derive(&State::NEW, nobody, true, true);
     let mut recorder = Recorder::new(device).unwrap();
     let outcome = recorder.run(Mode::Plain, |frame| {

@@ -60,9 +60,9 @@ pub fn copy_buffers(device: &Arc<Device>, pairs: &[(&Arc<Buffer>, &Arc<Buffer>)]
 }
 
 /// Bytes of the staging buffer that images are uploaded through, and of one row at least.
-const STRIP_BYTES: u64 = 8 << 20;
+const CHUNK_BYTES: u64 = 8 << 20;
 
-/// Fills the upper left `width` x `height` texels of a view of one layer, through a small staging buffer, strip by strip.
+/// Fills the upper left `width` x `height` texels of a view of one layer, through a small staging buffer, chunk by chunk.
 /// `fill` writes rows, tightly packed, from the given one on into the bytes it is handed.
 ///
 /// # Errors
@@ -75,16 +75,16 @@ pub fn upload_rows(
 ) -> Result<(), Error> {
     check_rectangle(view, width, height)?;
     let row_bytes = u64::from(width) * texel_bytes(view.image())?;
-    let strip_rows = ((STRIP_BYTES / row_bytes).max(1) as u32).min(height);
+    let chunk_rows = ((CHUNK_BYTES / row_bytes).max(1) as u32).min(height);
     let name = format!("{} staging", view.image().name());
-    let desc = BufferDesc::new(name, row_bytes * u64::from(strip_rows)).location(Location::Upload);
+    let desc = BufferDesc::new(name, row_bytes * u64::from(chunk_rows)).location(Location::Upload);
     let staging = Buffer::new(device, desc)?;
-    let mut bytes = vec![0; (row_bytes * u64::from(strip_rows)) as usize];
-    for first_row in (0..height).step_by(strip_rows as usize) {
-        let rows = strip_rows.min(height - first_row);
-        let strip = &mut bytes[..(row_bytes * u64::from(rows)) as usize];
-        fill(first_row, strip);
-        staging.write(0, strip)?;
+    let mut bytes = vec![0; (row_bytes * u64::from(chunk_rows)) as usize];
+    for first_row in (0..height).step_by(chunk_rows as usize) {
+        let rows = chunk_rows.min(height - first_row);
+        let chunk = &mut bytes[..(row_bytes * u64::from(rows)) as usize];
+        fill(first_row, chunk);
+        staging.write(0, chunk)?;
         let uses = [
             Use { resource: (&staging).into(), access: Access::CopySource, discard: false },
             Use { resource: view.into(), access: Access::CopyDestination, discard: first_row == 0 },
@@ -93,7 +93,7 @@ pub fn upload_rows(
             .image_subresource(subresource(view))
             .image_offset(vk::Offset3D { x: 0, y: first_row as i32, z: 0 })
             .image_extent(vk::Extent3D { width, height: rows, depth: 1 });
-        let layout = Access::CopyDestination.words().layout;
+        let layout = Access::CopyDestination.info().layout;
         once(device, "upload", &uses, |raw, commands| {
             // SAFETY: recording; the rows lie inside the view, which is in that layout by its barrier, and the staging
             // buffer holds them; both outlive the submission.
@@ -126,7 +126,7 @@ pub fn copy_rectangle(
         .dst_subresource(subresource(to))
         .dst_offset(vk::Offset3D { x: column as i32, y: row as i32, z: 0 })
         .extent(vk::Extent3D { width, height, depth: 1 });
-    let [source, destination] = uses.each_ref().map(|u| u.access.words().layout);
+    let [source, destination] = uses.each_ref().map(|u| u.access.info().layout);
     once(device, "copy", &uses, |raw, commands| {
         // SAFETY: recording; the rectangle lies inside both views, which are in these layouts by their barriers and
         // outlive the submission.
@@ -196,7 +196,7 @@ pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: 
             let region = vk::BufferImageCopy::default()
                 .image_subresource(subresource(view))
                 .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
-            let layout = Access::CopySource.words().layout;
+            let layout = Access::CopySource.info().layout;
             // SAFETY: recording; the image is in that layout by its barrier, and whoever made `to` sized it for the
             // view's texels; both outlive the submission.
             unsafe { raw.cmd_copy_image_to_buffer(commands, view.image.raw, layout, to.raw, &[region]) };

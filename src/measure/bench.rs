@@ -89,7 +89,7 @@ impl<S: Study> Bench<'_, S> {
             .map(|&variant| build(machine, study, &loaded.scene, variant))
             .collect::<Result<Vec<_>, _>>()?;
         machine.device.wait_idle()?;
-        let stamp_floor_ms = machine.recorder.stamp_floor_ms()?;
+        let stamp_floor_ms = machine.recorder.timestamp_floor_ms()?;
         let measurements = loop {
             let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
             let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;

@@ -62,7 +62,7 @@ fn rate(
     record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
 ) -> Result<Option<f64>, Error> {
     let mut once = |load: u32| -> Result<Option<f64>, Error> {
-        let sample = recorder.run(Mode::Stamped, |frame| record(frame, load))?;
+        let sample = recorder.run(Mode::Timestamped, |frame| record(frame, load))?;
         Ok(sample.passes.first().and_then(|p| p.gpu_ms).filter(|&ms| ms > 0.0))
     };
     once(1)?;

@@ -68,7 +68,7 @@ pub fn measure(
     schedule: Schedule,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Measurement>, Error> {
-    const MODES: [Mode; 3] = [Mode::Plain, Mode::Stamped, Mode::Bracketed];
+    const MODES: [Mode; 3] = [Mode::Plain, Mode::Timestamped, Mode::Bracketed];
     let mut results = vec![Measurement::default(); subjects.len()];
     let count = subjects.len() as u64;
     let a_repetition = MODES.len() as u64 * u64::from(schedule.frames) * count;
@@ -167,7 +167,7 @@ impl Measurement {
                 }
             }
             Mode::Bracketed => self.bracket_ms.extend(sample.bracket_ms),
-            Mode::Stamped => {
+            Mode::Timestamped => {
                 for pass in &sample.passes {
                     self.pass(pass).gpu_ms.extend(pass.gpu_ms);
                 }

@@ -12,7 +12,7 @@ fn barriers(start: State, is_image: bool, accesses: &[(Access, bool)]) -> Vec<Op
     let mut state = start;
     let mut barriers = Vec::new();
     for &(access, discard) in accesses {
-        let (barrier, after) = derive(&state, access.words(), discard, is_image);
+        let (barrier, after) = derive(&state, access.info(), discard, is_image);
         barriers.push(barrier);
         state = after;
     }

@@ -1,4 +1,4 @@
-//! Which device is taken, on the devices of this machine.
+//! The choice of a device, on the devices of this machine.
 
 use std::sync::Arc;
 

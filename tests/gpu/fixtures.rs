@@ -1,4 +1,4 @@
-//! What several tests draw with.
+//! Passes, blocks and targets that several tests share.
 
 use std::sync::Arc;
 

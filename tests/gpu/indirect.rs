@@ -96,7 +96,7 @@ fn steps_are_one_pass_with_a_barrier_between_them() {
             .with("Values", &numbers)
             .build(&library)
             .unwrap();
-        let second = first.again().with("Values", &others).build(&library).unwrap();
+        let second = first.rebind().with("Values", &others).build(&library).unwrap();
         let steps = Pass::steps([first.clone(), second, first]);
         let info = steps[0].info();
         assert_eq!((info.name, &info.writes[..]), ("advance", &["numbers".to_owned(), "others".to_owned()][..]));

@@ -2,7 +2,7 @@
 //! every read sees the last write and no hazard is left.
 
 use ash::vk::{AccessFlags2, ImageLayout, PipelineStageFlags2};
-use fumarole::gpu::access::{Barrier, State, Words, derive};
+use fumarole::gpu::access::{AccessInfo, Barrier, State, derive};
 use fumarole::gpu::{Access, Stages};
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ const WRITES: AccessFlags2 = AccessFlags2::from_raw(
         | AccessFlags2::TRANSFER_WRITE.as_raw(),
 );
 
-/// What one stage did.
+/// One access by one stage.
 #[derive(Clone, Debug)]
 struct Event {
     stage: PipelineStageFlags2,
@@ -33,7 +33,7 @@ impl Event {
     }
 }
 
-/// Whether the barrier waits for all of the events, each of which it passes.
+/// True when the barrier waits for all of the events, each of which it passes.
 fn wait_for(events: &mut [Event], barrier: &Barrier) -> bool {
     let mut all = true;
     for event in events {
@@ -47,14 +47,14 @@ fn wait_for(events: &mut [Event], barrier: &Barrier) -> bool {
 struct Memory {
     /// The last write, one event for each stage that wrote.
     writes: Vec<Event>,
-    /// Whether the last write has left the caches of its stages.
+    /// Set once the last write has left the caches of its stages.
     available: bool,
     /// Stages and accesses that see it.
     visible: Vec<(PipelineStageFlags2, AccessFlags2)>,
     /// Reads since the last write.
     reads: Vec<Event>,
     layout: ImageLayout,
-    /// Whether the last contents are still there.
+    /// Set while the last contents are still there.
     intact: bool,
 }
 
@@ -101,32 +101,32 @@ impl Memory {
         self.writes.is_empty() || self.visible.iter().any(|(s, a)| s.contains(stage) && a.contains(access))
     }
 
-    /// What is wrong with an access now, if anything; otherwise it happens.
-    fn access(&mut self, words: Words, discard: bool, is_image: bool) -> Result<(), String> {
-        if is_image && self.layout != words.layout {
-            return Err(format!("in layout {:?} instead of {:?}", self.layout, words.layout));
+    /// Makes an access, or says what is wrong with it now.
+    fn access(&mut self, info: AccessInfo, discard: bool, is_image: bool) -> Result<(), String> {
+        if is_image && self.layout != info.layout {
+            return Err(format!("in layout {:?} instead of {:?}", self.layout, info.layout));
         }
         if !discard && !self.intact {
             return Err("the contents are lost".into());
         }
-        for stage in bits(words.stages) {
+        for stage in bits(info.stages) {
             // A discarding access still writes, and its load operation reads what it must not: only the write counts.
-            let wanted = if discard { words.access & WRITES } else { words.access };
+            let wanted = if discard { info.access & WRITES } else { info.access };
             for access in access_bits(wanted) {
                 if !self.sees(stage, access) {
                     return Err(format!("{stage:?} {access:?} does not see {:?}", self.writes));
                 }
             }
-            if words.writes {
+            if info.writes {
                 let unordered = self.writes.iter().chain(&self.reads).find(|e| !e.before.contains(stage));
                 if let Some(event) = unordered {
                     return Err(format!("{stage:?} writes without waiting for {event:?}"));
                 }
             }
         }
-        let event = |stage| Event { stage, access: words.access, before: PipelineStageFlags2::NONE };
-        let events = bits(words.stages).map(event);
-        if words.writes {
+        let event = |stage| Event { stage, access: info.access, before: PipelineStageFlags2::NONE };
+        let events = bits(info.stages).map(event);
+        if info.writes {
             self.writes = events.collect();
             self.reads.clear();
             self.visible.clear();
@@ -152,17 +152,17 @@ fn run(start: State, is_image: bool, accesses: &[(Access, bool)]) -> Result<(), 
     let mut state = start;
     let mut memory = Memory { available: true, intact: state.is_written(), ..Memory::default() };
     for (i, &(access, discard)) in accesses.iter().enumerate() {
-        let words = access.words();
-        let (barrier, after) = derive(&state, words, discard, is_image);
+        let info = access.info();
+        let (barrier, after) = derive(&state, info, discard, is_image);
         state = after;
         let at = |problem| format!("access {i} ({access:?}): {problem}");
         if let Some(barrier) = barrier {
-            if memory.clone().access(words, discard, is_image).is_ok() {
+            if memory.clone().access(info, discard, is_image).is_ok() {
                 return Err(at(format!("needs no barrier and gets {barrier:?}")));
             }
             memory.barrier(&barrier, is_image).map_err(at)?;
         }
-        memory.access(words, discard, is_image).map_err(at)?;
+        memory.access(info, discard, is_image).map_err(at)?;
     }
     Ok(())
 }
@@ -228,8 +228,8 @@ proptest! {
 
 #[test]
 fn the_model_itself_finds_every_kind_of_missing_barrier() {
-    let fragment = Access::SampledRead(Stages::FRAGMENT).words();
-    let color = Access::ColorTarget.words();
+    let fragment = Access::SampledRead(Stages::FRAGMENT).info();
+    let color = Access::ColorTarget.info();
     let (_, written) = derive(&State::NEW, color, true, true);
     let new = || Memory { available: true, ..Memory::default() };
     let mut memory = new();

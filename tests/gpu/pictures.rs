@@ -1,4 +1,4 @@
-//! What passes draw and compute, with the binaries of both compilers.
+//! Pictures and values of passes, with the binaries of both compilers.
 
 use std::sync::Arc;
 

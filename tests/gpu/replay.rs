@@ -66,7 +66,7 @@ fn every_repetition_replays_the_same_frames_after_a_restart() {
         let measured = measure(&mut recorder, &mut [&mut diary], schedule, &mut watch).unwrap();
         assert_eq!(measured[0].frame_ms.len(), 6);
         let replayed = [None, Some(0), Some(1), Some(2)];
-        // Two repetitions, each plain, stamped and bracketed; the counted frame comes last.
+        // Two repetitions, each plain, timestamped and bracketed; the counted frame comes last.
         let expected = [vec![None, Some(0), Some(1)], replayed.repeat(6), vec![None, Some(0)]].concat();
         assert_eq!(diary.entries, expected);
     });

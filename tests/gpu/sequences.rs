@@ -23,7 +23,7 @@ fn two_layers_written_by_two_passes_are_read_together() {
         };
         let image = layers("layers");
         let first = paint_pass(&shaders, "paint-layer", &image.layer(0).unwrap(), Load::Discard, Blend::Replace);
-        let second = first.again().color(0, &image.layer(1).unwrap(), Load::Discard).build(&shaders).unwrap();
+        let second = first.rebind().color(0, &image.layer(1).unwrap(), Load::Discard).build(&shaders).unwrap();
         let seen = color_target(device, "seen", vk::Format::R32G32B32A32_SFLOAT, 8, 8);
         let look = Pass::graphics("look", "", "common/fullscreen.vert", "test/layers.frag")
             .with("layers", &image.view().unwrap())
@@ -41,13 +41,13 @@ fn two_layers_written_by_two_passes_are_read_together() {
             .unwrap();
             assert_eq!(texels::<[f32; 4]>(device, &seen), [[a, b, 0.0, 1.0]; 64]);
             let calls: Vec<_> = sample.passes.iter().map(|p| (p.info.name, p.calls)).collect();
-            assert_eq!(calls, [("paint-layer", 2), ("look", 1)], "the same pass said again is one pass");
+            assert_eq!(calls, [("paint-layer", 2), ("look", 1)], "a rebound pass is the same pass");
         }
 
         // About another image altogether: the pipeline is shared, the descriptor is not.
         let other = layers("other layers");
-        let paint_other = |layer| first.again().color(0, &other.layer(layer).unwrap(), BLACK).build(&shaders).unwrap();
-        let look_other = look.again().with("layers", &other.view().unwrap()).build(&shaders).unwrap();
+        let paint_other = |layer| first.rebind().color(0, &other.layer(layer).unwrap(), BLACK).build(&shaders).unwrap();
+        let look_other = look.rebind().with("layers", &other.view().unwrap()).build(&shaders).unwrap();
         let (clear_first, clear_second) = (paint_other(0), paint_other(1));
         run(device, Mode::Plain, |frame| {
             paint(frame, &clear_first, 11.0)?;
@@ -185,7 +185,7 @@ fn the_host_reads_in_the_middle_of_a_frame() {
             .unwrap();
         let readback = Buffer::new(device, BufferDesc::new("copy", 16).location(Location::Readback)).unwrap();
         let copy = Pass::copy("copy-out", "", &buffer, &readback);
-        for mode in [Mode::Plain, Mode::Bracketed, Mode::Stamped, Mode::Counted] {
+        for mode in [Mode::Plain, Mode::Bracketed, Mode::Timestamped, Mode::Counted] {
             let mut seen = Vec::new();
             let sample = run(device, mode, |frame| {
                 for step in [1.0, 10.0] {
@@ -203,7 +203,7 @@ fn the_host_reads_in_the_middle_of_a_frame() {
             let [advanced, copied] = &sample.passes[..] else { panic!("{mode:?}: {:?}", sample.passes) };
             assert_eq!((advanced.calls, advanced.submission), (2, 0), "{mode:?}");
             assert!(advanced.wait_ms.is_none() && copied.wait_ms.is_some_and(|ms| ms <= sample.frame_ms), "{mode:?}");
-            assert_eq!(sample.spans.len(), if mode == Mode::Stamped { 4 } else { 0 }, "{mode:?}");
+            assert_eq!(sample.spans.len(), if mode == Mode::Timestamped { 4 } else { 0 }, "{mode:?}");
             if let Some(counts) = advanced.counts {
                 assert_eq!(counts.compute_invocations, Some(2 * 64), "both submissions count");
             }

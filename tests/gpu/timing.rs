@@ -1,4 +1,4 @@
-//! Stamped frames tell each pass's own time. The proof is a heavy fragment pass before a heavy vertex pass on the same
+//! Timestamped frames tell each pass's own time. The proof is a heavy fragment pass before a heavy vertex pass on the same
 //! target: under a scheme that lets their work overlap the second reads next to nothing.
 
 use std::sync::Arc;
@@ -58,9 +58,9 @@ fn record<'a>(recorder: &'a mut Recorder, mode: Mode, order: &[&Heavy]) -> &'a F
         .unwrap()
 }
 
-/// Each pass's time in milliseconds, in the order of recording, of one stamped frame.
-fn stamped_ms(recorder: &mut Recorder, order: &[&Heavy]) -> Vec<f64> {
-    let sample = record(recorder, Mode::Stamped, order);
+/// Each pass's time in milliseconds, in the order of recording, of one timestamped frame.
+fn timestamped_ms(recorder: &mut Recorder, order: &[&Heavy]) -> Vec<f64> {
+    let sample = record(recorder, Mode::Timestamped, order);
     let times: Vec<f64> = sample.passes.iter().map(|p| p.gpu_ms.unwrap()).collect();
     let sum: f64 = times.iter().sum();
     assert!(sum <= sample.frame_ms, "passes {times:?} in a frame of {} ms", sample.frame_ms);
@@ -86,10 +86,10 @@ fn a_pass_reads_its_own_time_whatever_runs_beside_it() {
         let mut shares = Vec::new();
         for _ in 0..7 {
             // Alone and beside each other in turns, so that a busy machine slows all alike.
-            let fragment_alone = stamped_ms(&mut recorder, &[&fragment])[0];
-            let forth = stamped_ms(&mut recorder, &[&fragment, &vertex]);
-            let vertex_alone = stamped_ms(&mut recorder, &[&vertex])[0];
-            let back = stamped_ms(&mut recorder, &[&vertex, &fragment]);
+            let fragment_alone = timestamped_ms(&mut recorder, &[&fragment])[0];
+            let forth = timestamped_ms(&mut recorder, &[&fragment, &vertex]);
+            let vertex_alone = timestamped_ms(&mut recorder, &[&vertex])[0];
+            let back = timestamped_ms(&mut recorder, &[&vertex, &fragment]);
             ratios[0].push(forth[0] / fragment_alone);
             ratios[1].push(forth[1] / vertex_alone);
             ratios[2].push(back[0] / vertex_alone);
@@ -98,7 +98,7 @@ fn a_pass_reads_its_own_time_whatever_runs_beside_it() {
             shares.push(vertex_alone / record(&mut recorder, Mode::Plain, &[&vertex]).frame_ms);
         }
         let share = median(shares);
-        assert!((0.5..2.0).contains(&share), "stamps and the host's clock differ: {share}");
+        assert!((0.5..2.0).contains(&share), "timestamps and the host's clock differ: {share}");
         let names = ["fragment, first", "vertex after fragment", "vertex, first", "fragment after vertex"];
         for (name, ratio) in names.into_iter().zip(ratios.map(median)) {
             assert!((0.5..2.0).contains(&ratio), "{name}: {ratio:.3} of its time alone");
@@ -114,7 +114,7 @@ fn a_mode_measures_what_it_says_and_nothing_else() {
             .color(&target, Load::Clear([0.0; 4]), Blend::Replace)
             .build(&shaders(device))
             .unwrap();
-        for mode in [Mode::Plain, Mode::Bracketed, Mode::Stamped, Mode::Counted] {
+        for mode in [Mode::Plain, Mode::Bracketed, Mode::Timestamped, Mode::Counted] {
             let sample = run(device, mode, |frame| {
                 frame.graphics(&pass, |draw| {
                     draw.vertices(3);
@@ -123,7 +123,7 @@ fn a_mode_measures_what_it_says_and_nothing_else() {
             .unwrap();
             let one = &sample.passes[0];
             assert_eq!(sample.bracket_ms.is_some(), mode == Mode::Bracketed, "{mode:?}");
-            assert_eq!(one.gpu_ms.is_some(), mode == Mode::Stamped, "{mode:?}");
+            assert_eq!(one.gpu_ms.is_some(), mode == Mode::Timestamped, "{mode:?}");
             assert_eq!(one.counts.is_some(), mode == Mode::Counted, "{mode:?}");
             assert_eq!(one.calls, 1, "{mode:?}");
             assert!(sample.bracket_ms.unwrap_or(0.0) <= sample.frame_ms, "{mode:?}");
@@ -132,9 +132,9 @@ fn a_mode_measures_what_it_says_and_nothing_else() {
 }
 
 #[test]
-fn the_stamps_cost_little_themselves() {
+fn the_timestamps_cost_little_themselves() {
     gpu_test(|device| {
-        let floor_ms = Recorder::new(device).unwrap().stamp_floor_ms().unwrap().unwrap();
+        let floor_ms = Recorder::new(device).unwrap().timestamp_floor_ms().unwrap().unwrap();
         assert!((0.0..1.0).contains(&floor_ms), "{floor_ms} ms");
     });
 }

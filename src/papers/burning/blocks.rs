@@ -33,21 +33,21 @@ impl Blocks {
             .with("Clock", &buffers.clock)
             .with("Alive", &buffers.alive)
             .build(shaders)?;
-        let weigh_b = weigh_a.again().with("OldState", a).with("NewState", b).build(shaders)?;
+        let weigh_b = weigh_a.rebind().with("OldState", a).with("NewState", b).build(shaders)?;
         let rotate_a = pass("block-rotation", "3.5.2", "burning/block-rotation.comp")
             .with("Blocks", &buffers.blocks)
             .with("OldRotations", rotations_b)
             .with("NewRotations", rotations_a)
             .build(shaders)?;
         let rotate_b =
-            rotate_a.again().with("OldRotations", rotations_a).with("NewRotations", rotations_b).build(shaders)?;
+            rotate_a.rebind().with("OldRotations", rotations_a).with("NewRotations", rotations_b).build(shaders)?;
         let map_a = pass("vertex-mapping", "3.5.3", "burning/vertex-mapping.comp")
             .with("NewState", a)
             .with("Cells", &buffers.cells)
             .with("NewRotations", rotations_a)
             .with("Mapped", &buffers.mapped)
             .build(shaders)?;
-        let map_b = map_a.again().with("NewState", b).with("NewRotations", rotations_b).build(shaders)?;
+        let map_b = map_a.rebind().with("NewState", b).with("NewRotations", rotations_b).build(shaders)?;
         Ok(Blocks {
             weights: [weigh_a, weigh_b].map(|weigh| Pass::steps([clear.clone(), weigh])),
             rotation: [rotate_a, rotate_b],

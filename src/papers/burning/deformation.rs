@@ -52,7 +52,7 @@ impl Deformation {
             let is_solid = variant == Variant::Solid;
             let vertices = if is_solid { vertices.with("Rest", &buffers.rest) } else { vertices };
             let to_a = vertices.build(shaders)?;
-            let to_b = to_a.again().with("OldState", a).with("NewState", b).build(shaders)?;
+            let to_b = to_a.rebind().with("OldState", a).with("NewState", b).build(shaders)?;
             return Ok(Deformation { base_points: None, vertices: [to_a, to_b], vertex_count, blocks });
         }
         let [bases_a, bases_b] = &buffers.base_displacements;
@@ -63,7 +63,7 @@ impl Deformation {
             .with("NewBases", bases_a)
             .with("Flows", &buffers.flows)
             .build(shaders)?;
-        let to_b = to_a.again().with("OldState", a).with("NewState", b).with("NewBases", bases_b).build(shaders)?;
+        let to_b = to_a.rebind().with("OldState", a).with("NewState", b).with("NewBases", bases_b).build(shaders)?;
         let guide_a = Pass::compute(NAME, section, "burning/base-points.comp")
             .with("constants", &buffers.constants)
             .with("Rest", &buffers.rest)
@@ -74,7 +74,7 @@ impl Deformation {
             .with("OldBases", bases_b)
             .with("NewBases", bases_a)
             .build(shaders)?;
-        let guide_b = guide_a.again().with("OldBases", bases_a).with("NewBases", bases_b).build(shaders)?;
+        let guide_b = guide_a.rebind().with("OldBases", bases_a).with("NewBases", bases_b).build(shaders)?;
         let [guide_a, to_a] = Pass::steps([guide_a, to_a]);
         let [guide_b, to_b] = Pass::steps([guide_b, to_b]);
         Ok(Deformation { base_points: Some([guide_a, guide_b]), vertices: [to_a, to_b], vertex_count, blocks })

@@ -60,7 +60,7 @@ impl SurfaceRemoval {
             .with("Blocks", &buffers.blocks)
             .with("Clock", &buffers.clock)
             .build(shaders)?;
-        let mark_b = mark_a.again().with("NewState", b).build(shaders)?;
+        let mark_b = mark_a.rebind().with("NewState", b).build(shaders)?;
         let [count, scatter] = match refinement {
             None => {
                 let count = step("burning/surface-removal-count.comp")

@@ -262,7 +262,7 @@ fn floors_ms(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) ->
     // The first round compiles the pipelines.
     for round in 0..=SAMPLES {
         for ((built, _), times) in measured.iter().zip(&mut times) {
-            let sample = machine.recorder.run(Mode::Stamped, |frame| built.paper.record_floor(frame))?;
+            let sample = machine.recorder.run(Mode::Timestamped, |frame| built.paper.record_floor(frame))?;
             if round > 0 {
                 times.extend(sample.passes.iter().find_map(|p| p.gpu_ms));
             }

@@ -81,7 +81,7 @@ impl Volumetric {
                 .build(shaders)?;
 
         let each_layer = |pass: &Pass, load: Load| {
-            layers.iter().map(|layer| pass.again().color(0, layer, load).build(shaders)).collect::<Result<Vec<_>, _>>()
+            layers.iter().map(|layer| pass.rebind().color(0, layer, load).build(shaders)).collect::<Result<Vec<_>, _>>()
         };
         let floor = floor_pass(site, &caustics)?;
         Ok(Volumetric {

@@ -75,7 +75,7 @@ impl Animation {
             .build(shaders)?;
         let turn = |from: &State, to: &State| {
             first
-                .again()
+                .rebind()
                 .with("positions", &from.positions)
                 .with("velocities", &from.velocities)
                 .color(0, &to.positions, Load::Discard)

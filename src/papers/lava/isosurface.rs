@@ -112,7 +112,7 @@ impl Isosurface {
                     .topology(Topology::Points)
                     .constants::<DensityConstants>()
             };
-            let again = |pass: &Pass, load| pass.again().vertices(vertices).color(0, &layer, load).build(shaders);
+            let again = |pass: &Pass, load| pass.rebind().vertices(vertices).color(0, &layer, load).build(shaders);
             let (density, density_floor) = match clusters.first() {
                 None => (
                     points("density", "lava/density.frag").color(&layer, ZERO, Blend::Add).build(shaders)?,

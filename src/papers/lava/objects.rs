@@ -69,7 +69,7 @@ impl Objects {
                     .depth(&depth, FAR, DepthTest::LessWrite)
                     .build(shaders)?,
                 Some((first, _)) => {
-                    first.again().vertices(&vertices).indices(&indices).depth(&depth, Load::Keep).build(shaders)?
+                    first.rebind().vertices(&vertices).indices(&indices).depth(&depth, Load::Keep).build(shaders)?
                 }
             };
             passes.push((pass, mesh.indices.len() as u32));

@@ -35,7 +35,7 @@ impl Points {
             .with("positions", a)
             .color(splatting.picture(), ZERO, Blend::Replace)
             .build(shaders)?;
-        let second = first.again().with("positions", b).build(shaders)?;
+        let second = first.rebind().with("positions", b).build(shaders)?;
         // A pixel in a picture of 400 rows; never none.
         let size_px = (splatting.picture().height() as f32 / 400.0).max(1.0);
         let constants = PointsConstants { width: a.width(), size_px };

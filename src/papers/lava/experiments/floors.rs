@@ -25,7 +25,7 @@ pub fn measure(machine: &mut Machine, paper: &Lava) -> Result<[(&'static str, Va
     let mut times: [Vec<f64>; FLOORS.len()] = Default::default();
     // The first round compiles the pipelines.
     for round in 0..=SAMPLES {
-        let sample = machine.recorder.run(Mode::Stamped, |frame| paper.record_floors(frame))?;
+        let sample = machine.recorder.run(Mode::Timestamped, |frame| paper.record_floors(frame))?;
         for ((_, floor), times) in FLOORS.iter().zip(&mut times).filter(|_| round > 0) {
             times.extend(sample.passes.iter().find(|p| p.info.name == *floor).and_then(|p| p.gpu_ms));
         }

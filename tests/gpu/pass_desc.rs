@@ -1,4 +1,4 @@
-//! A sentence that does not fit its shaders is refused when the pass is built; the message names pass and object.
+//! A description that does not fit its shaders is refused when the pass is built; the message names pass and object.
 
 use ash::vk;
 use fumarole::gpu::{Blend, DepthTest, Error, Image, ImageDesc, Load, Pass, Sampler};
@@ -140,6 +140,6 @@ fn shaders_and_passes_that_are_not_there_are_named() {
         assert_says(outside, "sprites", &["test/sprites.frag", "outside descriptor set 0"]);
         let target = color_target(device, "target", vk::Format::R32_SFLOAT, 4, 4);
         let paint = paint_pass(&library, "paint", &target, BLACK, Blend::Replace);
-        assert_says(paint.again().with("Nothing", &target).build(&library), "paint", &["Nothing"]);
+        assert_says(paint.rebind().with("Nothing", &target).build(&library), "paint", &["Nothing"]);
     });
 }
