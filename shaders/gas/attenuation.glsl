@@ -6,11 +6,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/nodes.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
-    uvec4 surfaces[];
+    Surface surfaces[];
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
-    uvec2 colors[];
+    Color colors[];
 };
 
 layout(set = 0, binding = 14, std430) buffer Attenuations {
@@ -27,32 +27,32 @@ void main() {
     bool is_shown_through = false; // by the fragment before, which it intersects
     uint f = fragment_at(heads[list_of(place)]);
     while (f != NONE) {
-        uvec4 link = links[f];
-        link.x = fragment_at(link.x);
-        uvec4 surface = surfaces[f];
-        if ((link.y & ~covered) != 0u || is_shown_through) {
-            vec3 point = frame.eye.xyz + ray * mean_depth(link);
-            vec3 normal = unpack_normal(surface.x);
+        Link link = links[f];
+        link.next = fragment_at(link.next);
+        Surface surface = surfaces[f];
+        if ((link.mask & ~covered) != 0u || is_shown_through) {
+            vec3 point = frame.eye + ray * mean_depth(link);
+            vec3 normal = unpack_normal(surface.normal);
             normal = dot(normal, ray) > 0.0 ? -normal : normal;
-            for (uint l = 0u; l < frame.counts.z; l++) {
+            for (uint l = 0u; l < frame.light_count; l++) {
                 float depth = 0.0;
-                if (dot(normal, towards_light(l, point).xyz) > 0.0) {
+                if (dot(normal, ray_to_light(l, point).direction) > 0.0) {
                     depth = optical_depth_to(l, point);
                 }
-                attenuations[f * frame.counts.z + l] = 1.0 - exp(-depth);
+                attenuations[f * frame.light_count + l] = 1.0 - exp(-depth);
             }
             is_shown_through = false;
-            if (link.x != NONE) {
-                uvec4 next = links[link.x];
-                is_shown_through = surfaces[link.x].y != surface.y && (link.y & next.y) != 0u && share_behind(link, next) > 0.0;
+            if (link.next != NONE) {
+                Link next = links[link.next];
+                is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u && fraction_behind(link, next) > 0.0;
             }
         }
         if (opacity_of(colors[f]) >= 1.0) {
-            covered |= link.y;
+            covered |= link.mask;
         }
         if (covered == 0xffffffffu && !is_shown_through) {
             break;
         }
-        f = link.x;
+        f = link.next;
     }
 }

@@ -9,7 +9,7 @@ layout(push_constant, std430) uniform Band {
 
 // The list of a pixel.
 uint list_of(uvec2 pixel) {
-    return (pixel.y - band.list_row) * frame.counts.x + pixel.x;
+    return (pixel.y - band.list_row) * frame.size.x + pixel.x;
 }
 
 // The pixel of a thread; in no dispatch where is_in_band says no.
@@ -18,5 +18,5 @@ uvec2 pixel_of(uvec2 thread) {
 }
 
 bool is_in_band(uvec2 pixel) {
-    return pixel.x < frame.counts.x && pixel.y < band.end_row;
+    return pixel.x < frame.size.x && pixel.y < band.end_row;
 }

@@ -18,13 +18,13 @@ layout(push_constant, std430) uniform Table {
 } table;
 
 void main() {
-    uint n = frame.limits.z;
+    uint n = frame.table_size;
     uvec3 entry = gl_GlobalInvocationID;
     if (entry.x >= n || entry.y >= n || entry.z >= n) {
         return;
     }
     vec3 q = 2.0 * vec3(entry) / float(n - 1u) - 1.0;
-    vec3 point = volumes[table.volume].center.xyz + q * volumes[table.volume].half_extent.xyz;
+    vec3 point = volumes[table.volume].center + q * volumes[table.volume].half_extent_m;
     uint at = ((table.volume * n + entry.z) * n + entry.y) * n + entry.x;
     density_tables[at] = volume_density(table.volume, point);
 }

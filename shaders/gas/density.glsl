@@ -19,13 +19,13 @@ const uint HYPERTEXTURE = 5u;
 
 // theta = (frame_num mod SWIRL_FRAMES) SWIRL with SWIRL = 2 pi / SWIRL_FRAMES: the text prints a product for the remainder.
 vec2 swirl(uint v) {
-    float frames = volumes[v].motion.y;
+    float frames = volumes[v].swirl_frames;
     if (frames <= 0.0) {
         return vec2(0.0);
     }
-    float number = frame.sampling.x;
+    float number = frame.number;
     float theta = 6.2831853 * (number - frames * floor(number / frames)) / frames;
-    return vec2(volumes[v].motion.z * cos(theta), volumes[v].motion.w * sin(theta));
+    return vec2(volumes[v].ellipse.x * cos(theta), volumes[v].ellipse.y * sin(theta));
 }
 
 float interpolated_offset(float at) {
@@ -45,14 +45,14 @@ float interpolated_offset(float at) {
 // - steam (figure 6): it rises, so that its point in the texture falls, swirls about the vertical, and thins with its height.
 // - hypertexture (reference 17): a soft sphere whose surface the turbulence moves.
 float gas_density(uint v, vec3 world) {
-    uint kind = uint(volumes[v].gas.x);
-    float opaque = volumes[v].gas.y;
-    float power = volumes[v].gas.z;
+    uint kind = volumes[v].density_function;
+    float opaque = volumes[v].opaque;
+    float power = volumes[v].power;
     if (kind == CONSTANT) {
         return opaque;
     }
-    float number = frame.sampling.x;
-    vec3 p = world * volumes[v].placement.w + volumes[v].placement.xyz;
+    float number = frame.number;
+    vec3 p = world * volumes[v].texture_scale_per_m + volumes[v].texture_offset;
     vec2 ellipse = swirl(v);
     float factor = opaque;
     float thickness = 1.0;
@@ -66,32 +66,32 @@ float gas_density(uint v, vec3 world) {
         if (kind == CLOUDS) {
             p += i == 0u ? vec3(value, 0.0, 0.0) : vec3(0.0, value, 0.0);
         } else if (kind == FOG) {
-            float front = volumes[v].front.x + volumes[v].front.y * number + volumes[v].detail.x * value
-                + volumes[v].detail.y * interpolated_offset(p.z);
+            float front = volumes[v].front_x_m + volumes[v].front_per_frame_m * number
+                + volumes[v].front_turbulence_m * value + volumes[v].front_table_m * interpolated_offset(p.z);
             if (world.x > front) {
                 return 0.0;
             }
-            factor *= volumes[v].front.w > 0.0 ? min(number / volumes[v].front.w, 1.0) : 1.0;
+            factor *= volumes[v].front_full_frames > 0.0 ? min(number / volumes[v].front_full_frames, 1.0) : 1.0;
             p += vec3(2.0 + value, 0.5 + value, -2.0 - value);
-            p += vec3(-number * volumes[v].motion.x, ellipse);
-            thickness = clamp((front - world.x) / volumes[v].front.z, 0.0, 1.0);
+            p += vec3(-number * volumes[v].along_per_frame, ellipse);
+            thickness = clamp((front - world.x) / volumes[v].front_depth_m, 0.0, 1.0);
         } else {
-            p += vec3(ellipse.x + value, value - number * volumes[v].motion.x, ellipse.y + value);
+            p += vec3(ellipse.x + value, value - number * volumes[v].along_per_frame, ellipse.y + value);
         }
     }
     if (kind == CLOUDS) {
-        return opaque * pow(0.5 * (sin(value * volumes[v].gas.w) + 1.0), power);
+        return opaque * pow(0.5 * (sin(value * volumes[v].frequency) + 1.0), power);
     }
     if (kind == HYPERTEXTURE) {
-        vec3 q = (world - volumes[v].center.xyz) / volumes[v].half_extent.xyz;
-        float radius = length(q) * (1.0 + volumes[v].detail.x * value);
-        return clamp((1.0 - radius) / volumes[v].detail.y, 0.0, 1.0) * opaque;
+        vec3 q = (world - volumes[v].center) / volumes[v].half_extent_m;
+        float radius = length(q) * (1.0 + volumes[v].hypertexture_amplitude * value);
+        return clamp((1.0 - radius) / volumes[v].hypertexture_softness, 0.0, 1.0) * opaque;
     }
     float density = pow(value * factor, power);
     if (kind == FOG) {
         density *= thickness;
     } else if (kind == STEAM) {
-        float height = (world.y - volumes[v].center.y) / volumes[v].half_extent.y * 0.5 + 0.5;
+        float height = (world.y - volumes[v].center.y) / volumes[v].half_extent_m.y * 0.5 + 0.5;
         density *= clamp(1.0 - height, 0.0, 1.0);
     }
     return density;
@@ -105,10 +105,10 @@ float volume_density(uint v, vec3 world) {
         return 0.0;
     }
     float density = gas_density(v, world);
-    float falloff = volumes[v].half_extent.w;
+    float falloff = volumes[v].falloff;
     if (falloff > 0.0) {
         float t = clamp(inside / falloff, 0.0, 1.0);
         density *= t * t * (3.0 - 2.0 * t);
     }
-    return volumes[v].profile.z > 0.0 ? -log(1.0 - clamp(density, 0.0, 0.9999)) : density;
+    return volumes[v].is_solid != 0u ? -log(1.0 - clamp(density, 0.0, 0.9999)) : density;
 }

@@ -12,7 +12,10 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 11, std430) buffer Counters {
-    uint counters[]; // fragments, sections; the most of both in a band
+    uint fragment_count; // that the band wants, beyond the capacity as well
+    uint section_count;
+    uint most_fragments; // in a band before
+    uint most_sections;
 };
 
 void main() {
@@ -21,9 +24,9 @@ void main() {
         heads[list_of(pixel)] = NONE;
     }
     if (gl_GlobalInvocationID.x == 0u && gl_GlobalInvocationID.y == 0u) {
-        counters[2] = max(counters[2], counters[0]);
-        counters[3] = max(counters[3], counters[1]);
-        counters[0] = 0u;
-        counters[1] = 0u;
+        most_fragments = max(most_fragments, fragment_count);
+        most_sections = max(most_sections, section_count);
+        fragment_count = 0u;
+        section_count = 0u;
     }
 }

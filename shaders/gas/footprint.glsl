@@ -15,28 +15,29 @@ struct Footprint {
 
 // Offsets from the middle of the picture times depth, and depth.
 vec3 to_view(vec3 world) {
-    vec3 offset = world - frame.eye.xyz;
-    return vec3(dot(offset, frame.to_column.xyz), dot(offset, frame.to_row.xyz), dot(offset, frame.forward.xyz));
+    vec3 offset = world - frame.eye;
+    return vec3(dot(offset, frame.to_column), dot(offset, frame.to_row), dot(offset, frame.forward));
 }
 
 vec2 to_pixel(vec3 p) {
-    return 0.5 * vec2(frame.counts.xy) + p.xy / p.z;
+    return 0.5 * vec2(frame.size) + p.xy / p.z;
 }
 
 // Always from the end that is seen, so that two triangles cut their common edge at one point.
 vec3 cut(vec3 seen, vec3 hidden) {
-    float share = (frame.eye.w - seen.z) / (hidden.z - seen.z);
-    return vec3(mix(seen.xy, hidden.xy, share), frame.eye.w);
+    float share = (frame.hither_m - seen.z) / (hidden.z - seen.z);
+    return vec3(mix(seen.xy, hidden.xy, share), frame.hither_m);
 }
 
 Footprint footprint_of(uint triangle) {
-    uvec4 corner = triangles[triangle];
-    vec3 offset = objects[corner.w].offset.xyz;
+    uvec3 corner = triangles[triangle].vertices;
+    uint object = triangles[triangle].object;
+    vec3 offset = objects[object].offset_m;
     vec3 points[3];
-    points[0] = to_view(vertices[corner.x].position.xyz + offset);
-    points[1] = to_view(vertices[corner.y].position.xyz + offset);
-    points[2] = to_view(vertices[corner.z].position.xyz + offset);
-    float hither = frame.eye.w;
+    points[0] = to_view(vertices[corner.x].position + offset);
+    points[1] = to_view(vertices[corner.y].position + offset);
+    points[2] = to_view(vertices[corner.z].position + offset);
+    float hither = frame.hither_m;
     vec2 polygon[4];
     uint count = 0u;
     for (uint i = 0u; i < 3u; i++) {
@@ -71,9 +72,9 @@ Footprint footprint_of(uint triangle) {
         high = max(high, last);
     }
     low = max(floor(low), vec2(0.0, band.first_row));
-    high = min(ceil(high), vec2(frame.counts.x, band.end_row));
+    high = min(ceil(high), vec2(frame.size.x, band.end_row));
     bool turned_away = false;
-    if (objects[corner.w].detail.y == 0.0) {
+    if (objects[object].is_two_sided == 0u) {
         vec2 a = polygon[1] - polygon[0];
         vec2 b = polygon[2] - polygon[0];
         vec2 c = last - polygon[0];
@@ -92,5 +93,5 @@ Footprint footprint_of(uint triangle) {
 
 vec2 box_corner(vec4 box, uint index) {
     vec2 pixel = vec2((index & 1u) == 0u ? box.x : box.z, (index & 2u) == 0u ? box.y : box.w);
-    return 2.0 * pixel / vec2(frame.counts.xy) - 1.0;
+    return 2.0 * pixel / vec2(frame.size) - 1.0;
 }

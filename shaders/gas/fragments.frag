@@ -18,19 +18,22 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) buffer Links {
-    uvec4 links[];
+    Link links[];
 };
 
 layout(set = 0, binding = 9, std430) buffer Surfaces {
-    uvec4 surfaces[];
+    Surface surfaces[];
 };
 
 layout(set = 0, binding = 10, std430) buffer Colors {
-    uvec2 colors[];
+    Color colors[];
 };
 
 layout(set = 0, binding = 11, std430) buffer Counters {
-    uint counters[]; // fragments, sections; the most of both in a band
+    uint fragment_count; // that the band wants, beyond the capacity as well
+    uint section_count;
+    uint most_fragments; // in a band before
+    uint most_sections;
 };
 
 layout(location = 0) flat in vec4 corners_ab;
@@ -156,16 +159,17 @@ void main() {
     }
     bool is_full = min(min(corners_inside.x, corners_inside.y), min(corners_inside.z, corners_inside.w)) > 0.0;
 
-    uvec4 corner = triangles[identity.x];
-    Object object = objects[corner.w];
-    vec3 eye = frame.eye.xyz - object.offset.xyz; // in the object's space
-    vec3 p0 = vertices[corner.x].position.xyz;
-    vec3 p1 = vertices[corner.y].position.xyz;
-    vec3 p2 = vertices[corner.z].position.xyz;
+    uvec3 corner = triangles[identity.x].vertices;
+    uint object_index = triangles[identity.x].object;
+    Object object = objects[object_index];
+    vec3 eye = frame.eye - object.offset_m; // in the object's space
+    vec3 p0 = vertices[corner.x].position;
+    vec3 p1 = vertices[corner.y].position;
+    vec3 p2 = vertices[corner.z].position;
     vec3 facing = cross(p1 - p0, p2 - p0);
-    vec3 depths = vec3(dot(p0 - eye, frame.forward.xyz), dot(p1 - eye, frame.forward.xyz), dot(p2 - eye, frame.forward.xyz));
+    vec3 depths = vec3(dot(p0 - eye, frame.forward), dot(p1 - eye, frame.forward), dot(p2 - eye, frame.forward));
     vec2 range = vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
-    range = max(range, vec2(frame.eye.w));
+    range = max(range, vec2(frame.hither_m));
     float height = dot(facing, p0 - eye);
 
     // The piece inside the pixel: its corners are those of the pixel that are inside, and the ends of the edges' parts in it.
@@ -209,7 +213,7 @@ void main() {
         }
     }
     middle /= corner_count;
-    if (near > frame.forward.w) {
+    if (near > frame.yon_m) {
         return;
     }
 
@@ -219,23 +223,23 @@ void main() {
     float twice_area = dot(facing, facing);
     float share_1 = clamp(dot(cross(point - p0, p2 - p0), facing) / max(twice_area, 1.0e-30), 0.0, 1.0);
     float share_2 = clamp(dot(cross(p1 - p0, point - p0), facing) / max(twice_area, 1.0e-30), 0.0, 1.0 - share_1);
-    vec3 normal = vertices[corner.x].normal.xyz * (1.0 - share_1 - share_2) + vertices[corner.y].normal.xyz * share_1
-        + vertices[corner.z].normal.xyz * share_2;
+    vec3 normal = vertices[corner.x].normal * (1.0 - share_1 - share_2) + vertices[corner.y].normal * share_1
+        + vertices[corner.z].normal * share_2;
     if (dot(normal, normal) < 1.0e-12) {
         normal = facing;
     }
 
-    vec3 color = object.color.xyz;
-    if (object.second.w > 0.0) {
+    vec3 color = object.color;
+    if (object.checker_edge_m > 0.0) {
         // Half a square up, so that boards that lie on a border of squares have one colour.
-        vec3 square = floor(point / object.second.w + vec3(0.0, 0.5, 0.0));
+        vec3 square = floor(point / object.checker_edge_m + vec3(0.0, 0.5, 0.0));
         float parity = mod(square.x + square.y + square.z, 2.0);
-        color = parity < 0.5 ? color : object.second.xyz;
+        color = parity < 0.5 ? color : object.checker_color;
     }
-    float opacity = object.color.w;
-    if (object.detail.z >= 0.0) {
+    float opacity = object.opacity;
+    if (object.solid_texture >= 0) {
         // Surface-defined gases: the solid texture is the surface's transparency.
-        opacity *= clamp(gas_density(uint(object.detail.z), point + object.offset.xyz), 0.0, 1.0);
+        opacity *= clamp(gas_density(uint(object.solid_texture), point + object.offset_m), 0.0, 1.0);
     }
     if (mask == 0u) {
         // Never opaque: it does not cover the sub-pixel whole, so that no tracing may end at it.
@@ -248,12 +252,12 @@ void main() {
     if (packed_opacity == 0u) {
         return; // a hole in a surface-defined gas
     }
-    uint slot = atomicAdd(counters[0], 1u);
-    if (slot >= frame.limits.x) {
+    uint slot = atomicAdd(fragment_count, 1u);
+    if (slot >= frame.fragment_capacity) {
         return; // counted: the host grows the buffers and repeats the run
     }
     uint next = atomicExchange(heads[list_of(uvec2(pixel))], slot);
-    links[slot] = uvec4(next, mask, floatBitsToUint(near), floatBitsToUint(far));
-    surfaces[slot] = uvec4(pack_normal(normalize(normal)), corner.w, identity.x, floatBitsToUint(coverage));
-    colors[slot] = uvec2(packHalf2x16(color.xy), packHalf2x16(vec2(color.z, 0.0)) | (packed_opacity << 16u));
+    links[slot] = Link(next, mask, near, far);
+    surfaces[slot] = Surface(pack_normal(normalize(normal)), object_index, identity.x, coverage);
+    colors[slot] = Color(packHalf2x16(color.xy), packHalf2x16(vec2(color.z, 0.0)) | (packed_opacity << 16u));
 }

@@ -2,17 +2,28 @@
 // that eye + depth * ray is the point.
 
 layout(set = 0, binding = 0, std140) uniform Frame {
-    vec4 eye; // w: depth of the hither plane
-    vec4 forward; // unit; w: depth of the yon plane
-    vec4 column; // change of a ray's direction from one pixel to the next on its right
-    vec4 row; // and to the one below
-    vec4 to_column; // a point's offset from the eye times this, over its depth, is its column from the picture's middle
-    vec4 to_row;
-    vec4 ambient; // linear RGB; w: 1 where light-attenuation runs
-    vec4 background; // linear RGB
-    vec4 sampling; // frame number, pixel_size, density below which no shadow is computed, transparency of the early end
-    uvec4 counts; // width, height, lights, volumes
-    uvec4 limits; // fragments, sections, table entries along an axis, seed
+    vec3 eye; // m
+    float hither_m; // depth of the hither plane
+    vec3 forward; // unit
+    float yon_m; // depth of the yon plane
+    vec3 ray_per_column; // change of a ray's direction from one pixel to the next on its right
+    float number; // of the scene's frame, a whole number
+    vec3 ray_per_row; // and to the one below
+    float pixel_size; // octaves of turbulence go on while their scale exceeds it, texture units
+    vec3 to_column; // a point's offset from the eye times this, over its depth, is its column from the picture's middle
+    float shadow_threshold; // density below which no shadow of the gas on itself is computed
+    vec3 to_row; // the same for rows
+    float early_end; // transparency below which the tracing of a pixel ends
+    vec3 ambient; // linear RGB
+    uint has_attenuations; // 1 where light-attenuation runs, else 0
+    vec3 background; // linear RGB
+    uint light_count;
+    uvec2 size; // of the picture, pixels
+    uint volume_count;
+    uint fragment_capacity; // slots of the fragments' buffers
+    uint section_capacity;
+    uint table_size; // entries of the tables along each axis
+    uint noise_seed;
 } frame;
 
 const uint NONE = 0xffffffffu; // the end of a list
@@ -20,8 +31,8 @@ const uint MAX_VOLUMES = 8u;
 const uint MAX_LIGHTS = 4u;
 
 vec3 ray_direction(vec2 pixel) {
-    vec2 offset = pixel - 0.5 * vec2(frame.counts.xy);
-    return frame.forward.xyz + frame.column.xyz * offset.x + frame.row.xyz * offset.y;
+    vec2 offset = pixel - 0.5 * vec2(frame.size);
+    return frame.forward + frame.ray_per_column * offset.x + frame.ray_per_row * offset.y;
 }
 
 // Integer hash with full avalanche: the lattice, the samples and their oracles use this one.

@@ -1,10 +1,40 @@
-// The fragment structure, split over three buffers: what the lists are walked by (links: next, mask, minimum and maximum depth), what
-// shading needs (surfaces: normal, object, triangle, coverage; colors: colour and opacity).
+// The fragment structure, split over three buffers: what the lists are walked by, and what shading needs.
 
-// What the volume rendering adds to a pixel's list: a section of gas, with a full mask.
+struct Link {
+    uint next; // fragment, section with the bit SECTION, or NONE
+    uint mask; // bit 4 row + column of a sub-pixel, rows from the top
+    float near_m; // depths
+    float far_m;
+};
+
+struct Surface {
+    uint normal; // octahedral, 16 bits each way
+    uint object;
+    uint triangle;
+    float coverage; // area of the triangle inside the pixel, pixels
+};
+
+struct Color {
+    uint red_green; // half floats, linear RGB
+    uint blue_opacity; // a half float; opacity in steps of 1/65535, so that opaque is exactly 1
+};
+
+// A section of gas, which the volume rendering adds to a pixel's list; of a full mask.
 struct Section {
-    uvec4 link; // depths of its ends and number of samples, as bits of floats; next
-    vec4 color; // premultiplied; w: transparency
+    float near_m; // depths
+    float far_m;
+    float increments; // of the march; a whole number
+    uint next; // fragment or NONE
+    vec3 color; // premultiplied, linear RGB
+    float transparency;
+};
+
+// What `sort` finds of a pixel, and what `volume` counts.
+struct Pixel {
+    uint first_section; // slots that are reserved for its sections
+    uint section_count;
+    float end_m; // depth at which its tracing ends
+    uint evaluations; // of the density
 };
 
 const uint SECTION = 0x80000000u; // in a link: what follows is a section, not a fragment
@@ -13,17 +43,16 @@ bool is_section(uint node) {
     return (node & SECTION) != 0u; // also of the list's end
 }
 
-float mean_depth(uvec4 link) {
-    return 0.5 * (uintBitsToFloat(link.z) + uintBitsToFloat(link.w));
+float mean_depth(Link link) {
+    return 0.5 * (link.near_m + link.far_m);
 }
 
-// Opacity lies in the upper half of the second word, in steps of 1/65535, so that opaque is exactly 1.
-float opacity_of(uvec2 color) {
-    return float(color.y >> 16u) / 65535.0;
+float opacity_of(Color color) {
+    return float(color.blue_opacity >> 16u) / 65535.0;
 }
 
-vec3 color_of(uvec2 color) {
-    return vec3(unpackHalf2x16(color.x), unpackHalf2x16(color.y & 0xffffu).x);
+vec3 color_of(Color color) {
+    return vec3(unpackHalf2x16(color.red_green), unpackHalf2x16(color.blue_opacity & 0xffffu).x);
 }
 
 // Octahedral.
@@ -43,14 +72,12 @@ vec3 unpack_normal(uint packed_normal) {
     return normalize(vec3(xy, z));
 }
 
-// Carpenter's estimate where the depth ranges of neighbouring fragments of two objects overlap: the share of the front one's area
+// Carpenter's estimate where the depth ranges of neighbouring fragments of two objects overlap: the fraction of the front one's area
 // in which it is behind the other. 0 without an overlap.
-float share_behind(uvec4 front, uvec4 back) {
-    vec2 a = vec2(uintBitsToFloat(front.z), uintBitsToFloat(front.w));
-    vec2 b = vec2(uintBitsToFloat(back.z), uintBitsToFloat(back.w));
-    float thickness = (a.y - a.x) + (b.y - b.x);
-    if (b.x >= a.y || thickness <= 0.0) {
+float fraction_behind(Link front, Link back) {
+    float thickness = (front.far_m - front.near_m) + (back.far_m - back.near_m);
+    if (back.near_m >= front.far_m || thickness <= 0.0) {
         return 0.0;
     }
-    return 1.0 - clamp((b.y - a.x) / thickness, 0.0, 1.0);
+    return 1.0 - clamp((back.far_m - front.near_m) / thickness, 0.0, 1.0);
 }

@@ -18,11 +18,11 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) buffer Links {
-    uvec4 links[];
+    Link links[];
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
-    uvec4 pixels[];
+    Pixel pixels[];
 };
 
 layout(set = 0, binding = 13, std430) buffer Sections {
@@ -33,7 +33,7 @@ const float PI = 3.14159265;
 const float SOLID_OPACITY = 0.99; // of which no more is marched
 
 float random(uint pixel, uint number) {
-    uint h = scramble(pixel * 0x9e3779b9u ^ scramble(number ^ scramble(frame.limits.w + uint(frame.sampling.x))));
+    uint h = scramble(pixel * 0x9e3779b9u ^ scramble(number ^ scramble(frame.noise_seed + uint(frame.number))));
     return float(h >> 8u) / 16777216.0;
 }
 
@@ -44,13 +44,15 @@ float scattered(float g, float cosine) {
 }
 
 float phase(uint v, float cosine) {
-    vec4 p = volumes[v].phase;
-    return p.x * scattered(p.y, cosine) + p.z * scattered(p.w, cosine);
+    vec2 weights = volumes[v].phase_weights;
+    vec2 g = volumes[v].phase_g;
+    return weights.x * scattered(g.x, cosine) + weights.y * scattered(g.y, cosine);
 }
 
 // What the march of a section finds.
 struct Gas {
-    vec4 color; // premultiplied; w: transparency
+    vec3 color; // premultiplied
+    float transparency;
     uint increments;
     uint evaluations; // of the density
 };
@@ -61,21 +63,21 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
     vec3 direction = ray / scale;
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
     vec3 up = cross(side, direction);
-    vec3 entry = frame.eye.xyz + ray * extent.x;
+    vec3 entry = frame.eye + ray * extent.x;
     float middle = 0.5 * (extent.x + extent.y);
     float step_m = 1.0e30;
     bool is_in[MAX_VOLUMES];
     float previous[MAX_VOLUMES]; // densities, for the normals of solids
     bool has_solid = false;
-    for (uint v = 0u; v < frame.counts.w; v++) {
+    for (uint v = 0u; v < frame.volume_count; v++) {
         previous[v] = 0.0;
         is_in[v] = spans[v].x <= middle && middle <= spans[v].y;
         if (is_in[v]) {
-            step_m = min(step_m, volumes[v].profile.w);
-            has_solid = has_solid || volumes[v].profile.z > 0.0;
+            step_m = min(step_m, volumes[v].step_m);
+            has_solid = has_solid || volumes[v].is_solid != 0u;
         }
     }
-    float early = has_solid ? max(frame.sampling.w, 1.0 - SOLID_OPACITY) : frame.sampling.w;
+    float early = has_solid ? max(frame.early_end, 1.0 - SOLID_OPACITY) : frame.early_end;
     float length_m = (extent.y - extent.x) * scale;
     uint evaluations = 0u;
     uint increments = 0u;
@@ -94,12 +96,12 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
         float aboves[MAX_VOLUMES];
         float extinction = 0.0;
         float densest = 0.0;
-        for (uint v = 0u; v < frame.counts.w; v++) {
+        for (uint v = 0u; v < frame.volume_count; v++) {
             densities[v] = 0.0;
             if (is_in[v]) {
                 // At the point, and for a solid in two directions orthogonal to the ray.
-                float apart = 0.25 * volumes[v].profile.w;
-                uint count = volumes[v].profile.z > 0.0 ? 3u : 1u;
+                float apart = 0.25 * volumes[v].step_m;
+                uint count = volumes[v].is_solid != 0u ? 3u : 1u;
                 for (uint i = 0u; i < count; i++) {
                     vec3 offset = i == 0u ? vec3(0.0) : (i == 1u ? side : up) * apart;
                     float density = volume_density(v, point + offset);
@@ -113,40 +115,40 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
                 }
                 evaluations += count;
                 densest = max(densest, densities[v]);
-                extinction += volumes[v].optics.x * densities[v];
+                extinction += volumes[v].tau_per_m * densities[v];
             }
         }
         if (extinction > 0.0 && !is_entry) {
             vec3 emission = vec3(0.0);
-            for (uint l = 0u; l < frame.counts.z; l++) {
-                vec4 way = towards_light(l, point);
+            for (uint l = 0u; l < frame.light_count; l++) {
+                LightRay to_light = ray_to_light(l, point);
                 // For patchy gas, shadows are not computed where it is thinner than a threshold.
-                float depth = densest >= frame.sampling.z ? optical_depth_to(l, point) : 0.0;
-                vec3 light = irradiance(l, way.w) * exp(-depth);
-                for (uint v = 0u; v < frame.counts.w; v++) {
+                float depth = densest >= frame.shadow_threshold ? optical_depth_to(l, point) : 0.0;
+                vec3 light = irradiance(l, to_light.distance_m) * exp(-depth);
+                for (uint v = 0u; v < frame.volume_count; v++) {
                     if (densities[v] > 0.0) {
-                        float share = PI * phase(v, dot(way.xyz, direction));
-                        if (volumes[v].profile.z > 0.0) {
-                            float apart = 0.25 * volumes[v].profile.w;
+                        float share = PI * phase(v, dot(to_light.direction, direction));
+                        if (volumes[v].is_solid != 0u) {
+                            float apart = 0.25 * volumes[v].step_m;
                             float along = (densities[v] - previous[v]) / max(at_m - previous_m, 1.0e-3 * step_m);
                             float aside = (asides[v] - densities[v]) / apart;
                             float above = (aboves[v] - densities[v]) / apart;
                             vec3 rise = direction * along + side * aside + up * above;
                             vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -direction;
-                            share = max(dot(normal, way.xyz), 0.0);
+                            share = max(dot(normal, to_light.direction), 0.0);
                         }
-                        emission += volumes[v].optics.x * densities[v] * volumes[v].optics.yzw * light * share;
+                        emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * light * share;
                     }
                 }
             }
-            for (uint v = 0u; v < frame.counts.w; v++) {
-                emission += volumes[v].optics.x * densities[v] * volumes[v].optics.yzw * frame.ambient.xyz;
+            for (uint v = 0u; v < frame.volume_count; v++) {
+                emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * frame.ambient;
             }
             float passed = exp(-extinction * increment);
             color += emission / extinction * (transparency * (1.0 - passed));
             transparency *= passed;
         }
-        for (uint v = 0u; v < frame.counts.w; v++) {
+        for (uint v = 0u; v < frame.volume_count; v++) {
             previous[v] = densities[v];
         }
         previous_m = at_m;
@@ -160,16 +162,16 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
             break;
         }
     }
-    return Gas(vec4(color, transparency), increments, evaluations);
+    return Gas(color, transparency, increments, evaluations);
 }
 
 void set_next(uint list, uint node, uint next) {
     if (node == NONE) {
         heads[list] = next;
     } else if (is_section(node)) {
-        sections[node & ~SECTION].link.w = next;
+        sections[node & ~SECTION].next = next;
     } else {
-        links[node].x = next;
+        links[node].next = next;
     }
 }
 
@@ -178,18 +180,18 @@ void main() {
     if (!is_in_band(place)) {
         return;
     }
-    uint pixel = place.y * frame.counts.x + place.x;
+    uint pixel = place.y * frame.size.x + place.x;
     uint list = list_of(place);
-    uvec4 mine = pixels[list];
-    if (mine.y == 0u) {
+    Pixel mine = pixels[list];
+    if (mine.section_count == 0u) {
         return;
     }
     vec3 ray = ray_direction(vec2(place) + 0.5);
-    float end = uintBitsToFloat(mine.z);
+    float end = mine.end_m;
     vec2 spans[MAX_VOLUMES];
     float depth = 1.0e30;
-    for (uint v = 0u; v < frame.counts.w; v++) {
-        spans[v] = meet(volume_span(v, frame.eye.xyz, ray), vec2(frame.eye.w, end));
+    for (uint v = 0u; v < frame.volume_count; v++) {
+        spans[v] = meet(volume_span(v, frame.eye, ray), vec2(frame.hither_m, end));
         if (spans[v].x < spans[v].y) {
             depth = min(depth, spans[v].x);
         }
@@ -200,21 +202,21 @@ void main() {
     uint evaluations = 0u;
     uint number = 0u;
     float transparency = 1.0;
-    while (depth < end && used < mine.y) {
+    while (depth < end && used < mine.section_count) {
         float next = end;
         while (fragment != NONE) {
-            uvec4 link = links[fragment];
+            Link link = links[fragment];
             float cut = mean_depth(link);
             if (cut > depth) {
                 next = min(next, cut);
                 break;
             }
             previous = fragment;
-            fragment = link.x;
+            fragment = link.next;
         }
         bool has_gas = false;
         bool has_more = false;
-        for (uint v = 0u; v < frame.counts.w; v++) {
+        for (uint v = 0u; v < frame.volume_count; v++) {
             if (spans[v].x < spans[v].y && spans[v].y > depth) {
                 has_more = true;
                 if (spans[v].x > depth) {
@@ -232,18 +234,17 @@ void main() {
             Gas gas = march(pixel, ray, spans, vec2(depth, next), transparency, number);
             number += gas.increments;
             evaluations += gas.evaluations;
-            transparency *= gas.color.w;
-            uint slot = mine.x + used;
-            uvec3 extent = floatBitsToUint(vec3(depth, next, float(gas.increments)));
-            sections[slot] = Section(uvec4(extent, fragment), gas.color);
+            transparency *= gas.transparency;
+            uint slot = mine.first_section + used;
+            sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
             set_next(list, previous, slot | SECTION);
             previous = slot | SECTION;
             used++;
-            if (transparency < frame.sampling.w) {
+            if (transparency < frame.early_end) {
                 break;
             }
         }
         depth = next;
     }
-    pixels[list].w = evaluations;
+    pixels[list].evaluations = evaluations;
 }

@@ -3,8 +3,13 @@
 #include "gas/object.glsl"
 
 struct Vertex {
-    vec4 position; // m
-    vec4 normal;
+    vec3 position; // m
+    vec3 normal; // unit
+};
+
+struct Triangle {
+    uvec3 vertices;
+    uint object;
 };
 
 layout(set = 0, binding = 4, std430) readonly buffer Vertices {
@@ -12,7 +17,7 @@ layout(set = 0, binding = 4, std430) readonly buffer Vertices {
 };
 
 layout(set = 0, binding = 5, std430) readonly buffer Triangles {
-    uvec4 triangles[]; // three vertices, object
+    Triangle triangles[];
 };
 
 layout(set = 0, binding = 6, std430) readonly buffer Objects {

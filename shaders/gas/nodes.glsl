@@ -5,7 +5,7 @@ layout(set = 0, binding = 7, std430) readonly buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) readonly buffer Links {
-    uvec4 links[];
+    Link links[];
 };
 
 layout(set = 0, binding = 13, std430) readonly buffer Sections {
@@ -16,7 +16,7 @@ layout(set = 0, binding = 13, std430) readonly buffer Sections {
 uint fragment_at(uint node) {
     uint fragment = node;
     while (fragment != NONE && is_section(fragment)) {
-        fragment = sections[fragment & ~SECTION].link.w;
+        fragment = sections[fragment & ~SECTION].next;
     }
     return fragment;
 }

@@ -3,7 +3,7 @@
 // hash of the point, so that host and device agree to the bit on them.
 
 vec3 lattice_gradient(ivec3 cell) {
-    uint h = scramble(uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ uint(cell.z) * 0xcb1ab31fu ^ frame.limits.w);
+    uint h = scramble(uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ uint(cell.z) * 0xcb1ab31fu ^ frame.noise_seed);
     return vec3(float(h & 1023u), float((h >> 10u) & 1023u), float((h >> 20u) & 1023u)) / 511.5 - 1.0;
 }
 
@@ -28,7 +28,7 @@ float noise(vec3 p) {
 float fractal(vec3 p, bool is_noise) {
     float sum = 0.0;
     float frequency = 1.0;
-    for (float scale = 1.0; scale > frame.sampling.y; scale *= 0.5) {
+    for (float scale = 1.0; scale > frame.pixel_size; scale *= 0.5) {
         float value = noise(p * frequency);
         if (is_noise) {
             return value;

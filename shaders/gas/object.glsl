@@ -1,8 +1,13 @@
 // What a surface is made of.
 
 struct Object {
-    vec4 color; // linear RGB, opacity
-    vec4 second; // colour of the other squares; edge of a square, m, 0 for a plain object
-    vec4 offset; // m; w: strength of the highlight
-    vec4 detail; // exponent of the highlight; 1 when seen from both sides; the volumes entry of its solid texture, or -1
+    vec3 color; // linear RGB
+    float opacity;
+    vec3 checker_color; // of every other square, linear RGB
+    float checker_edge_m; // of a square; 0 for a plain object
+    vec3 offset_m;
+    float highlight_strength; // Phong's
+    float highlight_exponent;
+    uint is_two_sided; // 1 when seen from both sides
+    int solid_texture; // its entry in the volumes, or -1
 };

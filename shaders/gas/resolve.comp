@@ -21,11 +21,11 @@ layout(set = 0, binding = 6, std430) readonly buffer Objects {
 #include "gas/nodes.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
-    uvec4 surfaces[];
+    Surface surfaces[];
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
-    uvec2 colors[];
+    Color colors[];
 };
 
 layout(set = 0, binding = 14, std430) readonly buffer Attenuations {
@@ -38,24 +38,24 @@ const uint FULL = 0xffffffffu;
 
 // Light that a fragment sends to the eye, per opacity. The highlight is Phong's.
 vec3 shaded(uint f, vec3 ray) {
-    uvec4 surface = surfaces[f];
+    Surface surface = surfaces[f];
     vec3 albedo = color_of(colors[f]);
-    vec3 point = frame.eye.xyz + ray * mean_depth(links[f]);
+    vec3 point = frame.eye + ray * mean_depth(links[f]);
     vec3 direction = normalize(ray);
-    vec3 normal = unpack_normal(surface.x);
+    vec3 normal = unpack_normal(surface.normal);
     normal = dot(normal, ray) > 0.0 ? -normal : normal;
-    float strength = objects[surface.y].offset.w;
-    float exponent = objects[surface.y].detail.x;
-    vec3 sum = albedo * frame.ambient.xyz;
-    for (uint l = 0u; l < frame.counts.z; l++) {
-        vec4 way = towards_light(l, point);
-        float facing = dot(normal, way.xyz);
+    float strength = objects[surface.object].highlight_strength;
+    float exponent = objects[surface.object].highlight_exponent;
+    vec3 sum = albedo * frame.ambient;
+    for (uint l = 0u; l < frame.light_count; l++) {
+        LightRay to_light = ray_to_light(l, point);
+        float facing = dot(normal, to_light.direction);
         if (facing > 0.0) {
-            vec3 light = irradiance(l, way.w);
-            if (frame.ambient.w != 0.0) {
-                light *= 1.0 - attenuations[f * frame.counts.z + l];
+            vec3 light = irradiance(l, to_light.distance_m);
+            if (frame.has_attenuations != 0u) {
+                light *= 1.0 - attenuations[f * frame.light_count + l];
             }
-            float mirrored = max(dot(reflect(direction, normal), way.xyz), 0.0);
+            float mirrored = max(dot(reflect(direction, normal), to_light.direction), 0.0);
             sum += light * (albedo * facing + strength * pow(mirrored, exponent));
         }
     }
@@ -82,34 +82,34 @@ void main() {
         uint bit = remaining & (~remaining + 1u);
         // Gas, and fragments beside the group: a loop of its own, since a processor that does many pixels in step would shade
         // whenever one of them passes through gas.
-        uvec4 link = uvec4(NONE, 0u, 0u, 0u);
+        Link link = Link(NONE, 0u, 0.0, 0.0);
         while (node != NONE && left > 0.0) {
             if (is_section(node)) {
                 Section gas = sections[node & ~SECTION];
-                group_color += gas.color.xyz * left;
-                left *= gas.color.w;
-                node = gas.link.w;
+                group_color += gas.color * left;
+                left *= gas.transparency;
+                node = gas.next;
             } else {
                 link = links[node];
-                if ((link.y & bit) != 0u) {
+                if ((link.mask & bit) != 0u) {
                     break;
                 }
-                group &= ~link.y;
-                node = link.x;
+                group &= ~link.mask;
+                node = link.next;
             }
         }
         if (node != NONE && left > 0.0) {
-            group &= link.y;
+            group &= link.mask;
             // The share of this fragment that shows its neighbour instead.
             float share = 0.0;
-            uint behind = fragment_at(link.x);
+            uint behind = fragment_at(link.next);
             if (behind != NONE) {
-                uvec4 next = links[behind];
-                float shown = share_behind(link, next) * opacity_of(colors[behind]);
-                if (shown > 0.0 && surfaces[behind].y != surfaces[node].y) {
-                    bool is_there = (next.y & bit) != 0u;
+                Link next = links[behind];
+                float shown = fraction_behind(link, next) * opacity_of(colors[behind]);
+                if (shown > 0.0 && surfaces[behind].object != surfaces[node].object) {
+                    bool is_there = (next.mask & bit) != 0u;
                     share = is_there ? shown : 0.0;
-                    group &= is_there ? next.y : ~next.y;
+                    group &= is_there ? next.mask : ~next.mask;
                 }
             }
             float taken = left * opacity_of(colors[node]);
@@ -122,11 +122,11 @@ void main() {
                 }
             }
             left *= 1.0 - opacity_of(colors[node]);
-            node = link.x;
+            node = link.next;
         }
         if (node == NONE || left <= 0.0) {
             float size = float(bitCount(group)) / 32.0;
-            color += (group_color + frame.background.xyz * left) * size;
+            color += (group_color + frame.background * left) * size;
             opacity += (1.0 - left) * size;
             remaining &= ~group;
             group = remaining;

@@ -22,10 +22,13 @@ layout(set = 0, binding = 16, std430) buffer ShadowTables {
 };
 
 layout(push_constant, std430) uniform Wave {
-    vec4 source; // the light in entries and 1, or the way to it in entries and 0
-    vec4 spacing_m; // between entries
-    ivec4 cell; // the light's cell; -1 or the last entry where it lies outside; w: this wave's distance
-    uvec4 numbers; // first entries of the volume's densities and of its sums
+    vec3 source; // a point light, or the direction towards one at infinity, in entries
+    uint is_point; // 1 or 0
+    vec3 spacing_m; // between entries
+    int distance; // from the light's cell to this wave's entries
+    ivec3 cell; // the light's; -1 or the last entry where it lies outside
+    uint first_density; // entry of the volume's densities
+    uint first_sum; // entry of the volume's and light's sums
 } wave;
 
 int distance_along(int entry, int cell) {
@@ -33,19 +36,19 @@ int distance_along(int entry, int cell) {
 }
 
 uint index_of(ivec3 entry) {
-    int n = int(frame.limits.z);
+    int n = int(frame.table_size);
     return uint((entry.z * n + entry.y) * n + entry.x);
 }
 
 // Sum at an entry plus its density over the step to it.
 float sum_through(ivec3 entry, float step_m) {
     uint at = index_of(entry);
-    return shadow_tables[wave.numbers.y + at] + density_tables[wave.numbers.x + at] * step_m;
+    return shadow_tables[wave.first_sum + at] + density_tables[wave.first_density + at] * step_m;
 }
 
 float sum_to_light(ivec3 entry) {
-    int n = int(frame.limits.z);
-    vec3 way = wave.source.w == 0.0 ? wave.source.xyz : wave.source.xyz - vec3(entry);
+    int n = int(frame.table_size);
+    vec3 way = wave.is_point == 0u ? wave.source : wave.source - vec3(entry);
     // At a face and on its way out: nothing lies between the entry and the light.
     for (int axis = 0; axis < 3; axis++) {
         if ((entry[axis] == 0 && way[axis] < 0.0) || (entry[axis] == n - 1 && way[axis] > 0.0)) {
@@ -54,9 +57,9 @@ float sum_to_light(ivec3 entry) {
     }
     vec3 size = abs(way);
     float largest = max(size.x, max(size.y, size.z));
-    float way_m = length(way * wave.spacing_m.xyz);
-    if (wave.source.w != 0.0 && largest <= 1.0) {
-        return density_tables[wave.numbers.x + index_of(entry)] * way_m;
+    float way_m = length(way * wave.spacing_m);
+    if (wave.is_point != 0u && largest <= 1.0) {
+        return density_tables[wave.first_density + index_of(entry)] * way_m;
     }
     if (largest <= 0.0) {
         return 0.0;
@@ -92,18 +95,18 @@ float sum_to_light(ivec3 entry) {
 }
 
 void write_entry(ivec3 entry) {
-    if (entry.z >= 0 && entry.z < int(frame.limits.z)) {
-        shadow_tables[wave.numbers.y + index_of(entry)] = sum_to_light(entry);
+    if (entry.z >= 0 && entry.z < int(frame.table_size)) {
+        shadow_tables[wave.first_sum + index_of(entry)] = sum_to_light(entry);
     }
 }
 
 void main() {
-    int n = int(frame.limits.z);
+    int n = int(frame.table_size);
     ivec2 xy = ivec2(gl_GlobalInvocationID.xy);
     if (xy.x >= n || xy.y >= n) {
         return;
     }
-    int along_z = wave.cell.w - distance_along(xy.x, wave.cell.x) - distance_along(xy.y, wave.cell.y);
+    int along_z = wave.distance - distance_along(xy.x, wave.cell.x) - distance_along(xy.y, wave.cell.y);
     if (along_z < 0) {
         return;
     }

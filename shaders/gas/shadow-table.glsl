@@ -6,12 +6,12 @@ layout(set = 0, binding = 16, std430) readonly buffer ShadowTables {
 };
 
 float table_value(uint v, uint l, vec3 point) {
-    uint n = frame.limits.z;
-    vec3 q = (point - volumes[v].center.xyz) / volumes[v].half_extent.xyz * 0.5 + 0.5;
+    uint n = frame.table_size;
+    vec3 q = (point - volumes[v].center) / volumes[v].half_extent_m * 0.5 + 0.5;
     vec3 place = clamp(q, 0.0, 1.0) * float(n - 1u);
     uvec3 low = min(uvec3(place), uvec3(n - 2u));
     vec3 t = place - vec3(low);
-    uint first = (v * frame.counts.z + l) * n * n * n + (low.z * n + low.y) * n + low.x;
+    uint first = (v * frame.light_count + l) * n * n * n + (low.z * n + low.y) * n + low.x;
     uint up = first + n * n;
     float s00 = mix(shadow_tables[first], shadow_tables[first + 1u], t.x);
     float s10 = mix(shadow_tables[first + n], shadow_tables[first + n + 1u], t.x);
@@ -21,12 +21,12 @@ float table_value(uint v, uint l, vec3 point) {
 }
 
 float optical_depth_to(uint l, vec3 point) {
-    vec4 way = towards_light(l, point);
+    LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
-    for (uint v = 0u; v < frame.counts.w; v++) {
-        vec2 span = meet(bounds_span(v, point, way.xyz), vec2(0.0, way.w));
+    for (uint v = 0u; v < frame.volume_count; v++) {
+        vec2 span = meet(bounds_span(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
         if (span.x <= span.y) {
-            sum += volumes[v].optics.x * table_value(v, l, point + way.xyz * span.x);
+            sum += volumes[v].tau_per_m * table_value(v, l, point + to_light.direction * span.x);
         }
     }
     return sum;

@@ -16,23 +16,26 @@ layout(set = 0, binding = 7, std430) buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) buffer Links {
-    uvec4 links[];
+    Link links[];
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
-    uvec4 surfaces[];
+    Surface surfaces[];
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
-    uvec2 colors[];
+    Color colors[];
 };
 
 layout(set = 0, binding = 11, std430) buffer Counters {
-    uint counters[];
+    uint fragment_count; // that the band wants, beyond the capacity as well
+    uint section_count;
+    uint most_fragments; // in a band before
+    uint most_sections;
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {
-    uvec4 pixels[]; // first section, sections reserved, depth of the end, density evaluations
+    Pixel pixels[];
 };
 
 bool stands_before(uint a, uint b) {
@@ -41,9 +44,9 @@ bool stands_before(uint a, uint b) {
     if (depth_a != depth_b) {
         return depth_a < depth_b;
     }
-    uvec4 surface_a = surfaces[a];
-    uvec4 surface_b = surfaces[b];
-    return surface_a.y != surface_b.y ? surface_a.y < surface_b.y : surface_a.z < surface_b.z;
+    Surface surface_a = surfaces[a];
+    Surface surface_b = surfaces[b];
+    return surface_a.object != surface_b.object ? surface_a.object < surface_b.object : surface_a.triangle < surface_b.triangle;
 }
 
 // Merges runs of 1, 2, 4, ... links until one run is left.
@@ -61,7 +64,7 @@ uint sorted(uint unsorted) {
             for (uint i = 0u; i < run; i++) {
                 if (q != NONE) {
                     p_left++;
-                    q = links[q].x;
+                    q = links[q].next;
                 }
             }
             uint q_left = run;
@@ -72,23 +75,23 @@ uint sorted(uint unsorted) {
                 }
                 uint taken = take_p ? p : q;
                 if (take_p) {
-                    p = links[p].x;
+                    p = links[p].next;
                     p_left--;
                 } else {
-                    q = links[q].x;
+                    q = links[q].next;
                     q_left--;
                 }
                 if (tail == NONE) {
                     head = taken;
                 } else {
-                    links[tail].x = taken;
+                    links[tail].next = taken;
                 }
                 tail = taken;
             }
             p = q;
         }
         if (tail != NONE) {
-            links[tail].x = NONE;
+            links[tail].next = NONE;
         }
         if (merges <= 1u) {
             break;
@@ -106,11 +109,11 @@ void main() {
     uint head = sorted(heads[at]);
     heads[at] = head;
 
-    float end = frame.forward.w;
+    float end = frame.yon_m;
     uint covered = 0u;
-    for (uint f = head; f != NONE && covered != 0xffffffffu; f = links[f].x) {
+    for (uint f = head; f != NONE && covered != 0xffffffffu; f = links[f].next) {
         if (opacity_of(colors[f]) >= 1.0) {
-            covered |= links[f].y;
+            covered |= links[f].mask;
             if (covered == 0xffffffffu) {
                 end = min(end, mean_depth(links[f]));
             }
@@ -120,8 +123,8 @@ void main() {
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
     vec2 extent = vec2(1.0e30, 0.0);
     uint cuts = 0u;
-    for (uint v = 0u; v < frame.counts.w; v++) {
-        vec2 span = meet(volume_span(v, frame.eye.xyz, ray), vec2(frame.eye.w, end));
+    for (uint v = 0u; v < frame.volume_count; v++) {
+        vec2 span = meet(volume_span(v, frame.eye, ray), vec2(frame.hither_m, end));
         if (span.x < span.y) {
             extent = vec2(min(extent.x, span.x), max(extent.y, span.y));
             cuts += 2u;
@@ -129,7 +132,7 @@ void main() {
     }
     uint wanted = 0u;
     if (cuts > 0u) {
-        for (uint f = head; f != NONE; f = links[f].x) {
+        for (uint f = head; f != NONE; f = links[f].next) {
             float depth = mean_depth(links[f]);
             if (depth > extent.x && depth < extent.y) {
                 cuts++;
@@ -139,10 +142,10 @@ void main() {
     }
     uint first = 0u;
     if (wanted > 0u) {
-        first = atomicAdd(counters[1], wanted);
-        if (first + wanted > frame.limits.y) {
+        first = atomicAdd(section_count, wanted);
+        if (first + wanted > frame.section_capacity) {
             wanted = 0u; // counted: the host grows the buffers and repeats the run
         }
     }
-    pixels[at] = uvec4(first, wanted, floatBitsToUint(end), 0u);
+    pixels[at] = Pixel(first, wanted, end, 0u);
 }

@@ -1,16 +1,34 @@
 // The solids that bound the gases. Any convex solid does that a ray can be cut with (section on volume-modelled phenomena).
 
 struct Volume {
-    vec4 center; // m; w: shape
-    vec4 half_extent; // m; w: share of the way from boundary to middle over which the gas fades
-    vec4 profile; // radii at bottom and top over half_extent.xz; 1 for a hypertexture solid; step of the march, m
-    vec4 placement; // of the solid texture: offset; texture units a metre
-    vec4 gas; // density function; opaque; power; frequency
-    vec4 motion; // texture units a frame; frames of a turn; the ellipse's diameters (ELLIPSE1, ELLIPSE2)
-    vec4 front; // of the fog: x at frame 0, m; m a frame; m until it is at its thickest; frames until then
-    vec4 detail; // of the fog's front: share of turbulence, m; of the random table, m. Of a hypertexture: noise, softness
-    vec4 optics; // tau, or a solid's c, 1/m; albedo, linear RGB
-    vec4 phase; // two Henyey-Greenstein functions: weight, g, weight, g
+    vec3 center; // m
+    uint shape; // BOX, SPHERE or FRUSTUM
+    vec3 half_extent_m;
+    float falloff; // fraction of the distance from boundary to middle over which the gas fades
+    vec3 texture_offset; // texture units
+    float texture_scale_per_m; // texture units a metre
+    vec3 albedo; // linear RGB
+    float tau_per_m; // or a solid's c
+    vec2 radii; // of a frustum at bottom and top, over half_extent_m.xz
+    uint is_solid; // 1 for a hypertexture solid
+    float step_m; // of the march
+    uint density_function; // CONSTANT to HYPERTEXTURE
+    float opaque;
+    float power;
+    float frequency; // of the clouds' sine wave
+    vec2 ellipse; // diameters of the helix (ELLIPSE1, ELLIPSE2), texture units
+    float along_per_frame; // along the helix (DOWN), texture units a frame
+    float swirl_frames; // of one revolution (SWIRL_FRAMES), 0 for none
+    float front_x_m; // of the fog's front at frame 0
+    float front_per_frame_m;
+    float front_depth_m; // behind the front until the fog is at its thickest
+    float front_full_frames; // until the fog is at its thickest (FULL_FOG)
+    float front_turbulence_m; // by which a turbulence of 1 moves the front
+    float front_table_m; // by which a random number of 1 moves it
+    float hypertexture_amplitude; // fraction of the radius by which a turbulence of 1 moves the surface
+    float hypertexture_softness; // fraction of the radius over which it turns dense
+    vec2 phase_weights; // of two Henyey-Greenstein functions
+    vec2 phase_g;
 };
 
 layout(set = 0, binding = 1, std430) readonly buffer Volumes {
@@ -87,29 +105,29 @@ vec2 frustum_span(vec3 o, vec3 d, vec2 radii) {
 
 // Where the line origin + t direction is inside the solid; empty (x > y) where it misses it.
 vec2 volume_span(uint v, vec3 origin, vec3 direction) {
-    vec3 scale = 1.0 / volumes[v].half_extent.xyz;
-    vec3 o = (origin - volumes[v].center.xyz) * scale;
+    vec3 scale = 1.0 / volumes[v].half_extent_m;
+    vec3 o = (origin - volumes[v].center) * scale;
     vec3 d = direction * scale;
-    uint shape = uint(volumes[v].center.w);
+    uint shape = volumes[v].shape;
     if (shape == BOX) {
         return box_span(o, d);
     }
     if (shape == SPHERE) {
         return quadratic_span(dot(d, d), dot(o, d), dot(o, o) - 1.0);
     }
-    return frustum_span(o, d, volumes[v].profile.xy);
+    return frustum_span(o, d, volumes[v].radii);
 }
 
 // Where the line is inside the box around the solid, which is the box of its tables.
 vec2 bounds_span(uint v, vec3 origin, vec3 direction) {
-    vec3 scale = 1.0 / volumes[v].half_extent.xyz;
-    return box_span((origin - volumes[v].center.xyz) * scale, direction * scale);
+    vec3 scale = 1.0 / volumes[v].half_extent_m;
+    return box_span((origin - volumes[v].center) * scale, direction * scale);
 }
 
 // How far inside the solid a point is: 0 on the boundary, 1 in the middle, negative outside.
 float inwardness(uint v, vec3 point) {
-    vec3 q = (point - volumes[v].center.xyz) / volumes[v].half_extent.xyz;
-    uint shape = uint(volumes[v].center.w);
+    vec3 q = (point - volumes[v].center) / volumes[v].half_extent_m;
+    uint shape = volumes[v].shape;
     if (shape == BOX) {
         vec3 inside = 1.0 - abs(q);
         return min(inside.x, min(inside.y, inside.z));
@@ -117,7 +135,7 @@ float inwardness(uint v, vec3 point) {
     if (shape == SPHERE) {
         return 1.0 - length(q);
     }
-    vec2 radii = volumes[v].profile.xy;
+    vec2 radii = volumes[v].radii;
     float radius = mix(radii.x, radii.y, clamp(0.5 * q.y + 0.5, 0.0, 1.0));
     return min(1.0 - abs(q.y), radius - length(q.xz));
 }

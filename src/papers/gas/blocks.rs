@@ -1,65 +1,177 @@
 //! What the shaders read of the scene and of the frame, as bytes.
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
 use super::capacity::Capacity;
-use super::model::{DensityFunction, Object, Shape, SolidTexture, Volume};
+use super::model::{DensityFunction, Object, Shape, SolidTexture, Swirl, Volume};
 use super::parameters::Parameters;
 use crate::host_block;
 use crate::scene::Light;
 use crate::scene::random::Random;
 
 host_block! {
+    /// The frame and its camera, as `frame.glsl` describes them.
     pub struct FrameBlock {
-        eye: [f32; 4],
-        forward: [f32; 4],
-        column: [f32; 4],
-        row: [f32; 4],
-        to_column: [f32; 4],
-        to_row: [f32; 4],
-        ambient: [f32; 4],
-        background: [f32; 4],
-        sampling: [f32; 4],
-        counts: [u32; 4],
-        limits: [u32; 4],
+        eye: [f32; 3],
+        hither_m: f32,
+        forward: [f32; 3],
+        yon_m: f32,
+        ray_per_column: [f32; 3],
+        number: f32,
+        ray_per_row: [f32; 3],
+        pixel_size: f32,
+        to_column: [f32; 3],
+        shadow_threshold: f32,
+        to_row: [f32; 3],
+        early_end: f32,
+        ambient: [f32; 3],
+        has_attenuations: u32,
+        background: [f32; 3],
+        light_count: u32,
+        size: [u32; 2],
+        volume_count: u32,
+        fragment_capacity: u32,
+        section_capacity: u32,
+        table_size: u32,
+        noise_seed: u32,
     }
 }
 
 host_block! {
+    /// A volume, or the solid texture of a surface, as `volume.glsl` describes it.
     pub struct VolumeBlock {
-        center: [f32; 4],
-        half_extent: [f32; 4],
-        profile: [f32; 4],
-        placement: [f32; 4],
-        gas: [f32; 4],
-        motion: [f32; 4],
-        front: [f32; 4],
-        detail: [f32; 4],
-        optics: [f32; 4],
-        phase: [f32; 4],
+        center: [f32; 3],
+        shape: u32,
+        half_extent_m: [f32; 3],
+        falloff: f32,
+        texture_offset: [f32; 3],
+        texture_scale_per_m: f32,
+        albedo: [f32; 3],
+        tau_per_m: f32,
+        radii: [f32; 2],
+        is_solid: u32,
+        step_m: f32,
+        density_function: u32,
+        opaque: f32,
+        power: f32,
+        frequency: f32,
+        ellipse: [f32; 2],
+        along_per_frame: f32,
+        swirl_frames: f32,
+        front_x_m: f32,
+        front_per_frame_m: f32,
+        front_depth_m: f32,
+        front_full_frames: f32,
+        front_turbulence_m: f32,
+        front_table_m: f32,
+        hypertexture_amplitude: f32,
+        hypertexture_softness: f32,
+        phase_weights: [f32; 2],
+        phase_g: [f32; 2],
     }
 }
 
 host_block! {
+    /// A light, as `light.glsl` describes it.
     pub struct LightBlock {
-        source: [f32; 4],
-        intensity: [f32; 4],
+        source: [f32; 3],
+        is_point: u32,
+        intensity: [f32; 3],
+        _pad: f32,
     }
 }
 
 host_block! {
+    /// The surface properties of an object, as `object.glsl` describes them.
     pub struct ObjectBlock {
-        color: [f32; 4],
-        second: [f32; 4],
-        offset: [f32; 4],
-        detail: [f32; 4],
+        color: [f32; 3],
+        opacity: f32,
+        checker_color: [f32; 3],
+        checker_edge_m: f32,
+        offset_m: [f32; 3],
+        highlight_strength: f32,
+        highlight_exponent: f32,
+        is_two_sided: u32,
+        solid_texture: i32,
+        _pad: f32,
     }
 }
 
 host_block! {
+    /// A vertex of all meshes in one: metres, and a unit normal.
     pub struct VertexBlock {
-        pub position: [f32; 4],
-        pub normal: [f32; 4],
+        position: [f32; 3],
+        _after_position: f32,
+        normal: [f32; 3],
+        _after_normal: f32,
+    }
+}
+
+host_block! {
+    /// Three vertices and the object that they belong to.
+    pub struct TriangleBlock {
+        pub vertices: [u32; 3],
+        pub object: u32,
+    }
+}
+
+host_block! {
+    /// The part of a fragment by which its list is walked, as `lists.glsl` describes it.
+    pub struct LinkBlock {
+        pub next: u32,
+        pub mask: u32,
+        pub near_m: f32,
+        pub far_m: f32,
+    }
+}
+
+host_block! {
+    /// The part of a fragment that is the surface's.
+    pub struct SurfaceBlock {
+        pub normal: u32,
+        pub object: u32,
+        pub triangle: u32,
+        pub coverage: f32,
+    }
+}
+
+host_block! {
+    /// The colour and the opacity of a fragment.
+    pub struct ColorBlock {
+        pub red_green: u32,
+        pub blue_opacity: u32,
+    }
+}
+
+host_block! {
+    /// A section of gas in a pixel's list.
+    pub struct SectionBlock {
+        near_m: f32,
+        far_m: f32,
+        increments: f32,
+        pub next: u32,
+        color: [f32; 3],
+        transparency: f32,
+    }
+}
+
+host_block! {
+    /// A pixel's slots for sections, and what `volume` counted.
+    pub struct PixelBlock {
+        first_section: u32,
+        section_count: u32,
+        end_m: f32,
+        pub evaluations: u32,
+    }
+}
+
+host_block! {
+    /// The fragments and sections that the last band wanted, and the most that any band before it did.
+    pub struct CountersBlock {
+        pub fragment_count: u32,
+        pub section_count: u32,
+        pub most_fragments: u32,
+        pub most_sections: u32,
     }
 }
 
@@ -74,10 +186,6 @@ pub struct Gases {
     pub are_shadowing: bool,
 }
 
-fn four(v: Vec3, w: f32) -> [f32; 4] {
-    v.extend(w).to_array()
-}
-
 impl FrameBlock {
     /// Of scene frame `number`.
     pub fn new(parameters: &Parameters, number: u32, gas: Gases, capacity: Capacity) -> Self {
@@ -87,17 +195,28 @@ impl FrameBlock {
         // Half the picture's height at depth 1, over half its rows.
         let pixel = (camera.vertical_fov_rad / 2.0).tan() / (parameters.height as f32 / 2.0);
         FrameBlock {
-            eye: four(camera.eye, camera.near_m),
-            forward: four(-back, camera.far_m),
-            column: four(right * pixel, 0.0),
-            row: four(-up * pixel, 0.0),
-            to_column: four(right / pixel, 0.0),
-            to_row: four(-up / pixel, 0.0),
-            ambient: four(parameters.ambient, if gas.are_shadowing { 1.0 } else { 0.0 }),
-            background: four(parameters.background, 0.0),
-            sampling: [number as f32, parameters.pixel_size, parameters.shadow_threshold, parameters.early_end],
-            counts: [parameters.width, parameters.height, parameters.lights.len() as u32, gas.volume_count as u32],
-            limits: [capacity.fragments, capacity.sections, parameters.table_size, parameters.noise_seed()],
+            eye: camera.eye.to_array(),
+            hither_m: camera.near_m,
+            forward: (-back).to_array(),
+            yon_m: camera.far_m,
+            ray_per_column: (right * pixel).to_array(),
+            number: number as f32,
+            ray_per_row: (-up * pixel).to_array(),
+            pixel_size: parameters.pixel_size,
+            to_column: (right / pixel).to_array(),
+            shadow_threshold: parameters.shadow_threshold,
+            to_row: (-up / pixel).to_array(),
+            early_end: parameters.early_end,
+            ambient: parameters.ambient.to_array(),
+            has_attenuations: gas.are_shadowing.into(),
+            background: parameters.background.to_array(),
+            light_count: parameters.lights.len() as u32,
+            size: [parameters.width, parameters.height],
+            volume_count: gas.volume_count as u32,
+            fragment_capacity: capacity.fragments,
+            section_capacity: capacity.sections,
+            table_size: parameters.table_size,
+            noise_seed: parameters.noise_seed(),
         }
     }
 }
@@ -105,82 +224,103 @@ impl FrameBlock {
 impl VolumeBlock {
     /// A volume marched in `steps` increments of its longest side.
     pub fn of_volume(volume: &Volume, steps: u32) -> Self {
-        let (shape, bottom, top) = match volume.shape {
-            Shape::Box => (0.0, 1.0, 1.0),
-            Shape::Sphere => (1.0, 1.0, 1.0),
-            Shape::Cylinder => (2.0, 1.0, 1.0),
-            Shape::Frustum { bottom, top } => (2.0, bottom, top),
+        let (shape, radii) = match volume.shape {
+            Shape::Box => (0, [1.0; 2]),
+            Shape::Sphere => (1, [1.0; 2]),
+            Shape::Cylinder => (2, [1.0; 2]),
+            Shape::Frustum { bottom, top } => (2, [bottom, top]),
         };
-        let [first, second] = volume.phase;
-        let is_solid = if volume.is_solid { 1.0 } else { 0.0 };
         VolumeBlock {
-            center: four(volume.center, shape),
-            half_extent: four(volume.half_extent_m, volume.falloff),
-            profile: [bottom, top, is_solid, volume.step_m(steps)],
-            optics: Vec4::from((volume.tau_per_m, volume.albedo)).to_array(),
-            phase: [first.weight, first.g, second.weight, second.g],
+            center: volume.center.to_array(),
+            shape,
+            half_extent_m: volume.half_extent_m.to_array(),
+            falloff: volume.falloff,
+            albedo: volume.albedo.to_array(),
+            tau_per_m: volume.tau_per_m,
+            radii,
+            is_solid: volume.is_solid.into(),
+            step_m: volume.step_m(steps),
+            phase_weights: volume.phase.map(|f| f.weight),
+            phase_g: volume.phase.map(|f| f.g),
             ..Self::of_texture(&volume.texture)
         }
     }
 
     /// A solid texture alone, for a surface.
     pub fn of_texture(texture: &SolidTexture) -> Self {
-        let mut block: VolumeBlock = bytemuck::Zeroable::zeroed();
-        // The middle and the size stand for the solid that a surface does not have.
-        block.half_extent = [1.0, 1.0, 1.0, 0.0];
-        block.placement = four(texture.offset, texture.scale_per_m);
-        let mut swirled = |swirl: super::model::Swirl| {
-            let [first, second] = swirl.ellipse;
-            block.motion = [swirl.along_per_frame, swirl.frames, first, second];
+        let block = VolumeBlock {
+            // Stands for the size of the solid that a surface does not have.
+            half_extent_m: [1.0; 3],
+            texture_offset: texture.offset.to_array(),
+            texture_scale_per_m: texture.scale_per_m,
+            opaque: texture.opaque,
+            power: texture.power,
+            ..bytemuck::Zeroable::zeroed()
         };
-        let (kind, frequency) = match texture.function {
-            DensityFunction::Constant => (0.0, 0.0),
-            DensityFunction::Turbulence => (1.0, 0.0),
-            DensityFunction::Clouds { frequency } => (2.0, frequency),
-            DensityFunction::Fog { swirl, front } => {
-                swirled(swirl);
-                block.front = [front.x_m, front.per_frame_m, front.depth_m, front.full_frames];
-                block.detail = [front.turbulence_m, front.table_m, 0.0, 0.0];
-                (3.0, 0.0)
-            }
-            DensityFunction::Steam { swirl } => {
-                swirled(swirl);
-                (4.0, 0.0)
-            }
-            DensityFunction::Hypertexture { amplitude, softness } => {
-                block.detail = [amplitude, softness, 0.0, 0.0];
-                (5.0, 0.0)
-            }
+        let swirled = |density_function: u32, swirl: Swirl| VolumeBlock {
+            density_function,
+            ellipse: swirl.ellipse,
+            along_per_frame: swirl.along_per_frame,
+            swirl_frames: swirl.frames,
+            ..block
         };
-        block.gas = [kind, texture.opaque, texture.power, frequency];
-        block
+        match texture.function {
+            DensityFunction::Constant => VolumeBlock { density_function: 0, ..block },
+            DensityFunction::Turbulence => VolumeBlock { density_function: 1, ..block },
+            DensityFunction::Clouds { frequency } => VolumeBlock { density_function: 2, frequency, ..block },
+            DensityFunction::Fog { swirl, front } => VolumeBlock {
+                front_x_m: front.x_m,
+                front_per_frame_m: front.per_frame_m,
+                front_depth_m: front.depth_m,
+                front_full_frames: front.full_frames,
+                front_turbulence_m: front.turbulence_m,
+                front_table_m: front.table_m,
+                ..swirled(3, swirl)
+            },
+            DensityFunction::Steam { swirl } => swirled(4, swirl),
+            DensityFunction::Hypertexture { amplitude, softness } => VolumeBlock {
+                density_function: 5,
+                hypertexture_amplitude: amplitude,
+                hypertexture_softness: softness,
+                ..block
+            },
+        }
     }
 }
 
 impl From<&Light> for LightBlock {
     fn from(light: &Light) -> Self {
-        match *light {
-            Light::Parallel { direction, intensity } => {
-                LightBlock { source: four(-direction.normalize_or(Vec3::NEG_Y), 0.0), intensity: four(intensity, 0.0) }
-            }
-            Light::Point { position, intensity } => {
-                LightBlock { source: four(position, 1.0), intensity: four(intensity, 0.0) }
-            }
-        }
+        let (source, is_point, intensity) = match *light {
+            Light::Parallel { direction, intensity } => (-direction.normalize_or(Vec3::NEG_Y), 0, intensity),
+            Light::Point { position, intensity } => (position, 1, intensity),
+        };
+        LightBlock { source: source.to_array(), is_point, intensity: intensity.to_array(), _pad: 0.0 }
     }
 }
 
 impl ObjectBlock {
-    /// At scene frame `number`; `texture` is the entry of its solid texture in the list of volumes.
-    pub fn new(object: &Object, number: u32, texture: Option<usize>) -> Self {
-        let (second, edge_m) = object.checker.map_or((Vec3::ZERO, 0.0), |c| (c.color, c.edge_m));
-        let is_two_sided = if object.is_two_sided { 1.0 } else { 0.0 };
+    /// At scene frame `number`; `solid_texture` is its entry in the list of volumes.
+    pub fn new(object: &Object, number: u32, solid_texture: Option<usize>) -> Self {
+        let (checker_color, checker_edge_m) = object.checker.map_or((Vec3::ZERO, 0.0), |c| (c.color, c.edge_m));
         ObjectBlock {
-            color: four(object.color, object.opacity),
-            second: four(second, edge_m),
-            offset: four(object.per_frame_m * number as f32, object.highlight.strength),
-            detail: [object.highlight.exponent, is_two_sided, texture.map_or(-1.0, |t| t as f32), 0.0],
+            color: object.color.to_array(),
+            opacity: object.opacity,
+            checker_color: checker_color.to_array(),
+            checker_edge_m,
+            offset_m: (object.per_frame_m * number as f32).to_array(),
+            highlight_strength: object.highlight.strength,
+            highlight_exponent: object.highlight.exponent,
+            is_two_sided: object.is_two_sided.into(),
+            solid_texture: solid_texture.map_or(-1, |entry| entry as i32),
+            _pad: 0.0,
         }
+    }
+}
+
+impl VertexBlock {
+    pub fn new(position: Vec3, normal: Vec3) -> Self {
+        let (position, normal) = (position.to_array(), normal.to_array());
+        VertexBlock { position, _after_position: 0.0, normal, _after_normal: 0.0 }
     }
 }
 

@@ -1,13 +1,14 @@
 //! How much of the picture is done at once, and the room of its lists.
 
+use super::blocks::{LinkBlock, PixelBlock, SectionBlock};
 use super::parameters::Parameters;
 use crate::gpu::{Device, Error};
 use crate::host_block;
 
 /// Bytes of each list's widest buffer: of a fragment, of a section, of a pixel.
-pub const LINK_BYTES: u64 = 16;
-pub const SECTION_BYTES: u64 = 32;
-pub const PIXEL_BYTES: u64 = 16;
+const LINK_BYTES: u64 = size_of::<LinkBlock>() as u64;
+const SECTION_BYTES: u64 = size_of::<SectionBlock>() as u64;
+const PIXEL_BYTES: u64 = size_of::<PixelBlock>() as u64;
 
 /// Rows of a dispatch: a slow variant's picture is made of many short dispatches, which no watchdog ends.
 const DISPATCH_ROWS: u32 = 32;

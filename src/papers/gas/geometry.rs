@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::blocks::{FrameBlock, Gases, LightBlock, ObjectBlock, VertexBlock, VolumeBlock, offsets};
+use super::blocks::{FrameBlock, Gases, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets};
 use super::capacity::Capacity;
 use super::model::Object;
 use super::parameters::Parameters;
@@ -54,15 +54,11 @@ impl Geometry {
         for (number, object) in objects.iter().enumerate() {
             let first = vertices.len() as u32;
             let mesh = &object.mesh;
-            vertices.extend(
-                mesh.positions
-                    .iter()
-                    .zip(&mesh.normals)
-                    .map(|(p, n)| VertexBlock { position: p.extend(1.0).to_array(), normal: n.extend(0.0).to_array() }),
-            );
-            triangles.extend(
-                mesh.indices.chunks_exact(3).map(|t| [first + t[0], first + t[1], first + t[2], number as u32]),
-            );
+            vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(|(p, n)| VertexBlock::new(*p, *n)));
+            triangles.extend(mesh.indices.chunks_exact(3).map(|t| TriangleBlock {
+                vertices: [first + t[0], first + t[1], first + t[2]],
+                object: number as u32,
+            }));
         }
         let triangle_count = triangles.len() as u32;
         let mapped = |what: &str, bytes: usize, usage| {

@@ -1,8 +1,10 @@
 //! Host structs against the blocks of buffers that hold them.
 
-use super::blocks::{FrameBlock, LightBlock, ObjectBlock, VertexBlock, VolumeBlock};
-use super::capacity::{LINK_BYTES, PIXEL_BYTES, SECTION_BYTES};
-use crate::papers::layout::{block, check_block, check_list};
+use super::blocks::{
+    ColorBlock, CountersBlock, FrameBlock, LightBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock, SurfaceBlock,
+    TriangleBlock, VertexBlock, VolumeBlock,
+};
+use crate::papers::layout::{check_block, check_list};
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
@@ -13,12 +15,11 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<LightBlock>("gas/volume-traced.comp", "Lights");
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
     check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
-    for (shader, name, bytes) in [
-        ("gas/resolve.comp", "Sections", SECTION_BYTES),
-        ("gas/sort.comp", "Links", LINK_BYTES),
-        ("gas/sort.comp", "Surfaces", LINK_BYTES),
-        ("gas/sort.comp", "Pixels", PIXEL_BYTES),
-    ] {
-        assert_eq!(block(shader, name).members[0].array_stride_bytes.map(u64::from), Some(bytes), "{name}");
-    }
+    check_list::<TriangleBlock>("gas/fragments.frag", "Triangles");
+    check_list::<LinkBlock>("gas/fragments.frag", "Links");
+    check_list::<SurfaceBlock>("gas/fragments.frag", "Surfaces");
+    check_list::<ColorBlock>("gas/fragments.frag", "Colors");
+    check_list::<PixelBlock>("gas/sort.comp", "Pixels");
+    check_list::<SectionBlock>("gas/volume-table.comp", "Sections");
+    check_block::<CountersBlock>("gas/sort.comp", "Counters");
 }

@@ -6,13 +6,12 @@ use ash::vk;
 use glam::{Vec2, Vec3};
 use half::f16;
 
-use super::capacity::{Band, Capacity, LINK_BYTES, PIXEL_BYTES};
+use super::blocks::{ColorBlock, CountersBlock, LinkBlock, PixelBlock, SectionBlock, SurfaceBlock};
+use super::capacity::{Band, Capacity};
 use super::geometry::Geometry;
 use super::parameters::Parameters;
 use crate::gpu::transfer::{read_buffer, upload};
 use crate::gpu::{Buffer, BufferDesc, Error, Feature, Frame, Pass, ShaderLibrary, Topology};
-
-const COLOR_BYTES: u64 = 8;
 
 /// Of a link that leads to a section, see `lists.glsl`.
 const SECTION_LINK: u32 = 1 << 31;
@@ -68,17 +67,17 @@ impl Lists {
     ) -> Result<Self, Error> {
         let device = shaders.device();
         let pixel_count = parameters.width.saturating_mul(capacity.rows);
-        let buffer = |name: &str, count: u32, bytes: u64| {
-            let desc = BufferDesc::new(format!("{label}/{name}"), u64::from(count) * bytes);
+        let buffer = |name: &str, count: u32, element_bytes: usize| {
+            let desc = BufferDesc::new(format!("{label}/{name}"), u64::from(count) * element_bytes as u64);
             Buffer::new(device, desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
         };
-        let heads = buffer("heads", pixel_count, 4)?;
-        let links = buffer("fragment-links", capacity.fragments, LINK_BYTES)?;
-        let surfaces = buffer("fragment-surfaces", capacity.fragments, LINK_BYTES)?;
-        let colors = buffer("fragment-colors", capacity.fragments, COLOR_BYTES)?;
-        let pixels = buffer("pixels", pixel_count, PIXEL_BYTES)?;
+        let heads = buffer("heads", pixel_count, size_of::<u32>())?;
+        let links = buffer("fragment-links", capacity.fragments, size_of::<LinkBlock>())?;
+        let surfaces = buffer("fragment-surfaces", capacity.fragments, size_of::<SurfaceBlock>())?;
+        let colors = buffer("fragment-colors", capacity.fragments, size_of::<ColorBlock>())?;
+        let pixels = buffer("pixels", pixel_count, size_of::<PixelBlock>())?;
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let counters = upload(device, &format!("{label}/counters"), usage, &[0; 16])?;
+        let counters = upload(device, &format!("{label}/counters"), usage, &[0; size_of::<CountersBlock>()])?;
         let empty = Pass::compute("empty-lists", SECTION, "gas/empty-lists.comp")
             .with("frame", &geometry.frame)
             .with("Heads", &heads)
@@ -154,10 +153,13 @@ impl Lists {
     /// # Errors
     /// What Vulkan answers.
     pub fn demand(&self, shaders: &ShaderLibrary) -> Result<Capacity, Error> {
-        let bytes = read_buffer(shaders.device(), &self.counters)?;
-        let counts: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        let most = |a: usize, b: usize| counts.get(a).max(counts.get(b)).copied().unwrap_or(0);
-        Ok(Capacity { fragments: most(0, 2), sections: most(1, 3), ..self.capacity })
+        let counters = read::<CountersBlock>(shaders, &self.counters)?;
+        let most = |of: fn(&CountersBlock) -> u32| counters.iter().map(of).max().unwrap_or(0);
+        Ok(Capacity {
+            fragments: most(|c| c.fragment_count.max(c.most_fragments)),
+            sections: most(|c| c.section_count.max(c.most_sections)),
+            ..self.capacity
+        })
     }
 
     /// Evaluations of the density that `volume` has noted in the last band.
@@ -165,8 +167,8 @@ impl Lists {
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
     pub fn evaluations(&self, shaders: &ShaderLibrary) -> Result<u64, Error> {
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), &self.pixels)?);
-        Ok(words.chunks_exact(4).map(|pixel| u64::from(pixel[3])).sum())
+        let pixels = read::<PixelBlock>(shaders, &self.pixels)?;
+        Ok(pixels.iter().map(|pixel| u64::from(pixel.evaluations)).sum())
     }
 
     /// The sorted fragments of the last band of the last frame, pixel by pixel; `sections` are those between them.
@@ -174,40 +176,50 @@ impl Lists {
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
     pub fn read(&self, shaders: &ShaderLibrary, sections: Option<&Arc<Buffer>>) -> Result<Vec<Vec<Fragment>>, Error> {
-        let words = |buffer: &Arc<Buffer>| -> Result<Vec<u32>, Error> {
-            Ok(bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), buffer)?))
-        };
-        let (heads, links) = (words(&self.heads)?, words(&self.links)?);
-        let (surfaces, colors) = (words(&self.surfaces)?, words(&self.colors)?);
-        let sections = sections.map_or_else(|| Ok(Vec::new()), words)?;
+        let heads = read::<u32>(shaders, &self.heads)?;
+        let links = read::<LinkBlock>(shaders, &self.links)?;
+        let surfaces = read::<SurfaceBlock>(shaders, &self.surfaces)?;
+        let colors = read::<ColorBlock>(shaders, &self.colors)?;
+        let sections = sections.map_or_else(|| Ok(Vec::new()), |buffer| read::<SectionBlock>(shaders, buffer))?;
         let fragment_at = |node: u32| {
             let after = |&node: &u32| {
                 let section = (node != u32::MAX && node & SECTION_LINK != 0).then_some(node & !SECTION_LINK)?;
-                sections.get(8 * section as usize + 3).copied()
+                sections.get(section as usize).map(|section| section.next)
             };
-            std::iter::successors(Some(node), after).last().unwrap_or(u32::MAX)
-        };
-        let fragment = |at: usize| -> Option<(Fragment, u32)> {
-            let &[next, mask, near, far] = links.get(4 * at..4 * at + 4)? else { return None };
-            let &[normal, object, triangle, coverage] = surfaces.get(4 * at..4 * at + 4)? else { return None };
-            let &[red_green, blue_opacity] = colors.get(2 * at..2 * at + 2)? else { return None };
-            let opacity = (blue_opacity >> 16) as f32 / 65535.0;
-            let color = [red_green, red_green >> 16, blue_opacity].map(|c| f16::from_bits(c as u16).to_f32());
-            let normal = unpack_normal(normal).to_array();
-            let depth_m = [near, far].map(f32::from_bits);
-            let coverage = f32::from_bits(coverage);
-            Some((Fragment { mask, depth_m, coverage, opacity, object, triangle, color, normal }, next))
+            std::iter::successors(Some(node), after).last().unwrap_or(u32::MAX) as usize
         };
         let list = |&head: &u32| {
             let mut next = head;
             std::iter::from_fn(|| {
-                let (found, after) = fragment(fragment_at(next) as usize)?;
-                next = after;
-                Some(found)
+                let index = fragment_at(next);
+                let link = links.get(index)?;
+                next = link.next;
+                Some(Fragment::new(link, surfaces.get(index)?, colors.get(index)?))
             })
             .collect()
         };
         Ok(heads.iter().map(list).collect())
+    }
+}
+
+/// The elements of a buffer.
+fn read<T: bytemuck::Pod>(shaders: &ShaderLibrary, buffer: &Arc<Buffer>) -> Result<Vec<T>, Error> {
+    Ok(bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), buffer)?))
+}
+
+impl Fragment {
+    fn new(link: &LinkBlock, surface: &SurfaceBlock, color: &ColorBlock) -> Self {
+        let ColorBlock { red_green, blue_opacity } = *color;
+        Fragment {
+            mask: link.mask,
+            depth_m: [link.near_m, link.far_m],
+            coverage: surface.coverage,
+            opacity: (blue_opacity >> 16) as f32 / 65535.0,
+            object: surface.object,
+            triangle: surface.triangle,
+            color: [red_green, red_green >> 16, blue_opacity].map(|half| f16::from_bits(half as u16).to_f32()),
+            normal: unpack_normal(surface.normal).to_array(),
+        }
     }
 }
 

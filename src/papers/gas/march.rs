@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::capacity::{Band, SECTION_BYTES};
+use super::blocks::SectionBlock;
+use super::capacity::Band;
 use super::geometry::Geometry;
 use super::lists::Lists;
 use super::parameters::{Parameters, Variant};
@@ -43,7 +44,7 @@ impl March {
             Variant::Table => Some(Tables::new(shaders, label, geometry, parameters)?),
             _ => None,
         };
-        let sections = buffer("sections", u64::from(lists.capacity.sections) * SECTION_BYTES)?;
+        let sections = buffer("sections", u64::from(lists.capacity.sections) * size_of::<SectionBlock>() as u64)?;
         let shader = match variant {
             Variant::NoVolume | Variant::None | Variant::Surfaces => "gas/volume-none.comp",
             Variant::Traced => "gas/volume-traced.comp",

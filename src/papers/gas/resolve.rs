@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::capacity::{Band, SECTION_BYTES};
+use super::blocks::SectionBlock;
+use super::capacity::Band;
 use super::geometry::Geometry;
 use super::lists::Lists;
 use super::march::March;
@@ -43,7 +44,7 @@ impl Resolve {
         // A binding needs a buffer where the variant has none; nothing reads it.
         let nothing = |name: &str| {
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-            upload(device, &format!("{label}/{name}"), usage, &[0; SECTION_BYTES as usize])
+            upload(device, &format!("{label}/{name}"), usage, &[0; size_of::<SectionBlock>()])
         };
         let sections = march.map_or_else(|| nothing("no sections"), |m| Ok(m.sections.clone()))?;
         let attenuations = march.and_then(|m| m.attenuations.clone()).map_or_else(|| nothing("no attenuations"), Ok)?;

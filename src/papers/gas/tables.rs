@@ -22,10 +22,13 @@ host_block! {
 
 host_block! {
     struct WaveConstants {
-        source: [f32; 4],
-        spacing_m: [f32; 4],
-        cell: [i32; 4],
-        numbers: [u32; 4],
+        source: [f32; 3],
+        is_point: u32,
+        spacing_m: [f32; 3],
+        distance: i32,
+        cell: [i32; 3],
+        first_density: u32,
+        first_sum: u32,
     }
 }
 
@@ -85,8 +88,10 @@ impl Tables {
         for (v, volume) in parameters.volumes.iter().enumerate() {
             for light in &parameters.lights {
                 // The limit on buffers keeps both below 2^32.
-                let numbers = [v as u64 * entries, sweeps.len() as u64 * entries, 0, 0].map(|n| n as u32);
-                sweeps.push(Sweep::new(volume, light, size, numbers));
+                let [first_density, first_sum] = [v, sweeps.len()].map(|table| (table as u64 * entries) as u32);
+                let sweep = Sweep::new(volume, light, size);
+                let constants = WaveConstants { first_density, first_sum, ..sweep.constants };
+                sweeps.push(Sweep { constants, ..sweep });
             }
         }
         let volume_count = volume_count as u32;
@@ -105,8 +110,7 @@ impl Tables {
         for wave in 0..most {
             frame.compute(&self.shadow_pass, |dispatch| {
                 for sweep in self.sweeps.iter().filter(|s| wave < s.waves) {
-                    let mut constants = sweep.constants;
-                    constants.cell[3] = wave as i32;
+                    let constants = WaveConstants { distance: wave as i32, ..sweep.constants };
                     dispatch.constants(&constants).threads(self.size, self.size, 1);
                 }
             })?;
@@ -116,12 +120,12 @@ impl Tables {
 }
 
 impl Sweep {
-    fn new(volume: &Volume, light: &Light, size: u32, numbers: [u32; 4]) -> Self {
+    fn new(volume: &Volume, light: &Light, size: u32) -> Self {
         let last = size as i32 - 1;
         let spacing = 2.0 * volume.half_extent_m / last as f32;
-        let (source, w) = match *light {
-            Light::Parallel { direction, .. } => (-direction.normalize_or(Vec3::NEG_Y) / spacing, 0.0),
-            Light::Point { position, .. } => ((position - (volume.center - volume.half_extent_m)) / spacing, 1.0),
+        let (source, is_point) = match *light {
+            Light::Parallel { direction, .. } => (-direction.normalize_or(Vec3::NEG_Y) / spacing, 0),
+            Light::Point { position, .. } => ((position - (volume.center - volume.half_extent_m)) / spacing, 1),
         };
         let cell = source.to_array().map(|along| match light {
             Light::Parallel { .. } => {
@@ -137,13 +141,15 @@ impl Sweep {
         });
         // The farther end of each axis, in entries from the cell.
         let farthest: i32 = cell.iter().map(|&c| c.max(last - 1 - c)).sum();
-        let [x, y, z] = cell;
         Sweep {
             constants: WaveConstants {
-                source: source.extend(w).to_array(),
-                spacing_m: spacing.extend(0.0).to_array(),
-                cell: [x, y, z, 0],
-                numbers,
+                source: source.to_array(),
+                is_point,
+                spacing_m: spacing.to_array(),
+                distance: 0,
+                cell,
+                first_density: 0,
+                first_sum: 0,
             },
             waves: farthest.max(0) as u32 + 1,
         }
