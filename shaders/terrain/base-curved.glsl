@@ -35,37 +35,39 @@ vec3 along_ray(vec3 eye, vec3 direction, vec2 squares, vec2 linear, float consta
 
 // Where the ray meets the base, and how much farther it must go to be below it without doubt.
 vec2 base_depth(vec3 direction) {
-    vec3 q = along_ray(land.eye.xyz, direction, land.ground.xy, land.slope.zw, 0.0);
+    vec3 q = along_ray(terrain.eye, direction, terrain.base_squares, terrain.base_linear, 0.0);
     float discriminant = q.y * q.y - q.x * q.z;
     float root = sqrt(max(discriminant, 0.0));
     bool is_met = discriminant > 0.0 && q.y < 0.0;
     float base_m = is_met ? q.z / (root - q.y) : NO_DEPTH;
     if (is_met) {
         // Once more from there, where numbers are small: from afar the root loses its last digits.
-        vec3 there = along_ray(land.eye.xyz + base_m * direction, direction, land.ground.xy, land.slope.zw, 0.0);
+        vec3 from = terrain.eye + base_m * direction;
+        vec3 there = along_ray(from, direction, terrain.base_squares, terrain.base_linear, 0.0);
         base_m -= abs(there.y) > 0.1 * root ? 0.5 * there.z / there.y : 0.0;
     }
-    float slack_m = land.margin.y * land.bounds.w / max(root, 1.0e-20);
+    float slack_m = terrain.rounding_height * terrain.height_unit_m / max(root, 1.0e-20);
     return q.z <= 0.0 ? vec2(0.0) : vec2(base_m, slack_m);
 }
 
 vec2 base_place(vec3 direction, float depth_m) {
-    vec3 point = land.eye.xyz + depth_m * direction;
+    vec3 point = terrain.eye + depth_m * direction;
     return depth_m < NO_DEPTH ? on_map(point, point.x).xy : vec2(0.0);
 }
 
 Way way_of(vec3 eye, vec3 direction, float limit_m) {
-    vec3 q = along_ray(eye, direction, land.shell.xy, land.slope.xy, land.shell.z);
+    vec3 q = along_ray(eye, direction, terrain.shell_squares, terrain.shell_linear, terrain.shell_constant);
     float discriminant = q.y * q.y - q.x * q.z;
     float root = sqrt(max(discriminant, 0.0));
     float sum = q.y < 0.0 ? root - q.y : -q.y - root;
     float a = q.z / (abs(sum) < 1.0e-30 ? 1.0e-30 : sum);
     float b = sum / q.x;
     vec2 range = vec2(max(0.0, min(a, b)), min(limit_m, max(a, b)));
-    if (land.form.w == CYLINDER) {
+    if (terrain.base_kind == CYLINDER) {
         // From a little outside, so that a ray is seen to come in through the wall.
-        float low = -(land.middle.z + land.margin.x) / land.steps.y;
-        float high = (float(land.size.y - 1) - land.middle.z + land.margin.x) / land.steps.y;
+        float outside = terrain.rounding_nodes;
+        float low = -(terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
+        float high = (float(terrain.size.y - 1) - terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
         range = between(range, eye.z, direction.z, low, high);
     }
     if (discriminant <= 0.0 || !(range.x < range.y)) {
@@ -74,7 +76,7 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     vec3 from = eye + range.x * direction;
     vec3 whole = (range.y - range.x) * direction;
     float cut = whole.x != 0.0 ? -from.x / whole.x : 0.0;
-    bool is_behind = land.middle.x + from.y + cut * whole.y < 0.0;
+    bool is_behind = terrain.axis_distance_m + from.y + cut * whole.y < 0.0;
     return Way(range.x, range.y, from, whole, cut > 0.0 && cut < 1.0 && is_behind ? cut : 0.0);
 }
 
@@ -97,26 +99,28 @@ Segment segment_of(Way way, float start, float size) {
     vec3 b = way.from + part_at(way, start + size) * way.whole;
     float side = way.cut > 0.0 ? (start < 0.5 ? -way.whole.x : way.whole.x) : a.x + b.x;
     // The distance from the axis at its smallest.
-    vec2 from = vec2(a.x, land.middle.x + a.y);
+    vec2 from = vec2(a.x, terrain.axis_distance_m + a.y);
     vec2 move = b.xy - a.xy;
     float nearest = clamp(-dot(from, move) / max(dot(move, move), 1.0e-30), 0.0, 1.0);
-    float radius = max(length(from + nearest * move), 1.0e-6 * land.middle.x);
+    float radius = max(length(from + nearest * move), 1.0e-6 * terrain.axis_distance_m);
     float turn = length(move) / radius;
-    vec3 slack = vec3(min(0.125 * turn * turn, 0.5 * turn) * land.steps.x, 0.0, 0.125 * length(move) * turn);
-    if (land.form.w != CYLINDER) {
-        float bend = length(b - a) / land.middle.w;
-        float second = 0.125 * bend * bend * (2.0 + land.steps.z + land.middle.w / radius);
-        slack.y = min(second, 0.5 * bend) * abs(land.steps.y);
+    float longitude_slack = min(0.125 * turn * turn, 0.5 * turn);
+    vec3 slack = vec3(longitude_slack * terrain.nodes_per_unit.x, 0.0, 0.125 * length(move) * turn);
+    if (terrain.base_kind != CYLINDER) {
+        float bend = length(b - a) / terrain.smallest_radius_m;
+        float second = 0.125 * bend * bend * (2.0 + terrain.curvature_change + terrain.smallest_radius_m / radius);
+        slack.y = min(second, 0.5 * bend) * abs(terrain.nodes_per_unit.y);
         slack.z = 0.125 * length(b - a) * bend;
     }
-    slack.z = slack.z / land.bounds.w;
+    slack.z = slack.z / terrain.height_unit_m;
     return Segment(on_map(a, side), on_map(b, side), depth_in(way, start), slack);
 }
 
 // Whether the camera stands in the mountain. 0 where it does not.
 int entered(Way way, float height) {
     vec3 eye = on_map(way.from, way.from.x);
-    bool is_over = eye.x >= 0.0 && eye.y >= 0.0 && eye.x <= float(land.size.x - 1) && eye.y <= float(land.size.y - 1);
+    vec2 last = vec2(terrain.size - 1);
+    bool is_over = eye.x >= 0.0 && eye.y >= 0.0 && eye.x <= last.x && eye.y <= last.y;
     return way.near_m <= 0.0 && is_over && eye.z <= height ? INSIDE : 0;
 }
 
@@ -128,13 +132,13 @@ vec3 slack_of(Segment segment) {
 // Whether a segment is straight enough to be met at a level.
 bool is_straight(vec3 slack, int shift) {
     float straight = STRAIGHT * exp2(float(shift));
-    return max(slack.x, slack.y) <= straight && slack.z * land.bounds.w <= straight * land.margin.z;
+    return max(slack.x, slack.y) <= straight && slack.z * terrain.height_unit_m <= straight * terrain.spacing_m.x;
 }
 
 Over over_map(Segment segment) {
     vec2 move = segment.far.xy - segment.near.xy;
-    vec2 u = between(vec2(0.0, 1.0), segment.near.x, move.x, 0.0, float(land.size.x - 1));
-    vec2 v = between(vec2(0.0, 1.0), segment.near.y, move.y, 0.0, float(land.size.y - 1));
+    vec2 u = between(vec2(0.0, 1.0), segment.near.x, move.x, 0.0, float(terrain.size.x - 1));
+    vec2 v = between(vec2(0.0, 1.0), segment.near.y, move.y, 0.0, float(terrain.size.y - 1));
     int side = move.x > 0.0 ? WALL_WEST : WALL_EAST;
     if (v.x > u.x) {
         side = move.y > 0.0 ? WALL_NORTH : WALL_SOUTH;

@@ -20,14 +20,14 @@ struct Segment {
 
 // Where the ray meets the base, and how much farther it must go to be below it without doubt.
 vec2 base_depth(vec3 direction) {
-    float above = land.eye.z - land.bounds.z;
+    float above = terrain.eye.z - terrain.base_height;
     float base_m = direction.z < 0.0 ? above / -direction.z : NO_DEPTH;
-    float slack_m = 2.0 * land.margin.y / max(-direction.z, 1.0e-20);
+    float slack_m = 2.0 * terrain.rounding_height / max(-direction.z, 1.0e-20);
     return above <= 0.0 ? vec2(0.0) : vec2(base_m, slack_m);
 }
 
 vec2 base_place(vec3 direction, float depth_m) {
-    return land.eye.xy + depth_m * direction.xy;
+    return terrain.eye.xy + depth_m * direction.xy;
 }
 
 Way way_of(vec3 eye, vec3 direction, float limit_m) {
@@ -35,7 +35,8 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     vec2 last = vec2(map.last);
     vec2 u = between(all, eye.x, direction.x, 0.0, last.x);
     vec2 v = between(all, eye.y, direction.y, 0.0, last.y);
-    vec2 h = between(all, eye.z, direction.z, land.bounds.x - land.margin.y, land.bounds.y + land.margin.y);
+    float margin = terrain.rounding_height;
+    vec2 h = between(all, eye.z, direction.z, terrain.lowest - margin, terrain.highest + margin);
     float near_m = max(max(u.x, v.x), h.x);
     float far_m = min(min(u.y, v.y), h.y);
     int side = direction.x > 0.0 ? WALL_WEST : WALL_EAST;

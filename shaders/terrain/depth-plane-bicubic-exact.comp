@@ -2,7 +2,7 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#include "terrain/land.glsl"
+#include "terrain/terrain.glsl"
 #include "terrain/base-plane.glsl"
 #include "terrain/interpolation-bicubic.glsl"
 #include "terrain/leaf-exact.glsl"

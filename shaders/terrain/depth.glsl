@@ -14,6 +14,6 @@ vec4 find(ivec2 pixel) {
         // Where the map lies in the base, the map is seen.
         limit_m = min(limit_m, base.x + base.y);
     }
-    hit = trace(land.eye.xyz, direction, limit_m, hit);
+    hit = trace(terrain.eye, direction, limit_m, hit);
     return vec4(hit.depth, hit.place, hit.surface);
 }

@@ -22,13 +22,13 @@ vec3 tint_at(float share) {
 
 vec3 sky(vec3 direction) {
     float up = clamp(normalize(direction).y, 0.0, 1.0);
-    return mix(light.haze.xyz, vec3(0.16, 0.34, 0.68), pow(up, 0.5));
+    return mix(light.haze_color, vec3(0.16, 0.34, 0.68), pow(up, 0.5));
 }
 
 // The draped picture, its corners on the map's, between its texels' middles.
 vec3 draped(vec2 place) {
     vec2 size = vec2(textureSize(drape, 0));
-    vec2 texel = clamp((place - vec2(light.drape.w, 0.0)) / light.drape.xy * size - 0.5, vec2(0.0), size - 1.0);
+    vec2 texel = clamp((place - vec2(light.drape_first_column, 0.0)) / light.drape_cells * size - 0.5, vec2(0.0), size - 1.0);
     ivec2 a = ivec2(texel);
     ivec2 b = min(a + 1, ivec2(size) - 1);
     vec2 part = texel - vec2(a);
@@ -52,9 +52,9 @@ vec4 color_of(ivec2 pixel) {
     int map = (int(hit.w) >> 8) & 15;
     vec3 color = sky(direction);
     if (surface != 0) {
-        float share = (facing.w - light.range.x) / max(light.range.y - light.range.x, 1.0e-6);
+        float share = (facing.w - light.lowest_m) / max(light.highest_m - light.lowest_m, 1.0e-6);
         vec3 albedo = ground(surface, facing.xyz, share);
-        if (light.drape.z > 0.0 && surface == 2 && map == 0) {
+        if (light.is_draped != 0 && surface == 2 && map == 0) {
             albedo = draped(hit.yz);
         }
         color = lit_color(albedo, facing.xyz, sunlit, hit.x * length(direction));

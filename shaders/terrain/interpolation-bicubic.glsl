@@ -111,7 +111,7 @@ float touch(ivec2 cell, vec3 from, vec3 way) {
                 }
             }
             start += free * (1.0 - start);
-            is_done = g[0] <= land.sundry.x;
+            is_done = g[0] <= terrain.height_tolerance;
         }
     }
     return start;

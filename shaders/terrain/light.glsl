@@ -1,25 +1,31 @@
 // The sun, the sky and the haze.
 
 layout(set = 0, binding = 0, std140) uniform Light {
-    vec4 corner; // direction to the middle of pixel (0, 0), world, for 1 m of depth
-    vec4 across;
-    vec4 down;
-    vec4 sun; // direction to the sun; the strength of the sky's light
-    vec4 haze; // colour; share of the colour lost over 1 m, as an exponent
-    vec4 range; // lowest and highest height above the base, metres; near plane of what is rasterised
-    vec4 drape; // columns and rows of the first map's cells; whether a picture is draped over it; the column where it begins
+    vec3 corner_direction; // to the middle of pixel (0, 0), world, for 1 m of depth
+    float near_m; // near plane of what is rasterised
+    vec3 right_step; // the direction's change from a pixel to the next on the right
+    float sky_strength;
+    vec3 down_step; // and to the next below
+    float extinction_per_m; // by haze
+    vec3 to_sun;
+    float lowest_m; // above the base
+    vec3 haze_color;
+    float highest_m;
+    vec2 drape_cells; // columns and rows of the first map's cells
+    float drape_first_column; // where the draped picture begins
+    int is_draped;
 } light;
 
 vec3 view_direction(vec2 pixel) {
-    return light.corner.xyz + pixel.x * light.across.xyz + pixel.y * light.down.xyz;
+    return light.corner_direction + pixel.x * light.right_step + pixel.y * light.down_step;
 }
 
 // What a surface of a colour looks like from a distance.
 vec3 lit_color(vec3 albedo, vec3 facing, float sunlit, float distance_m) {
-    float lit = sunlit * max(dot(facing, light.sun.xyz), 0.0);
-    float open = light.sun.w * (0.5 + 0.5 * facing.y);
+    float lit = sunlit * max(dot(facing, light.to_sun), 0.0);
+    float open = light.sky_strength * (0.5 + 0.5 * facing.y);
     vec3 seen = albedo * (vec3(2.0, 1.88, 1.7) * lit + vec3(0.55, 0.68, 0.9) * open);
-    return mix(light.haze.xyz, seen, exp(-light.haze.w * distance_m));
+    return mix(light.haze_color, seen, exp(-light.extinction_per_m * distance_m));
 }
 
 vec3 encoded(vec3 linear) {

@@ -2,6 +2,6 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#include "terrain/land.glsl"
+#include "terrain/terrain.glsl"
 #include "terrain/base-curved.glsl"
 #include "terrain/mesh-base.glsl"

@@ -2,7 +2,7 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#include "terrain/land.glsl"
+#include "terrain/terrain.glsl"
 #include "terrain/mesh.glsl"
 #include "terrain/round.glsl"
 
@@ -11,10 +11,10 @@ layout(location = 0) out vec4 depth;
 void main() {
     float depth_m = 1.0 / gl_FragCoord.w;
     vec3 direction = direction_of(floor(gl_FragCoord.xy));
-    vec3 point = land.eye.xyz + depth_m * direction;
+    vec3 point = terrain.eye + depth_m * direction;
     vec2 place = point.xy;
-    if (land.form.w != 0) {
+    if (terrain.base_kind != PLANE) {
         place = on_map(point, point.x).xy;
     }
-    depth = vec4(depth_m, clamp(place, vec2(0.0), vec2(land.size.xy - 1)), surface_code(mesh.surface, 0, 0));
+    depth = vec4(depth_m, clamp(place, vec2(0.0), vec2(terrain.size - 1)), surface_code(mesh.surface, 0, 0));
 }

@@ -5,15 +5,15 @@
 
 #extension GL_EXT_samplerless_texture_functions : require
 
-#include "terrain/land.glsl"
+#include "terrain/terrain.glsl"
 #include "terrain/mesh.glsl"
 #include "terrain/round.glsl"
 
 void main() {
     read_map();
     int index = int(gl_VertexIndex);
-    ivec2 last = land.size.xy - 1;
-    ivec2 node = ivec2(index % land.size.x, index / land.size.x + mesh.first_row);
+    ivec2 last = terrain.size - 1;
+    ivec2 node = ivec2(index % terrain.size.x, index / terrain.size.x + mesh.first_row);
     bool is_low = false;
     if (mesh.surface != TERRAIN) {
         // Six vertices for each piece of a wall: near top, near foot, far top; far top, near foot, far foot.
@@ -27,7 +27,7 @@ void main() {
     }
     float height = highest_at(0, min(node, last));
     if (is_low) {
-        height = min(land.bounds.z, height);
+        height = min(terrain.base_height, height);
     }
     gl_Position = mesh.to_clip * vec4(in_frame(vec2(node), height), 1.0);
 }

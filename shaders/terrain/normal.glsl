@@ -7,7 +7,7 @@ layout(set = 0, binding = 2) uniform texture2D depth;
 
 // Whether this map's pass answers for the pixel.
 bool is_ours(vec4 hit) {
-    return ((int(hit.w) >> 8) & 15) == int(land.sundry.y);
+    return ((int(hit.w) >> 8) & 15) == terrain.map_index;
 }
 
 // East, up and south where the map is at `place`, as directions of the map's frame, and metres between nodes there.
@@ -19,20 +19,21 @@ struct Local {
 };
 
 Local local_at(vec2 place, float height_m) {
-    Local local = Local(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), land.margin.zw);
-    if (land.form.w != 0) {
-        float half_longitude = 0.5 * (place.x - land.middle.y) / land.steps.x;
+    Local local = Local(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), terrain.spacing_m);
+    if (terrain.base_kind != PLANE) {
+        float half_longitude = 0.5 * (place.x - terrain.middle_node.x) / terrain.nodes_per_unit.x;
         float s = 2.0 * sine(half_longitude) * cosine(half_longitude);
         float c = 1.0 - 2.0 * sine(half_longitude) * sine(half_longitude);
         local.east = vec3(c, -s, 0.0);
         local.up = vec3(s, c, 0.0);
-        local.spacing_m = vec2((land.middle.x + height_m) / land.steps.x, 1.0 / abs(land.steps.y));
-        if (land.form.w != CYLINDER) {
-            Meridian foot = meridian_at((place.y - land.middle.z) / land.steps.y);
+        float across_m = (terrain.axis_distance_m + height_m) / terrain.nodes_per_unit.x;
+        local.spacing_m = vec2(across_m, 1.0 / abs(terrain.nodes_per_unit.y));
+        if (terrain.base_kind != CYLINDER) {
+            Meridian foot = meridian_at((place.y - terrain.middle_node.y) / terrain.nodes_per_unit.y);
             local.up = vec3(foot.c * s, foot.c * c, foot.s);
             local.south = vec3(foot.s * s, foot.s * c, -foot.c);
             vec2 radii = vec2((foot.cross_radius + height_m) * max(foot.c, 1.0e-6), foot.radius + height_m);
-            local.spacing_m = radii / abs(land.steps.xy);
+            local.spacing_m = radii / abs(terrain.nodes_per_unit);
         }
     }
     return local;
@@ -42,12 +43,12 @@ vec4 normal_of(ivec2 pixel, vec4 hit) {
     read_map();
     int surface = int(hit.w) & 7;
     int shift = (int(hit.w) >> 3) & 31;
-    float height_m = (height_at(shift, hit.yz) - land.bounds.z) * land.bounds.w;
+    float height_m = (height_at(shift, hit.yz) - terrain.base_height) * terrain.height_unit_m;
     Local local = local_at(hit.yz, height_m);
     vec3 direction = direction_of(vec2(pixel));
     vec3 normal = local.up;
     if (surface == TERRAIN) {
-        vec2 slope = slope_at(shift, hit.yz) * exp2(-float(shift)) * land.bounds.w / local.spacing_m;
+        vec2 slope = slope_at(shift, hit.yz) * exp2(-float(shift)) * terrain.height_unit_m / local.spacing_m;
         normal = local.up - slope.x * local.east - slope.y * local.south;
     }
     if (surface == WALL_WEST || surface == WALL_EAST) {
@@ -57,8 +58,9 @@ vec4 normal_of(ivec2 pixel, vec4 hit) {
         normal = surface == WALL_SOUTH ? local.south : -local.south;
     }
     if (surface == INSIDE) {
-        normal = land.form.w == 0 ? -(direction * vec3(land.margin.zw, land.bounds.w)).xzy : -direction;
+        vec3 scale_m = vec3(terrain.spacing_m, terrain.height_unit_m);
+        normal = terrain.base_kind == PLANE ? -(direction * scale_m).xzy : -direction;
     }
-    vec3 turned = normal.x * land.east.xyz + normal.y * land.up.xyz + normal.z * land.south.xyz;
+    vec3 turned = normal.x * terrain.east + normal.y * terrain.up + normal.z * terrain.south;
     return vec4(normalize(turned), surface <= BASE ? 0.0 : height_m);
 }

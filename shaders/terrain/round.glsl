@@ -40,10 +40,10 @@ struct Meridian {
 };
 
 Meridian meridian_at(float delta) {
-    float a = land.curve.x;
-    float e2 = land.curve.y;
-    float s0 = land.curve.z;
-    float c0 = land.curve.w;
+    float a = terrain.semi_major_m;
+    float e2 = terrain.squared_eccentricity;
+    float s0 = terrain.sine_latitude;
+    float c0 = terrain.cosine_latitude;
     float sh = sine(0.5 * delta);
     float ch = cosine(0.5 * delta);
     float ds = 2.0 * sh * (c0 * ch - s0 * sh);
@@ -60,11 +60,11 @@ Meridian meridian_at(float delta) {
 // Latitude as a difference from the map's middle, and height, of a point in the plane of a meridian: Newton's method for the
 // foot of the normal.
 vec2 geodetic(float off, float along) {
-    float e2 = land.curve.y;
-    float s0 = land.curve.z;
-    float c0 = land.curve.w;
-    float n0 = land.curve.x / sqrt(1.0 - e2 * s0 * s0);
-    float delta = arc(n0 * (1.0 - e2) * s0 + along, (land.middle.x + off) * (1.0 - e2)) - arc(s0, c0);
+    float e2 = terrain.squared_eccentricity;
+    float s0 = terrain.sine_latitude;
+    float c0 = terrain.cosine_latitude;
+    float n0 = terrain.semi_major_m / sqrt(1.0 - e2 * s0 * s0);
+    float delta = arc(n0 * (1.0 - e2) * s0 + along, (terrain.axis_distance_m + off) * (1.0 - e2)) - arc(s0, c0);
     float height_m = 0.0;
     for (int i = 0; i < 4; i++) {
         Meridian foot = meridian_at(delta);
@@ -76,43 +76,41 @@ vec2 geodetic(float off, float along) {
     return vec2(delta, height_m);
 }
 
-const int CYLINDER = 1;
-
 // A point in metres from the map's middle on the base (east, off the axis, along the axis) in the map's coordinates; `side` is
 // that of the half-plane behind the axis that longitudes are counted to.
 vec3 on_map(vec3 point, float side) {
-    float off = land.middle.x + point.y;
+    float off = terrain.axis_distance_m + point.y;
     float radius = length(vec2(point.x, off));
     float longitude = arc(point.x, off);
     if (off < 0.0) {
         longitude = side < 0.0 ? -abs(longitude) : abs(longitude);
     }
-    float grown = off > 0.0 ? point.y + point.x * point.x / (radius + off) : radius - land.middle.x;
+    float grown = off > 0.0 ? point.y + point.x * point.x / (radius + off) : radius - terrain.axis_distance_m;
     vec2 found = vec2(point.z, grown);
-    if (land.form.w != CYLINDER) {
+    if (terrain.base_kind != CYLINDER) {
         found = geodetic(grown, point.z);
     }
-    return vec3(land.middle.y + longitude * land.steps.x, land.middle.z + found.x * land.steps.y,
-                land.bounds.z + found.y / land.bounds.w);
+    return vec3(terrain.middle_node.x + longitude * terrain.nodes_per_unit.x,
+                terrain.middle_node.y + found.x * terrain.nodes_per_unit.y, terrain.base_height + found.y / terrain.height_unit_m);
 }
 
 // F = P + n h (eq. 6): the point over a place in nodes, in the map's frame.
 vec3 in_frame(vec2 place, float height) {
-    if (land.form.w == 0) {
+    if (terrain.base_kind == PLANE) {
         return vec3(place, height);
     }
-    vec2 moved = (place - land.middle.yz) / land.steps.xy;
-    float height_m = (height - land.bounds.z) * land.bounds.w;
+    vec2 moved = (place - terrain.middle_node) / terrain.nodes_per_unit;
+    float height_m = (height - terrain.base_height) * terrain.height_unit_m;
     float sh = sine(0.5 * moved.x);
     float s = 2.0 * sh * cosine(0.5 * moved.x);
     float dc = -2.0 * sh * sh;
     float off = height_m;
     float along = moved.y;
-    if (land.form.w != CYLINDER) {
+    if (terrain.base_kind != CYLINDER) {
         Meridian foot = meridian_at(moved.y);
         off = foot.off + height_m * foot.c;
         along = foot.along + height_m * foot.s;
     }
     // (middle + off) (cosine, sine) of the longitude, less the middle.
-    return vec3((land.middle.x + off) * s, off + (land.middle.x + off) * dc, along);
+    return vec3((terrain.axis_distance_m + off) * s, off + (terrain.axis_distance_m + off) * dc, along);
 }

@@ -13,9 +13,9 @@ float lit_at(ivec2 pixel) {
     }
     shadow_shift = min((int(hit.w) >> 3) & 31, map.top);
     // A texel away from the surface itself.
-    float away_m = land.sun.w * exp2(float(shadow_shift)) + 1.0e-5 * hit.x;
-    vec3 from = land.eye.xyz + hit.x * direction_of(vec2(pixel)) + away_m * land.sun.xyz;
+    float away_m = terrain.widest_spacing_m * exp2(float(shadow_shift)) + 1.0e-5 * hit.x;
+    vec3 from = terrain.eye + hit.x * direction_of(vec2(pixel)) + away_m * terrain.to_sun;
     Hit none = Hit(NO_DEPTH, vec2(0.0), float(SKY));
-    Hit found = trace(from, land.sun.xyz, NO_DEPTH, none);
+    Hit found = trace(from, terrain.to_sun, NO_DEPTH, none);
     return found.depth < NO_DEPTH ? 0.0 : before;
 }

@@ -47,7 +47,8 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             done = true;
         }
     }
-    vec4 margin = land.margin;
+    float rounding_nodes = terrain.rounding_nodes;
+    float rounding_height = terrain.rounding_height;
     Crossing crossing = Crossing(-1.0, 0.0);
     int steps = 0;
     int at = 0;
@@ -61,9 +62,9 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             vec2 high = max(segment.near.xy, segment.far.xy) + slack.xy;
             int shift = shift_for(max(high.x - low.x, high.y - low.y));
             int finest = finest_shift(segment.depth_m);
-            float lowest = min(segment.near.z, segment.far.z) - slack.z - margin.y;
+            float lowest = min(segment.near.z, segment.far.z) - slack.z - rounding_height;
             steps += 1;
-            if (lowest > highest_below(low - margin.x, high + margin.x, shift)) {
+            if (lowest > highest_below(low - rounding_nodes, high + rounding_nodes, shift)) {
                 at += units;
                 units = at & -at;
                 done = at >= WHOLE;

@@ -1,67 +1,127 @@
 //! What the shaders read besides textures.
 
-use glam::{DVec2, DVec3, Vec3};
+use bytemuck::Zeroable;
+use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use super::ground::Ground;
 use super::parameters::{Interpolation, Parameters};
 use super::placement::Rays;
 use crate::host_block;
 
+/// Kinds of base in [`TerrainBlock::base_kind`].
+pub const PLANE: i32 = 0;
+pub const CYLINDER: i32 = 1;
+const ELLIPSOID: i32 = 2;
+
 host_block! {
-    /// A map and how the camera sees it; `shaders/terrain/land.glsl` says what each is.
-    pub struct LandBlock {
-        pub eye: [f32; 4],
-        pub corner: [f32; 4],
-        pub across: [f32; 4],
-        pub down: [f32; 4],
-        pub bounds: [f32; 4],
-        pub margin: [f32; 4],
-        pub sundry: [f32; 4],
-        pub size: [i32; 4],
-        pub form: [i32; 4],
-        pub curve: [f32; 4],
-        pub middle: [f32; 4],
-        pub steps: [f32; 4],
-        pub shell: [f32; 4],
-        pub slope: [f32; 4],
-        pub ground: [f32; 4],
-        pub east: [f32; 4],
-        pub up: [f32; 4],
-        pub south: [f32; 4],
-        pub sun: [f32; 4],
+    /// A map and how the camera sees it, in the map's frame (see [`Ground::to_frame`]).
+    pub struct TerrainBlock {
+        pub eye: Vec3,
+        /// Nodes that a pixel covers at a depth of 1 m.
+        pub pixel_nodes: f32,
+        /// To the middle of pixel (0, 0), for 1 m of depth.
+        pub corner_direction: Vec3,
+        /// Near plane of what is rasterised.
+        pub near_m: f32,
+        /// The direction's change from a pixel to the next on the right.
+        pub right_step: Vec3,
+        pub map_index: i32,
+        /// The direction's change from a pixel to the next below.
+        pub down_step: Vec3,
+        pub base_kind: i32,
+        /// For 1 m.
+        pub to_sun: Vec3,
+        /// Between nodes where they are farthest apart.
+        pub widest_spacing_m: f32,
+        /// The frame's axes in the world; see [`Ground::axes`].
+        pub east: Vec3,
+        /// Metres for a unit of height.
+        pub height_unit_m: f32,
+        pub up: Vec3,
+        pub base_height: f32,
+        pub south: Vec3,
+        /// How near a height counts as met where a root is approached.
+        pub height_tolerance: f32,
+        pub lowest: f32,
+        pub highest: f32,
+        /// What rounding may have cost a place, in nodes.
+        pub rounding_nodes: f32,
+        /// What rounding may have cost a height.
+        pub rounding_height: f32,
+        /// Between columns and between rows.
+        pub spacing_m: Vec2,
+        /// Columns and rows.
+        pub size: IVec2,
+        /// Along which the levels lie in their layer: (1, 0) or (0, 1).
+        pub level_axis: IVec2,
+        /// The number of levels above the data.
+        pub top_level: i32,
+        /// 1 where texels are the bits of floats.
+        pub is_float: i32,
+        /// Of the ellipse of a meridian. This and what follows is 0 over a plane.
+        pub semi_major_m: f32,
+        pub squared_eccentricity: f32,
+        /// Of the latitude of the map's middle.
+        pub sine_latitude: f32,
+        pub cosine_latitude: f32,
+        pub middle_node: Vec2,
+        /// From the axis to the map's middle.
+        pub axis_distance_m: f32,
+        /// Smallest radius of curvature.
+        pub smallest_radius_m: f32,
+        /// Nodes for a radian of longitude along u and of latitude along v; on a cylinder along v for a metre.
+        pub nodes_per_unit: Vec2,
+        /// Of a meridian's radius over a radian of latitude, as a fraction of it.
+        pub curvature_change: f32,
+        /// Of the quadric through the highest height: constant, squares and linear terms, off the axis and along it.
+        pub shell_constant: f32,
+        pub shell_squares: Vec2,
+        pub shell_linear: Vec2,
+        /// Of the base's quadric, whose constant is 0.
+        pub base_squares: Vec2,
+        pub base_linear: Vec2,
     }
 }
 
 host_block! {
+    /// The light and the camera in the world.
     pub struct LightBlock {
-        pub corner: [f32; 4],
-        pub across: [f32; 4],
-        pub down: [f32; 4],
-        pub sun: [f32; 4],
-        pub haze: [f32; 4],
-        pub range: [f32; 4],
-        pub drape: [f32; 4],
+        /// To the middle of pixel (0, 0), for 1 m of depth.
+        pub corner_direction: Vec3,
+        /// Near plane of what is rasterised.
+        pub near_m: f32,
+        /// The direction's change from a pixel to the next on the right.
+        pub right_step: Vec3,
+        pub sky_strength: f32,
+        /// The direction's change from a pixel to the next below.
+        pub down_step: Vec3,
+        /// By haze.
+        pub extinction_per_m: f32,
+        pub to_sun: Vec3,
+        /// The lowest height above the base.
+        pub lowest_m: f32,
+        /// Linear.
+        pub haze_color: Vec3,
+        /// The highest height above the base.
+        pub highest_m: f32,
+        /// Columns and rows of the first map's cells.
+        pub drape_cells: Vec2,
+        /// The column of the first map at which the draped picture begins.
+        pub drape_first_column: f32,
+        pub is_draped: i32,
     }
 }
 
 /// What rounding may cost a coordinate, as a share of the largest number that it is made of.
 const ROUNDING: f64 = 1.0 / (1 << 21) as f64;
 /// How near a height counts as met where a root is approached, as a share of a cell.
-const MET: f64 = 2.5e-4;
+const HEIGHT_TOLERANCE: f64 = 2.5e-4;
 /// The haze's colour, linear: the sky at the horizon.
 const HAZE: Vec3 = Vec3::new(0.42, 0.53, 0.66);
 /// The strength of the sky's light.
 const SKY: f32 = 0.45;
 
-fn four(v: DVec3, w: f64) -> [f32; 4] {
-    v.extend(w).as_vec4().to_array()
-}
-
-fn pairs(a: DVec2, b: DVec2) -> [f32; 4] {
-    [a.x, a.y, b.x, b.y].map(|v| v as f32)
-}
-
-impl LandBlock {
+impl TerrainBlock {
     /// Of the map that is number `index`; `rays` are the world's.
     pub fn new(ground: &Ground, parameters: &Parameters, is_float: bool, index: u32, rays: &Rays, near_m: f32) -> Self {
         let seen = rays.in_map(&ground.to_frame);
@@ -79,45 +139,58 @@ impl LandBlock {
         };
         // The ground is solid down to the base, so a ray may meet it below its lowest sample.
         let lowest = (ground.lowest - overshoot).min(ground.base);
-        let bounds = [lowest, ground.highest + overshoot, ground.base, unit];
-        let height = bounds[0].abs().max(bounds[1].abs()).max(ground.base.abs()).max(above);
+        let highest = ground.highest + overshoot;
+        let height = [lowest, highest, ground.base, above].into_iter().map(f64::abs).fold(0.0, f64::max);
+        let [east, up, south] = ground.axes.map(|axis| axis.as_vec3());
         let (axis_u, axis_v) = shape.axis();
-        let kind = ground.curve.as_ref().map_or(0, |curve| if curve.is_cylinder { 1 } else { 2 });
-        let [east, up, south] = ground.axes.map(|axis| four(axis, 0.0));
-        let flat = LandBlock {
-            eye: four(seen.eye, rays.pixel_m() / ground.spacing_m.max_element()),
-            corner: four(seen.corner, 0.0),
-            across: four(seen.across, 0.0),
-            down: four(seen.down, 0.0),
-            bounds: bounds.map(|v| v as f32),
-            margin: pairs(DVec2::new(side.max(away), height) * ROUNDING, ground.spacing_m),
-            sundry: [(MET * spacing / unit) as f32, index as f32, near_m, 0.0],
-            size: [shape.width, shape.height, shape.top, shape.side()].map(|v| v as i32),
-            form: [axis_u as i32, axis_v as i32, is_float.into(), kind],
-            curve: [0.0; 4],
-            middle: [0.0; 4],
-            steps: [0.0; 4],
-            shell: [0.0; 4],
-            slope: [0.0; 4],
-            ground: [0.0; 4],
+        let to_sun = ground.to_frame.transform_vector3(parameters.sun.direction().as_dvec3());
+        let flat = TerrainBlock {
+            eye: seen.eye.as_vec3(),
+            pixel_nodes: (rays.pixel_m() / ground.spacing_m.max_element()) as f32,
+            corner_direction: seen.corner.as_vec3(),
+            near_m,
+            right_step: seen.across.as_vec3(),
+            map_index: index as i32,
+            down_step: seen.down.as_vec3(),
+            base_kind: PLANE,
+            to_sun: to_sun.as_vec3(),
+            widest_spacing_m: ground.spacing_m.max_element() as f32,
             east,
+            height_unit_m: unit as f32,
             up,
+            base_height: ground.base as f32,
             south,
-            sun: four(
-                ground.to_frame.transform_vector3(parameters.sun.direction().as_dvec3()),
-                ground.spacing_m.max_element(),
-            ),
+            height_tolerance: (HEIGHT_TOLERANCE * spacing / unit) as f32,
+            lowest: lowest as f32,
+            highest: highest as f32,
+            rounding_nodes: (side.max(away) * ROUNDING) as f32,
+            rounding_height: (height * ROUNDING) as f32,
+            spacing_m: ground.spacing_m.as_vec2(),
+            size: UVec2::new(shape.width, shape.height).as_ivec2(),
+            level_axis: UVec2::new(axis_u, axis_v).as_ivec2(),
+            top_level: shape.top as i32,
+            is_float: is_float.into(),
+            ..Zeroable::zeroed()
         };
         let Some(curve) = &ground.curve else { return flat };
         let (sine, cosine) = curve.latitude_rad.sin_cos();
         let (shell, base) = (curve.shell(), curve.ground());
-        LandBlock {
-            curve: pairs(DVec2::new(curve.a, curve.squared_eccentricity), DVec2::new(sine, cosine)),
-            middle: pairs(DVec2::new(curve.off_m, curve.middle.x), DVec2::new(curve.middle.y, curve.smallest_radius_m)),
-            steps: pairs(curve.steps, DVec2::new(curve.bend, 0.0)),
-            shell: pairs(shell.squares, DVec2::new(shell.constant, 0.0)),
-            slope: pairs(shell.linear, base.linear),
-            ground: pairs(base.squares, DVec2::ZERO),
+        TerrainBlock {
+            base_kind: if curve.is_cylinder { CYLINDER } else { ELLIPSOID },
+            semi_major_m: curve.a as f32,
+            squared_eccentricity: curve.squared_eccentricity as f32,
+            sine_latitude: sine as f32,
+            cosine_latitude: cosine as f32,
+            middle_node: curve.middle.as_vec2(),
+            axis_distance_m: curve.off_m as f32,
+            smallest_radius_m: curve.smallest_radius_m as f32,
+            nodes_per_unit: curve.steps.as_vec2(),
+            curvature_change: curve.bend as f32,
+            shell_constant: shell.constant as f32,
+            shell_squares: shell.squares.as_vec2(),
+            shell_linear: shell.linear.as_vec2(),
+            base_squares: base.squares.as_vec2(),
+            base_linear: base.linear.as_vec2(),
             ..flat
         }
     }
@@ -130,13 +203,19 @@ impl LightBlock {
         let rounding_m = 1e-3 * range_m.0.abs().max(1.0);
         let highest_m = range_m.1.max(range_m.0 + rounding_m);
         LightBlock {
-            corner: four(rays.corner, 0.0),
-            across: four(rays.across, 0.0),
-            down: four(rays.down, 0.0),
-            sun: parameters.sun.direction().extend(SKY).to_array(),
-            haze: HAZE.extend(parameters.haze_per_km / 1000.0).to_array(),
-            range: [range_m.0 as f32, highest_m as f32, near_m, 0.0],
-            drape: [1.0, 1.0, 0.0, 0.0],
+            corner_direction: rays.corner.as_vec3(),
+            near_m,
+            right_step: rays.across.as_vec3(),
+            sky_strength: SKY,
+            down_step: rays.down.as_vec3(),
+            extinction_per_m: parameters.haze_per_km / 1000.0,
+            to_sun: parameters.sun.direction(),
+            lowest_m: range_m.0 as f32,
+            haze_color: HAZE,
+            highest_m: highest_m as f32,
+            drape_cells: Vec2::ONE,
+            drape_first_column: 0.0,
+            is_draped: 0,
         }
     }
 }

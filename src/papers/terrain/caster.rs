@@ -7,13 +7,13 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use super::blocks::LandBlock;
+use super::blocks::{PLANE, TerrainBlock};
 use super::hit::{Hit, NO_DEPTH, Surface};
 use super::parameters::{Interpolation, Lod};
 use super::pyramid::Texel;
 use super::relief::{Field, shift_for};
 use super::surface;
-use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of, eye};
+use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of};
 
 /// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
 const WHOLE: u32 = 1 << 23;
@@ -42,7 +42,7 @@ impl From<Lod> for Footprint {
 
 /// Casts rays at one map.
 pub struct Caster<'a, T> {
-    pub land: &'a LandBlock,
+    pub terrain: &'a TerrainBlock,
     pub field: Field<'a, T>,
     pub footprint: Footprint,
     pub interpolation: Interpolation,
@@ -80,56 +80,55 @@ impl Span {
 impl<T: Texel> Caster<'_, T> {
     /// The direction through the middle of a pixel.
     pub fn direction(&self, x: u32, y: u32) -> Vec3 {
-        let row = |v: &[f32; 4]| Vec3::from_slice(v);
-        row(&self.land.corner) + x as f32 * row(&self.land.across) + y as f32 * row(&self.land.down)
+        let TerrainBlock { corner_direction, right_step, down_step, .. } = *self.terrain;
+        corner_direction + x as f32 * right_step + y as f32 * down_step
     }
 
     /// What a ray meets: the base or the map, whichever comes first, if before `prior`.
     pub fn find(&self, direction: Vec3, prior: Hit) -> Hit {
         let (mut hit, mut limit_m) = (prior, prior.depth_m);
-        let (base_m, slack_m, place) = base_of(self.land, direction);
+        let (base_m, slack_m, place) = base_of(self.terrain, direction);
         if base_m < hit.depth_m {
             hit = self.hit(base_m, place, Surface::Base, 0, 0);
             // Where the map lies in the base, the map is seen.
             limit_m = limit_m.min(base_m + slack_m);
         }
-        self.trace(eye(self.land), direction, limit_m).unwrap_or(hit)
+        self.trace(self.terrain.eye, direction, limit_m).unwrap_or(hit)
     }
 
     /// Whether the map stands between what a pixel saw and the sun.
     pub fn is_shadowed(&self, direction: Vec3, hit: &Hit) -> bool {
         let shift = hit.shift.min(self.field.shape().top) as i32;
-        let sun = Vec3::from_slice(&self.land.sun);
+        let sun = self.terrain.to_sun;
         // A texel away from the surface itself.
-        let away_m = self.land.sun[3] * (shift as f32).exp2() + 1e-5 * hit.depth_m;
-        let from = eye(self.land) + hit.depth_m * direction + away_m * sun;
+        let away_m = self.terrain.widest_spacing_m * (shift as f32).exp2() + 1e-5 * hit.depth_m;
+        let from = self.terrain.eye + hit.depth_m * direction + away_m * sun;
         let caster = Caster { footprint: Footprint::Level(shift), ..*self };
         caster.trace(from, sun, NO_DEPTH).is_some()
     }
 
     /// The first place where a ray is not above the map's surface, before `limit_m`.
     pub fn trace(&self, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Hit> {
-        if self.land.form[3] == 0 {
-            self.follow(&PlaneWay::new(self.land, eye, direction, limit_m)?)
+        if self.terrain.base_kind == PLANE {
+            self.follow(&PlaneWay::new(self.terrain, eye, direction, limit_m)?)
         } else {
-            self.follow(&CurvedWay::new(self.land, eye, direction, limit_m)?)
+            self.follow(&CurvedWay::new(self.terrain, eye, direction, limit_m)?)
         }
     }
 
     fn hit(&self, depth_m: f32, place: Vec2, surface: Surface, shift: i32, steps: u32) -> Hit {
-        let map = self.land.sundry[1] as u32;
+        let map = self.terrain.map_index as u32;
         Hit { depth_m, place: place.to_array(), surface, shift: shift as u32, map, steps }
     }
 
     fn follow(&self, way: &impl Way) -> Option<Hit> {
-        let (land, top) = (self.land, self.field.shape().top);
+        let (terrain, top) = (self.terrain, self.field.shape().top);
         let near_m = way.depth_m(0.0);
         let first = way.segment(0.0, 0.0).near.xy();
         let shift = self.finest_shift(near_m);
         if let Some(surface) = way.entered(surface::height(&self.field, self.interpolation, shift, first)) {
             return Some(self.hit(near_m, first, surface, shift, 1));
         }
-        let margin = land.margin;
         let mut steps = 0;
         let mut span = Span { at: 0, units: WHOLE >> way.first_depth() };
         while !span.is_done() {
@@ -140,10 +139,11 @@ impl<T: Texel> Caster<'_, T> {
             let shift = shift_for((high - low).max_element(), top);
             let finest = self.finest_shift(segment.depth_m);
             let straight = STRAIGHT * (finest as f32).exp2();
-            let is_straight = slack.x.max(slack.y) <= straight && slack.z * land.bounds[3] <= straight * margin[2];
-            let lowest = segment.near.z.min(segment.far.z) - slack.z - margin[1];
+            let is_straight =
+                slack.x.max(slack.y) <= straight && slack.z * terrain.height_unit_m <= straight * terrain.spacing_m.x;
+            let lowest = segment.near.z.min(segment.far.z) - slack.z - terrain.rounding_height;
             steps += 1;
-            if lowest > self.highest_below(low - margin[0], high + margin[0], shift) {
+            if lowest > self.highest_below(low - terrain.rounding_nodes, high + terrain.rounding_nodes, shift) {
                 span.advance();
             } else if (shift <= finest && is_straight) || span.units == 1 {
                 if let Some((part, surface)) = self.meet(way, &segment) {
@@ -169,7 +169,7 @@ impl<T: Texel> Caster<'_, T> {
             Footprint::Data => 0,
             Footprint::Level(shift) => shift,
             Footprint::Pixel => {
-                let exponent = ((depth_m * self.land.eye[3]).to_bits() as i32 >> 23) - 127;
+                let exponent = ((depth_m * self.terrain.pixel_nodes).to_bits() as i32 >> 23) - 127;
                 exponent.clamp(0, self.field.shape().top as i32)
             }
         }
@@ -184,7 +184,9 @@ impl<T: Texel> Caster<'_, T> {
         let near = segment.near.lerp(segment.far, over.near);
         let far = segment.near.lerp(segment.far, over.far);
         let part = match self.footprint {
-            Footprint::Data => surface::intersect(&self.field, self.interpolation, near, far, self.land.sundry[0]),
+            Footprint::Data => {
+                surface::intersect(&self.field, self.interpolation, near, far, self.terrain.height_tolerance)
+            }
             Footprint::Pixel | Footprint::Level(_) => {
                 self.intersect_footprint(near, far, self.finest_shift(segment.depth_m))
             }

@@ -6,7 +6,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::blocks::LandBlock;
+use super::blocks::TerrainBlock;
 use super::caster::{Caster, Footprint};
 use super::ground::Ground;
 use super::hit::{Hit, Surface};
@@ -71,8 +71,8 @@ impl Collider {
         let way = Rays { eye: a, corner: b - a, across: DVec3::ZERO, down: DVec3::ZERO };
         let mut hit = Hit { depth_m: 1.0, place: [0.0; 2], surface: Surface::Sky, shift: 0, map: 0, steps: 0 };
         let mut normal = Vec3::Y;
-        for (relief, land) in self.reliefs.iter().zip(self.scene.lands(&self.parameters, &way, 1.0)) {
-            let found = relief.with(Find { land: &land, parameters: &self.parameters, hit });
+        for (relief, terrain) in self.reliefs.iter().zip(self.scene.terrains(&self.parameters, &way, 1.0)) {
+            let found = relief.with(Find { terrain: &terrain, parameters: &self.parameters, hit });
             if found.0 != hit {
                 (hit, normal) = found;
             }
@@ -140,7 +140,7 @@ impl Collider {
 }
 
 struct Find<'a> {
-    land: &'a LandBlock,
+    terrain: &'a TerrainBlock,
     parameters: &'a Parameters,
     hit: Hit,
 }
@@ -150,7 +150,7 @@ impl FieldWork for Find<'_> {
 
     fn run<T: Texel>(self, field: Field<'_, T>) -> (Hit, Vec3) {
         let interpolation = self.parameters.interpolation;
-        let caster = Caster { land: self.land, field, footprint: Footprint::Data, interpolation };
+        let caster = Caster { terrain: self.terrain, field, footprint: Footprint::Data, interpolation };
         let direction = caster.direction(0, 0);
         let hit = caster.find(direction, self.hit);
         (hit, normal_of(&caster, direction, &hit).truncate())

@@ -6,7 +6,7 @@ use ash::vk;
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::blocks::LandBlock;
+use super::blocks::TerrainBlock;
 use super::caster::{Caster, Footprint};
 use super::drape::Drape;
 use super::hit::{Hit, NO_DEPTH, Surface};
@@ -125,23 +125,23 @@ impl Cpu {
             ref infos,
             ..
         } = *self;
-        let maps = || reliefs.iter().zip(&seen.lands);
+        let maps = || reliefs.iter().zip(&seen.terrains);
         frame.host(&infos[0], || {
             hits.par_iter_mut().for_each(|hit| *hit = SKY);
-            for (relief, land) in maps() {
-                relief.with(Depths { land, footprint, interpolation, width, hits });
+            for (relief, terrain) in maps() {
+                relief.with(Depths { terrain, footprint, interpolation, width, hits });
             }
         });
         frame.host(&infos[1], || {
-            for (index, (relief, land)) in maps().enumerate() {
-                relief.with(Normals { land, interpolation, width, map: index as u32, hits, normals });
+            for (index, (relief, terrain)) in maps().enumerate() {
+                relief.with(Normals { terrain, interpolation, width, map: index as u32, hits, normals });
             }
         });
         if !sunlit.is_empty() {
             frame.host(&infos[2], || {
                 sunlit.par_iter_mut().for_each(|sunlit| *sunlit = 1.0);
-                for (relief, land) in maps() {
-                    relief.with(Shadows { land, interpolation, width, hits, sunlit });
+                for (relief, terrain) in maps() {
+                    relief.with(Shadows { terrain, interpolation, width, hits, sunlit });
                 }
             });
         }
@@ -187,7 +187,7 @@ impl Cpu {
 }
 
 struct Depths<'a> {
-    land: &'a LandBlock,
+    terrain: &'a TerrainBlock,
     footprint: Footprint,
     interpolation: Interpolation,
     width: u32,
@@ -198,7 +198,8 @@ impl FieldWork for Depths<'_> {
     type Output = ();
 
     fn run<T: Texel>(self, field: Field<'_, T>) {
-        let caster = Caster { land: self.land, field, footprint: self.footprint, interpolation: self.interpolation };
+        let caster =
+            Caster { terrain: self.terrain, field, footprint: self.footprint, interpolation: self.interpolation };
         self.hits.par_chunks_mut(self.width as usize).enumerate().for_each(|(y, row)| {
             for (x, hit) in row.iter_mut().enumerate() {
                 *hit = caster.find(caster.direction(x as u32, y as u32), *hit);
@@ -208,7 +209,7 @@ impl FieldWork for Depths<'_> {
 }
 
 struct Shadows<'a> {
-    land: &'a LandBlock,
+    terrain: &'a TerrainBlock,
     interpolation: Interpolation,
     width: u32,
     hits: &'a [Hit],
@@ -221,7 +222,7 @@ impl FieldWork for Shadows<'_> {
     fn run<T: Texel>(self, field: Field<'_, T>) {
         let width = self.width as usize;
         let footprint = Footprint::Data;
-        let caster = Caster { land: self.land, field, footprint, interpolation: self.interpolation };
+        let caster = Caster { terrain: self.terrain, field, footprint, interpolation: self.interpolation };
         self.sunlit.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
             for (x, (sunlit, hit)) in row.iter_mut().zip(hits).enumerate() {
                 if hit.surface != Surface::Sky && caster.is_shadowed(caster.direction(x as u32, y as u32), hit) {
@@ -233,7 +234,7 @@ impl FieldWork for Shadows<'_> {
 }
 
 struct Normals<'a> {
-    land: &'a LandBlock,
+    terrain: &'a TerrainBlock,
     interpolation: Interpolation,
     width: u32,
     map: u32,
@@ -246,7 +247,8 @@ impl FieldWork for Normals<'_> {
 
     fn run<T: Texel>(self, field: Field<'_, T>) {
         let width = self.width as usize;
-        let caster = Caster { land: self.land, field, footprint: Footprint::Data, interpolation: self.interpolation };
+        let caster =
+            Caster { terrain: self.terrain, field, footprint: Footprint::Data, interpolation: self.interpolation };
         self.normals.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
             for (x, (normal, hit)) in row.iter_mut().zip(hits).enumerate().filter(|(_, (_, hit))| hit.map == self.map) {
                 *normal = normal_of(&caster, caster.direction(x as u32, y as u32), hit);

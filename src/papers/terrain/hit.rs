@@ -3,7 +3,7 @@
 /// Depth of a ray that meets nothing, metres.
 pub const NO_DEPTH: f32 = 1.0e30;
 
-/// The surfaces that a ray may meet; numbered as `shaders/terrain/land.glsl` does.
+/// The surfaces that a ray may meet; numbered as `shaders/terrain/terrain.glsl` does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Surface {
     Sky,

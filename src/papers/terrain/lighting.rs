@@ -47,7 +47,7 @@ impl Lighting {
                 ("normal", "4"),
                 &program,
                 (&normal, load),
-                &[("land", (&map.land).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())],
+                &[("terrain", (&map.terrain).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())],
             );
             normal_passes.push(pass.build(shaders)?);
         }

@@ -63,7 +63,7 @@ impl Mesh {
         };
         let fragment = format!("terrain/mesh-base-{}.frag", parameters.base.kind());
         let base = Pass::graphics("base", "2", "common/fullscreen.vert", &fragment)
-            .with("land", &first.land)
+            .with("terrain", &first.terrain)
             .with("levels", &first.levels.view)
             .color(&depth, Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]), Blend::Replace)
             .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
@@ -85,7 +85,7 @@ impl Mesh {
             let bytes = block_indices(shape.width, block_rows);
             let indices = upload(device, &name, vk::BufferUsageFlags::INDEX_BUFFER, bytemuck::cast_slice(&bytes))?;
             let pass = Pass::graphics("mesh", "4", "terrain/mesh.vert", "terrain/mesh.frag")
-                .with("land", &map.land)
+                .with("terrain", &map.terrain)
                 .with("levels", &map.levels.view)
                 .indices(&indices)
                 .constants::<MeshConstants>()

@@ -15,6 +15,8 @@ mod drape;
 pub mod experiments;
 mod ground;
 mod hit;
+#[cfg(test)]
+mod layouts;
 mod levels;
 mod lighting;
 mod mesh;

@@ -43,7 +43,11 @@ impl RayCast {
                 ("depth", "3"),
                 &program,
                 (target, Load::Discard),
-                &[("land", (&map.land).into()), ("levels", (&map.levels.view).into()), ("prior", (&depth).into())],
+                &[
+                    ("terrain", (&map.terrain).into()),
+                    ("levels", (&map.levels.view).into()),
+                    ("prior", (&depth).into()),
+                ],
             );
             passes.push(pass.build(shaders)?);
             depth = target.clone();

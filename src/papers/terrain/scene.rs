@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DMat4, DVec4};
+use glam::{DMat4, DVec4, Vec2};
 
-use super::blocks::{LandBlock, LightBlock};
+use super::blocks::{LightBlock, TerrainBlock};
 use super::drape::Drape;
 use super::ground::{Ground, Origin, REPEATED};
 use super::hit::NO_DEPTH;
@@ -48,8 +48,11 @@ pub struct Scene {
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
     range_m: (f64, f64),
-    /// Columns and rows of the first map's cells, whether a picture is draped over it, and the column where that begins.
-    drape: [f32; 4],
+    is_draped: bool,
+    /// Columns and rows of the first map's cells.
+    drape_cells: Vec2,
+    /// The column of the first map at which the draped picture begins.
+    drape_first_column: f32,
     /// Of each map, whether its texels are the bits of floats.
     are_floats: Vec<bool>,
 }
@@ -57,7 +60,7 @@ pub struct Scene {
 impl Scene {
     /// Of at least one map.
     pub fn new(parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
-        let is_draped = f32::from(u8::from(inputs.drape.is_some()));
+        let is_draped = inputs.drape.is_some();
         let inputs = inputs.maps;
         let maps = || inputs.iter().map(|input| &*input.map);
         let lowest_m = maps().map(|map| map.range_m().0).fold(f32::INFINITY, f32::min);
@@ -70,17 +73,20 @@ impl Scene {
         let closed = |(input, ground): (&MapInput, &Ground)| {
             if ground.closes { Arc::new(input.map.closed()) } else { input.map.clone() }
         };
+        let (drape_cells, drape_first_column) = match grounds.first() {
+            Some(Ground { shape, closes: true, .. }) => {
+                let columns = shape.width - 2 * REPEATED;
+                (Vec2::new(columns as f32, shape.height as f32 - 1.0), REPEATED as f32 - 0.5)
+            }
+            Some(Ground { shape, .. }) => (Vec2::new(shape.width as f32, shape.height as f32) - 1.0, 0.0),
+            None => (Vec2::ONE, 0.0),
+        };
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
-            drape: match grounds.first() {
-                Some(Ground { shape, closes: true, .. }) => {
-                    let columns = shape.width - 2 * REPEATED;
-                    [columns as f32, shape.height as f32 - 1.0, is_draped, REPEATED as f32 - 0.5]
-                }
-                Some(Ground { shape, .. }) => [shape.width as f32 - 1.0, shape.height as f32 - 1.0, is_draped, 0.0],
-                None => [1.0, 1.0, 0.0, 0.0],
-            },
+            is_draped,
+            drape_cells,
+            drape_first_column,
             maps: inputs.iter().zip(&grounds).map(closed).collect(),
             grounds,
             are_floats: maps().map(|map| matches!(map.samples(), Samples::Float(_))).collect(),
@@ -88,24 +94,31 @@ impl Scene {
     }
 
     /// Every map as `rays` see it.
-    pub fn lands<'a>(
+    pub fn terrains<'a>(
         &'a self,
         parameters: &'a Parameters,
         rays: &'a Rays,
         near_m: f32,
-    ) -> impl Iterator<Item = LandBlock> + 'a {
+    ) -> impl Iterator<Item = TerrainBlock> + 'a {
         let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
-        maps.map(move |((ground, &is_float), index)| LandBlock::new(ground, parameters, is_float, index, rays, near_m))
+        maps.map(move |((ground, &is_float), index)| {
+            TerrainBlock::new(ground, parameters, is_float, index, rays, near_m)
+        })
     }
 
     /// The pass `geometric-transformation`: eq. 10 and 11 for every map. Only the base's matrix is touched.
     pub fn transform(&self, parameters: &Parameters) -> Seen {
         let camera = parameters.camera(&self.extent);
         let rays = Rays::new(&camera, parameters.width, parameters.height);
-        let light = LightBlock::new(parameters, &rays, self.range_m, camera.near_m);
+        let light = LightBlock {
+            drape_cells: self.drape_cells,
+            drape_first_column: self.drape_first_column,
+            is_draped: self.is_draped.into(),
+            ..LightBlock::new(parameters, &rays, self.range_m, camera.near_m)
+        };
         Seen {
-            lands: self.lands(parameters, &rays, camera.near_m).collect(),
-            light: LightBlock { drape: self.drape, ..light },
+            terrains: self.terrains(parameters, &rays, camera.near_m).collect(),
+            light,
             to_clip: to_clip(&camera, parameters.aspect()),
         }
     }
@@ -113,7 +126,7 @@ impl Scene {
 
 /// The scene in the camera's eyes.
 pub struct Seen {
-    pub lands: Vec<LandBlock>,
+    pub terrains: Vec<TerrainBlock>,
     pub light: LightBlock,
     /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
     /// 1 - near / w, without a far plane.
@@ -134,7 +147,7 @@ fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
 /// A map on the device.
 pub struct Map {
     pub levels: Levels,
-    pub land: Arc<Buffer>,
+    pub terrain: Arc<Buffer>,
 }
 
 /// The maps on the device, and the blocks that the host writes anew for every frame.
@@ -165,7 +178,7 @@ impl DeviceScene {
             let name = format!("{label}/map-{index}");
             Ok(Map {
                 levels: Levels::new(shaders, &name, map, bounds)?,
-                land: block_buffer::<LandBlock>(device, &format!("{name}/land"))?,
+                terrain: block_buffer::<TerrainBlock>(device, &format!("{name}/land"))?,
             })
         };
         let maps = maps.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
@@ -186,8 +199,8 @@ impl DeviceScene {
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn write(&self, seen: &Seen) -> Result<(), Error> {
-        for (map, land) in self.maps.iter().zip(&seen.lands) {
-            map.land.write(0, bytemuck::bytes_of(land))?;
+        for (map, terrain) in self.maps.iter().zip(&seen.terrains) {
+            map.terrain.write(0, bytemuck::bytes_of(terrain))?;
         }
         self.light.write(0, bytemuck::bytes_of(&seen.light))
     }

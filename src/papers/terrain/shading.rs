@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec3Swizzles, Vec4};
 
-use super::blocks::{LandBlock, LightBlock};
+use super::blocks::{CYLINDER, LightBlock, PLANE, TerrainBlock};
 use super::caster::Caster;
 use super::drape::Drape;
 use super::hit::{Hit, Surface};
@@ -34,26 +34,20 @@ struct Local {
 }
 
 impl Local {
-    fn at(land: &LandBlock, place: Vec2, height_m: f32) -> Self {
-        let [off_m, middle_u, middle_v, _] = land.middle;
-        let steps = Vec2::from_slice(&land.steps);
-        let (s, c) = ((place.x - middle_u) / steps.x).sin_cos();
+    fn at(terrain: &TerrainBlock, place: Vec2, height_m: f32) -> Self {
+        let (off_m, steps) = (terrain.axis_distance_m, terrain.nodes_per_unit);
+        let (s, c) = ((place.x - terrain.middle_node.x) / steps.x).sin_cos();
         let east = Vec3::new(c, -s, 0.0);
-        match land.form[3] {
-            0 => Local {
-                east: Vec3::X,
-                up: Vec3::Y,
-                south: Vec3::Z,
-                spacing_m: Vec2::new(land.margin[2], land.margin[3]),
-            },
-            1 => Local {
+        match terrain.base_kind {
+            PLANE => Local { east: Vec3::X, up: Vec3::Y, south: Vec3::Z, spacing_m: terrain.spacing_m },
+            CYLINDER => Local {
                 east,
                 up: Vec3::new(s, c, 0.0),
                 south: Vec3::Z,
                 spacing_m: Vec2::new((off_m + height_m) / steps.x, 1.0 / steps.y.abs()),
             },
             _ => {
-                let foot = meridian(land, (place.y - middle_v) / steps.y);
+                let foot = meridian(terrain, (place.y - terrain.middle_node.y) / steps.y);
                 let radii = Vec2::new((foot.across + height_m) * foot.cosine.max(1e-6), foot.radius + height_m);
                 Local {
                     east,
@@ -68,11 +62,11 @@ impl Local {
 
 /// The normal of the surface that was met, in the world, and the height above the base in metres.
 pub fn normal_of<T: Texel>(caster: &Caster<'_, T>, direction: Vec3, hit: &Hit) -> Vec4 {
-    let (land, field, shift) = (caster.land, &caster.field, hit.shift as i32);
-    let [_, _, base, unit_m] = land.bounds;
+    let (terrain, field, shift) = (caster.terrain, &caster.field, hit.shift as i32);
+    let unit_m = terrain.height_unit_m;
     let place = Vec2::from_array(hit.place);
-    let height_m = (surface::height(field, caster.interpolation, shift, place) - base) * unit_m;
-    let local = Local::at(land, place, height_m);
+    let height_m = (surface::height(field, caster.interpolation, shift, place) - terrain.base_height) * unit_m;
+    let local = Local::at(terrain, place, height_m);
     let normal = match hit.surface {
         Surface::Sky | Surface::Base => local.up,
         Surface::Terrain => {
@@ -84,11 +78,10 @@ pub fn normal_of<T: Texel>(caster: &Caster<'_, T>, direction: Vec3, hit: &Hit) -
         Surface::WallEast => local.east,
         Surface::WallNorth => -local.south,
         Surface::WallSouth => local.south,
-        Surface::Inside if land.form[3] != 0 => -direction,
-        Surface::Inside => -(direction * Vec3::new(land.margin[2], land.margin[3], unit_m)).xzy(),
+        Surface::Inside if terrain.base_kind != PLANE => -direction,
+        Surface::Inside => -(direction * terrain.spacing_m.extend(unit_m)).xzy(),
     };
-    let axes = [&land.east, &land.up, &land.south].map(|axis| Vec3::from_slice(axis));
-    let turned = normal.x * axes[0] + normal.y * axes[1] + normal.z * axes[2];
+    let turned = normal.x * terrain.east + normal.y * terrain.up + normal.z * terrain.south;
     let above_m = if matches!(hit.surface, Surface::Sky | Surface::Base) { 0.0 } else { height_m };
     turned.normalize().extend(above_m)
 }
@@ -103,26 +96,22 @@ pub fn color_of(
     facing: Vec4,
     sunlit: f32,
 ) -> [u8; 4] {
-    let row = |v: &[f32; 4]| Vec3::from_slice(v);
-    let direction = row(&light.corner) + x as f32 * row(&light.across) + y as f32 * row(&light.down);
+    let direction = light.corner_direction + x as f32 * light.right_step + y as f32 * light.down_step;
     let normal = facing.truncate();
-    let haze = row(&light.haze);
+    let haze = light.haze_color;
     let color = if hit.surface == Surface::Sky {
         haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt())
     } else {
-        let [low, high, ..] = light.range;
-        let share = (facing.w - low) / (high - low).max(1e-6);
-        let [columns, rows, _, first] = light.drape;
+        let share = (facing.w - light.lowest_m) / (light.highest_m - light.lowest_m).max(1e-6);
         let albedo = match drape {
-            Some(drape) if hit.surface == Surface::Terrain && hit.map == 0 => {
-                drape.color((Vec2::from_array(hit.place) - Vec2::new(first, 0.0)) / Vec2::new(columns, rows))
-            }
+            Some(drape) if hit.surface == Surface::Terrain && hit.map == 0 => drape
+                .color((Vec2::from_array(hit.place) - Vec2::new(light.drape_first_column, 0.0)) / light.drape_cells),
             _ => ground(hit.surface, normal, share),
         };
-        let lit = sunlit * normal.dot(row(&light.sun)).max(0.0);
-        let open = light.sun[3] * (0.5 + 0.5 * normal.y);
+        let lit = sunlit * normal.dot(light.to_sun).max(0.0);
+        let open = light.sky_strength * (0.5 + 0.5 * normal.y);
         let seen = albedo * (SUNLIGHT * lit + SKYLIGHT * open);
-        haze.lerp(seen, (-light.haze[3] * hit.depth_m * direction.length()).exp())
+        haze.lerp(seen, (-light.extinction_per_m * hit.depth_m * direction.length()).exp())
     };
     let [r, g, b] = color.to_array().map(encode);
     [r, g, b, 255]

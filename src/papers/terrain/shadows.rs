@@ -55,7 +55,7 @@ impl Shadows {
                 &program,
                 (target, Load::Discard),
                 &[
-                    ("land", (&map.land).into()),
+                    ("terrain", (&map.terrain).into()),
                     ("levels", (&map.levels.view).into()),
                     ("depth", depth.into()),
                     ("prior", (&sunlit).into()),

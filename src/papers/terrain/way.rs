@@ -1,8 +1,8 @@
 //! Rays over a base surface, in the map's frame: `shaders/terrain/base-plane.glsl` and `base-curved.glsl` on the processor.
 
-use glam::{IVec2, Vec2, Vec3, Vec3Swizzles};
+use glam::{Vec2, Vec3, Vec3Swizzles};
 
-use super::blocks::LandBlock;
+use super::blocks::{CYLINDER, PLANE, TerrainBlock};
 use super::hit::{NO_DEPTH, Surface};
 
 /// A piece of a ray in the map's frame (eq. 9): u, v and h of its ends, the depth of the near one, and how far the ray may
@@ -41,12 +41,8 @@ pub trait Way {
     fn over_map(&self, segment: &Segment) -> Over;
 }
 
-pub fn eye(land: &LandBlock) -> Vec3 {
-    Vec3::from_slice(&land.eye)
-}
-
-fn last_node(land: &LandBlock) -> Vec2 {
-    (IVec2::from_slice(&land.size) - 1).as_vec2()
+fn last_node(terrain: &TerrainBlock) -> Vec2 {
+    (terrain.size - 1).as_vec2()
 }
 
 /// Narrows `range` to where a coordinate that moves from `from` by `way` lies between two bounds.
@@ -67,18 +63,18 @@ fn wall(u: Vec2, v: Vec2, way: Vec2) -> Surface {
 }
 
 /// Where a ray meets the base, how much farther it must go to be below it without doubt, and the place in nodes.
-pub fn base_of(land: &LandBlock, direction: Vec3) -> (f32, f32, Vec2) {
-    if land.form[3] != 0 {
-        return CurvedWay::base_of(land, direction);
+pub fn base_of(terrain: &TerrainBlock, direction: Vec3) -> (f32, f32, Vec2) {
+    if terrain.base_kind != PLANE {
+        return CurvedWay::base_of(terrain, direction);
     }
-    let above = eye(land).z - land.bounds[2];
+    let above = terrain.eye.z - terrain.base_height;
     let depth_m = match above {
         above if above <= 0.0 => 0.0,
         above if direction.z < 0.0 => above / -direction.z,
         _ => NO_DEPTH,
     };
-    let slack_m = if above <= 0.0 { 0.0 } else { 2.0 * land.margin[1] / (-direction.z).max(1e-20) };
-    (depth_m, slack_m, eye(land).xy() + depth_m * direction.xy())
+    let slack_m = if above <= 0.0 { 0.0 } else { 2.0 * terrain.rounding_height / (-direction.z).max(1e-20) };
+    (depth_m, slack_m, terrain.eye.xy() + depth_m * direction.xy())
 }
 
 /// Straight in the map's frame, and so are its halves.
@@ -91,13 +87,12 @@ pub struct PlaneWay {
 }
 
 impl PlaneWay {
-    pub fn new(land: &LandBlock, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Self> {
-        let (all, last) = (Vec2::new(0.0, limit_m), last_node(land));
-        let [low, high, ..] = land.bounds;
-        let margin = land.margin[1];
+    pub fn new(terrain: &TerrainBlock, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Self> {
+        let (all, last) = (Vec2::new(0.0, limit_m), last_node(terrain));
+        let margin = terrain.rounding_height;
         let u = between(all, eye.x, direction.x, 0.0, last.x);
         let v = between(all, eye.y, direction.y, 0.0, last.y);
-        let h = between(all, eye.z, direction.z, low - margin, high + margin);
+        let h = between(all, eye.z, direction.z, terrain.lowest - margin, terrain.highest + margin);
         let near_m = u.x.max(v.x).max(h.x);
         let far_m = u.y.min(v.y).min(h.y);
         let side = match () {
@@ -132,7 +127,7 @@ impl Way for PlaneWay {
 
 /// Bent in the map's frame, over a cylinder or an ellipsoid of revolution.
 pub struct CurvedWay<'a> {
-    land: &'a LandBlock,
+    terrain: &'a TerrainBlock,
     near_m: f32,
     far_m: f32,
     from: Vec3,
@@ -162,14 +157,12 @@ impl AlongRay {
 }
 
 impl<'a> CurvedWay<'a> {
-    fn base_of(land: &LandBlock, direction: Vec3) -> (f32, f32, Vec2) {
-        let [_, _, off, along] = land.slope;
-        let quadric =
-            |from: Vec3| AlongRay::new(from, direction, Vec2::from_slice(&land.ground), Vec2::new(off, along), 0.0);
-        let q = quadric(eye(land));
+    fn base_of(terrain: &TerrainBlock, direction: Vec3) -> (f32, f32, Vec2) {
+        let quadric = |from: Vec3| AlongRay::new(from, direction, terrain.base_squares, terrain.base_linear, 0.0);
+        let q = quadric(terrain.eye);
         let place = |depth_m: f32| {
-            let point = eye(land) + depth_m * direction;
-            on_map(land, point, point.x).xy()
+            let point = terrain.eye + depth_m * direction;
+            on_map(terrain, point, point.x).xy()
         };
         if q.c <= 0.0 {
             return (0.0, 0.0, place(0.0));
@@ -178,27 +171,26 @@ impl<'a> CurvedWay<'a> {
             Some(root) if q.b < 0.0 => {
                 let far_m = q.c / (root - q.b);
                 // Once more from there, where numbers are small: from afar the root loses its last digits.
-                let there = quadric(eye(land) + far_m * direction);
+                let there = quadric(terrain.eye + far_m * direction);
                 let depth_m = far_m - if there.b.abs() > 0.1 * root { 0.5 * there.c / there.b } else { 0.0 };
-                (depth_m, land.margin[1] * land.bounds[3] / root.max(1e-20), place(depth_m))
+                (depth_m, terrain.rounding_height * terrain.height_unit_m / root.max(1e-20), place(depth_m))
             }
             _ => (NO_DEPTH, 0.0, Vec2::ZERO),
         }
     }
 
-    pub fn new(land: &'a LandBlock, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Self> {
-        let [off, along, ..] = land.slope;
-        let q = AlongRay::new(eye, direction, Vec2::from_slice(&land.shell), Vec2::new(off, along), land.shell[2]);
+    pub fn new(terrain: &'a TerrainBlock, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Self> {
+        let q = AlongRay::new(eye, direction, terrain.shell_squares, terrain.shell_linear, terrain.shell_constant);
         let root = q.root?;
         let sum = if q.b < 0.0 { root - q.b } else { -q.b - root };
         let a = q.c / if sum.abs() < 1e-30 { 1e-30 } else { sum };
         let b = sum / q.a;
         let mut range = Vec2::new(a.min(b).max(0.0), a.max(b).min(limit_m));
-        if is_cylinder(land) {
+        if is_cylinder(terrain) {
             // From a little outside, so that a ray is seen to come in through the wall.
-            let outside = land.margin[0];
-            let low = -(land.middle[2] + outside) / land.steps[1];
-            let high = (last_node(land).y - land.middle[2] + outside) / land.steps[1];
+            let outside = terrain.rounding_nodes;
+            let low = -(terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
+            let high = (last_node(terrain).y - terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
             range = between(range, eye.z, direction.z, low, high);
         }
         if range.x >= range.y {
@@ -207,9 +199,9 @@ impl<'a> CurvedWay<'a> {
         let from = eye + range.x * direction;
         let whole = (range.y - range.x) * direction;
         let cut = if whole.x != 0.0 { -from.x / whole.x } else { 0.0 };
-        let is_behind = land.middle[0] + from.y + cut * whole.y < 0.0;
+        let is_behind = terrain.axis_distance_m + from.y + cut * whole.y < 0.0;
         let cut = (cut > 0.0 && cut < 1.0 && is_behind).then_some(cut);
-        Some(CurvedWay { land, near_m: range.x, far_m: range.y, from, whole, cut })
+        Some(CurvedWay { terrain, near_m: range.x, far_m: range.y, from, whole, cut })
     }
 
     /// A ray behind the axis is cut there before it is halved.
@@ -224,7 +216,7 @@ impl<'a> CurvedWay<'a> {
 
 impl Way for CurvedWay<'_> {
     fn segment(&self, start: f32, size: f32) -> Segment {
-        let land = self.land;
+        let terrain = self.terrain;
         let a = self.from + self.part(start) * self.whole;
         let b = self.from + self.part(start + size) * self.whole;
         let side = match self.cut {
@@ -233,22 +225,25 @@ impl Way for CurvedWay<'_> {
             Some(_) => self.whole.x,
         };
         // The distance from the axis at its smallest.
-        let off_m = land.middle[0];
+        let off_m = terrain.axis_distance_m;
         let (from, moved) = (Vec2::new(a.x, off_m + a.y), b.xy() - a.xy());
         let nearest = (-from.dot(moved) / moved.length_squared().max(1e-30)).clamp(0.0, 1.0);
         let radius = (from + nearest * moved).length().max(1e-6 * off_m);
         let turn = moved.length() / radius;
-        let mut slack =
-            Vec3::new((0.125 * turn * turn).min(0.5 * turn) * land.steps[0], 0.0, 0.125 * moved.length() * turn);
-        if !is_cylinder(land) {
-            let smallest = land.middle[3];
+        let mut slack = Vec3::new(
+            (0.125 * turn * turn).min(0.5 * turn) * terrain.nodes_per_unit.x,
+            0.0,
+            0.125 * moved.length() * turn,
+        );
+        if !is_cylinder(terrain) {
+            let smallest = terrain.smallest_radius_m;
             let bend = (b - a).length() / smallest;
-            let second = 0.125 * bend * bend * (2.0 + land.steps[2] + smallest / radius);
-            slack.y = second.min(0.5 * bend) * land.steps[1].abs();
+            let second = 0.125 * bend * bend * (2.0 + terrain.curvature_change + smallest / radius);
+            slack.y = second.min(0.5 * bend) * terrain.nodes_per_unit.y.abs();
             slack.z = 0.125 * (b - a).length() * bend;
         }
-        slack.z /= land.bounds[3];
-        Segment { near: on_map(land, a, side), far: on_map(land, b, side), depth_m: self.depth_m(start), slack }
+        slack.z /= terrain.height_unit_m;
+        Segment { near: on_map(terrain, a, side), far: on_map(terrain, b, side), depth_m: self.depth_m(start), slack }
     }
 
     fn depth_m(&self, part: f32) -> f32 {
@@ -260,14 +255,14 @@ impl Way for CurvedWay<'_> {
     }
 
     fn entered(&self, height: f32) -> Option<Surface> {
-        let eye = on_map(self.land, self.from, self.from.x);
-        let last = last_node(self.land);
+        let eye = on_map(self.terrain, self.from, self.from.x);
+        let last = last_node(self.terrain);
         let is_over = eye.xy().cmpge(Vec2::ZERO).all() && eye.xy().cmple(last).all();
         (self.near_m <= 0.0 && is_over && eye.z <= height).then_some(Surface::Inside)
     }
 
     fn over_map(&self, segment: &Segment) -> Over {
-        let (all, last) = (Vec2::new(0.0, 1.0), last_node(self.land));
+        let (all, last) = (Vec2::new(0.0, 1.0), last_node(self.terrain));
         let moved = segment.far.xy() - segment.near.xy();
         let u = between(all, segment.near.x, moved.x, 0.0, last.x);
         let v = between(all, segment.near.y, moved.y, 0.0, last.y);
@@ -277,14 +272,14 @@ impl Way for CurvedWay<'_> {
     }
 }
 
-fn is_cylinder(land: &LandBlock) -> bool {
-    land.form[3] == 1
+fn is_cylinder(terrain: &TerrainBlock) -> bool {
+    terrain.base_kind == CYLINDER
 }
 
 /// A point in metres from the map's middle on the base in the map's coordinates; `side` is that of the half-plane behind the
 /// axis that longitudes are counted to.
-pub fn on_map(land: &LandBlock, point: Vec3, side: f32) -> Vec3 {
-    let [off_m, middle_u, middle_v, _] = land.middle;
+pub fn on_map(terrain: &TerrainBlock, point: Vec3, side: f32) -> Vec3 {
+    let (off_m, middle) = (terrain.axis_distance_m, terrain.middle_node);
     let off = off_m + point.y;
     let radius = Vec2::new(point.x, off).length();
     let mut longitude = point.x.atan2(off);
@@ -292,11 +287,11 @@ pub fn on_map(land: &LandBlock, point: Vec3, side: f32) -> Vec3 {
         longitude = if side < 0.0 { -longitude.abs() } else { longitude.abs() };
     }
     let grown = if off > 0.0 { point.y + point.x * point.x / (radius + off) } else { radius - off_m };
-    let (along, height_m) = if is_cylinder(land) { (point.z, grown) } else { geodetic(land, grown, point.z) };
+    let (along, height_m) = if is_cylinder(terrain) { (point.z, grown) } else { geodetic(terrain, grown, point.z) };
     Vec3::new(
-        middle_u + longitude * land.steps[0],
-        middle_v + along * land.steps[1],
-        land.bounds[2] + height_m / land.bounds[3],
+        middle.x + longitude * terrain.nodes_per_unit.x,
+        middle.y + along * terrain.nodes_per_unit.y,
+        terrain.base_height + height_m / terrain.height_unit_m,
     )
 }
 
@@ -312,8 +307,9 @@ pub struct Meridian {
     pub radius: f32,
 }
 
-pub fn meridian(land: &LandBlock, delta: f32) -> Meridian {
-    let [a, e2, s0, c0] = land.curve;
+pub fn meridian(terrain: &TerrainBlock, delta: f32) -> Meridian {
+    let TerrainBlock { semi_major_m: a, squared_eccentricity: e2, sine_latitude: s0, cosine_latitude: c0, .. } =
+        *terrain;
     let (sh, ch) = (0.5 * delta).sin_cos();
     let ds = 2.0 * sh * (c0 * ch - s0 * sh);
     let dc = -2.0 * sh * (s0 * ch + c0 * sh);
@@ -334,13 +330,14 @@ pub fn meridian(land: &LandBlock, delta: f32) -> Meridian {
 
 /// Latitude as a difference from the map's middle, and height, of a point in the plane of a meridian: Newton's method for the
 /// foot of the normal.
-fn geodetic(land: &LandBlock, off: f32, along: f32) -> (f32, f32) {
-    let [a, e2, s0, c0] = land.curve;
+fn geodetic(terrain: &TerrainBlock, off: f32, along: f32) -> (f32, f32) {
+    let TerrainBlock { semi_major_m: a, squared_eccentricity: e2, sine_latitude: s0, cosine_latitude: c0, .. } =
+        *terrain;
     let n0 = a / (1.0 - e2 * s0 * s0).sqrt();
-    let mut delta = (n0 * (1.0 - e2) * s0 + along).atan2((land.middle[0] + off) * (1.0 - e2)) - s0.atan2(c0);
+    let mut delta = (n0 * (1.0 - e2) * s0 + along).atan2((terrain.axis_distance_m + off) * (1.0 - e2)) - s0.atan2(c0);
     let mut height_m = 0.0;
     for _ in 0..4 {
-        let foot = meridian(land, delta);
+        let foot = meridian(terrain, delta);
         let (r, w) = (off - foot.off, along - foot.along);
         height_m = r * foot.cosine + w * foot.sine;
         delta += (w * foot.cosine - r * foot.sine) / (foot.radius + height_m).max(1e-6 * foot.radius);

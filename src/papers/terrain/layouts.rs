@@ -1,0 +1,21 @@
+//! Host structs against the blocks of buffers that hold them.
+
+use super::blocks::{LightBlock, TerrainBlock};
+use crate::papers::layout::check_block;
+
+#[test]
+fn the_buffers_hold_what_the_shaders_read() {
+    for program in
+        ["depth-plane-bilinear-pixel", "depth-curved-bicubic-exact", "shadow-curved-bilinear", "normal-bicubic"]
+    {
+        for stage in ["comp", "frag"] {
+            check_block::<TerrainBlock>(&format!("terrain/{program}.{stage}"), "terrain");
+        }
+    }
+    for shader in ["mesh.vert", "mesh.frag", "mesh-base-plane.frag", "mesh-base-curved.frag"] {
+        check_block::<TerrainBlock>(&format!("terrain/{shader}"), "terrain");
+    }
+    for shader in ["illumination.comp", "illumination.frag", "object.frag", "object-depth.frag"] {
+        check_block::<LightBlock>(&format!("terrain/{shader}"), "light");
+    }
+}
