@@ -91,7 +91,8 @@ vec3 on_map(vec3 point, float side) {
         found = geodetic(grown, point.z);
     }
     return vec3(terrain.middle_node.x + longitude * terrain.nodes_per_unit.x,
-                terrain.middle_node.y + found.x * terrain.nodes_per_unit.y, terrain.base_height + found.y / terrain.height_unit_m);
+                terrain.middle_node.y + found.x * terrain.nodes_per_unit.y,
+                terrain.base_height + found.y / terrain.height_unit_m);
 }
 
 // F = P + n h (eq. 6): the point over a place in nodes, in the map's frame.
