@@ -1,26 +1,29 @@
 use std::io::{self, Write};
 
-use npyz::{AutoSerialize, WriterBuilder};
-
 use super::raster::{Raster, Samples};
 
-/// Writes a raster as a NumPy array of its own element type and shape.
-pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
-    let dimensions = raster.shape().dimensions();
-    match raster.samples() {
-        Samples::F32(values) => array(file, &dimensions, values),
-        Samples::U32(values) => array(file, &dimensions, values),
-        Samples::I32(values) => array(file, &dimensions, values),
-        Samples::U16(values) => array(file, &dimensions, values),
-        Samples::U8(values) => array(file, &dimensions, values),
-    }
-}
+/// Bytes before the dictionary of format 1.0: the magic string, the version and the dictionary's length.
+const PREFIX_BYTES: usize = 10;
+/// The format asks that the elements begin at a multiple of this.
+const ALIGNMENT_BYTES: usize = 64;
 
-fn array<T: AutoSerialize + Copy>(file: &mut impl Write, dimensions: &[u64], values: &[T]) -> io::Result<()> {
-    let options = npyz::WriteOptions::new().default_dtype().shape(dimensions);
-    let mut writer = options.writer(file).begin_nd()?;
-    writer.extend(values.iter().copied())?;
-    writer.finish()
+/// Writes a raster as a NumPy array of its own element type and shape (format 1.0, little-endian machines).
+pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
+    let (element, bytes): (_, &[u8]) = match raster.samples() {
+        Samples::F32(values) => ("<f4", bytemuck::cast_slice(values)),
+        Samples::U32(values) => ("<u4", bytemuck::cast_slice(values)),
+        Samples::I32(values) => ("<i4", bytemuck::cast_slice(values)),
+        Samples::U16(values) => ("<u2", bytemuck::cast_slice(values)),
+        Samples::U8(values) => ("|u1", values),
+    };
+    let shape: String = raster.shape().dimensions().iter().map(|length| format!("{length}, ")).collect();
+    let dictionary = format!("{{'descr': '{element}', 'fortran_order': False, 'shape': ({shape}), }}");
+    let length = (PREFIX_BYTES + dictionary.len() + 1).next_multiple_of(ALIGNMENT_BYTES) - PREFIX_BYTES;
+    file.write_all(b"\x93NUMPY\x01\x00")?;
+    // At most four lengths of 20 digits.
+    file.write_all(&(length as u16).to_le_bytes())?;
+    writeln!(file, "{dictionary:<0$}", length - 1)?;
+    file.write_all(bytes)
 }
 
 #[cfg(test)]

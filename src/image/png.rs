@@ -3,8 +3,7 @@ use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 
-use ::image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
-use ::image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, Limits};
+use ::png::{BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, Filter, Limits, Transformations};
 
 use super::error::one_line;
 use super::raster::{Raster, Samples};
@@ -17,10 +16,7 @@ const MAX_SIDE: u32 = 16_384;
 const MAX_PIXELS: u64 = 1 << 26;
 
 /// Colour types by number of channels, where two travel as three.
-const COLORS_8: [ExtendedColorType; 4] =
-    [ExtendedColorType::L8, ExtendedColorType::Rgb8, ExtendedColorType::Rgb8, ExtendedColorType::Rgba8];
-const COLORS_16: [ExtendedColorType; 4] =
-    [ExtendedColorType::L16, ExtendedColorType::Rgb16, ExtendedColorType::Rgb16, ExtendedColorType::Rgba16];
+const COLORS: [ColorType; 4] = [ColorType::Grayscale, ColorType::Rgb, ColorType::Rgb, ColorType::Rgba];
 
 /// Reads a PNG of any colour type as 8-bit RGBA: grey and palettes are expanded, 16-bit values rounded to 8 bits, a
 /// missing alpha is opaque.
@@ -31,21 +27,29 @@ const COLORS_16: [ExtendedColorType; 4] =
 pub fn read_png(path: &Path) -> Result<Rgba8, Error> {
     let too_large = || Error::TooLarge { path: path.into(), max_pixels: MAX_PIXELS, max_side: MAX_SIDE };
     let damaged = |reason| match reason {
-        ImageError::Limits(_) => too_large(),
+        DecodingError::LimitsExceeded => too_large(),
         reason => Error::Png { path: path.into(), reason: one_line(reason) },
     };
     let file = File::open(path).map_err(|reason| Error::Open { path: path.into(), reason: one_line(reason) })?;
-    let mut limits = Limits::default();
     // 16-bit RGBA, the widest a PNG can be.
-    limits.max_alloc = Some(MAX_PIXELS * 8);
-    let decoder = PngDecoder::with_limits(BufReader::new(file), limits).map_err(damaged)?;
-    let (width, height) = decoder.dimensions();
-    let pixels = u64::from(width) * u64::from(height);
-    if width.max(height) > MAX_SIDE || pixels > MAX_PIXELS {
+    let limits = Limits { bytes: MAX_PIXELS as usize * 8 };
+    let mut decoder = Decoder::new_with_limits(BufReader::new(file), limits);
+    let (width, height) = decoder.read_header_info().map_err(damaged)?.size();
+    if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(too_large());
     }
-    let image = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    Rgba8::new(width, height, image.into_rgba8().into_raw())
+    decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
+    let mut reader = decoder.read_info().map_err(damaged)?;
+    let mut samples = vec![0; reader.output_buffer_size().ok_or_else(too_large)?];
+    let frame = reader.next_frame(&mut samples).map_err(damaged)?;
+    if frame.bit_depth == BitDepth::Sixteen {
+        let nearest = |wide: &[u8]| ((u32::from(u16::from_be_bytes([wide[0], wide[1]])) + 128) / 257) as u8;
+        samples = samples.chunks_exact(2).map(nearest).collect();
+    }
+    if frame.color_type == ColorType::GrayscaleAlpha {
+        samples = samples.chunks_exact(2).flat_map(|pixel| [pixel[0], pixel[0], pixel[0], pixel[1]]).collect();
+    }
+    Rgba8::new(width, height, samples)
 }
 
 /// Writes a picture, whole or not at all, to `path` whatever its ending.
@@ -57,7 +61,7 @@ pub fn write_png(path: &Path, picture: &Rgba8) -> Result<(), Error> {
         return Err(Error::Empty { path: path.into() });
     }
     let size = (picture.width(), picture.height());
-    replace(path, |file| store(file, picture.pixels(), size, ExtendedColorType::Rgba8))
+    replace(path, |file| store(file, picture.pixels(), size, ColorType::Rgba, BitDepth::Eight))
         .map_err(|reason| Error::write(path, &reason))
 }
 
@@ -69,26 +73,39 @@ pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
         .checked_mul(planes.height)
         .and_then(|height| Some((planes.width.try_into().ok()?, height.try_into().ok()?)))
         .ok_or_else(|| io::Error::other("a PNG cannot be so large, write it as .npy"))?;
-    let (bytes, color): (Cow<[u8]>, _) = match (raster.samples(), planes.channels) {
-        (Samples::U8(values), 2) => (view::with_blue(values).into(), ExtendedColorType::Rgb8),
-        (Samples::U8(values), channels) => (values.into(), COLORS_8[channels - 1]),
-        (Samples::U16(values), 2) => {
-            (bytemuck::cast_slice(&view::with_blue(values)).to_vec().into(), ExtendedColorType::Rgb16)
+    let channels = planes.channels;
+    let (bytes, color, depth): (Cow<[u8]>, _, _) = match raster.samples() {
+        Samples::U8(values) if channels == 2 => (view::with_blue(values).into(), ColorType::Rgb, BitDepth::Eight),
+        Samples::U8(values) => (values.into(), COLORS[channels - 1], BitDepth::Eight),
+        Samples::U16(values) => {
+            let values = if channels == 2 { view::with_blue(values).into() } else { Cow::Borrowed(&values[..]) };
+            let big_endian: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
+            (big_endian.into(), COLORS[channels - 1], BitDepth::Sixteen)
         }
-        (Samples::U16(values), channels) => (bytemuck::cast_slice(values).into(), COLORS_16[channels - 1]),
-        (Samples::F32(values), 1) => (view::ramp(values, 1).into(), ExtendedColorType::Rgb8),
-        (Samples::F32(values), channels) => (view::linear_light(values, channels).into(), ExtendedColorType::Rgb8),
-        (Samples::U32(values), channels) => (view::ramp(values, channels).into(), ExtendedColorType::Rgb8),
-        (Samples::I32(values), channels) => (view::ramp(values, channels).into(), ExtendedColorType::Rgb8),
+        Samples::F32(values) if channels == 1 => (view::ramp(values, 1).into(), ColorType::Rgb, BitDepth::Eight),
+        Samples::F32(values) => (view::linear_light(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
+        Samples::U32(values) => (view::ramp(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
+        Samples::I32(values) => (view::ramp(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
     };
-    store(file, &bytes, size, color)
+    store(file, &bytes, size, color, depth)
 }
 
-/// `bytes` holds exactly the pixels of `size` in `color`, 16-bit values in the machine's byte order.
-fn store(file: &mut impl Write, bytes: &[u8], (width, height): (u32, u32), color: ExtendedColorType) -> io::Result<()> {
-    PngEncoder::new_with_quality(file, CompressionType::Default, FilterType::Adaptive)
-        .write_image(bytes, width, height, color)
-        .map_err(super::encoder_error)
+/// `bytes` holds exactly the pixels of `size` in `color`, 16-bit values with the high byte first.
+fn store(
+    file: &mut impl Write,
+    bytes: &[u8],
+    (width, height): (u32, u32),
+    color: ColorType,
+    depth: BitDepth,
+) -> io::Result<()> {
+    let mut encoder = Encoder::new(file, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(Compression::Balanced);
+    encoder.set_filter(Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    Ok(writer.finish()?)
 }
 
 #[cfg(test)]
@@ -100,11 +117,15 @@ mod tests {
         Rgba8::new(7, 5, pixels).unwrap()
     }
 
-    fn written(raster: &Raster) -> DynamicImage {
+    /// The size, colour type, depth and samples of the file that a raster becomes.
+    fn written(raster: &Raster) -> ((u32, u32), ColorType, BitDepth, Vec<u8>) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("x.png");
         super::super::write(&path, raster).unwrap();
-        ::image::open(path).unwrap()
+        let mut reader = Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+        let mut samples = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut samples).unwrap();
+        ((frame.width, frame.height), frame.color_type, frame.bit_depth, samples)
     }
 
     /// Reads `bytes` as a picture file.
@@ -118,7 +139,7 @@ mod tests {
     fn encoded(picture: &Rgba8) -> Vec<u8> {
         let mut bytes = Vec::new();
         let size = (picture.width(), picture.height());
-        store(&mut bytes, picture.pixels(), size, ExtendedColorType::Rgba8).unwrap();
+        store(&mut bytes, picture.pixels(), size, ColorType::Rgba, BitDepth::Eight).unwrap();
         bytes
     }
 
@@ -136,37 +157,65 @@ mod tests {
     #[test]
     fn grey_and_rgb_files_are_expanded() {
         let mut bytes = Vec::new();
-        store(&mut bytes, &[5, 250], (2, 1), ExtendedColorType::L8).unwrap();
+        store(&mut bytes, &[5, 250], (2, 1), ColorType::Grayscale, BitDepth::Eight).unwrap();
         assert_eq!(read(&bytes).unwrap().pixels(), [5, 5, 5, 255, 250, 250, 250, 255]);
         let mut bytes = Vec::new();
-        store(&mut bytes, &[1, 2, 3], (1, 1), ExtendedColorType::Rgb8).unwrap();
+        store(&mut bytes, &[1, 2, 3], (1, 1), ColorType::Rgb, BitDepth::Eight).unwrap();
         assert_eq!(read(&bytes).unwrap().pixels(), [1, 2, 3, 255]);
     }
 
     #[test]
+    fn wide_samples_alpha_and_palettes_are_read_to_the_nearest_eight_bits() {
+        let pixels = |color, depth, samples: &[u8], size| {
+            let mut bytes = Vec::new();
+            store(&mut bytes, samples, size, color, depth).unwrap();
+            read(&bytes).unwrap().pixels().to_vec()
+        };
+        let wide = [0u16, 128, 129, 65_406, 65_407, 65_535].map(u16::to_be_bytes).concat();
+        let grey = pixels(ColorType::Grayscale, BitDepth::Sixteen, &wide, (6, 1));
+        assert_eq!(grey.iter().step_by(4).copied().collect::<Vec<u8>>(), [0, 0, 1, 254, 255, 255]);
+        assert!(grey.chunks(4).all(|pixel| pixel[3] == 255 && pixel[1] == pixel[0] && pixel[2] == pixel[0]));
+        assert_eq!(pixels(ColorType::GrayscaleAlpha, BitDepth::Eight, &[7, 9], (1, 1)), [7, 7, 7, 9]);
+        assert_eq!(pixels(ColorType::Grayscale, BitDepth::Two, &[0b0001_1011], (4, 1))[4..8], [85, 85, 85, 255]);
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, 2, 1);
+        encoder.set_color(ColorType::Indexed);
+        encoder.set_palette(vec![1, 2, 3, 4, 5, 6]);
+        encoder.set_trns(vec![255, 100]);
+        encoder.write_header().unwrap().write_image_data(&[1, 0]).unwrap();
+        assert_eq!(read(&bytes).unwrap().pixels(), [4, 5, 6, 100, 1, 2, 3, 255]);
+    }
+
+    #[test]
     fn small_integers_are_stored_unchanged() {
+        use BitDepth::{Eight, Sixteen};
+        use ColorType::{Grayscale, Rgb, Rgba};
         let image = written(&Raster::image(1, 2, 1, 1, vec![3u8, 200]).unwrap());
-        assert_eq!(image.as_luma8().unwrap().as_raw(), &[3, 200]);
+        assert_eq!(image, ((1, 2), Grayscale, Eight, vec![3, 200]));
         let image = written(&Raster::image(1, 1, 2, 1, vec![3u8, 200]).unwrap());
-        assert_eq!(image.as_rgb8().unwrap().as_raw(), &[3, 200, 0]);
+        assert_eq!(image, ((1, 1), Rgb, Eight, vec![3, 200, 0]));
         let image = written(&Raster::image(1, 1, 4, 2, vec![1u8, 2, 3, 0, 5, 6, 7, 8]).unwrap());
-        assert_eq!((image.width(), image.height()), (1, 2));
-        assert_eq!(image.as_rgba8().unwrap().as_raw(), &[1, 2, 3, 0, 5, 6, 7, 8]);
+        assert_eq!(image, ((1, 2), Rgba, Eight, vec![1, 2, 3, 0, 5, 6, 7, 8]));
         let image = written(&Raster::table(1, 2, vec![258u16, 65_535]).unwrap());
-        assert_eq!(image.as_luma16().unwrap().as_raw(), &[258, 65_535]);
+        assert_eq!(image, ((2, 1), Grayscale, Sixteen, vec![1, 2, 255, 255]));
         let image = written(&Raster::image(1, 1, 2, 1, vec![258u16, 4]).unwrap());
-        assert_eq!(image.as_rgb16().unwrap().as_raw(), &[258, 4, 0]);
+        assert_eq!(image, ((1, 1), Rgb, Sixteen, vec![1, 2, 0, 4, 0, 0]));
     }
 
     #[test]
     fn other_data_becomes_a_view() {
+        let samples = |raster: &Raster| {
+            let (_, color, depth, samples) = written(raster);
+            assert_eq!((color, depth), (ColorType::Rgb, BitDepth::Eight));
+            samples
+        };
         let colour = [0.0, 0.214_041_14, 1.0, 0.0, f32::NAN, 0.0, 0.0, 1.0];
-        let image = written(&Raster::image(2, 1, 4, 1, colour.to_vec()).unwrap());
-        assert_eq!(image.as_rgb8().unwrap().as_raw(), &[0, 128, 255, 255, 0, 255]);
+        let image = Raster::image(2, 1, 4, 1, colour.to_vec()).unwrap();
+        assert_eq!(samples(&image), [0, 128, 255, 255, 0, 255]);
         let depth = Raster::image(3, 1, 1, 1, vec![-1.0f32, 0.0, 4.0]).unwrap();
-        assert_eq!(written(&depth).as_rgb8().unwrap().as_raw(), &[0, 0, 0, 51, 51, 51, 255, 255, 255]);
+        assert_eq!(samples(&depth), [0, 0, 0, 51, 51, 51, 255, 255, 255]);
         let counts = Raster::table(1, 2, vec![0u32, u32::MAX]).unwrap();
-        assert_eq!(written(&counts).as_rgb8().unwrap().as_raw(), &[0, 0, 0, 255, 255, 255]);
+        assert_eq!(samples(&counts), [0, 0, 0, 255, 255, 255]);
     }
 
     #[test]

@@ -97,7 +97,7 @@ fn a_range_of_pictures_keeps_those_that_it_names() {
     let named = ended.stderr.lines().filter_map(|line| line.strip_prefix("wrote ./"));
     let named: Vec<&str> = named.collect();
     assert_eq!(named, entries(out.path()));
-    image::open(out.path().join(named[named.len() - 1])).unwrap();
+    fumarole::image::read_png(&out.path().join(named[named.len() - 1])).unwrap();
 }
 
 #[test]

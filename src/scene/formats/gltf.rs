@@ -5,11 +5,20 @@ use ::gltf::accessor::{DataType, Dimensions};
 use ::gltf::buffer::Source;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Gltf, Primitive, Semantic};
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use glam::{Mat4, Vec2, Vec3};
 use std::path::Path;
 
 /// Most triangle corners after instancing; a small file can name one mesh from any number of nodes.
 const MAX_CORNERS: usize = 1 << 28;
+
+/// Some exporters leave the padding out.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
 
 const POSITION_TYPES: [(Dimensions, DataType); 1] = [(Dimensions::Vec3, DataType::F32)];
 const TEXTURE_COORDINATE_TYPES: [(Dimensions, DataType); 3] =
@@ -92,9 +101,9 @@ fn read_buffers(document: &Document, mut blob: Option<Vec<u8>>, directory: &Path
 }
 
 fn read_uri(uri: &str, directory: &Path) -> Result<Vec<u8>, String> {
-    if uri.starts_with("data:") {
-        let data = ::gltf::buffer::Data::from_source(Source::Uri(uri), None);
-        return data.map(|data| data.0).map_err(|error| Fault::foreign(Place::Whole, &error).reason);
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (_, encoded) = data.split_once(";base64,").ok_or("its data URI is not encoded as base64")?;
+        return BASE64.decode(encoded).map_err(|error| Fault::foreign(Place::Whole, &error).reason);
     }
     if uri.contains(':') {
         return Err("only data URIs and relative paths are supported".to_owned());

@@ -3,46 +3,43 @@ use crate::scene::HeightMap;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
-use ::image::codecs::png::PngDecoder;
-use ::image::{DynamicImage, ExtendedColorType, ImageDecoder, Limits};
+use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
 use std::io::{BufRead, Seek};
 
 /// 16 bits and alpha in the largest map.
-const MAX_BYTES: u64 = 4 << 28;
+const MAX_BYTES: usize = 4 << 28;
 
 /// Reads a grey PNG of 8 or 16 bits: whole metres. Transparent samples, which is how GDAL writes no-data, are void.
 pub(super) fn parse(size_bytes: u64, input: impl BufRead + Seek) -> Result<HeightMap, Fault> {
-    let foreign = |error: ::image::ImageError| Fault::foreign(Place::Whole, &error);
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_BYTES);
-    let decoder = PngDecoder::with_limits(input, limits).map_err(foreign)?;
-    let (width, height) = decoder.dimensions();
+    let foreign = |error: DecodingError| Fault::foreign(Place::Whole, &error);
+    let mut decoder = Decoder::new_with_limits(input, Limits { bytes: MAX_BYTES });
+    let header = decoder.read_header_info().map_err(foreign)?;
+    let (width, height) = header.size();
+    let is_packed = (header.bit_depth as u8) < 8;
     let header_fault = |reason: String| Fault::new(Place::Part("IHDR".to_owned()), reason);
     check_size(width.into(), height.into()).map_err(header_fault)?;
     check_compressed(size_bytes, (width, height), 8).map_err(header_fault)?;
-    use ExtendedColorType::{L1, L2, L4};
-    let is_packed = matches!(decoder.original_color_type(), L1 | L2 | L4);
-    let image = DynamicImage::from_decoder(decoder).map_err(foreign)?;
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(foreign)?;
+    let (color, depth) = reader.output_color_type();
+    let has_alpha = color == ColorType::GrayscaleAlpha;
+    if !has_alpha && (color != ColorType::Grayscale || is_packed) {
+        let reason = "it is no grey picture of 8 or 16 bits; write heights as grey, for instance with gdal_translate";
+        return Err(header_fault(reason.to_owned()));
+    }
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap_or(0)];
+    reader.next_frame(&mut bytes).map_err(foreign)?;
+    let samples: Vec<u16> = match depth {
+        BitDepth::Sixteen => bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
+        _ => bytes.into_iter().map(u16::from).collect(),
+    };
+    if !has_alpha {
+        return map(width, height, samples, None);
+    }
     // A value that no 16-bit sample has.
     const VOID: i32 = -1;
-    let masked = |value: u16, alpha: u16| if alpha == 0 { VOID } else { value.into() };
-    match image {
-        DynamicImage::ImageLuma8(samples) if !is_packed => map(width, height, samples.into_raw(), None),
-        DynamicImage::ImageLuma16(samples) => map(width, height, samples.into_raw(), None),
-        DynamicImage::ImageLumaA8(samples) => {
-            let values = samples.pixels().map(|pixel| masked(pixel[0].into(), pixel[1].into())).collect();
-            map::<i32>(width, height, values, Some(VOID.into()))
-        }
-        DynamicImage::ImageLumaA16(samples) => {
-            let values = samples.pixels().map(|pixel| masked(pixel[0], pixel[1])).collect();
-            map::<i32>(width, height, values, Some(VOID.into()))
-        }
-        _ => {
-            let reason =
-                "it is no grey picture of 8 or 16 bits; write heights as grey, for instance with gdal_translate";
-            Err(Fault::new(Place::Part("IHDR".to_owned()), reason))
-        }
-    }
+    let masked = |pixel: &[u16]| if pixel[1] == 0 { VOID } else { pixel[0].into() };
+    map(width, height, samples.chunks_exact(2).map(masked).collect(), Some(VOID.into()))
 }
 
 fn map<T: Copy + Into<f64>>(width: u32, height: u32, values: Vec<T>, no_data: Option<f64>) -> Result<HeightMap, Fault> {

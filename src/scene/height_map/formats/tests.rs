@@ -268,14 +268,22 @@ fn content_tells_a_tiff_or_png_of_any_name() {
 
 #[test]
 fn tiffs_and_pngs_that_are_no_height_map_are_refused() {
-    let picture = |pixels: ::image::DynamicImage| {
-        let mut bytes = Cursor::new(Vec::new());
-        pixels.write_to(&mut bytes, ::image::ImageFormat::Png).unwrap();
-        parse("png", bytes.into_inner()).unwrap_err().to_string()
+    use ::png::{BitDepth, ColorType};
+    let picture = |color: ColorType, depth: BitDepth, width: u32, height: u32| {
+        let mut bytes = Vec::new();
+        let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        let row_bytes = (color.samples() * width as usize * depth as usize).div_ceil(8);
+        encoder.write_header().unwrap().write_image_data(&vec![0; row_bytes * height as usize]).unwrap();
+        parse("png", bytes).unwrap_err().to_string()
     };
-    assert!(picture(::image::DynamicImage::new_rgb8(3, 3)).starts_with("IHDR: it is no grey picture"));
-    assert!(picture(::image::DynamicImage::new_luma8(1, 9)).starts_with("IHDR: it has 1 x 9 samples"));
-    assert!(picture(::image::DynamicImage::new_luma_a8(4, 4)).contains("all its samples are void"));
+    assert!(picture(ColorType::Rgb, BitDepth::Eight, 3, 3).starts_with("IHDR: it is no grey picture"));
+    assert!(picture(ColorType::Grayscale, BitDepth::Four, 3, 3).starts_with("IHDR: it is no grey picture"));
+    assert!(picture(ColorType::Grayscale, BitDepth::Eight, 1, 9).starts_with("IHDR: it has 1 x 9 samples"));
+    for depth in [BitDepth::Eight, BitDepth::Sixteen] {
+        assert!(picture(ColorType::GrayscaleAlpha, depth, 4, 4).contains("all its samples are void"));
+    }
     type Encoder<'a> = tiff::encoder::TiffEncoder<&'a mut Cursor<Vec<u8>>, tiff::encoder::TiffKindStandard>;
     let tiff = |write: &dyn Fn(&mut Encoder<'_>)| {
         let mut bytes = Cursor::new(Vec::new());
