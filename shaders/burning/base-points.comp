@@ -9,9 +9,11 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
+#include "burning/blocks.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
+    RestVertex rest[];
 };
 
 layout(set = 0, binding = 7, std430) readonly buffer BasePoints {
@@ -23,7 +25,7 @@ layout(set = 0, binding = 11, std430) readonly buffer Labels {
 };
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // of the last tick: live vertices first
+    Block blocks[];
 };
 
 layout(set = 0, binding = 18, std430) readonly buffer Clock {
@@ -31,11 +33,11 @@ layout(set = 0, binding = 18, std430) readonly buffer Clock {
 };
 
 layout(set = 0, binding = 50, std430) readonly buffer OldBases {
-    vec4 old_bases[]; // displacement since the start, whether it is active
+    BaseDisplacement old_bases[];
 };
 
 layout(set = 0, binding = 51, std430) buffer NewBases {
-    vec4 new_bases[];
+    BaseDisplacement new_bases[];
 };
 
 // So much lower must the lowest base point be to draw another, in diagonals: on the floor all are equal but for rounding, which is not
@@ -43,7 +45,7 @@ layout(set = 0, binding = 51, std430) buffer NewBases {
 const float LEVEL = 1e-4;
 
 bool has_base(uint block) {
-    return block != NONE && base_points[min(block, constants.counts.w - 1u)] != NONE;
+    return block != NONE && base_points[min(block, constants.block_count - 1u)] != NONE;
 }
 
 bool is_active(uint block) {
@@ -51,7 +53,7 @@ bool is_active(uint block) {
 }
 
 vec3 base_of(uint block) {
-    return rest[base_points[block]].xyz + old_bases[block].xyz;
+    return rest[base_points[block]].position + old_bases[block].offset;
 }
 
 bool is_free_edge(uint block) {
@@ -65,7 +67,7 @@ bool is_free_edge(uint block) {
 // The block around this one whose base point is the lowest, the first of several; NONE without any.
 uint lowest_around(uint block) {
     ivec3 middle = ivec3(place_of(block));
-    ivec3 size = ivec3(constants.grid.xyz);
+    ivec3 size = ivec3(constants.blocks);
     uint lowest = NONE;
     float height = 0.0;
     for (int i = 0; i < 27; i++) {
@@ -84,12 +86,12 @@ uint lowest_around(uint block) {
 }
 
 vec3 moved(uint block, vec3 p) {
-    float omega = constants.melting.x;
+    float omega = constants.omega;
     if (is_free_edge(block)) {
-        float behind = max(0.0, clock.radius - constants.boundary.y - rest[base_points[block]].w);
-        float fall = constants.albedo.w / constants.material.x; // g dt^2
-        float slower = max(behind / constants.cell_size.y, 1.0);
-        return vec3(p.x, max(constants.origin.w, p.y - omega * fall / slower), p.z);
+        float behind = max(0.0, clock.radius - constants.area_width - rest[base_points[block]].boundary_distance);
+        float fall = constants.fall_per_tick / constants.epsilon; // g dt^2
+        float slower = max(behind / constants.block_size.y, 1.0);
+        return vec3(p.x, max(constants.floor_y, p.y - omega * fall / slower), p.z);
     }
     uint lowest = lowest_around(block);
     if (lowest == NONE) {
@@ -102,7 +104,7 @@ vec3 moved(uint block, vec3 p) {
     vec3 drawn = omega * (p - q) + q;
     uint cell = cell_of(drawn);
     if (cell != cell_of(p) && has_base(cell)) {
-        if (!is_active(cell) && blocks[8u * cell] > 0) {
+        if (!is_active(cell) && blocks[cell].live > 0) {
             return p; // the flow must pass over what is solid
         }
     }
@@ -111,18 +113,18 @@ vec3 moved(uint block, vec3 p) {
 
 void main() {
     uint block = gl_GlobalInvocationID.x;
-    if (block >= constants.counts.w) {
+    if (block >= constants.block_count) {
         return;
     }
-    vec4 before = old_bases[block];
+    BaseDisplacement before = old_bases[block];
     if (!has_base(block)) {
         new_bases[block] = before;
         return;
     }
     if (!is_active(block)) {
-        new_bases[block] = vec4(before.xyz, 0.0);
+        new_bases[block] = BaseDisplacement(before.offset, 0.0);
         return;
     }
     vec3 p = base_of(block);
-    new_bases[block] = vec4(before.xyz + (moved(block, p) - p), 1.0);
+    new_bases[block] = BaseDisplacement(before.offset + (moved(block, p) - p), 1.0);
 }

@@ -1,7 +1,9 @@
-// The particles as squares that face the viewer.
+// The particles as squares that face the viewer. Lengths are in diagonals.
 
 layout(set = 0, binding = 44, std140) uniform Billboards {
-    vec4 right; // of the picture, in space; radius of a particle
-    vec4 up;
-    vec4 depth; // distance along the view = x / (y + depth); distance over which a particle fades towards the mesh
+    vec3 right; // the picture's axis in space, a unit vector
+    float particle_radius; // also the distance over which a particle fades towards the mesh
+    vec3 up; // the other axis
+    float depth_scale; // distance along the view = depth_scale / (depth_offset + depth)
+    float depth_offset;
 } billboards;

@@ -8,9 +8,10 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/grid.glsl"
+#include "burning/blocks.glsl"
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
+    Block blocks[];
 };
 
 layout(set = 0, binding = 16, std430) readonly buffer OldRotations {
@@ -25,27 +26,27 @@ const float PI = 3.14159265358979;
 const uint SIDES = 4u; // directions 0 to 3
 
 bool has_weight(uint block) {
-    return block != NONE && blocks[8u * min(block, constants.counts.w - 1u)] > 0;
+    return block != NONE && blocks[min(block, constants.block_count - 1u)].live > 0;
 }
 
 // Number of live vertices; of a solid's block the less, the longer it has been burning (5.4).
 float weight_of(uint block) {
-    float live = float(blocks[8u * block]);
-    if (constants.grid.w != SOLID) {
+    float live = float(blocks[block].live);
+    if (constants.variant != SOLID) {
         return live;
     }
-    float flammability = constants.boundary.w;
-    return live * flammability / (flammability + float(blocks[8u * block + 5u]));
+    float flammability = constants.flammability;
+    return live * flammability / (flammability + float(blocks[block].combustion));
 }
 
 // What melts turns outside the combustion-ready boundary and above the ignition alone: there is weight to support (6.4).
 bool is_rigid(uint block) {
-    return constants.grid.w == MELTING
-        && (blocks[8u * block + 6u] > 0 || midpoint_of(block).y <= constants.boundary.z);
+    return constants.variant == MELTING
+        && (blocks[block].heated > 0 || midpoint_of(block).y <= constants.highest_source_y);
 }
 
 vec3 own_change(uint block) {
-    ivec3 signs = ivec3(blocks[8u * block + 2u], blocks[8u * block + 3u], blocks[8u * block + 4u]);
+    ivec3 signs = ivec3(blocks[block].pitch_sign, blocks[block].yaw_sign, blocks[block].roll_sign);
     if (signs == ivec3(0)) {
         return vec3(0.0);
     }
@@ -54,16 +55,16 @@ vec3 own_change(uint block) {
         neighbours += has_weight(neighbour_of(block, direction)) ? 1 : 0;
     }
     float share = max(weight_of(block), 1.0) * float(max(neighbours, 1));
-    return constants.rotation.x * constants.material.z * PI / share * vec3(signs);
+    return constants.gamma * constants.rho * PI / share * vec3(signs);
 }
 
 void main() {
     uint block = gl_GlobalInvocationID.x;
-    if (block >= constants.counts.w) {
+    if (block >= constants.block_count) {
         return;
     }
     vec4 before = old_rotations[block];
-    if (blocks[8u * block] <= 0 || is_rigid(block)) {
+    if (blocks[block].live <= 0 || is_rigid(block)) {
         new_rotations[block] = before;
         return;
     }
@@ -72,12 +73,12 @@ void main() {
     for (uint direction = 0u; direction < 6u; direction++) {
         uint neighbour = neighbour_of(block, direction);
         if (neighbour != NONE) {
-            change += (direction < SIDES ? -1.0 : 1.0) * constants.rotation.y * own_change(neighbour);
+            change += (direction < SIDES ? -1.0 : 1.0) * constants.spread * own_change(neighbour);
         }
         if (direction < SIDES && !has_weight(neighbour)) {
             free_sides++;
         }
     }
-    float most = free_sides >= 2u ? constants.rotation.w : constants.rotation.z;
+    float most = free_sides >= 2u ? constants.greatest_free_rotation_rad : constants.greatest_rotation_rad;
     new_rotations[block] = vec4(clamp(before.xyz + change, vec3(-most), vec3(most)), 0.0);
 }

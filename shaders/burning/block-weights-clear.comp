@@ -5,18 +5,21 @@
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
+#include "burning/blocks.glsl"
 
 layout(set = 0, binding = 15, std430) buffer Blocks {
-    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
+    Block blocks[];
 };
 
 void main() {
     uint block = gl_GlobalInvocationID.x;
-    if (block >= constants.counts.w) {
+    if (block >= constants.block_count) {
         return;
     }
-    for (uint i = 0u; i < 5u; i++) {
-        blocks[8u * block + i] = 0;
-    }
-    blocks[8u * block + 6u] = 0;
+    blocks[block].live = 0;
+    blocks[block].ready = 0;
+    blocks[block].pitch_sign = 0;
+    blocks[block].yaw_sign = 0;
+    blocks[block].roll_sign = 0;
+    blocks[block].heated = 0;
 }

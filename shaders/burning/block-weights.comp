@@ -9,13 +9,15 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
+#include "burning/blocks.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
-    vec4 old_state[]; // position, L left
+    VertexState old_state[];
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
-    vec4 new_state[];
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
@@ -27,7 +29,7 @@ layout(set = 0, binding = 14, std430) buffer Cells {
 };
 
 layout(set = 0, binding = 15, std430) buffer Blocks {
-    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
+    Block blocks[];
 };
 
 layout(set = 0, binding = 18, std430) buffer Clock {
@@ -48,39 +50,39 @@ void main() {
     }
     barrier();
     uint vertex = gl_GlobalInvocationID.x;
-    if (vertex < constants.counts.x) {
-        vec4 now = new_state[vertex];
+    if (vertex < constants.vertex_count) {
+        VertexState now = new_state[vertex];
         uint label = labels[vertex];
         uint old_cell = cells[vertex];
-        uint cell = cell_of(now.xyz);
+        uint cell = cell_of(now.position);
         cells[vertex] = cell;
         if (alive[vertex] == 1u) {
-            bool is_live = now.w > 0.0;
+            bool is_live = now.left > 0.0;
             if (is_live) {
                 atomicAdd(live_count, 1u);
-                atomicAdd(blocks[8u * cell], 1);
+                atomicAdd(blocks[cell].live, 1);
                 if (label == READY) {
                     atomicAdd(ready_count, 1u);
-                    atomicAdd(blocks[8u * cell + 1u], 1);
+                    atomicAdd(blocks[cell].ready, 1);
                 }
             }
             if (label >= READY) {
-                atomicAdd(blocks[8u * cell + 6u], 1);
+                atomicAdd(blocks[cell].heated, 1);
             }
             // The combustion counter of a block goes up once in each tick with active vertices (5.4).
-            if (label == DEFORMED && old_state[vertex].w > constants.solid.y) {
+            if (label == DEFORMED && old_state[vertex].left > constants.retired_left) {
                 int tick = int(clock.tick);
-                if (atomicMax(blocks[8u * cell + 7u], tick) < tick) {
-                    atomicAdd(blocks[8u * cell + 5u], 1);
+                if (atomicMax(blocks[cell].last_active_tick, tick) < tick) {
+                    atomicAdd(blocks[cell].combustion, 1);
                 }
             }
-            bool is_consumed = old_state[vertex].w > 0.0 && !is_live;
+            bool is_consumed = old_state[vertex].left > 0.0 && !is_live;
             if (label >= INITIAL && (is_consumed || (is_live && cell != old_cell))) {
-                vec3 offset = now.xyz - midpoint_of(old_cell);
+                vec3 offset = now.position - midpoint_of(old_cell);
                 ivec3 signs = ivec3(sign(vec3(-offset.z, offset.y, offset.x)));
-                atomicAdd(blocks[8u * old_cell + 2u], signs.x);
-                atomicAdd(blocks[8u * old_cell + 3u], signs.y);
-                atomicAdd(blocks[8u * old_cell + 4u], signs.z);
+                atomicAdd(blocks[old_cell].pitch_sign, signs.x);
+                atomicAdd(blocks[old_cell].yaw_sign, signs.y);
+                atomicAdd(blocks[old_cell].roll_sign, signs.z);
             }
         }
     }

@@ -12,5 +12,4 @@ struct Counts {
     uint drawn_triangles;
     uint fire_particles;
     uint smoke_particles;
-    uint pad;
 };

@@ -1,21 +1,47 @@
-// Every number of the run, uploaded once (3.7.4), and the words that all passes share. Lengths are shares of the object's diagonal.
+// Every number of the run, uploaded once (3.7.4), and the enumerations that all passes share. The unit of length is the object's
+// diagonal.
 
 layout(set = 0, binding = 0, std140) uniform Constants {
-    uvec4 counts; // vertices, finest triangles, draw vertices, blocks
-    uvec4 grid; // blocks along x, y, z; the variant
-    vec4 origin; // the lowest corner of the blocks; lowest height of what melts
-    vec4 cell_size; // of a block; mean rest edge
-    vec4 boundary; // growth of the radius a tick, width of an area, height of the highest source, flammability
-    vec4 material; // epsilon, beta, rho, phi
-    vec4 rotation; // gamma, x, greatest angle, greatest angle of a free block
-    vec4 melting; // omega, chi, upsilon
-    vec4 solid; // 1 where triangles wind outwards or else -1; L at which a vertex retires, 0 but for a solid; depth of its char
-    vec4 albedo; // linear RGB; fall in a tick: epsilon g dt^2
-    uvec4 choices; // active limit, whether neighbours are kept connected, seed
-    uvec4 tree; // levels, coarse triangles, fire and smoke particles at most
+    uvec3 blocks; // along x, y, z
+    uint block_count;
+    vec3 grid_origin; // lowest corner of the blocks
+    float floor_y; // lowest height of what melts
+    vec3 block_size;
+    float mean_edge; // of the finest triangles at rest
+    vec3 albedo; // linear RGB
+    float fall_per_tick; // epsilon g dt^2
+    uint vertex_count;
+    uint triangle_count; // finest triangles
+    uint draw_vertex_count;
+    uint variant; // SHELL to MELTING
+    float growth_per_tick; // of the boundary's radius
+    float area_width; // of the boundary
+    float highest_source_y;
+    float flammability; // L before the fire, ticks
+    float epsilon; // meltability
+    float beta; // displacement
+    float rho; // density
+    float phi; // bond strength
+    float gamma; // rotation of blocks (eq. 4)
+    float spread; // x of 3.5.2
+    float greatest_rotation_rad; // of a block
+    float greatest_free_rotation_rad; // of a block with two or more free sides
+    float omega; // longest edge, mean edges
+    float chi; // longest over shortest edge
+    float upsilon; // fraction of a violation that is folded in a tick
+    float outward; // 1 where triangles wind outwards, else -1
+    float retired_left; // L at which a vertex of a solid retires (5.5), else 0
+    float char_depth; // of a solid
+    uint active_limit; // of vertices (3.7.1), 0 for none
+    uint keep_connected; // 1 where neighbours are kept connected (3.5.4)
+    uint seed;
+    uint levels; // of the refinement pattern
+    uint coarse_count; // coarse triangles
+    uint fire_pool; // most fire particles
+    uint smoke_pool; // most smoke particles
 } constants;
 
-// Variants, numbered as src/papers/burning/state.rs does.
+// Variants, numbered as src/papers/burning/parameters.rs does.
 const uint SHELL = 0u;
 const uint LOW_POLY = 1u;
 const uint FULLY_SUBDIVIDED = 2u;

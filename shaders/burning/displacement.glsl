@@ -8,10 +8,10 @@ float fraction_along(float edge, bool is_heated, float share_left) {
     if (edge <= 0.0) {
         return 0.0;
     }
-    float phi = is_heated ? constants.material.w : 1.0;
-    float beta = constants.material.y;
-    float rho = constants.material.z;
-    return min(0.5, phi * beta * rho * share_left * constants.cell_size.w / edge);
+    float phi = is_heated ? constants.phi : 1.0;
+    float beta = constants.beta;
+    float rho = constants.rho;
+    return min(0.5, phi * beta * rho * share_left * constants.mean_edge / edge);
 }
 
 vec3 cevians_meet(vec3 a, vec3 b, vec3 c, float l, float m) {

@@ -10,8 +10,10 @@
 layout(set = 0, binding = 45) uniform texture2D mesh_depth;
 
 layout(location = 0) in vec2 place_in_square;
-layout(location = 1) in vec4 character; // share of its life, two numbers of its own, whether it is fire
-layout(location = 2) in float eye_depth;
+layout(location = 1) in float eye_depth; // distance along the view, diagonals
+layout(location = 2) in float age_fraction; // of its life
+layout(location = 3) in float own_random; // 0 to 1
+layout(location = 4) in float fire_flag; // 1, or 0 for smoke
 
 layout(location = 0) out vec4 shaded;
 
@@ -58,13 +60,13 @@ vec4 smoke(vec2 at, float age, float own) {
 
 void main() {
     float mesh = texelFetch(mesh_depth, ivec2(gl_FragCoord.xy), 0).x;
-    float before_mesh = billboards.depth.x / (billboards.depth.y + mesh) - eye_depth;
+    float before_mesh = billboards.depth_scale / (billboards.depth_offset + mesh) - eye_depth;
     if (before_mesh <= 0.0) {
         discard;
     }
-    float softness = clamp(before_mesh / billboards.depth.z, 0.0, 1.0);
-    vec4 covered = character.w > 0.5
-        ? fire(place_in_square, character.x, character.y)
-        : smoke(place_in_square, character.x, character.y);
+    float softness = clamp(before_mesh / billboards.particle_radius, 0.0, 1.0);
+    vec4 covered = fire_flag > 0.5
+        ? fire(place_in_square, age_fraction, own_random)
+        : smoke(place_in_square, age_fraction, own_random);
     shaded = softness * covered;
 }

@@ -12,8 +12,10 @@ layout(set = 0, binding = 43, std430) readonly buffer Particles {
 };
 
 layout(location = 0) out vec2 place_in_square; // -1 to 1
-layout(location = 1) out vec4 character; // share of its life, two numbers of its own, whether it is fire
-layout(location = 2) out float eye_depth;
+layout(location = 1) out float eye_depth; // distance along the view, diagonals
+layout(location = 2) out float age_fraction; // of its life
+layout(location = 3) out float own_random; // 0 to 1
+layout(location = 4) out float fire_flag; // 1, or 0 for smoke
 
 // Of the square, times the particle's radius, the most that it comes to. A flame is tall, swells at once and tapers; smoke spreads.
 vec2 half_size(bool is_fire, float age, float random) {
@@ -26,20 +28,20 @@ vec2 half_size(bool is_fire, float age, float random) {
 
 void main() {
     uint instance = uint(gl_InstanceIndex);
-    uint fire_pool = constants.tree.z;
-    uint smoke_pool = constants.tree.w;
+    uint fire_pool = constants.fire_pool;
+    uint smoke_pool = constants.smoke_pool;
     bool is_fire = instance >= smoke_pool;
     Particle p = particles[is_fire ? instance - smoke_pool : instance + fire_pool];
-    float life = p.character.x;
-    float age = clamp(p.place.w / max(life, 1.0), 0.0, 1.0);
+    age_fraction = clamp(p.age_ticks / max(p.life_ticks, 1.0), 0.0, 1.0);
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
-    vec2 size = billboards.right.w * half_size(is_fire, age, p.character.w);
-    vec3 place = p.place.xyz + corner.x * size.x * billboards.right.xyz + corner.y * size.y * billboards.up.xyz;
+    vec2 size = billboards.particle_radius * half_size(is_fire, age_fraction, p.random.y);
+    vec3 place = p.position + corner.x * size.x * billboards.right + corner.y * size.y * billboards.up;
     place_in_square = corner;
-    character = vec4(age, p.character.z, p.character.w, is_fire ? 1.0 : 0.0);
+    own_random = p.random.x;
+    fire_flag = is_fire ? 1.0 : 0.0;
     gl_Position = view.view_projection * vec4(place, 1.0);
     eye_depth = gl_Position.w;
-    if (life <= 0.0) {
+    if (p.life_ticks <= 0.0) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // nothing of it lies in the picture
     }
 }

@@ -10,8 +10,15 @@
 
 layout(set = 0, binding = 47) uniform texture2D texels;
 
+struct TextureLevel {
+    uint width; // texels
+    uint height;
+    uint first_row; // of the level in the image
+    uint level_count; // of the texture
+};
+
 layout(set = 0, binding = 48, std430) readonly buffer TextureLevels {
-    uvec4 texture_levels[]; // width, height, first row, number of levels
+    TextureLevel texture_levels[];
 };
 
 layout(location = 4) in vec2 texture_coordinate; // (0, 0) is the picture's lower left corner
@@ -19,12 +26,12 @@ layout(location = 4) in vec2 texture_coordinate; // (0, 0) is the picture's lowe
 layout(location = 0) out vec4 shaded;
 
 vec3 texel(uint level, int column, int row) {
-    return texelFetch(texels, ivec2(column, row + int(texture_levels[level].z)), 0).rgb;
+    return texelFetch(texels, ivec2(column, row + int(texture_levels[level].first_row)), 0).rgb;
 }
 
 vec3 filtered(uint level, vec2 place) {
-    int width = int(texture_levels[level].x);
-    int height = int(texture_levels[level].y);
+    int width = int(texture_levels[level].width);
+    int height = int(texture_levels[level].height);
     vec2 at = fract(place) * vec2(float(width), float(height)) - 0.5;
     vec2 t = fract(at);
     int left = (int(floor(at.x)) + width) % width;
@@ -38,14 +45,14 @@ vec3 filtered(uint level, vec2 place) {
 
 void main() {
     vec2 place = vec2(texture_coordinate.x, 1.0 - texture_coordinate.y);
-    vec2 size = vec2(texture_levels[0].xy);
+    vec2 size = vec2(uvec2(texture_levels[0].width, texture_levels[0].height));
     vec2 right = dFdx(place) * size;
     vec2 down = dFdy(place) * size;
-    float coarsest = float(texture_levels[0].w - 1u);
+    float coarsest = float(texture_levels[0].level_count - 1u);
     float wanted = 0.5 * log2(max(max(dot(right, right), dot(down, down)), 1.0));
     float level = min(wanted, coarsest);
     uint finer = uint(level);
-    uint coarser = min(finer + 1u, texture_levels[0].w - 1u);
+    uint coarser = min(finer + 1u, texture_levels[0].level_count - 1u);
     vec3 color_of_texture = mix(filtered(finer, place), filtered(coarser, place), level - float(finer));
     shaded = lit(color_of_texture);
 }

@@ -9,11 +9,12 @@ layout(local_size_x = 256) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/blocks.glsl"
 #include "burning/scan.glsl"
 #include "burning/flames.glsl"
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
+    Block blocks[];
 };
 
 layout(set = 0, binding = 18, std430) buffer Clock {
@@ -37,7 +38,7 @@ uint first_of(uint count, uint before, uint total) {
 
 void main() {
     uint thread = gl_LocalInvocationID.x;
-    uint block_count = constants.counts.w;
+    uint block_count = constants.block_count;
     uint weight_before = 0u;
     uint ready_before = 0u;
     for (uint base = 0u; base <= block_count; base += GROUP) {
@@ -45,8 +46,8 @@ void main() {
         uint weight = 0u;
         uint ready = 0u;
         if (block < block_count) {
-            ready = uint(max(blocks[8u * block + 1u], 0));
-            weight = ready > 0u ? uint(blocks[8u * block]) : 0u;
+            ready = uint(max(blocks[block].ready, 0));
+            weight = ready > 0u ? uint(blocks[block].live) : 0u;
             listed[block] = 0u;
         }
         uint weight_sum = weight_before + sum_before(thread, weight);
@@ -61,9 +62,9 @@ void main() {
             groups[block].weight = weight;
         }
     }
-    float share = min(1.0, float(weight_before) / (SHARE_FOR_ALL * float(constants.counts.x)));
-    uint fire = uint(float(constants.tree.z) * share);
-    uint smoke = uint(float(constants.tree.w) * share);
+    float share = min(1.0, float(weight_before) / (SHARE_FOR_ALL * float(constants.vertex_count)));
+    uint fire = uint(float(constants.fire_pool) * share);
+    uint smoke = uint(float(constants.smoke_pool) * share);
     for (uint block = thread; block <= block_count; block += GROUP) {
         uint before = groups[block].first_fire;
         groups[block].first_fire = first_of(fire, before, weight_before);

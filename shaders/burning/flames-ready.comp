@@ -7,9 +7,10 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/flames.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
-    vec4 new_state[]; // position, L left
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
@@ -38,10 +39,10 @@ layout(set = 0, binding = 42, std430) buffer Ready {
 
 void main() {
     uint vertex = gl_GlobalInvocationID.x;
-    if (vertex >= constants.counts.x) {
+    if (vertex >= constants.vertex_count) {
         return;
     }
-    if (labels[vertex] == READY && new_state[vertex].w > 0.0 && alive[vertex] == 1u) {
+    if (labels[vertex] == READY && new_state[vertex].left > 0.0 && alive[vertex] == 1u) {
         uint block = cells[vertex];
         ready[groups[block].first_ready + atomicAdd(listed[block], 1u)] = vertex;
     }

@@ -11,13 +11,15 @@ layout(local_size_x = 64) in;
 #include "burning/turn.glsl"
 #include "burning/flames.glsl"
 #include "burning/billboards.glsl"
+#include "burning/blocks.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
-    vec4 new_state[]; // position, L left
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
+    Block blocks[];
 };
 
 layout(set = 0, binding = 17, std430) readonly buffer NewRotations {
@@ -57,7 +59,7 @@ shared uint smoke_count;
 // The group that `particle` of the pool belongs to: the last block that begins at or before it.
 uint group_of(uint particle, bool is_fire) {
     uint low = 0u;
-    uint high = constants.counts.w;
+    uint high = constants.block_count;
     while (high - low > 1u) {
         uint middle = (low + high) / 2u;
         uint first = is_fire ? groups[middle].first_fire : groups[middle].first_smoke;
@@ -71,7 +73,7 @@ uint group_of(uint particle, bool is_fire) {
 }
 
 bool is_ready(uint block) {
-    return blocks[8u * block + 1u] > 0;
+    return blocks[block].ready > 0;
 }
 
 // The ready neighbour with most live vertices; NONE without any.
@@ -81,8 +83,8 @@ uint next_block(uint block) {
     for (uint direction = 0u; direction < 6u; direction++) {
         uint neighbour = neighbour_of(block, direction);
         if (neighbour != NONE) {
-            if (is_ready(neighbour) && blocks[8u * neighbour] > most) {
-                most = blocks[8u * neighbour];
+            if (is_ready(neighbour) && blocks[neighbour].live > most) {
+                most = blocks[neighbour].live;
                 next = neighbour;
             }
         }
@@ -96,7 +98,7 @@ uint vertex_of(uint block, uint particle) {
     uint lowest = NONE;
     for (uint i = groups[block].first_ready; i < groups[block + 1u].first_ready; i++) {
         uint vertex = ready[i];
-        uint key = hash(uvec3(vertex, clock.tick, particle ^ constants.choices.z)).x;
+        uint key = hash(uvec3(vertex, clock.tick, particle ^ constants.seed)).x;
         if (chosen == NONE || key < lowest || (key == lowest && vertex < chosen)) {
             chosen = vertex;
             lowest = key;
@@ -107,21 +109,21 @@ uint vertex_of(uint block, uint particle) {
 
 Particle born(uint block, uint particle, bool is_fire) {
     uint vertex = vertex_of(block, particle);
-    vec3 random = unit(hash(uvec3(particle, clock.tick, constants.choices.z)));
-    vec3 more = unit(hash(uvec3(clock.tick, constants.choices.z, particle)));
-    vec3 place = turned_with_block(new_state[vertex].xyz, block, new_rotations[block].xyz);
-    float radius = billboards.right.w;
+    vec3 random = unit(hash(uvec3(particle, clock.tick, constants.seed)));
+    vec3 more = unit(hash(uvec3(clock.tick, constants.seed, particle)));
+    vec3 place = turned_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    float radius = billboards.particle_radius;
     place += radius * vec3(more.x - 0.5, 0.2 + (is_fire ? 0.0 : SMOKE_ABOVE / radius), more.y - 0.5);
     vec2 life = is_fire ? FIRE_LIFE : SMOKE_LIFE;
-    return Particle(vec4(place, 0.0), vec4(floor(life.x + life.y * random.x), float(block), random.yz));
+    return Particle(place, 0.0, floor(life.x + life.y * random.x), float(block), random.yz);
 }
 
 vec3 velocity(Particle p, bool is_fire) {
     float time_s = float(clock.tick) * TICK_S;
-    float phase = 6.2832 * p.character.z;
-    vec2 sway = vec2(sin(31.0 * p.place.y - 7.0 * time_s + phase), cos(27.0 * p.place.y - 6.0 * time_s + 1.7 * phase));
-    sway += 0.5 * vec2(sin(73.0 * p.place.x + 11.0 * time_s), cos(67.0 * p.place.z - 13.0 * time_s));
-    float rise = (is_fire ? FIRE_RISE : SMOKE_RISE) * (0.6 + 0.8 * p.character.w);
+    float phase = 6.2832 * p.random.x;
+    vec2 sway = vec2(sin(31.0 * p.position.y - 7.0 * time_s + phase), cos(27.0 * p.position.y - 6.0 * time_s + 1.7 * phase));
+    sway += 0.5 * vec2(sin(73.0 * p.position.x + 11.0 * time_s), cos(67.0 * p.position.z - 13.0 * time_s));
+    float rise = (is_fire ? FIRE_RISE : SMOKE_RISE) * (0.6 + 0.8 * p.random.y);
     return vec3(FLICKER * sway.x, rise, FLICKER * sway.y);
 }
 
@@ -132,35 +134,36 @@ void main() {
     }
     barrier();
     uint particle = gl_GlobalInvocationID.x;
-    uint fire_pool = constants.tree.z;
-    if (particle < fire_pool + constants.tree.w) {
+    uint fire_pool = constants.fire_pool;
+    if (particle < fire_pool + constants.smoke_pool) {
         bool is_fire = particle < fire_pool;
         Particle p = particles[particle];
         uint place_in_pool = is_fire ? particle : particle - fire_pool;
-        Group end = groups[constants.counts.w];
+        Group end = groups[constants.block_count];
         bool is_wanted = place_in_pool < (is_fire ? end.first_fire : end.first_smoke);
         uint birth_block = NONE;
-        if (p.character.x > 0.0) {
-            p.place += vec4(velocity(p, is_fire) * TICK_S, 1.0);
-            uint home = uint(p.character.y);
-            bool has_ended = p.place.w >= p.character.x;
+        if (p.life_ticks > 0.0) {
+            p.position += velocity(p, is_fire) * TICK_S;
+            p.age_ticks += 1.0;
+            uint home = uint(p.block);
+            bool has_ended = p.age_ticks >= p.life_ticks;
             bool has_moved = is_fire && !is_ready(home);
             if (has_ended || has_moved) {
-                p.character.x = 0.0;
+                p.life_ticks = 0.0;
             }
             if (has_moved) {
                 birth_block = next_block(home);
             } else if (has_ended && is_wanted) {
                 birth_block = group_of(place_in_pool, is_fire);
             }
-        } else if (is_wanted && hash(uvec3(constants.choices.z, particle, clock.tick)).y % BIRTH_TICKS == 0u) {
+        } else if (is_wanted && hash(uvec3(constants.seed, particle, clock.tick)).y % BIRTH_TICKS == 0u) {
             birth_block = group_of(place_in_pool, is_fire);
         }
         if (birth_block != NONE) {
             p = born(birth_block, particle, is_fire);
         }
         particles[particle] = p;
-        if (p.character.x > 0.0) {
+        if (p.life_ticks > 0.0) {
             if (is_fire) {
                 atomicAdd(fire_count, 1u);
             } else {

@@ -11,8 +11,11 @@ struct Group {
 };
 
 struct Particle {
-    vec4 place; // position; age in ticks
-    vec4 character; // life in ticks, 0 when it is not there; block that it was born in; two numbers of its own from 0 to 1
+    vec3 position; // diagonals
+    float age_ticks;
+    float life_ticks; // 0 when it is not there
+    float block; // that it was born in
+    vec2 random; // two numbers of its own, 0 to 1
 };
 
 // Jarzynski and Olano's PCG (2020): one hash of three numbers.

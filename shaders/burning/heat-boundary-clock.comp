@@ -13,11 +13,11 @@ layout(set = 0, binding = 18, std430) buffer Clock {
 };
 
 void main() {
-    uint limit = constants.choices.x;
+    uint limit = constants.active_limit;
     bool halts = limit > 0u && clock.active_vertices > limit;
     clock.tick += 1u;
     clock.growth_ticks += halts ? 0u : 1u;
-    clock.radius = constants.boundary.x * float(clock.growth_ticks);
+    clock.radius = constants.growth_per_tick * float(clock.growth_ticks);
     clock.active_vertices = 0u;
     clock.active_triangles = 0u;
     clock.live_vertices = 0u;

@@ -6,13 +6,14 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
     uint triangles[];
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
-    vec4 old_state[];
+    VertexState old_state[];
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
@@ -39,14 +40,14 @@ void main() {
     }
     barrier();
     uint triangle = gl_GlobalInvocationID.x;
-    if (triangle < constants.counts.y) {
+    if (triangle < constants.triangle_count) {
         uint highest = OUTSIDE;
         bool is_active = false;
         for (uint corner = 0u; corner < 3u; corner++) {
             uint vertex = triangles[3u * triangle + corner];
             uint label = labels[vertex];
             highest = max(highest, label);
-            if (label == DEFORMED && old_state[vertex].w > constants.solid.y && alive[vertex] == 1u) {
+            if (label == DEFORMED && old_state[vertex].left > constants.retired_left && alive[vertex] == 1u) {
                 is_active = true;
             }
         }

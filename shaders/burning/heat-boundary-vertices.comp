@@ -6,13 +6,14 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
+    RestVertex rest[];
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
-    vec4 old_state[]; // position, L left
+    VertexState old_state[];
 };
 
 layout(set = 0, binding = 11, std430) buffer Labels {
@@ -31,7 +32,7 @@ shared uint active_count;
 
 uint area_of(float distance_to_boundary) {
     float r = clock.radius;
-    float width = constants.boundary.y;
+    float width = constants.area_width;
     if (distance_to_boundary <= r - 2.0 * width) {
         return DEFORMED;
     }
@@ -51,10 +52,10 @@ void main() {
     }
     barrier();
     uint vertex = gl_GlobalInvocationID.x;
-    if (vertex < constants.counts.x) {
-        uint label = area_of(rest[vertex].w);
+    if (vertex < constants.vertex_count) {
+        uint label = area_of(rest[vertex].boundary_distance);
         labels[vertex] = label;
-        if (label == DEFORMED && old_state[vertex].w > constants.solid.y && alive[vertex] == 1u) {
+        if (label == DEFORMED && old_state[vertex].left > constants.retired_left && alive[vertex] == 1u) {
             atomicAdd(active_count, 1u);
         }
     }

@@ -8,9 +8,10 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
+    RestVertex rest[];
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
@@ -30,11 +31,11 @@ layout(set = 0, binding = 7, std430) readonly buffer BasePoints {
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
-    vec4 old_state[]; // position, L left
+    VertexState old_state[];
 };
 
 layout(set = 0, binding = 10, std430) buffer NewState {
-    vec4 new_state[];
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
@@ -50,7 +51,7 @@ layout(set = 0, binding = 24, std430) readonly buffer Alive {
 };
 
 layout(set = 0, binding = 51, std430) readonly buffer NewBases {
-    vec4 new_bases[]; // displacement since the start, whether it is active
+    BaseDisplacement new_bases[];
 };
 
 layout(set = 0, binding = 52, std430) buffer Flows {
@@ -65,10 +66,10 @@ layout(push_constant, std430) uniform Slice {
 // What the base points around the vertex's place at rest have moved, in between by the blocks' middles. A step alone would leave those
 // behind that become flow-true later than their base point, and blocks that move as a whole would tear the surface.
 vec3 guided(vec3 place) {
-    vec3 at = (place - constants.origin.xyz) / constants.cell_size.xyz - 0.5;
+    vec3 at = (place - constants.grid_origin) / constants.block_size - 0.5;
     ivec3 low = ivec3(floor(at));
     vec3 t = at - vec3(low);
-    ivec3 size = ivec3(constants.grid.xyz);
+    ivec3 size = ivec3(constants.blocks);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
     for (int i = 0; i < 8; i++) {
@@ -79,7 +80,7 @@ vec3 guided(vec3 place) {
             if (base_points[cell] != NONE) {
                 vec3 near = mix(1.0 - t, t, vec3(corner));
                 float weight = near.x * near.y * near.z;
-                sum += weight * new_bases[cell].xyz;
+                sum += weight * new_bases[cell].offset;
                 weights += weight;
             }
         }
@@ -91,15 +92,15 @@ vec3 guided(vec3 place) {
 // so does not outrun the heat; faster, the triangles between it and what does not flow yet would be drawn out into sheets, which are
 // more surface higher up than there was before.
 float following() {
-    return (1.0 - constants.melting.x) * min(1.0, constants.boundary.x / constants.boundary.y);
+    return (1.0 - constants.omega) * min(1.0, constants.growth_per_tick / constants.area_width);
 }
 
 float longest() {
-    return constants.melting.x * constants.cell_size.w; // omega Dist
+    return constants.omega * constants.mean_edge; // omega Dist
 }
 
 float shortest() {
-    return longest() / constants.melting.y; // omega Dist / chi
+    return longest() / constants.chi; // omega Dist / chi
 }
 
 // Ticks for which the same end of a tie gives way.
@@ -120,7 +121,7 @@ bool is_source(uint vertex, float y, uint other, float other_y) {
 vec3 folded(vec3 s, vec3 d, uint fixed_points) {
     vec3 edge = s - d;
     float edge_length = length(edge);
-    float share = constants.melting.z / float(fixed_points + 1u);
+    float share = constants.upsilon / float(fixed_points + 1u);
     if (edge_length > longest()) {
         float horizontal = length(edge.xz);
         if (horizontal <= 0.0) {
@@ -151,7 +152,7 @@ vec3 folding(uint vertex, vec3 s) {
         uint fixed_points = (labels[others.x] < READY ? 1u : 0u) + (labels[others.y] < READY ? 1u : 0u);
         for (int k = 0; k < 2; k++) {
             uint other = k == 0 ? others.x : others.y;
-            vec3 d = old_state[other].xyz;
+            vec3 d = old_state[other].position;
             float edge_length = length(s - d);
             bool is_violating = edge_length > longest() || (edge_length < shortest() && edge_length > 0.0);
             if (is_violating && is_source(vertex, s.y, other, d.y)) {
@@ -170,10 +171,10 @@ vec3 folding(uint vertex, vec3 s) {
         uint corner = incidence[i] % 4u;
         for (uint k = 1u; k < 3u; k++) {
             uint other = triangles[3u * triangle + (corner + k) % 3u];
-            vec4 holder = old_state[other];
-            bool is_above = holder.w > 0.0 && holder.y - s.y > shortest();
+            VertexState holder = old_state[other];
+            bool is_above = holder.left > 0.0 && holder.position.y - s.y > shortest();
             if (labels[other] < DEFORMED || is_above) {
-                growth += violation(s + fold - holder.xyz) - violation(s - holder.xyz);
+                growth += violation(s + fold - holder.position) - violation(s - holder.position);
             }
         }
     }
@@ -185,18 +186,18 @@ void main() {
         return;
     }
     uint vertex = slice.first + gl_GlobalInvocationID.x;
-    vec4 before = old_state[vertex];
+    VertexState before = old_state[vertex];
     uint label = labels[vertex];
     if (label < READY || alive[vertex] == 0u) {
         new_state[vertex] = before;
         return;
     }
     vec3 flow = flows[vertex].xyz;
-    vec3 follow = following() * (guided(rest[vertex].xyz) - flow);
+    vec3 follow = following() * (guided(rest[vertex].position) - flow);
     flows[vertex] = vec4(flow + follow, 0.0);
-    vec3 place = before.xyz + follow + folding(vertex, before.xyz);
-    bool is_burning = label == DEFORMED && before.w > 0.0;
-    place.y -= is_burning ? constants.albedo.w : 0.0; // gravity
-    place.y = max(place.y, constants.origin.w);
-    new_state[vertex] = vec4(place, is_burning ? before.w - 1.0 : before.w);
+    vec3 place = before.position + follow + folding(vertex, before.position);
+    bool is_burning = label == DEFORMED && before.left > 0.0;
+    place.y -= is_burning ? constants.fall_per_tick : 0.0; // gravity
+    place.y = max(place.y, constants.floor_y);
+    new_state[vertex] = VertexState(place, is_burning ? before.left - 1.0 : before.left);
 }

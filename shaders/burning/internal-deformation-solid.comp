@@ -11,9 +11,10 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/displacement.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
+    RestVertex rest[];
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
@@ -29,11 +30,11 @@ layout(set = 0, binding = 4, std430) readonly buffer Incidence {
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
-    vec4 old_state[]; // position, L left
+    VertexState old_state[];
 };
 
 layout(set = 0, binding = 10, std430) buffer NewState {
-    vec4 new_state[];
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
@@ -57,16 +58,16 @@ vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
         return d;
     }
     float depth = length(a - b);
-    vec3 inner = (a + b + c) / 3.0 - constants.solid.x * depth / double_area * normal;
+    vec3 inner = (a + b + c) / 3.0 - constants.outward * depth / double_area * normal;
     float way = length(inner - d);
     return way > 0.0 ? d + min(l * depth, 0.5 * way) / way * (inner - d) : d;
 }
 
 // The place, no farther than the char's depth from where the vertex was at rest, which sinks with it.
 vec3 within_char(vec3 place, vec3 at_rest, float left) {
-    vec3 from = at_rest - vec3(0.0, constants.albedo.w * (constants.boundary.w - left), 0.0);
+    vec3 from = at_rest - vec3(0.0, constants.fall_per_tick * (constants.flammability - left), 0.0);
     float way = distance(place, from);
-    return way > constants.solid.z ? from + constants.solid.z / way * (place - from) : place;
+    return way > constants.char_depth ? from + constants.char_depth / way * (place - from) : place;
 }
 
 void main() {
@@ -74,13 +75,13 @@ void main() {
         return;
     }
     uint vertex = slice.first + gl_GlobalInvocationID.x;
-    vec4 before = old_state[vertex];
-    if (labels[vertex] != DEFORMED || before.w <= constants.solid.y || alive[vertex] == 0u) {
+    VertexState before = old_state[vertex];
+    if (labels[vertex] != DEFORMED || before.left <= constants.retired_left || alive[vertex] == 0u) {
         new_state[vertex] = before;
         return;
     }
-    vec3 b = before.xyz;
-    float share_left = before.w / constants.boundary.w;
+    vec3 b = before.position;
+    float share_left = before.left / constants.flammability;
     vec3 sum = vec3(0.0);
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
@@ -89,14 +90,14 @@ void main() {
         uint corner = incidence[i] % 4u;
         uint vertex_a = triangles[3u * triangle + (corner + 2u) % 3u];
         uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
-        vec3 a = old_state[vertex_a].xyz;
-        vec3 c = old_state[vertex_c].xyz;
+        vec3 a = old_state[vertex_a].position;
+        vec3 c = old_state[vertex_c].position;
         float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, share_left);
         float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, share_left);
         sum += contracted(a, b, c, cevians_meet(a, b, c, l, m), l) - b;
     }
     vec3 moved = b + sum / float(max(to - from, 1u));
-    moved.y -= constants.albedo.w; // gravity
-    float left = before.w - 1.0;
-    new_state[vertex] = vec4(within_char(moved, rest[vertex].xyz, left), left);
+    moved.y -= constants.fall_per_tick; // gravity
+    float left = before.left - 1.0;
+    new_state[vertex] = VertexState(within_char(moved, rest[vertex].position, left), left);
 }

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/displacement.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
     uint triangles[];
@@ -21,11 +22,11 @@ layout(set = 0, binding = 4, std430) readonly buffer Incidence {
 };
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
-    vec4 old_state[]; // position, L left
+    VertexState old_state[];
 };
 
 layout(set = 0, binding = 10, std430) buffer NewState {
-    vec4 new_state[];
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
@@ -46,13 +47,13 @@ void main() {
         return;
     }
     uint vertex = slice.first + gl_GlobalInvocationID.x;
-    vec4 before = old_state[vertex];
-    if (labels[vertex] != DEFORMED || before.w <= 0.0 || alive[vertex] == 0u) {
+    VertexState before = old_state[vertex];
+    if (labels[vertex] != DEFORMED || before.left <= 0.0 || alive[vertex] == 0u) {
         new_state[vertex] = before;
         return;
     }
-    vec3 b = before.xyz;
-    float share_left = before.w / constants.boundary.w;
+    vec3 b = before.position;
+    float share_left = before.left / constants.flammability;
     vec3 sum = vec3(0.0);
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
@@ -61,13 +62,13 @@ void main() {
         uint corner = incidence[i] % 4u;
         uint vertex_a = triangles[3u * triangle + (corner + 2u) % 3u];
         uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
-        vec3 a = old_state[vertex_a].xyz;
-        vec3 c = old_state[vertex_c].xyz;
+        vec3 a = old_state[vertex_a].position;
+        vec3 c = old_state[vertex_c].position;
         float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, share_left);
         float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, share_left);
         sum += cevians_meet(a, b, c, l, m) - b;
     }
     vec3 moved = b + sum / float(max(to - from, 1u));
-    moved.y -= constants.albedo.w; // gravity
-    new_state[vertex] = vec4(moved, before.w - 1.0);
+    moved.y -= constants.fall_per_tick; // gravity
+    new_state[vertex] = VertexState(moved, before.left - 1.0);
 }

@@ -13,18 +13,18 @@ const vec3 EMBERS = vec3(1.0, 0.35, 0.05);
 // `pattern` is what the surface's material makes of the albedo, a factor of it.
 vec4 lit(vec3 pattern) {
     vec3 n = normalize(normal.xyz);
-    if (view.mode.x == NORMALS) {
+    if (view.shading == NORMALS) {
         return vec4(0.5 + 0.5 * n, 1.0);
     }
-    vec3 to_eye = view.eye.xyz - place;
+    vec3 to_eye = view.eye - place;
     if (dot(n, to_eye) < 0.0) {
         n = -n;
     }
     vec3 albedo = color.rgb;
-    if (view.mode.x == LIT) {
+    if (view.shading == LIT) {
         // `color` mixes the plain albedo with that of char; this puts the pattern's in its place.
-        albedo += (1.0 - normal.w) * constants.albedo.rgb * (pattern - 1.0);
+        albedo += (1.0 - normal.w) * constants.albedo * (pattern - 1.0);
     }
-    float light = view.to_light.w + (1.0 - view.to_light.w) * max(dot(n, view.to_light.xyz), 0.0);
+    float light = view.ambient + (1.0 - view.ambient) * max(dot(n, view.to_light), 0.0);
     return vec4(albedo * light + color.a * EMBERS, 1.0);
 }

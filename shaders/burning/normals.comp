@@ -7,9 +7,10 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
+    RestVertex rest[];
 };
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
@@ -41,7 +42,7 @@ layout(set = 0, binding = 18, std430) readonly buffer Clock {
 };
 
 layout(set = 0, binding = 19, std430) readonly buffer Mapped {
-    vec4 mapped[]; // position, L / L0
+    MappedVertex mapped[];
 };
 
 layout(set = 0, binding = 20, std430) buffer Normals {
@@ -60,9 +61,9 @@ vec3 area_vectors(uint from, uint to, bool with_removed) {
     for (uint i = from; i < to; i++) {
         uint triangle = corner_incidence[i] / 4u;
         if (with_removed || removed[triangle] == 0u) {
-            vec3 a = mapped[triangles[3u * triangle]].xyz;
-            vec3 b = mapped[triangles[3u * triangle + 1u]].xyz;
-            vec3 c = mapped[triangles[3u * triangle + 2u]].xyz;
+            vec3 a = mapped[triangles[3u * triangle]].position;
+            vec3 b = mapped[triangles[3u * triangle + 1u]].position;
+            vec3 c = mapped[triangles[3u * triangle + 2u]].position;
             sum += cross(b - a, c - a);
         }
     }
@@ -71,7 +72,7 @@ vec3 area_vectors(uint from, uint to, bool with_removed) {
 
 void main() {
     uint corner = gl_GlobalInvocationID.x;
-    if (corner >= constants.counts.z) {
+    if (corner >= constants.draw_vertex_count) {
         return;
     }
     // Nothing that is drawn has a vertex that does not exist.
@@ -93,10 +94,10 @@ void main() {
         normal = normalize(sum / largest);
     }
     float r = clock.radius;
-    float width = constants.boundary.y;
-    float distance_to_boundary = rest[welds[corner]].w;
+    float width = constants.area_width;
+    float distance_to_boundary = rest[welds[corner]].boundary_distance;
     float charred = clamp((r - distance_to_boundary) / (2.0 * width), 0.0, 1.0);
     float glow = max(0.0, 1.0 - abs(distance_to_boundary - (r - width)) / (0.5 * width));
     normals[corner] = vec4(normal, charred);
-    colors[corner] = vec4(mix(constants.albedo.rgb, CHAR, charred), glow);
+    colors[corner] = vec4(mix(constants.albedo, CHAR, charred), glow);
 }

@@ -12,7 +12,7 @@ layout(set = 0, binding = 29, std430) buffer GroupSums {
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
-    if (run * RUN >= constants.tree.y * nodes_above(constants.tree.x + 1u)) {
+    if (run * RUN >= constants.coarse_count * nodes_above(constants.levels + 1u)) {
         return;
     }
     uint sum = 0u;

@@ -68,7 +68,7 @@ uint midpoint_exists(Leaf leaf, uint edge) {
 
 // The nodes of a run that are in use, a bit each: most runs of a cold object have none, and are done.
 uint used_nodes(uint run) {
-    uint nodes = constants.tree.y * nodes_above(constants.tree.x + 1u);
+    uint nodes = constants.coarse_count * nodes_above(constants.levels + 1u);
     uint used = 0u;
     for (uint i = 0u; i < RUN; i++) {
         uint node = run * RUN + i;
@@ -81,7 +81,7 @@ uint used_nodes(uint run) {
 
 // What is drawn of a node that is in use, counted over all coarse triangles.
 Leaf leaf_of(uint node) {
-    uint nodes = nodes_above(constants.tree.x + 1u);
+    uint nodes = nodes_above(constants.levels + 1u);
     Leaf leaf = Leaf(node / nodes, 0u, 0u, uvec3(0u), 0u);
     int status = statuses[node];
     // Level k begins at (4^k - 1) / 3.
@@ -91,7 +91,7 @@ Leaf leaf_of(uint node) {
     if (leaf.level > leaves.level_of_detail || (leaf.level < leaves.level_of_detail && status == INACTIVE)) {
         return leaf;
     }
-    uint below = constants.tree.x - leaf.level;
+    uint below = constants.levels - leaf.level;
     uint first = finest_at(leaf.coarse, leaf.level, leaf.index);
     if (below == 0u ? removed[first] != 0u : status == INACTIVE && is_gone(first, below)) {
         return leaf;

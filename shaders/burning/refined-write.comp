@@ -48,7 +48,7 @@ void write(Leaf leaf, uint first) {
 
 void main() {
     uint run = gl_GlobalInvocationID.x;
-    if (run * RUN >= constants.tree.y * nodes_above(constants.tree.x + 1u)) {
+    if (run * RUN >= constants.coarse_count * nodes_above(constants.levels + 1u)) {
         return;
     }
     uint at = group_sums[run];

@@ -53,7 +53,7 @@ layout(push_constant, std430) uniform Turn {
 // "Returns true if coarse triangle T is eligible."
 void find_eligible(uint thread) {
     uint coarse = thread / turn.points;
-    if (coarse >= constants.tree.y || eligible[coarse] != 0u) {
+    if (coarse >= constants.coarse_count || eligible[coarse] != 0u) {
         return;
     }
     uint vertex = triangles[3u * finest_at(coarse, 0u, 0u) + barycentric_points[thread % turn.points]];
@@ -68,7 +68,7 @@ bool midpoint_is_alive(uint coarse, uint level, uint index, uint edge) {
 
 bool must_be_split(uint coarse, uint index) {
     uint child = 4u * index;
-    if (turn.level + 1u == constants.tree.x) {
+    if (turn.level + 1u == constants.levels) {
         uint finest = finest_at(coarse, turn.level, index);
         uint near = max(triangle_labels[finest], triangle_labels[finest + 1u]);
         uint far = max(triangle_labels[finest + 2u], triangle_labels[finest + 3u]);
@@ -95,13 +95,13 @@ bool must_be_split(uint coarse, uint index) {
 
 void main() {
     uint thread = gl_GlobalInvocationID.x;
-    if (turn.level == constants.tree.x) {
+    if (turn.level == constants.levels) {
         find_eligible(thread);
         return;
     }
     uint coarse = thread / power_of_four(turn.level);
     uint index = thread % power_of_four(turn.level);
-    if (coarse >= constants.tree.y) {
+    if (coarse >= constants.coarse_count) {
         return;
     }
     uint at = node_at(coarse, turn.level, index);

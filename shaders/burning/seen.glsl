@@ -1,9 +1,10 @@
 // A vertex of the mesh from the buffers that the simulation wrote: no vertex buffer, the stream of drawn triangles is the index buffer.
 
 #include "burning/view.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
-    vec4 rest[]; // xyz, R
+    RestVertex rest[];
 };
 
 layout(set = 0, binding = 6, std430) readonly buffer Welds {
@@ -19,7 +20,7 @@ layout(set = 0, binding = 14, std430) readonly buffer Cells {
 };
 
 layout(set = 0, binding = 19, std430) readonly buffer Mapped {
-    vec4 mapped[]; // position, L / L0
+    MappedVertex mapped[];
 };
 
 layout(set = 0, binding = 20, std430) readonly buffer Normals {
@@ -51,13 +52,13 @@ vec3 block_color(uint block) {
 
 void see(uint corner) {
     uint vertex = welds[corner];
-    place = mapped[vertex].xyz;
-    rest_place = rest[vertex].xyz;
+    place = mapped[vertex].position;
+    rest_place = rest[vertex].position;
     normal = normals[corner];
     color = colors[corner];
-    if (view.mode.x == AREAS) {
+    if (view.shading == AREAS) {
         color = vec4(area_color(labels[vertex]), 0.0);
-    } else if (view.mode.x == BLOCKS) {
+    } else if (view.shading == BLOCKS) {
         color = vec4(block_color(cells[vertex]), 0.0);
     }
     gl_Position = view.view_projection * vec4(place, 1.0);

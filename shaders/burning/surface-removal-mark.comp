@@ -8,13 +8,15 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
+#include "burning/blocks.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
     uint triangles[];
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
-    vec4 new_state[]; // position, L left
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 13, std430) buffer Removed {
@@ -26,7 +28,7 @@ layout(set = 0, binding = 14, std430) readonly buffer Cells {
 };
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
-    int blocks[]; // live, ready, signs of pitch, yaw, roll, combustion counter, inside the ready boundary, last tick with active ones
+    Block blocks[];
 };
 
 layout(set = 0, binding = 18, std430) buffer Clock {
@@ -34,7 +36,7 @@ layout(set = 0, binding = 18, std430) buffer Clock {
 };
 
 bool has_weight(uint block) {
-    return block != NONE && blocks[8u * min(block, constants.counts.w - 1u)] > 0;
+    return block != NONE && blocks[min(block, constants.block_count - 1u)].live > 0;
 }
 
 bool is_needed(uint block) {
@@ -58,14 +60,14 @@ bool is_needed(uint block) {
 
 void main() {
     uint triangle = gl_GlobalInvocationID.x;
-    if (triangle >= constants.counts.y || removed[triangle] == 1u) {
+    if (triangle >= constants.triangle_count || removed[triangle] == 1u) {
         return;
     }
     uvec3 at = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);
-    if (new_state[at.x].w > 0.0 || new_state[at.y].w > 0.0 || new_state[at.z].w > 0.0) {
+    if (new_state[at.x].left > 0.0 || new_state[at.y].left > 0.0 || new_state[at.z].left > 0.0) {
         return;
     }
-    if (constants.choices.y == 1u && is_needed(cells[at.x])) {
+    if (constants.keep_connected == 1u && is_needed(cells[at.x])) {
         return;
     }
     removed[triangle] = 1u;

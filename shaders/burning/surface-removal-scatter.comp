@@ -26,7 +26,7 @@ layout(set = 0, binding = 29, std430) readonly buffer GroupSums {
 void main() {
     uint triangle = gl_GlobalInvocationID.x;
     uint is_drawn = 0u;
-    if (triangle < constants.counts.y) {
+    if (triangle < constants.triangle_count) {
         is_drawn = 1u - removed[triangle];
     }
     uint place = sum_before(gl_LocalInvocationID.x, is_drawn);

@@ -6,9 +6,10 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/turn.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
-    vec4 new_state[]; // position, L left
+    VertexState new_state[];
 };
 
 layout(set = 0, binding = 14, std430) readonly buffer Cells {
@@ -20,16 +21,16 @@ layout(set = 0, binding = 17, std430) readonly buffer NewRotations {
 };
 
 layout(set = 0, binding = 19, std430) buffer Mapped {
-    vec4 mapped[]; // position, L / L0
+    MappedVertex mapped[];
 };
 
 void main() {
     uint vertex = gl_GlobalInvocationID.x;
-    if (vertex >= constants.counts.x) {
+    if (vertex >= constants.vertex_count) {
         return;
     }
-    vec4 now = new_state[vertex];
+    VertexState now = new_state[vertex];
     uint block = cells[vertex];
-    vec3 place = turned_with_block(now.xyz, block, new_rotations[block].xyz);
-    mapped[vertex] = vec4(place, now.w / constants.boundary.w);
+    vec3 place = turned_with_block(now.position, block, new_rotations[block].xyz);
+    mapped[vertex] = MappedVertex(place, now.left / constants.flammability);
 }

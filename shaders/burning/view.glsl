@@ -1,10 +1,11 @@
-// How the object is seen.
+// The camera, the light and the shading of the picture.
 
 layout(set = 0, binding = 30, std140) uniform View {
     mat4 view_projection;
-    vec4 eye;
-    vec4 to_light; // unit; ambient light
-    uvec4 mode; // what the mesh is coloured by
+    vec3 eye; // diagonals
+    float ambient; // fraction of the light
+    vec3 to_light; // unit vector
+    uint shading; // LIT to NORMALS, or beyond as LIT
 } view;
 
 // Numbered as src/papers/burning/parameters.rs does.

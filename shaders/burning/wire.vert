@@ -4,6 +4,7 @@
 
 #include "burning/clock.glsl"
 #include "burning/view.glsl"
+#include "burning/vertices.glsl"
 
 layout(set = 0, binding = 6, std430) readonly buffer Welds {
     uint welds[];
@@ -14,7 +15,7 @@ layout(set = 0, binding = 18, std430) readonly buffer Clock {
 };
 
 layout(set = 0, binding = 19, std430) readonly buffer Mapped {
-    vec4 mapped[]; // position, L / L0
+    MappedVertex mapped[];
 };
 
 layout(set = 0, binding = 22, std430) readonly buffer Stream {
@@ -32,6 +33,6 @@ void main() {
     }
     uint edge = (number % 6u) / 2u;
     uint corner = stream[3u * triangle + (edge + number % 2u) % 3u];
-    vec3 place = mapped[welds[corner]].xyz;
-    gl_Position = view.view_projection * vec4(mix(place, view.eye.xyz, LIFT), 1.0);
+    vec3 place = mapped[welds[corner]].position;
+    gl_Position = view.view_projection * vec4(mix(place, view.eye, LIFT), 1.0);
 }

@@ -3,6 +3,7 @@
 use std::iter::repeat;
 
 use fumarole::papers::burning::reference::{Block, State};
+use fumarole::papers::burning::{BlockCounts, VertexState};
 use glam::DVec3;
 
 use crate::fire::Fire;
@@ -13,23 +14,27 @@ pub fn state(fire: &Fire, is_shown: bool) -> State {
     let (state, rotations) = fire.paper.state();
     let point = |v: &[f32; 4]| DVec3::new(v[0].into(), v[1].into(), v[2].into());
     let points = |buffer| fire.read::<[f32; 4]>(buffer);
-    let state = points(state);
+    let state: Vec<VertexState> = fire.read(state);
     let shown = |buffer| if is_shown { points(buffer) } else { Vec::new() };
     let [mapped, normals, colors] = [&buffers.mapped, &buffers.normals, &buffers.colors].map(shown);
-    let block =
-        |b: &[i32; 8]| Block { live: b[0] as u32, ready: b[1] as u32, signs: [b[2], b[3], b[4]], burning: b[5] as u32 };
+    let block = |b: &BlockCounts| Block {
+        live: b.live as u32,
+        ready: b.ready as u32,
+        signs: [b.pitch_sign, b.yaw_sign, b.roll_sign],
+        burning: b.combustion as u32,
+    };
     let counts = fire.paper.counts().unwrap();
     State {
         tick: counts.tick,
         growth_ticks: counts.growth_ticks,
         active_vertices: counts.active_vertices,
-        positions: state.iter().map(point).collect(),
-        left: state.iter().map(|v| v[3] as u32).collect(),
+        positions: state.iter().map(|v| v.position.as_dvec3()).collect(),
+        left: state.iter().map(|v| v.left as u32).collect(),
         labels: fire.read(&buffers.labels),
         alive: fire.read::<u32>(&buffers.alive).iter().map(|a| *a != 0).collect(),
         statuses: statuses(fire),
         cells: fire.read::<u32>(&buffers.cells).iter().map(|c| *c as usize).collect(),
-        blocks: fire.read::<[i32; 8]>(&buffers.blocks).iter().map(block).collect(),
+        blocks: fire.read::<BlockCounts>(&buffers.blocks).iter().map(block).collect(),
         rotations: points(rotations).iter().map(point).collect(),
         guides: points(&buffers.base_displacements[(counts.tick % 2) as usize]).iter().map(point).collect(),
         // Nothing else flows than what melts.

@@ -7,7 +7,7 @@ use fumarole::gpu::transfer::read_buffer;
 use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
 use fumarole::papers::burning::model::with_triangles;
-use fumarole::papers::burning::{Burning, Counts, Parameters, Variant};
+use fumarole::papers::burning::{BlockCounts, Burning, Counts, Parameters, Variant, VertexState};
 use fumarole::scene::{Mesh, shapes};
 
 /// A closed object of about 1,000 triangles.
@@ -29,11 +29,11 @@ pub struct Fire {
 /// What the simulation left, as bits.
 #[derive(PartialEq)]
 pub struct State {
-    pub vertices: Vec<[f32; 4]>,
+    pub vertices: Vec<VertexState>,
     pub rotations: Vec<[f32; 4]>,
     pub labels: Vec<u32>,
     pub cells: Vec<u32>,
-    pub blocks: Vec<[i32; 8]>,
+    pub blocks: Vec<BlockCounts>,
     pub removed: Vec<u32>,
     pub counts: Counts,
 }

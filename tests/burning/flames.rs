@@ -20,7 +20,7 @@ fn particles(fire: &Fire) -> Vec<Particle> {
 }
 
 fn is_there(particle: &&Particle) -> bool {
-    particle.character[0] > 0.0
+    particle.life_ticks > 0.0
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn the_pools_are_shared_out_by_live_vertices_of_ready_blocks() {
         for _ in 0..12 {
             fire.ticks(25);
             let (state, groups) = (fire.state(), groups(&fire));
-            let weights: Vec<i32> = state.blocks.iter().map(|b| if b[1] > 0 { b[0] } else { 0 }).collect();
+            let weights: Vec<i32> = state.blocks.iter().map(|b| if b.ready > 0 { b.live } else { 0 }).collect();
             let total: i32 = weights.iter().sum();
             let share = (f64::from(total) / (0.25 * state.vertices.len() as f64)).min(1.0);
             let pools = [f64::from(parameters.fire), f64::from(parameters.smoke)].map(|pool| (pool * share).floor());
@@ -66,10 +66,10 @@ fn flames_burn_in_ready_blocks_alone_and_follow_the_live_vertices() {
             let particles = particles(&fire);
             let (flames, smoke) = particles.split_at(parameters.fire as usize);
             for particle in flames.iter().filter(is_there) {
-                assert!(state.blocks[particle.character[1] as usize][1] > 0, "{particle:?}");
+                assert!(state.blocks[particle.block as usize].ready > 0, "{particle:?}");
             }
             for particle in particles.iter().filter(is_there) {
-                assert!(particle.place.iter().all(|x| x.is_finite()) && particle.place[3] < particle.character[0]);
+                assert!(particle.position.is_finite() && particle.age_ticks < particle.life_ticks);
             }
             let count = |particles: &[Particle]| particles.iter().filter(is_there).count() as u32;
             assert_eq!((state.counts.fire_particles, state.counts.smoke_particles), (count(flames), count(smoke)));

@@ -11,15 +11,12 @@ use crate::twin::Twin;
 
 fn particles(fire: &Fire) -> Vec<Particle> {
     let device: Vec<DeviceParticle> = fire.read(&fire.paper.flames().unwrap().particles);
-    let particle = |p: &DeviceParticle| {
-        let [[x, y, z, age], [life, block, first, second]] = [p.place, p.character].map(|v| v.map(f64::from));
-        Particle {
-            place: DVec3::new(x, y, z),
-            age: age as u32,
-            life: life as u32,
-            block: block as usize,
-            own: [first, second],
-        }
+    let particle = |p: &DeviceParticle| Particle {
+        place: p.position.as_dvec3(),
+        age: p.age_ticks as u32,
+        life: p.life_ticks as u32,
+        block: p.block as usize,
+        own: p.random.map(f64::from),
     };
     device.iter().map(particle).collect()
 }

@@ -1,7 +1,7 @@
 //! What holds in every fire, whatever the numbers.
 
 use fumarole::measure::Paper;
-use fumarole::papers::burning::{Parameters, Variant};
+use fumarole::papers::burning::{BlockCounts, Parameters, Variant};
 
 use crate::common::gpu_test;
 use crate::fire::{Fire, ball, quick};
@@ -17,11 +17,11 @@ fn flammability_never_rises_and_the_boundary_only_grows() {
             let now = fire.state();
             assert!(now.counts.radius > before.counts.radius);
             for (vertex, (now, before)) in now.vertices.iter().zip(&before.vertices).enumerate() {
-                assert!(now[3] <= before[3] && now[3] >= 0.0 && now[3].fract() == 0.0, "{vertex}: {now:?}");
+                assert!(now.left <= before.left && now.left >= 0.0 && now.left.fract() == 0.0, "{vertex}: {now:?}");
             }
             assert!(now.labels.iter().zip(&before.labels).all(|(now, before)| now >= before));
             assert!(now.removed.iter().zip(&before.removed).all(|(now, before)| now >= before));
-            burnt = now.vertices.iter().filter(|v| v[3] == 0.0).count();
+            burnt = now.vertices.iter().filter(|v| v.left == 0.0).count();
             before = now;
         }
         // 150 ticks at 0.5 a second reach past the whole ball.
@@ -42,7 +42,7 @@ fn the_radius_and_the_areas_follow_from_the_tick() {
         assert!((f64::from(state.counts.radius) - radius).abs() < 1e-6);
         let mut seen = [0; 5];
         for (rest, label) in fire.paper.model().rest.iter().zip(&state.labels) {
-            let distance = f64::from(rest[3]);
+            let distance = f64::from(rest.boundary_distance);
             let edges = [radius + 2.0 * width, radius, radius - width, radius - 2.0 * width];
             let expected = edges.iter().filter(|&&edge| distance <= edge).count() as u32;
             if edges.iter().all(|edge| (distance - edge).abs() > 1e-5) {
@@ -64,13 +64,13 @@ fn blocks_count_the_live_vertices() {
             let mut live = vec![0; state.blocks.len()];
             let mut ready = vec![0; state.blocks.len()];
             for ((vertex, &cell), &label) in state.vertices.iter().zip(&state.cells).zip(&state.labels) {
-                if vertex[3] > 0.0 {
+                if vertex.left > 0.0 {
                     live[cell as usize] += 1;
                     ready[cell as usize] += i32::from(label == 3);
                 }
             }
-            let counted = |at: usize| state.blocks.iter().map(|b| b[at]).collect::<Vec<_>>();
-            assert_eq!((counted(0), counted(1)), (live.clone(), ready.clone()));
+            let counted: (Vec<i32>, Vec<i32>) = state.blocks.iter().map(|b| (b.live, b.ready)).unzip();
+            assert_eq!(counted, (live.clone(), ready.clone()));
             assert_eq!(state.counts.live_vertices as i32, live.iter().sum::<i32>());
             assert_eq!(state.counts.ready_vertices as i32, ready.iter().sum::<i32>());
         }
@@ -115,7 +115,7 @@ fn without_a_need_for_it_nothing_consumed_stays() {
                 fire.ticks(1);
                 let state = fire.state();
                 for (at, corners) in fire.paper.model().triangles.iter().enumerate() {
-                    let is_consumed = corners.iter().all(|&vertex| state.vertices[vertex as usize][3] == 0.0);
+                    let is_consumed = corners.iter().all(|&vertex| state.vertices[vertex as usize].left == 0.0);
                     let is_kept = keep_connected && is_needed(&state.blocks, state.cells[corners[0] as usize]);
                     let is_removed = before[at] == 1 || (is_consumed && !is_kept);
                     assert_eq!(state.removed[at] == 1, is_removed, "triangle {at} at tick {}", state.counts.tick);
@@ -131,14 +131,14 @@ fn without_a_need_for_it_nothing_consumed_stays() {
 }
 
 /// Whether some face neighbour of a block of the 4 x 4 x 4 has weight and no other neighbour with weight (3.5.4).
-fn is_needed(blocks: &[[i32; 8]], block: u32) -> bool {
+fn is_needed(blocks: &[BlockCounts], block: u32) -> bool {
     let neighbours = |block: u32| {
         let [x, y, z] = [block % 4, block / 4 % 4, block / 16];
         let apart = move |other: &u32| {
             let [u, v, w] = [other % 4, other / 4 % 4, other / 16];
             x.abs_diff(u) + y.abs_diff(v) + z.abs_diff(w) == 1
         };
-        (0..64).filter(apart).filter(|&other| blocks[other as usize][0] > 0).collect::<Vec<u32>>()
+        (0..64).filter(apart).filter(|&other| blocks[other as usize].live > 0).collect::<Vec<u32>>()
     };
     neighbours(block).iter().any(|&neighbour| neighbours(neighbour).iter().all(|&other| other == block))
 }
@@ -194,7 +194,7 @@ fn ten_thousand_ticks_end_finite_and_bounded() {
         // At most `flammability` ticks of falling, from an object of diagonal 1.
         let fall = 2000.0 * parameters.epsilon * 9.81 / 3600.0;
         for vertex in &state.vertices {
-            let [x, y, z, _] = *vertex;
+            let [x, y, z] = vertex.position.to_array();
             assert!(x.abs() <= 1.0 && z.abs() <= 1.0 && y <= 1.0 && y >= -fall - 1.0, "{vertex:?}");
         }
         assert!(state.rotations.iter().flatten().all(|angle| angle.is_finite()));

@@ -12,8 +12,7 @@ fn wax() -> Parameters {
 }
 
 fn place(state: &State, vertex: u32) -> DVec3 {
-    let [x, y, z, _] = state.vertices[vertex as usize];
-    DVec3::new(x.into(), y.into(), z.into())
+    state.vertices[vertex as usize].position.as_dvec3()
 }
 
 /// Weighted by the triangles' areas.
@@ -60,7 +59,12 @@ fn it_sinks_stays_above_the_floor_and_rests_with_its_edges_in_range() {
             for _ in 0..250 {
                 fire.ticks(10);
                 let state = fire.state();
-                assert!(state.vertices.iter().all(|v| v[1] >= floor && v.iter().all(|x| x.is_finite())));
+                assert!(
+                    state
+                        .vertices
+                        .iter()
+                        .all(|v| v.position.y >= floor && v.position.is_finite() && v.left.is_finite())
+                );
                 let height = height(&fire, &state);
                 assert!(height <= lowest + 0.01 * tall, "{height} after {lowest}");
                 lowest = lowest.min(height);
@@ -83,8 +87,8 @@ fn fixed_points_stay_and_the_floor_can_lie_lower() {
             fire.ticks(150);
             let state = fire.state();
             for ((vertex, rest), &label) in state.vertices.iter().zip(&fire.paper.model().rest).zip(&state.labels) {
-                assert!(label >= 3 || vertex[..3] == rest[..3]);
-                lowest = lowest.min(vertex[1]);
+                assert!(label >= 3 || vertex.position == rest.position);
+                lowest = lowest.min(vertex.position.y);
             }
         }
         assert!((-0.2..-0.1).contains(&lowest), "{lowest}");

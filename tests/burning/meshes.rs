@@ -42,7 +42,8 @@ fn burn_by(device: &Arc<Device>, mesh: &Mesh, variant: Variant) -> Fire {
         [&buffers.mapped, &buffers.normals, &buffers.colors].into_iter().flat_map(|b| fire.read::<f32>(b)).collect();
     assert!(drawn.iter().all(|v| v.is_finite()), "{} {variant:?}", mesh.name);
     let state = fire.state();
-    assert!(state.vertices.iter().flatten().chain(state.rotations.iter().flatten()).all(|v| v.is_finite()));
+    assert!(state.vertices.iter().all(|v| v.position.is_finite() && v.left.is_finite()));
+    assert!(state.rotations.iter().flatten().all(|angle| angle.is_finite()));
     assert_eq!(state.counts.live_vertices, 0);
     fire
 }
@@ -145,7 +146,7 @@ fn several_sources_burn_from_the_nearest() {
     let distances = |sources: &[Vec3]| -> Vec<f32> {
         let parameters = Parameters { sources: sources.to_vec(), ..Parameters::default() };
         let model = Model::new(&shapes::sphere(16, 16), Variant::Shell, &parameters, 1 << 27).unwrap();
-        model.rest.iter().map(|r| r[3]).collect()
+        model.rest.iter().map(|r| r.boundary_distance).collect()
     };
     let both = distances(&sources);
     let each = sources.map(|source| distances(&[source]));

@@ -8,7 +8,7 @@ use fumarole::gpu::transfer::read_buffer;
 use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
 use fumarole::papers::burning::model::{Model, tree};
-use fumarole::papers::burning::{Burning, Counts, Parameters, Variant};
+use fumarole::papers::burning::{Burning, Counts, Parameters, Variant, VertexState};
 use fumarole::scene::shapes::{cuboid, sphere};
 use fumarole::scene::{Camera, Mesh};
 use glam::Vec3;
@@ -81,7 +81,7 @@ impl Fire {
         self.read(&self.burning.refinement().expect("it is refined").statuses)
     }
 
-    fn state(&self) -> Vec<[f32; 4]> {
+    fn state(&self) -> Vec<VertexState> {
         self.read(self.burning.state().0)
     }
 
@@ -211,7 +211,7 @@ fn without_holes_every_edge_has_two_triangles_at_every_level_of_detail() {
                     // Flat coarse triangles: whatever divides them keeps their area.
                     let model = fire.model();
                     let area = |t: &[u32; 3]| {
-                        let [a, b, c] = t.map(|v| Vec3::from_slice(&model.rest[v as usize]).as_dvec3());
+                        let [a, b, c] = t.map(|v| model.rest[v as usize].position.as_dvec3());
                         (b - a).cross(c - a).length()
                     };
                     let total: f64 = drawn.iter().map(area).sum();
@@ -286,8 +286,7 @@ fn what_burns_is_in_use_and_what_is_not_in_use_rests() {
                 }
                 let rest = &fire.model().rest;
                 for (vertex, state) in fire.state().iter().enumerate().filter(|(v, _)| alive[*v] == 0) {
-                    let [x, y, z, _] = rest[vertex];
-                    assert_eq!(*state, [x, y, z, 20.0], "vertex {vertex}");
+                    assert_eq!(*state, VertexState { position: rest[vertex].position, left: 20.0 }, "vertex {vertex}");
                 }
             }
         }
@@ -356,7 +355,7 @@ fn a_fire_in_the_middle_of_a_coarse_triangle_refines_it() {
     gpu_test(|device| {
         let model = Fire::new(device, Variant::LowPoly, &parameters(), &cuboid()).burning;
         let corners = model.model().lattice.nodes[0][3].map(|corner| model.model().lattice.welds[corner as usize]);
-        let places = corners.map(|v| Vec3::from_slice(&model.model().rest[v as usize]));
+        let places = corners.map(|v| model.model().rest[v as usize].position);
         let middle = places.iter().sum::<Vec3>() / 3.0;
         drop(model);
         let parameters = Parameters { sources: vec![middle], ..parameters() };

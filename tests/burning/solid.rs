@@ -6,16 +6,12 @@ use fumarole::gpu::Device;
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::{Mesh, shapes};
-use glam::DVec3;
 
 use crate::common::gpu_test;
 use crate::fire::{Fire, State, ball, quick};
 
 fn volume(fire: &Fire, state: &State) -> f64 {
-    let place = |vertex: u32| {
-        let [x, y, z, _] = state.vertices[vertex as usize];
-        DVec3::new(x.into(), y.into(), z.into())
-    };
+    let place = |vertex: u32| state.vertices[vertex as usize].position.as_dvec3();
     let triangles = fire.paper.model().triangles.iter();
     triangles.map(|&[a, b, c]| place(a).dot(place(b).cross(place(c))) / 6.0).sum()
 }
@@ -25,7 +21,7 @@ fn burn(device: &Arc<Device>, parameters: &Parameters, mesh: &Mesh) -> Vec<f64> 
     let mut fire = Fire::new(device, Variant::Solid, parameters, mesh);
     let at_rest = volume(&fire, &fire.state());
     let mut shares = Vec::new();
-    while fire.state().vertices.iter().any(|v| v[3] > 0.0) {
+    while fire.state().vertices.iter().any(|v| v.left > 0.0) {
         fire.ticks(20);
         shares.push(volume(&fire, &fire.state()) / at_rest);
         assert!(shares.len() < 100, "it burns out");
@@ -82,7 +78,7 @@ fn a_vertex_that_has_burnt_far_enough_leaves_the_group() {
         let mut fire = Fire::new(device, Variant::Solid, &parameters, &ball());
         fire.ticks(200);
         let before = fire.state();
-        assert!(before.vertices.iter().all(|v| v[3] == 10.0), "half of an L of 20 is left everywhere");
+        assert!(before.vertices.iter().all(|v| v.left == 10.0), "half of an L of 20 is left everywhere");
         assert_eq!((before.counts.active_vertices, before.counts.live_vertices as usize), (0, before.vertices.len()));
         fire.ticks(20);
         assert!(fire.state().vertices == before.vertices, "nothing moves any more");
@@ -101,12 +97,12 @@ fn blocks_count_the_ticks_that_they_burn() {
             let state = fire.state();
             let mut burns = vec![false; blocks];
             for ((&cell, &label), vertex) in state.cells.iter().zip(&state.labels).zip(&before.vertices) {
-                burns[cell as usize] |= label == 4 && vertex[3] > 0.0;
+                burns[cell as usize] |= label == 4 && vertex.left > 0.0;
             }
             for (count, burns) in expected.iter_mut().zip(burns) {
                 *count += i32::from(burns);
             }
-            assert_eq!(state.blocks.iter().map(|b| b[5]).collect::<Vec<_>>(), expected);
+            assert_eq!(state.blocks.iter().map(|b| b.combustion).collect::<Vec<_>>(), expected);
         }
         assert!(expected.iter().any(|&count| count > 10));
     });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ash::vk;
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 use super::framing;
 use super::model::Model;
@@ -16,16 +16,17 @@ use crate::host_block;
 use crate::scene::Camera;
 
 host_block! {
-    /// `burning/view.glsl`
+    /// The uniform block of `burning/view.glsl`, which says what each member is.
     pub(super) struct ViewBlock {
-        view_projection: [f32; 16],
-        eye: [f32; 4],
-        to_light: [f32; 4],
-        mode: [u32; 4],
+        view_projection: Mat4,
+        eye: Vec3,
+        ambient: f32,
+        to_light: Vec3,
+        shading: u32,
     }
 }
 
-/// Where the light comes from, and its ambient share.
+/// Direction to the light, not of unit length, and its ambient fraction.
 const TO_LIGHT: Vec3 = Vec3::new(0.45, 0.75, 0.6);
 const AMBIENT: f32 = 0.35;
 /// Behind the object, linear RGB.
@@ -64,10 +65,11 @@ impl Drawing {
         let picture = target("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
         let camera = framing::camera(parameters, model);
         let block = ViewBlock {
-            view_projection: (camera.projection(parameters.aspect()) * camera.view()).to_cols_array(),
-            eye: camera.eye.extend(1.0).to_array(),
-            to_light: TO_LIGHT.normalize().extend(AMBIENT).to_array(),
-            mode: [parameters.shading.mode(), 0, 0, 0],
+            view_projection: camera.projection(parameters.aspect()) * camera.view(),
+            eye: camera.eye,
+            ambient: AMBIENT,
+            to_light: TO_LIGHT.normalize(),
+            shading: parameters.shading as u32,
         };
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let view = upload(device, &format!("{label}/view"), usage, bytemuck::bytes_of(&block))?;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use ash::vk;
+use glam::Vec3;
 
 use super::drawing::Drawing;
 use super::model::Model;
@@ -13,11 +14,14 @@ use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, Load, Pass, ShaderLibr
 use crate::host_block;
 
 host_block! {
-    /// `burning/billboards.glsl`
+    /// The uniform block of `burning/billboards.glsl`, which says what each member is.
     pub(super) struct BillboardsBlock {
-        right: [f32; 4],
-        up: [f32; 4],
-        depth: [f32; 4],
+        right: Vec3,
+        particle_radius: f32,
+        up: Vec3,
+        depth_scale: f32,
+        depth_offset: f32,
+        _pad: [f32; 3],
     }
 }
 
@@ -36,10 +40,15 @@ host_block! {
 host_block! {
     /// `burning/flames.glsl`
     pub struct Particle {
-        /// Position; age in ticks.
-        pub place: [f32; 4],
-        /// Life in ticks, 0 when it is not there; block that it was born in; two numbers of its own, 0 to 1.
-        pub character: [f32; 4],
+        /// Diagonals.
+        pub position: Vec3,
+        pub age_ticks: f32,
+        /// Its whole life, 0 when it is not there.
+        pub life_ticks: f32,
+        /// The block that it was born in.
+        pub block: f32,
+        /// Two numbers of its own, 0 to 1.
+        pub random: [f32; 2],
     }
 }
 
@@ -163,11 +172,13 @@ impl Flames {
 fn billboards(parameters: &Parameters, drawing: &Drawing) -> BillboardsBlock {
     let view = drawing.camera.view();
     let projection = drawing.camera.projection(parameters.aspect());
-    let radius = parameters.particle_radius;
     BillboardsBlock {
-        right: view.row(0).truncate().extend(radius).to_array(),
-        up: view.row(1).truncate().extend(0.0).to_array(),
+        right: view.row(0).truncate(),
+        particle_radius: parameters.particle_radius,
+        up: view.row(1).truncate(),
         // For a distance w along the view, depth = -m22 + m32 / w, columns before rows.
-        depth: [projection.w_axis.z, projection.z_axis.z, radius, 0.0],
+        depth_scale: projection.w_axis.z,
+        depth_offset: projection.z_axis.z,
+        _pad: [0.0; 3],
     }
 }

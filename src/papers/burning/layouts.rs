@@ -2,7 +2,8 @@
 
 use super::drawing::ViewBlock;
 use super::flames::{BillboardsBlock, Group, Particle};
-use super::state::{Constants, Counts};
+use super::state::{BlockCounts, Constants, Counts, RestVertex, VertexState};
+use super::texture::TextureLevel;
 use crate::papers::layout::{block, check_block, check_list};
 
 #[test]
@@ -15,6 +16,10 @@ fn the_buffers_hold_what_the_shaders_read() {
     let counts = clock.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(counts.check_host::<Counts>(), Ok(()));
     check_block::<BillboardsBlock>("burning/flames.comp", "billboards");
+    check_list::<RestVertex>("burning/heat-boundary-vertices.comp", "Rest");
+    check_list::<VertexState>("burning/internal-deformation.comp", "NewState");
+    check_list::<BlockCounts>("burning/block-weights.comp", "Blocks");
+    check_list::<TextureLevel>("burning/draw-textured.frag", "TextureLevels");
     check_list::<Group>("burning/flames.comp", "Groups");
     check_list::<Particle>("burning/flames.comp", "Particles");
 }

@@ -52,7 +52,7 @@ use crate::scene::{Camera, Mesh};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
-pub use self::state::{Buffers, Counts};
+pub use self::state::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::texture::{Level, Texture};
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
@@ -327,7 +327,7 @@ impl Paper for Burning {
                     .to_owned(),
             );
         }
-        let nearest = self.model.rest.iter().map(|r| r[3]).fold(f32::INFINITY, f32::min);
+        let nearest = self.model.rest.iter().map(|vertex| vertex.boundary_distance).fold(f32::INFINITY, f32::min);
         let radius = self.parameters.speed_per_s * (self.ticks() as f64 / TICKS_PER_S) as f32;
         if self.ticks() > 0 && nearest > radius {
             warnings.push(format!(

@@ -9,7 +9,7 @@ use crate::measure::ParameterError;
 use crate::measure::components;
 use crate::scene::Camera;
 
-/// The methods, one a chapter.
+/// The methods, one a chapter, numbered as `burning/constants.glsl` does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Variant {
     /// Chapter 3: a dense shell.
@@ -71,7 +71,7 @@ impl Material {
     }
 }
 
-/// What the mesh is coloured by.
+/// The quantity that colours the mesh, numbered as `burning/view.glsl` does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
     /// Lit, charred and glowing: the finished picture.
@@ -97,11 +97,6 @@ impl Shading {
             Shading::Normals => "normals",
             Shading::Wire => "wire",
         }
-    }
-
-    /// As `burning/draw.frag` numbers it.
-    pub(super) fn mode(self) -> u32 {
-        self as u32
     }
 }
 

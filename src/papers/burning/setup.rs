@@ -18,7 +18,7 @@ use crate::measure::measure::Measurement;
 use crate::measure::statistics::median;
 use crate::measure::study::{Identity, Metrics, Study};
 use crate::papers::burning::model::with_triangles;
-use crate::papers::burning::{Burning, NEEDS, Parameters, Texture, Variant};
+use crate::papers::burning::{BlockCounts, Burning, NEEDS, Parameters, Texture, Variant};
 use crate::scene::{Mesh, MeshSource};
 
 /// What a user set up.
@@ -203,8 +203,9 @@ fn results(machine: &Machine, paper: &Burning, measurement: &Measurement) -> Res
     let model = paper.model();
     let look = super::experiments::course::look(machine, paper)?;
     let counts = look.counts;
-    let blocks: Vec<[i32; 8]> = bytemuck::pod_collect_to_vec(&read_buffer(&machine.device, &paper.buffers().blocks)?);
-    let occupied = blocks.iter().filter(|[live, ..]| *live > 0).count();
+    let blocks: Vec<BlockCounts> =
+        bytemuck::pod_collect_to_vec(&read_buffer(&machine.device, &paper.buffers().blocks)?);
+    let occupied = blocks.iter().filter(|block| block.live > 0).count();
     Ok(entries([
         ("frames_per_s", json!(median(&measurement.frame_ms).map(|ms| 1e3 / ms))),
         ("ticks", json!(counts.tick)),

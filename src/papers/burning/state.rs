@@ -12,20 +12,87 @@ use crate::gpu::{Buffer, BufferDesc, Device, Error, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
-    /// `burning/constants.glsl`
+    /// The uniform block of `burning/constants.glsl`, which says what each member is.
     pub(super) struct Constants {
-        counts: [u32; 4],
-        grid: [u32; 4],
-        origin: [f32; 4],
-        cell_size: [f32; 4],
-        boundary: [f32; 4],
-        material: [f32; 4],
-        rotation: [f32; 4],
-        melting: [f32; 4],
-        solid: [f32; 4],
-        albedo: [f32; 4],
-        choices: [u32; 4],
-        tree: [u32; 4],
+        blocks: [u32; 3],
+        block_count: u32,
+        grid_origin: Vec3,
+        floor_y: f32,
+        block_size: Vec3,
+        mean_edge: f32,
+        albedo: Vec3,
+        fall_per_tick: f32,
+        vertex_count: u32,
+        triangle_count: u32,
+        draw_vertex_count: u32,
+        variant: u32,
+        growth_per_tick: f32,
+        area_width: f32,
+        highest_source_y: f32,
+        flammability: f32,
+        epsilon: f32,
+        beta: f32,
+        rho: f32,
+        phi: f32,
+        gamma: f32,
+        spread: f32,
+        greatest_rotation_rad: f32,
+        greatest_free_rotation_rad: f32,
+        omega: f32,
+        chi: f32,
+        upsilon: f32,
+        outward: f32,
+        retired_left: f32,
+        char_depth: f32,
+        active_limit: u32,
+        keep_connected: u32,
+        seed: u32,
+        levels: u32,
+        coarse_count: u32,
+        fire_pool: u32,
+        smoke_pool: u32,
+    }
+}
+
+host_block! {
+    /// A vertex of the object at rest (`burning/vertices.glsl`).
+    pub struct RestVertex {
+        /// Diagonals.
+        pub position: Vec3,
+        /// R: the radius at which the boundary reaches it (3.3), diagonals.
+        pub boundary_distance: f32,
+    }
+}
+
+host_block! {
+    /// A vertex after some tick (`burning/vertices.glsl`).
+    pub struct VertexState {
+        /// Diagonals.
+        pub position: Vec3,
+        /// L, ticks of combustion left.
+        pub left: f32,
+    }
+}
+
+host_block! {
+    /// The counts of a block (`burning/blocks.glsl`).
+    #[derive(Default)]
+    pub struct BlockCounts {
+        /// Vertices with some L left: the weight (3.5.1).
+        pub live: i32,
+        /// Live vertices in the combustion-ready area.
+        pub ready: i32,
+        /// Sum of the signs of the last tick's events about x (3.5.2).
+        pub pitch_sign: i32,
+        /// Likewise about y.
+        pub yaw_sign: i32,
+        /// Likewise about z.
+        pub roll_sign: i32,
+        /// Ticks with active vertices (5.4).
+        pub combustion: i32,
+        /// Vertices inside the combustion-ready boundary.
+        pub heated: i32,
+        pub last_active_tick: i32,
     }
 }
 
@@ -50,7 +117,6 @@ host_block! {
         pub drawn_triangles: u32,
         pub fire_particles: u32,
         pub smoke_particles: u32,
-        pub pad: u32,
     }
 }
 
@@ -62,7 +128,7 @@ const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 /// Every buffer by the name that the shaders give it, in snake case. N vertices, T finest triangles, C draw vertices.
 pub struct Buffers {
     pub(super) constants: Arc<Buffer>,
-    /// vec4\[N\]: rest position, R.
+    /// [`RestVertex`]\[N\].
     pub rest: Arc<Buffer>,
     /// uint\[3T\]: vertices.
     pub triangles: Arc<Buffer>,
@@ -83,7 +149,7 @@ pub struct Buffers {
     /// uint\[N\].
     pub rest_cells: Arc<Buffer>,
 
-    /// vec4\[N\] twice, which take turns: position, L left. After tick t the newer one is that of index t % 2.
+    /// [`VertexState`]\[N\], ping-pong: after tick t the newer one is that of index t % 2.
     pub states: [Arc<Buffer>; 2],
     /// uint\[N\]: area of the boundary, 0 to 4.
     pub labels: Arc<Buffer>,
@@ -93,8 +159,7 @@ pub struct Buffers {
     pub removed: Arc<Buffer>,
     /// uint\[N\]: block of the position.
     pub cells: Arc<Buffer>,
-    /// int\[8 * blocks\]: live vertices, ready vertices, three sums of signs, combustion counter, vertices inside the
-    /// combustion-ready boundary, the last tick with active vertices.
+    /// [`BlockCounts`] of each block.
     pub blocks: Arc<Buffer>,
     /// vec4\[blocks\] twice, which take turns as the states do: pitch, yaw, roll in radians.
     pub rotations: [Arc<Buffer>; 2],
@@ -149,11 +214,12 @@ impl Buffers {
         let blocks = model.grid.cell_count() as usize;
 
         let flammability = parameters.flammability as f32;
-        let before: Vec<[f32; 4]> = model.rest.iter().map(|&[x, y, z, _]| [x, y, z, flammability]).collect();
+        let before: Vec<VertexState> =
+            model.rest.iter().map(|vertex| VertexState { position: vertex.position, left: flammability }).collect();
         let alive = alive_at_rest(variant, model);
-        let mut counts = vec![[0_i32; 8]; blocks];
+        let mut counts = vec![BlockCounts::default(); blocks];
         for (&cell, _) in model.rest_cells.iter().zip(&alive).filter(|&(_, &alive)| alive == 1) {
-            counts[cell as usize][0] += 1;
+            counts[cell as usize].live += 1;
         }
         let block = constants(variant, parameters, model);
         let mut buffers = Buffers {
@@ -272,26 +338,45 @@ fn alive_at_rest(variant: Variant, model: &Model) -> Vec<u32> {
 
 fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Constants {
     let p = parameters;
-    let with = |v: Vec3, w: f32| v.extend(w).to_array();
-    let [bx, by, bz] = p.blocks;
     let tick_s = 1.0 / TICKS_PER_S;
-    let fall = (f64::from(p.epsilon) * GRAVITY * tick_s * tick_s) as f32;
-    let highest_source = model.sources.iter().map(|s| s.y).fold(f32::NEG_INFINITY, f32::max);
-    let retires_at = if variant == Variant::Solid { p.retire_at * p.flammability as f32 } else { 0.0 };
-    let counts = [model.rest.len(), model.triangles.len(), model.lattice.welds.len(), model.base_points.len()];
     Constants {
-        counts: counts.map(|count| count as u32),
-        grid: [bx, by, bz, variant as u32],
-        origin: with(model.grid.origin, model.floor),
-        cell_size: with(model.grid.cell_size, model.mean_edge),
-        boundary: [(f64::from(p.speed_per_s) * tick_s) as f32, p.width_of_areas, highest_source, p.flammability as f32],
-        material: [p.epsilon, p.beta, p.rho, p.phi],
-        rotation: [p.gamma, p.spread, GREATEST_ROTATION_RAD, GREATEST_FREE_ROTATION_RAD],
-        melting: [p.omega, p.chi, p.upsilon, 0.0],
-        solid: [model.outward, retires_at, model.char_depth, 0.0],
-        albedo: with(p.albedo, fall),
-        choices: [p.active_limit, p.keep_connected.into(), p.noise_seed(), 0],
-        tree: [model.levels, model.coarse_count(), p.fire, p.smoke],
+        blocks: p.blocks,
+        block_count: model.base_points.len() as u32,
+        grid_origin: model.grid.origin,
+        floor_y: model.floor,
+        block_size: model.grid.cell_size,
+        mean_edge: model.mean_edge,
+        albedo: p.albedo,
+        fall_per_tick: (f64::from(p.epsilon) * GRAVITY * tick_s * tick_s) as f32,
+        vertex_count: model.rest.len() as u32,
+        triangle_count: model.triangles.len() as u32,
+        draw_vertex_count: model.lattice.welds.len() as u32,
+        variant: variant as u32,
+        growth_per_tick: (f64::from(p.speed_per_s) * tick_s) as f32,
+        area_width: p.width_of_areas,
+        highest_source_y: model.sources.iter().map(|s| s.y).fold(f32::NEG_INFINITY, f32::max),
+        flammability: p.flammability as f32,
+        epsilon: p.epsilon,
+        beta: p.beta,
+        rho: p.rho,
+        phi: p.phi,
+        gamma: p.gamma,
+        spread: p.spread,
+        greatest_rotation_rad: GREATEST_ROTATION_RAD,
+        greatest_free_rotation_rad: GREATEST_FREE_ROTATION_RAD,
+        omega: p.omega,
+        chi: p.chi,
+        upsilon: p.upsilon,
+        outward: model.outward,
+        retired_left: if variant == Variant::Solid { p.retire_at * p.flammability as f32 } else { 0.0 },
+        char_depth: model.char_depth,
+        active_limit: p.active_limit,
+        keep_connected: p.keep_connected.into(),
+        seed: p.noise_seed(),
+        levels: model.levels,
+        coarse_count: model.coarse_count(),
+        fire_pool: p.fire,
+        smoke_pool: p.smoke,
     }
 }
 

@@ -6,6 +6,7 @@ use ash::vk;
 
 use crate::gpu::transfer::{upload, upload_rows};
 use crate::gpu::{Buffer, Error, Image, ImageDesc, ImageView, ShaderLibrary};
+use crate::host_block;
 
 /// A picture with its smaller versions, each half as large as the one before it, down to one texel.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +24,21 @@ pub struct Level {
     pub texels: Vec<u8>,
 }
 
-/// What the shaders read of a texture.
+host_block! {
+    /// A level of the texture in the image that holds all of them (`burning/draw-textured.frag`), texels.
+    pub(super) struct TextureLevel {
+        width: u32,
+        height: u32,
+        first_row: u32,
+        level_count: u32,
+    }
+}
+
+/// The buffers and the image of a texture.
 pub struct Surface {
     /// All levels below one another, 8-bit sRGB: the shader filters by itself, so that every device draws the same.
     pub texels: Arc<ImageView>,
-    /// uvec4 of each level: width, height, first row in the image, number of levels.
+    /// [`TextureLevel`] of each.
     pub levels: Arc<Buffer>,
     /// vec2\[C\] for C draw vertices: they stay apart where the simulated vertices are welded.
     pub coordinates: Arc<Buffer>,
@@ -47,22 +58,22 @@ impl Surface {
         let device = shaders.device();
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let level_count = texture.levels.len() as u32;
-        let mut height = 0;
-        let mut levels: Vec<[u32; 4]> = Vec::new();
-        for level in &texture.levels {
-            levels.push([level.width, level.height, height, level_count]);
-            height += level.height;
+        let mut first_row = 0;
+        let mut levels: Vec<TextureLevel> = Vec::new();
+        for &Level { width, height, .. } in &texture.levels {
+            levels.push(TextureLevel { width, height, first_row, level_count });
+            first_row += height;
         }
         let width = texture.levels[0].width;
-        let desc = ImageDesc::new_2d(format!("{label}/texture"), vk::Format::R8G8B8A8_SRGB, width, height);
+        let desc = ImageDesc::new_2d(format!("{label}/texture"), vk::Format::R8G8B8A8_SRGB, width, first_row);
         let texels = Image::new(device, desc.usage(vk::ImageUsageFlags::SAMPLED))?.view()?;
         let row_bytes = 4 * width as usize;
-        upload_rows(device, &texels, (width, height), |first_row, bytes| {
+        upload_rows(device, &texels, (width, first_row), |first_row, bytes| {
             for (row, bytes) in (first_row..).zip(bytes.chunks_exact_mut(row_bytes)) {
-                let at = levels.partition_point(|[_, _, first_row, _]| *first_row <= row) - 1;
+                let at = levels.partition_point(|level| level.first_row <= row) - 1;
                 let from = &texture.levels[at].texels;
                 let own_bytes = 4 * texture.levels[at].width as usize;
-                let first = (row - levels[at][2]) as usize * own_bytes;
+                let first = (row - levels[at].first_row) as usize * own_bytes;
                 // Nothing to the right of a smaller level is read.
                 bytes.fill(0);
                 bytes[..own_bytes].copy_from_slice(&from[first..first + own_bytes]);

@@ -42,7 +42,7 @@ pub fn follow(
     let study = Setup { parameters, ..setup.clone() };
     let scene = study.load()?;
     let mut paper = build(machine, &study, &scene, variant)?.paper;
-    let distances = || paper.model().rest.iter().map(|r| f64::from(r[3]));
+    let distances = || paper.model().rest.iter().map(|r| f64::from(r.boundary_distance));
     let (nearest, farthest) = (distances().fold(f64::INFINITY, f64::min), distances().fold(0.0, f64::max));
     let p = &study.parameters;
     let ticks_to = |radius: f64| radius / f64::from(p.speed_per_s) * TICKS_PER_S;

@@ -11,6 +11,7 @@ mod weld;
 use glam::Vec3;
 
 use super::parameters::{Parameters, Variant};
+use super::state::RestVertex;
 use crate::gpu::Error;
 use crate::scene::{Bounds, Mesh};
 
@@ -24,8 +25,8 @@ pub use self::weld::Welded;
 pub struct Model {
     pub levels: u32,
     pub lattice: Lattice,
-    /// Rest position and distance R to the boundary of each vertex.
-    pub rest: Vec<[f32; 4]>,
+    /// Every vertex at rest.
+    pub rest: Vec<RestVertex>,
     /// Vertices of the finest triangles.
     pub triangles: Vec<[u32; 3]>,
     /// Finest triangles of each vertex.
@@ -90,12 +91,15 @@ impl Model {
             given => given.to_vec(),
         };
         let seed = parameters.noise_seed();
-        let distance = |&p: &Vec3| p.extend(boundary::distance(p, &sources, parameters.psi, seed) as f32).to_array();
+        let at_rest = |&position: &Vec3| {
+            let boundary_distance = boundary::distance(position, &sources, parameters.psi, seed) as f32;
+            RestVertex { position, boundary_distance }
+        };
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
         let volume = enclosed_volume(positions, &triangles);
         Ok(Model {
             levels,
-            rest: positions.iter().map(distance).collect(),
+            rest: positions.iter().map(at_rest).collect(),
             incidence: Incidence::new(positions.len(), &triangles),
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
