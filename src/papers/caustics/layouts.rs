@@ -1,10 +1,10 @@
 //! Host structs against the blocks of buffers that hold them.
 
-use super::cast::CameraBlock;
-use super::illumination::Ray;
-use super::stencil::VolumesBlock;
+use super::illumination_volumes::Ray;
+use super::stencil_volumes::VolumesBlock;
+use super::underwater::CameraBlock;
 use super::view::ViewBlock;
-use super::water::{VERTEX_FLOATS, WaveBlock};
+use super::water_surface::{VERTEX_FLOATS, WaveBlock};
 use crate::papers::layout::{block, check_block, check_list};
 
 #[test]

@@ -9,41 +9,63 @@
 //! water-surface ─► illumination-volumes ─► stencil-volumes (─► view)
 //! ```
 
+mod bounding_box;
 mod cast;
+mod caustics_map;
+mod caustics_map_floor;
+mod combine;
+mod combine_slices;
+mod depth_profile;
+mod diffuse_map;
 pub mod experiments;
-mod illumination;
+mod illumination_volumes;
 #[cfg(test)]
 mod layouts;
 mod level_map;
-mod maps;
-mod method;
+mod multiply;
 pub mod parameters;
-mod planar;
 mod planes;
+mod position_diffuse_map;
+mod position_map;
+mod read_positions;
 mod receiver;
+mod receivers;
 pub mod reference;
+mod reference_planes;
+mod resources;
+mod sample_planes;
 pub mod setup;
-mod stencil;
+mod slice_images;
+mod stencil_volumes;
+mod underwater;
 mod view;
 mod volumetric;
 pub mod water;
 mod water_map;
+mod water_surface;
 
+use std::slice;
 use std::sync::Arc;
 
 use ash::vk;
 use glam::{DVec2, DVec3};
 
-use self::cast::Underwater;
-use self::level_map::Slicing;
-use self::planar::{Kind, Planar, Shared};
-use self::planes::{Axes, ReceiverBox};
-use self::receiver::Receiver;
-use self::stencil::{DEPTH_STENCIL, Stencil};
+use self::bounding_box::{Axes, BoundingBox};
+use self::illumination_volumes::{IlluminationVolumes, RAY_FLOATS};
+use self::level_map::{LevelMap, ReceiverMaps, Slicing, SmartSlicing};
+use self::receiver::{LitReceiver, Receiver};
+use self::receivers::Receivers;
+use self::reference_planes::ReferencePlanes;
+use self::resources::{Context, DEPTH, DEPTH_STENCIL};
+use self::stencil_volumes::StencilVolumes;
+use self::underwater::Underwater;
 use self::view::View;
-use self::water::{Grid, Water};
+use self::volumetric::Volumetric;
+use self::water::Grid;
+use self::water_surface::{VERTEX_FLOATS, WaterSurface};
 use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 use crate::measure::{Paper, Target};
+use crate::scene::Bounds;
 
 pub use self::parameters::{Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;
@@ -55,15 +77,25 @@ pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Flo
 /// The paper under one variant.
 pub struct Caustics {
     parameters: Parameters,
-    water: Water,
+    water_surface: WaterSurface,
+    /// One for each light.
+    illumination_volumes: Vec<IlluminationVolumes>,
+    /// Each receiver under each light, light by light; none for the stencil method.
+    lit_receivers: Vec<LitReceiver>,
     technique: Technique,
     underwater: Underwater,
     view: View,
 }
 
+/// Passes that the variants do not share.
 enum Technique {
-    Planar(Planar),
-    Stencil(Stencil),
+    LevelMap(LevelMap),
+    Volumetric(Volumetric),
+    Stencil {
+        receivers: Receivers,
+        /// One for each light.
+        stencil_volumes: Vec<StencilVolumes>,
+    },
 }
 
 impl Caustics {
@@ -79,47 +111,54 @@ impl Caustics {
         inputs: &[ReceiverInput],
     ) -> Result<Self, Error> {
         let nearest = Sampler::new(shaders.device(), "nearest", vk::Filter::NEAREST)?;
-        let receivers = inputs
-            .iter()
-            .map(|input| Receiver::new(shaders, label, input).map(Arc::new))
-            .collect::<Result<Vec<_>, _>>()?;
+        let context = Context { shaders, label, parameters, nearest: &nearest };
+        let receivers =
+            inputs.iter().map(|input| Receiver::new(context, input).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
         let center = world_center(&receivers);
         let index = f64::from(parameters.refraction_index);
         let axes: Vec<Axes> = parameters.lights.iter().map(|light| Axes::aligned_with(light, center, index)).collect();
-        let boxes: Vec<_> = parameters
-            .lights
-            .iter()
-            .zip(&axes)
-            .flat_map(|(&light, &axes)| receivers.iter().map(move |r| (ReceiverBox::around(axes, &r.positions), light)))
+        let mut lit_receivers: Vec<LitReceiver> = (0..axes.len())
+            .flat_map(|light| receivers.iter().enumerate().map(move |(index, receiver)| (light, index, receiver)))
+            .map(|(light, index, receiver)| LitReceiver::new(receiver, index, light, axes[light], parameters))
             .collect();
+        let boxes: Vec<_> = lit_receivers.iter().map(|lit| (lit.aligned, parameters.lights[lit.light])).collect();
         let middle = DVec2::new(center.x, center.z);
-        let water = Water::new(shaders, label, Grid::over(&boxes, parameters), middle, parameters)?;
-        let depth_format = if variant == Variant::Stencil { DEPTH_STENCIL } else { maps::DEPTH };
-        let underwater = Underwater::new(shaders, label, depth_format, parameters)?;
-        let view = View::new(shaders, label, &underwater, &water, &nearest, parameters)?;
-        let shared = Shared {
-            shaders,
-            label,
-            receivers: &receivers,
-            axes: &axes,
-            water: &water,
-            underwater: &underwater,
-            nearest: &nearest,
-            parameters,
-        };
-        let planar = |kind| Planar::new(shared, kind).map(Technique::Planar);
+        let water_surface = WaterSurface::new(context, Grid::over(&boxes, parameters), middle)?;
+        let lights = parameters.lights.iter().zip(axes);
+        let illumination_volumes = lights
+            .map(|(light, axes)| IlluminationVolumes::new(context, &water_surface, light, axes))
+            .collect::<Result<Vec<_>, _>>()?;
+        let depth_format = if variant == Variant::Stencil { DEPTH_STENCIL } else { DEPTH };
+        let underwater = Underwater::new(context, depth_format)?;
+        let view = View::new(context, &underwater, &water_surface)?;
+        let (water, volumes) = (&water_surface, &illumination_volumes);
         let technique = match variant {
-            Variant::LevelMap => planar(Kind::LevelMap(Slicing::Normal))?,
-            Variant::LevelMapSmart => planar(Kind::LevelMap(Slicing::Smart))?,
-            Variant::Volumetric => planar(Kind::Volumetric)?,
-            Variant::Stencil => Technique::Stencil(Stencil::new(shared)?),
+            Variant::LevelMap | Variant::LevelMapSmart => {
+                let slicing = if variant == Variant::LevelMap {
+                    Slicing::Uniform(ReferencePlanes::new(parameters))
+                } else {
+                    Slicing::Smart(BoundingBox::new())
+                };
+                Technique::LevelMap(LevelMap::new(context, slicing, &lit_receivers, water, volumes, &underwater)?)
+            }
+            Variant::Volumetric => {
+                Technique::Volumetric(Volumetric::new(context, &lit_receivers, water, volumes, &underwater)?)
+            }
+            Variant::Stencil => {
+                lit_receivers.clear();
+                let receivers = Receivers::new(context, &receivers, &underwater)?;
+                let each = volumes.iter().map(|v| StencilVolumes::new(context, water, v, &receivers, &underwater));
+                let stencil_volumes = each.collect::<Result<_, _>>()?;
+                Technique::Stencil { receivers, stencil_volumes }
+            }
         };
-        Ok(Caustics { parameters: parameters.clone(), water, technique, underwater, view })
+        let parameters = parameters.clone();
+        Ok(Caustics { parameters, water_surface, illumination_volumes, lit_receivers, technique, underwater, view })
     }
 
     /// The mesh of the water as it was made, which may differ from the number of triangles asked for.
     pub fn grid(&self) -> Grid {
-        self.water.grid
+        self.water_surface.grid
     }
 
     /// Draws the last frame's caustics maps with an empty fragment stage, as pass `caustics-map-floor`: what their
@@ -128,50 +167,148 @@ impl Caustics {
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        match &self.technique {
-            Technique::Planar(planar) => planar.record_floor(frame),
-            Technique::Stencil(_) => Ok(()),
-        }
+        let floors: Vec<_> = match &self.technique {
+            Technique::LevelMap(LevelMap { receivers, .. }) => {
+                receivers.iter().map(|r| &r.caustics_map_floor).collect()
+            }
+            Technique::Volumetric(Volumetric { receivers, .. }) => {
+                receivers.iter().map(|r| &r.caustics_map_floor).collect()
+            }
+            Technique::Stencil { .. } => Vec::new(),
+        };
+        let mut each = floors.iter().zip(&self.lit_receivers);
+        each.try_for_each(|(floor, lit)| floor.record(frame, lit, &self.illumination_volumes[lit.light]))
     }
 
     /// Texels in each depth level of the first receiver under the first light, after a frame of smart slicing.
     pub fn depth_profile(&self) -> Option<&[u32]> {
-        match &self.technique {
-            Technique::Planar(planar) => planar.depth_profile(),
-            Technique::Stencil(_) => None,
-        }
+        let Technique::LevelMap(level_map) = &self.technique else { return None };
+        let smart = level_map.receivers.first()?.smart.as_ref()?;
+        Some(smart.depth_profile.histogram())
     }
 
     /// The planes of each receiver under each light, as the last recorded frame placed them; none for the stencil method.
     pub fn plane_counts(&self) -> Vec<usize> {
-        match &self.technique {
-            Technique::Planar(planar) => planar.plane_counts(),
-            Technique::Stencil(_) => Vec::new(),
-        }
+        self.lit_receivers.iter().map(|lit| lit.cells.len()).collect()
     }
 
     fn time_s(&self, number: u32) -> f64 {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }
+
+    /// The maps of each receiver under light `light` that `--dump` knows.
+    fn map_targets(&self, light: usize) -> Vec<Target> {
+        let maps: Vec<_> = match &self.technique {
+            Technique::LevelMap(LevelMap { receivers, .. }) => receivers.iter().map(|r| r.targets()).collect(),
+            Technique::Volumetric(Volumetric { receivers, .. }) => receivers.iter().map(|r| r.targets()).collect(),
+            Technique::Stencil { .. } => Vec::new(),
+        };
+        let of_light = self.lit_receivers.iter().zip(maps).filter(|(lit, _)| lit.light == light);
+        let named = |(lit, maps): (&LitReceiver, [(&str, &Arc<ImageView>); 4])| {
+            maps.map(|(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view))
+        };
+        of_light.flat_map(named).collect()
+    }
 }
 
 fn world_center(receivers: &[Arc<Receiver>]) -> DVec3 {
     let points = receivers.iter().flat_map(|r| r.positions.iter().copied());
-    crate::scene::Bounds::of_points(points).center().as_dvec3()
+    Bounds::of_points(points).center().as_dvec3()
+}
+
+/// A target's name, with the indices of its light and receiver when one of them is not the first.
+fn numbered(name: &str, indices: &[usize]) -> String {
+    if indices.iter().all(|&i| i == 0) {
+        return name.to_owned();
+    }
+    let indices: Vec<String> = indices.iter().map(usize::to_string).collect();
+    format!("{name}.{}", indices.join("."))
 }
 
 impl Paper for Caustics {
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         let time_s = self.time_s(number);
-        match &mut self.technique {
-            Technique::Planar(planar) => planar.record(frame, &self.water, time_s),
-            Technique::Stencil(stencil) => stencil.record(frame, &self.water, time_s),
+        let Caustics { water_surface, illumination_volumes, lit_receivers, technique, .. } = self;
+
+        // The receivers: their planes and maps (figure 4-15, step 1), or what is seen of them.
+        match technique {
+            Technique::LevelMap(LevelMap { slicing, receivers }) => {
+                match slicing {
+                    Slicing::Uniform(reference_planes) => reference_planes.record(frame, lit_receivers),
+                    Slicing::Smart(bounding_box) => bounding_box.record(frame, lit_receivers),
+                }
+                for (lit, passes) in lit_receivers.iter().zip(receivers.iter()) {
+                    match &passes.maps {
+                        ReceiverMaps::OnePass(position_diffuse_map) => position_diffuse_map.record(frame, lit)?,
+                        ReceiverMaps::TwoPasses(position_map, diffuse_map) => {
+                            position_map.record(frame, lit)?;
+                            diffuse_map.record(frame, lit)?;
+                        }
+                    }
+                }
+                for (lit, passes) in lit_receivers.iter_mut().zip(receivers) {
+                    if let Some(SmartSlicing { read_positions, depth_profile }) = &mut passes.smart {
+                        let heights = read_positions.record(frame)?;
+                        depth_profile.record(frame, heights, lit)?;
+                    }
+                }
+            }
+            Technique::Volumetric(Volumetric { sample_planes, receivers }) => {
+                sample_planes.record(frame, lit_receivers);
+                for (lit, passes) in lit_receivers.iter().zip(receivers) {
+                    passes.slice_images.record(frame, lit)?;
+                }
+            }
+            Technique::Stencil { receivers, .. } => receivers.record(frame)?,
         }
+
+        // The light, refracted by the water.
+        water_surface.record(frame, time_s)?;
+        for volumes in illumination_volumes.iter() {
+            volumes.record(frame)?;
+        }
+
+        // The caustics: where the light meets the receivers (figure 4-15, steps 2 and 3), and the cast.
+        match technique {
+            Technique::LevelMap(LevelMap { receivers, .. }) => {
+                for (lit, passes) in lit_receivers.iter().zip(receivers.iter()) {
+                    passes.caustics_map.record(frame, lit, &lit.cells, &illumination_volumes[lit.light])?;
+                }
+                for passes in receivers.iter() {
+                    passes.combine.record(frame)?;
+                }
+                for (lit, passes) in lit_receivers.iter().zip(receivers) {
+                    passes.cast.record(frame, lit, 0.0)?;
+                }
+            }
+            Technique::Volumetric(Volumetric { receivers, .. }) => {
+                for (lit, passes) in lit_receivers.iter().zip(receivers.iter()) {
+                    for (plane, cell) in lit.cells.iter().enumerate() {
+                        let cell = slice::from_ref(cell);
+                        passes.caustics_map.record(frame, lit, cell, &illumination_volumes[lit.light])?;
+                        passes.multiply.record(frame, plane)?;
+                    }
+                }
+                for (lit, passes) in lit_receivers.iter().zip(receivers.iter()) {
+                    passes.combine_slices.record(frame, lit)?;
+                }
+                for (lit, passes) in lit_receivers.iter().zip(receivers) {
+                    // A slice knows its surface to half a cell.
+                    passes.cast.record(frame, lit, lit.half_cell_m())?;
+                }
+            }
+            Technique::Stencil { stencil_volumes, .. } => {
+                for (stencil_volumes, volumes) in stencil_volumes.iter().zip(illumination_volumes) {
+                    stencil_volumes.record(frame, volumes)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
-        self.view.draw(frame, self.time_s(number))
+        self.view.record(frame, self.time_s(number))
     }
 
     fn picture(&self) -> &Arc<ImageView> {
@@ -179,11 +316,16 @@ impl Paper for Caustics {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let mut targets = vec![Target::table("water", &self.water.vertices, water::VERTEX_FLOATS)];
-        targets.extend(match &self.technique {
-            Technique::Planar(planar) => planar.targets(),
-            Technique::Stencil(stencil) => stencil.targets(),
-        });
+        let mut targets = vec![Target::table("water", &self.water_surface.vertices, VERTEX_FLOATS)];
+        for (light, volumes) in self.illumination_volumes.iter().enumerate() {
+            targets.push(Target::table(numbered("illumination-volumes", &[light]), &volumes.rays, RAY_FLOATS));
+            targets.extend(self.map_targets(light));
+        }
+        if let Technique::Stencil { receivers, .. } = &self.technique {
+            targets.push(Target::image("surface-position", &receivers.position));
+            targets.push(Target::image("surface-normal", &receivers.normal));
+            targets.push(Target::image("surface-albedo", &receivers.albedo));
+        }
         targets.push(Target::image("underwater-color", &self.underwater.color));
         targets.push(Target::image("underwater-depth", &self.underwater.fetched_depth));
         targets.push(Target::image("picture", &self.view.picture));

@@ -1,58 +1,45 @@
-//! A receiver of caustics on the device, and what every method shares about it: its box under one light, the map's
-//! camera, a plane's constants.
+//! A receiver of caustics on the device, its box under one light, and the camera of its maps.
 
 use std::sync::Arc;
 
 use ash::vk;
 use glam::Vec3;
 
-use super::illumination::IlluminationVolumes;
+use super::bounding_box::{Axes, ReceiverBox};
 use super::parameters::Parameters;
-use super::planes::{Axes, Cell, ReceiverBox};
-use crate::gpu::transfer::upload;
-use crate::gpu::{Buffer, Error, ShaderLibrary};
+use super::planes::{self, Cell};
+use super::resources::Context;
+use crate::gpu::pass::PassBuilder;
+use crate::gpu::{Buffer, Error, Frame, Pass};
 use crate::host_block;
-use crate::scene::{Light, Mesh};
+use crate::scene::Mesh;
 
 host_block! {
     /// A vertex of a receiver, world space.
     pub struct Vertex {
-        pub position: [f32; 3],
-        pub normal: [f32; 3],
+        position: [f32; 3],
+        normal: [f32; 3],
     }
 }
 
 host_block! {
     /// A box as `box.glsl` reads it.
     pub struct BoxBlock {
-        pub u: [f32; 4],
-        pub v: [f32; 4],
-        pub w: [f32; 4],
-        pub extent: [f32; 4],
+        u: [f32; 4],
+        v: [f32; 4],
+        w: [f32; 4],
+        extent: [f32; 4],
     }
 }
 
 host_block! {
     /// Constants of the passes that draw the receiver into a map.
-    pub struct MapConstants {
-        pub bounds: BoxBlock,
-        pub albedo: [f32; 4],
-        pub top: f32,
-        pub bottom: f32,
+    struct MapConstants {
+        bounds: BoxBlock,
+        albedo: [f32; 4],
+        top: f32,
+        bottom: f32,
         _pad: [f32; 2],
-    }
-}
-
-host_block! {
-    /// Constants of one plane's draw.
-    pub struct PlaneConstants {
-        pub center: [f32; 2],
-        pub to_clip: [f32; 2],
-        pub height: f32,
-        pub lower: f32,
-        pub upper: f32,
-        pub absorption_per_m: f32,
-        pub texel_area_m2: f32,
     }
 }
 
@@ -77,8 +64,7 @@ pub struct Receiver {
 impl Receiver {
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn new(shaders: &ShaderLibrary, label: &str, input: &ReceiverInput) -> Result<Self, Error> {
-        let device = shaders.device();
+    pub fn new(context: Context<'_>, input: &ReceiverInput) -> Result<Self, Error> {
         let mesh = &input.mesh;
         let vertices: Vec<Vertex> = mesh
             .positions
@@ -86,20 +72,14 @@ impl Receiver {
             .zip(&mesh.normals)
             .map(|(p, n)| Vertex { position: p.to_array(), normal: n.to_array() })
             .collect();
-        let name = |what: &str| format!("{label}/{what}");
+        let indices = bytemuck::cast_slice(&mesh.indices);
         Ok(Receiver {
-            vertices: upload(
-                device,
-                &name("receiver"),
+            vertices: context.upload(
+                "receiver",
                 vk::BufferUsageFlags::VERTEX_BUFFER,
                 bytemuck::cast_slice(&vertices),
             )?,
-            indices: upload(
-                device,
-                &name("receiver-indices"),
-                vk::BufferUsageFlags::INDEX_BUFFER,
-                bytemuck::cast_slice(&mesh.indices),
-            )?,
+            indices: context.upload("receiver-indices", vk::BufferUsageFlags::INDEX_BUFFER, indices)?,
             index_count: mesh.indices.len() as u32,
             albedo: input.albedo,
             positions: mesh.positions.clone(),
@@ -110,60 +90,70 @@ impl Receiver {
 /// A receiver under one light: its box, and its planes once they are sliced.
 pub struct LitReceiver {
     pub receiver: Arc<Receiver>,
+    /// Index of the light.
+    pub light: usize,
+    /// Index of the receiver.
+    pub index: usize,
     pub aligned: ReceiverBox,
     /// Nearest to the light first.
     pub cells: Vec<Cell>,
-    map_size: u32,
-    absorption_per_m: f32,
-    light_intensity: Vec3,
+    pub map_size: u32,
+    pub absorption_per_m: f32,
 }
 
 impl LitReceiver {
-    pub fn new(receiver: &Arc<Receiver>, axes: Axes, light: &Light, parameters: &Parameters) -> Self {
-        let light_intensity = match *light {
-            Light::Parallel { intensity, .. } | Light::Point { intensity, .. } => intensity,
-        };
+    pub fn new(receiver: &Arc<Receiver>, index: usize, light: usize, axes: Axes, parameters: &Parameters) -> Self {
         LitReceiver {
-            receiver: receiver.clone(),
+            light,
+            index,
             aligned: ReceiverBox::around(axes, &receiver.positions),
+            receiver: receiver.clone(),
             cells: Vec::with_capacity(parameters.planes as usize),
             map_size: parameters.map_size,
             absorption_per_m: parameters.absorption_per_m,
-            light_intensity,
         }
+    }
+
+    /// Aligns the box (section 4.2.1).
+    pub fn align(&mut self) {
+        self.aligned = ReceiverBox::around(self.aligned.axes, &self.receiver.positions);
     }
 
     /// Aligns the box and slices it (section 4.2.1).
     pub fn slice(&mut self, planes: u32) {
-        self.aligned = ReceiverBox::around(self.aligned.axes, &self.receiver.positions);
-        super::planes::slice(self.aligned.extent.y, planes, &mut self.cells);
+        self.align();
+        planes::slice(self.aligned.extent.y, planes, &mut self.cells);
     }
 
-    /// The whole box, or the part between two heights, as the map's camera sees it.
-    pub fn map_constants(&self, between: Option<&Cell>) -> MapConstants {
+    /// A pass that draws the receiver under the orthographic camera of its maps (sections 4.2.2 and 5.2.1).
+    pub fn map_pass(&self, name: &'static str, section: &'static str, fragment: &str) -> PassBuilder {
+        Pass::graphics(name, section, "caustics/receiver-map.vert", fragment)
+            .vertices::<Vertex>(&self.receiver.vertices)
+            .indices(&self.receiver.indices)
+            .constants::<MapConstants>()
+    }
+
+    /// Draws the whole receiver, or what lies in one cell, by a [`LitReceiver::map_pass`].
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn draw_into_map(&self, frame: &mut Frame<'_>, pass: &Pass, within: Option<&Cell>) -> Result<(), Error> {
         let half = (self.aligned.extent.y / 2.0) as f32;
-        MapConstants {
+        let constants = MapConstants {
             bounds: self.box_block(),
             albedo: self.receiver.albedo.extend(0.0).to_array(),
-            top: between.map_or(half, |cell| cell.upper),
-            bottom: between.map_or(-half, |cell| cell.lower),
+            top: within.map_or(half, |cell| cell.upper),
+            bottom: within.map_or(-half, |cell| cell.lower),
             _pad: [0.0; 2],
-        }
+        };
+        frame.graphics(pass, |draw| {
+            draw.constants(&constants).indices(self.receiver.index_count);
+        })
     }
 
-    pub fn plane_constants(&self, cell: &Cell, volumes: &IlluminationVolumes) -> PlaneConstants {
-        let extent = self.aligned.extent;
-        let offset = self.aligned.center - volumes.reference;
-        let texels = f64::from(self.map_size) * f64::from(self.map_size);
-        PlaneConstants {
-            center: [offset.x as f32, offset.z as f32],
-            to_clip: [(2.0 / extent.x) as f32, (2.0 / extent.z) as f32],
-            height: (offset.y + f64::from(cell.plane)) as f32,
-            lower: cell.lower,
-            upper: cell.upper,
-            absorption_per_m: self.absorption_per_m,
-            texel_area_m2: (extent.x * extent.z / texels) as f32,
-        }
+    /// Half the height of a uniform plane's cell, metres.
+    pub fn half_cell_m(&self) -> f32 {
+        (self.aligned.extent.y / (2.0 * self.cells.len() as f64)) as f32
     }
 
     pub fn box_block(&self) -> BoxBlock {
@@ -175,9 +165,5 @@ impl LitReceiver {
             w: axis(axes.w, center.z),
             extent: extent.as_vec3().extend(self.map_size as f32).to_array(),
         }
-    }
-
-    pub fn light_intensity(&self) -> Vec3 {
-        self.light_intensity
     }
 }

@@ -1,14 +1,14 @@
-//! The finished picture: the cast seen through the water's surface from above (chapter 1), or plainly from below.
+//! Pass `view`: the finished picture, which is the cast seen through the water's surface from above (chapter 1), or plainly from below.
 
 use std::sync::Arc;
 
 use ash::vk;
 
-use super::cast::Underwater;
-use super::parameters::Parameters;
-use super::water::{LEVEL_M, MapBlock, Shape, Water};
-use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, Sampler, ShaderLibrary};
+use super::resources::Context;
+use super::underwater::Underwater;
+use super::water::LEVEL_M;
+use super::water_surface::{MapBlock, Shape, WaterSurface};
+use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 
 host_block! {
@@ -48,8 +48,9 @@ enum Constants {
     AboveMap(MapConstants),
 }
 
-/// The last pass of a picture; no experiment times it, since the thesis's times end with the cast.
+/// The pass, the last of a picture; no experiment times it, since the thesis's times end with the cast.
 pub struct View {
+    /// 8-bit sRGB.
     pub picture: Arc<ImageView>,
     pass: Pass,
     constants: Constants,
@@ -58,23 +59,10 @@ pub struct View {
 impl View {
     /// # Errors
     /// [`Error::Limit`] for a size that the device does not allow.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        underwater: &Underwater,
-        water: &Water,
-        nearest: &Arc<Sampler>,
-        parameters: &Parameters,
-    ) -> Result<Self, Error> {
-        let device = shaders.device();
-        let desc = ImageDesc::new_2d(
-            format!("{label}/picture"),
-            vk::Format::R8G8B8A8_SRGB,
-            parameters.width,
-            parameters.height,
-        );
-        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT));
-        let picture = picture.map_err(|error| error.set_by("--size"))?.view()?;
+    pub fn new(context: Context<'_>, underwater: &Underwater, water: &WaterSurface) -> Result<Self, Error> {
+        let Context { shaders, parameters, nearest, .. } = context;
+        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+        let picture = context.image("picture", vk::Format::R8G8B8A8_SRGB, usage)?.view()?;
         if !parameters.is_seen_from_above() {
             let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-below.frag")
                 .with("underwater_color", &underwater.color)
@@ -94,8 +82,7 @@ impl View {
             underwater_eye: underwater.eye.extend(0.0).to_array(),
             size: [parameters.width as f32, parameters.height as f32, texel_width as f32, texel_height as f32],
         };
-        let name = format!("{label}/view");
-        let view = upload(device, &name, vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
+        let view = context.upload("view", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let pass = |shader| {
             Pass::graphics("view", "1", "common/fullscreen.vert", shader)
                 .with("underwater_color", &underwater.color)
@@ -126,7 +113,10 @@ impl View {
     }
 
     /// Draws the picture from the cast.
-    pub fn draw(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             match self.constants {
                 Constants::Below => draw,

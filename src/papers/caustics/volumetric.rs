@@ -1,165 +1,72 @@
-//! The volumetric method for one receiver under one light (section 5.2.1, after Iwasaki et al.): a slice image of the
-//! receiver for every sample plane, each multiplied by a caustics map of its own.
+//! The volumetric method (section 5.2.1, after Iwasaki et al.): a slice image of the receiver for every sample plane, each
+//! multiplied by a caustics map of its own.
 
 use std::sync::Arc;
 
-use super::illumination::{IlluminationVolumes, Ray};
-use super::maps::{self, BLACK, FAR};
-use super::method::{CombineConstants, Method, Site, draw_floor, floor_pass};
-use super::receiver::{LitReceiver, MapConstants, PlaneConstants, Vertex};
-use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageView, Load, Pass};
-use crate::host_block;
+use super::cast::Cast;
+use super::caustics_map::CausticsMap;
+use super::caustics_map_floor::CausticsMapFloor;
+use super::combine_slices::CombineSlices;
+use super::illumination_volumes::IlluminationVolumes;
+use super::multiply::Multiply;
+use super::receiver::LitReceiver;
+use super::resources::Context;
+use super::sample_planes::SamplePlanes;
+use super::slice_images::SliceImages;
+use super::underwater::Underwater;
+use super::water_surface::WaterSurface;
+use crate::gpu::{Error, ImageView};
 
-host_block! {
-    struct SlicesConstants {
-        count: u32,
-        top: f32,
-        cell_height: f32,
-    }
+/// Passes of the variant.
+pub struct Volumetric {
+    pub sample_planes: SamplePlanes,
+    /// One for each receiver under each light.
+    pub receivers: Vec<ReceiverPasses>,
 }
 
-/// The illumination map and the passes of the method.
-pub struct Volumetric {
-    /// One for every plane: same pass, next layer.
-    slice_images: Vec<Pass>,
-    caustics_map: Pass,
-    /// The caustics map's triangles with an empty fragment stage.
-    floor: Pass,
-    multiply: Vec<Pass>,
-    combine_slices: Pass,
-    slices: Arc<ImageView>,
-    caustics: Arc<ImageView>,
-    position: Arc<ImageView>,
-    combined: Arc<ImageView>,
+/// Passes of one receiver under one light.
+pub struct ReceiverPasses {
+    pub slice_images: SliceImages,
+    pub caustics_map: CausticsMap,
+    pub caustics_map_floor: CausticsMapFloor,
+    pub multiply: Multiply,
+    pub combine_slices: CombineSlices,
+    pub cast: Cast,
 }
 
 impl Volumetric {
     /// # Errors
     /// What the Vulkan layer answers; [`Error::Limit`] for more planes than an array has layers.
-    pub fn new(site: Site<'_>) -> Result<Self, Error> {
-        let Site { shaders, label, lit, water, volumes, nearest, parameters } = site;
-        let map = |name: &str, format| maps::map(shaders, format!("{label}/{name}"), format, parameters);
-        let caustics = map("caustics-map", maps::CAUSTICS)?;
-        let position = map("position-map", maps::POSITION)?;
-        let combined = map("combined-map", maps::LIGHT)?;
-        let depth = map("slice-depth", maps::DEPTH)?;
-        // A map of this size exists by now: what a device may still refuse is the number of layers.
-        let desc = maps::map_desc(format!("{label}/illumination-map"), maps::LIGHT, parameters);
-        let illumination_map = Image::new(shaders.device(), desc.layers(parameters.planes));
-        let illumination_map = illumination_map.map_err(|error| error.set_by("--planes"))?;
-        let slices = illumination_map.view()?;
-        let layers = (0..parameters.planes).map(|i| illumination_map.layer(i)).collect::<Result<Vec<_>, _>>()?;
-
-        let slice_image =
-            Pass::graphics("slice-images", "5.2.1", "caustics/receiver-map.vert", "caustics/diffuse-map.frag")
-                .vertices::<Vertex>(&lit.receiver.vertices)
-                .indices(&lit.receiver.indices)
-                .constants::<MapConstants>()
-                .color(&layers[0], BLACK, Blend::Replace)
-                .depth(&depth, FAR, DepthTest::LessWrite)
-                .build(shaders)?;
-        let caustics_map =
-            Pass::graphics("caustics-map", "5.2.1", "caustics/caustics-map.vert", "caustics/caustics-map-plane.frag")
-                .vertices::<Ray>(&volumes.rays)
-                .indices(&water.indices)
-                .constants::<PlaneConstants>()
-                .color(&caustics, BLACK, Blend::Add)
-                .build(shaders)?;
-        let multiply = Pass::graphics("multiply", "5.2.1", "common/fullscreen.vert", "caustics/multiply.frag")
-            .constants::<CombineConstants>()
-            .with("caustics_map", &caustics)
-            .with("nearest", nearest)
-            .color(&layers[0], Load::Keep, Blend::Multiply)
-            .build(shaders)?;
-        let combine_slices =
-            Pass::graphics("combine-slices", "5.2.1", "common/fullscreen.vert", "caustics/combine-slices.frag")
-                .constants::<SlicesConstants>()
-                .with("illumination_map", &slices)
-                .with("nearest", nearest)
-                .color(&combined, Load::Discard, Blend::Replace)
-                .color(&position, Load::Discard, Blend::Replace)
-                .build(shaders)?;
-
-        let each_layer = |pass: &Pass, load: Load| {
-            layers.iter().map(|layer| pass.rebind().color(0, layer, load).build(shaders)).collect::<Result<Vec<_>, _>>()
+    pub fn new(
+        context: Context<'_>,
+        lit_receivers: &[LitReceiver],
+        water: &WaterSurface,
+        volumes: &[IlluminationVolumes],
+        underwater: &Underwater,
+    ) -> Result<Self, Error> {
+        let passes = |lit: &LitReceiver| {
+            let volumes = &volumes[lit.light];
+            let caustics_map = CausticsMap::of_sample_plane(context, volumes, water)?;
+            let caustics_map_floor = CausticsMapFloor::new(context, volumes, water, &caustics_map)?;
+            let slice_images = SliceImages::new(context, lit)?;
+            let multiply = Multiply::new(context, volumes, &caustics_map.map, &slice_images.slices)?;
+            let combine_slices = CombineSlices::new(context, &slice_images.illumination_map)?;
+            let cast = Cast::new(context, lit, &combine_slices.map, &combine_slices.position, underwater)?;
+            Ok(ReceiverPasses { slice_images, caustics_map, caustics_map_floor, multiply, combine_slices, cast })
         };
-        let floor = floor_pass(site, &caustics)?;
-        Ok(Volumetric {
-            floor,
-            slice_images: each_layer(&slice_image, BLACK)?,
-            caustics_map,
-            multiply: each_layer(&multiply, Load::Keep)?,
-            combine_slices,
-            slices,
-            caustics,
-            position,
-            combined,
-        })
+        let receivers = lit_receivers.iter().map(passes).collect::<Result<_, Error>>()?;
+        Ok(Volumetric { sample_planes: SamplePlanes::new(context.parameters), receivers })
     }
 }
 
-impl Method for Volumetric {
-    fn create_maps(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
-        for (slice_image, cell) in self.slice_images.iter().zip(&lit.cells) {
-            frame.graphics(slice_image, |draw| {
-                draw.constants(&lit.map_constants(Some(cell))).indices(lit.receiver.index_count);
-            })?;
-        }
-        Ok(())
-    }
-
-    fn create_caustics(
-        &self,
-        frame: &mut Frame<'_>,
-        lit: &LitReceiver,
-        volumes: &IlluminationVolumes,
-    ) -> Result<(), Error> {
-        for (multiply, cell) in self.multiply.iter().zip(&lit.cells) {
-            frame.graphics(&self.caustics_map, |draw| {
-                draw.constants(&lit.plane_constants(cell, volumes)).indices(volumes.index_count);
-            })?;
-            frame.graphics(multiply, |draw| {
-                draw.constants(&CombineConstants::of(lit)).vertices(3);
-            })?;
-        }
-        Ok(())
-    }
-
-    fn draw_floor(&self, frame: &mut Frame<'_>, lit: &LitReceiver, volumes: &IlluminationVolumes) -> Result<(), Error> {
-        draw_floor(frame, &self.floor, lit, volumes)
-    }
-
-    fn combine(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
-        let height = lit.aligned.extent.y;
-        let constants = SlicesConstants {
-            count: lit.cells.len() as u32,
-            top: (height / 2.0) as f32,
-            cell_height: (height / lit.cells.len() as f64) as f32,
-        };
-        frame.graphics(&self.combine_slices, |draw| {
-            draw.constants(&constants).vertices(3);
-        })
-    }
-
-    fn position_map(&self) -> &Arc<ImageView> {
-        &self.position
-    }
-
-    fn height_slack_m(&self, lit: &LitReceiver) -> f32 {
-        // A slice knows its surface to half a cell.
-        (lit.aligned.extent.y / (2.0 * lit.cells.len() as f64)) as f32
-    }
-
-    fn combined_map(&self) -> &Arc<ImageView> {
-        &self.combined
-    }
-
-    fn targets(&self) -> Vec<(&'static str, &Arc<ImageView>)> {
-        vec![
-            ("illumination-map", &self.slices),
-            ("caustics-map", &self.caustics),
-            ("position-map", &self.position),
-            ("combined-map", &self.combined),
+impl ReceiverPasses {
+    /// The maps that `--dump` knows.
+    pub fn targets(&self) -> [(&'static str, &Arc<ImageView>); 4] {
+        [
+            ("illumination-map", &self.slice_images.illumination_map),
+            ("caustics-map", &self.caustics_map.map),
+            ("position-map", &self.combine_slices.position),
+            ("combined-map", &self.combine_slices.map),
         ]
     }
 }

@@ -1,66 +1,19 @@
-//! The water: a regular triangle mesh in the shape of a sum of sine waves or of a height map, large enough that its
-//! refracted light covers every receiver.
+//! The water: its waves, and a regular triangle mesh large enough that its refracted light covers every receiver.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
-use ash::vk;
 use glam::{DVec2, DVec3};
 
+use super::bounding_box::ReceiverBox;
 use super::parameters::Parameters;
-use super::planes::ReceiverBox;
-use super::water_map::WaterMap;
-use crate::gpu::transfer::upload;
-use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
-use crate::host_block;
 use crate::scene::Light;
 use crate::scene::random::Random;
 
 /// Height of the flat water in the world.
 pub const LEVEL_M: f64 = 0.0;
-/// The share of a footprint's extent that the mesh reaches beyond it on every side.
+/// The fraction of a footprint's extent that the mesh reaches beyond it on every side.
 const MARGIN: f64 = 0.1;
 const GRAVITY_M_S2: f64 = 9.81;
-
-host_block! {
-    pub struct WaveBlock {
-        vector: [f32; 4],
-        amplitude: [f32; 4],
-    }
-}
-
-host_block! {
-    /// Where a height map lies: x and z of its node (columns / 2, rows / 2), spacing, samples along x and z.
-    pub struct MapBlock {
-        node: [f32; 2],
-        spacing: [f32; 2],
-        columns: u32,
-        rows: u32,
-    }
-}
-
-host_block! {
-    struct WavesConstants {
-        corner: [f32; 2],
-        cell: [f32; 2],
-        columns: u32,
-        rows: u32,
-        wave_count: u32,
-        level_m: f32,
-        time_s: f32,
-    }
-}
-
-host_block! {
-    struct MapConstants {
-        map: MapBlock,
-        corner: [f32; 2],
-        cell: [f32; 2],
-        columns: u32,
-        rows: u32,
-        level_m: f32,
-    }
-}
 
 /// One sine wave of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,17 +30,17 @@ pub struct Wave {
 pub fn waves(parameters: &Parameters) -> Vec<Wave> {
     let mut random = Random::new(parameters.seed);
     let count = parameters.waves.count;
-    let share = |i: u32| 0.4f64.powf(if count > 1 { f64::from(i) / f64::from(count - 1) } else { 0.0 });
-    let total: f64 = (0..count).map(share).sum();
+    let fraction = |i: u32| 0.4f64.powf(if count > 1 { f64::from(i) / f64::from(count - 1) } else { 0.0 });
+    let total: f64 = (0..count).map(fraction).sum();
     (0..count)
         .map(|i| {
-            let number = TAU / (f64::from(parameters.waves.wavelength_m) * share(i));
+            let number = TAU / (f64::from(parameters.waves.wavelength_m) * fraction(i));
             let angle = TAU * f64::from(random.unit());
             Wave {
                 vector: DVec2::from_angle(angle) * number,
                 angular_frequency: (GRAVITY_M_S2 * number).sqrt(),
                 phase_rad: TAU * f64::from(random.unit()),
-                amplitude_m: f64::from(parameters.waves.amplitude_m) * share(i) / total,
+                amplitude_m: f64::from(parameters.waves.amplitude_m) * fraction(i) / total,
             }
         })
         .collect()
@@ -198,132 +151,5 @@ fn entry_point(light: &Light, target: DVec3, receiver: &ReceiverBox, refraction_
             }
             from.lerp(to, low)
         }
-    }
-}
-
-/// What gives the water its shape, on the device.
-pub enum Shape {
-    Waves { list: Arc<Buffer>, count: u32 },
-    Map { coefficients: Arc<Buffer>, place: MapBlock },
-}
-
-impl Shape {
-    fn new(shaders: &ShaderLibrary, label: &str, middle: DVec2, parameters: &Parameters) -> Result<Self, Error> {
-        match &parameters.water_map {
-            None => Self::waves(shaders, label, parameters),
-            Some(map) => Self::map(shaders, label, middle, map),
-        }
-    }
-
-    fn waves(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
-        let mut blocks: Vec<WaveBlock> = waves(parameters)
-            .iter()
-            .map(|wave| WaveBlock {
-                vector: [
-                    wave.vector.x as f32,
-                    wave.vector.y as f32,
-                    wave.angular_frequency as f32,
-                    wave.phase_rad as f32,
-                ],
-                amplitude: [wave.amplitude_m as f32, 0.0, 0.0, 0.0],
-            })
-            .collect();
-        let count = blocks.len() as u32;
-        // Flat water has no wave, but a buffer has at least one element.
-        blocks.resize(blocks.len().max(1), WaveBlock { vector: [0.0; 4], amplitude: [0.0; 4] });
-        let name = format!("{label}/waves");
-        let list = upload(shaders.device(), &name, STORAGE, bytemuck::cast_slice(&blocks))?;
-        Ok(Shape::Waves { list, count })
-    }
-
-    fn map(shaders: &ShaderLibrary, label: &str, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
-        let name = format!("{label}/water-map");
-        let coefficients = upload(shaders.device(), &name, STORAGE, bytemuck::cast_slice(map.coefficients()))
-            .map_err(|error| error.set_by("--water-map"))?;
-        let (columns, rows) = (map.heights().width(), map.heights().height());
-        let spacing = map.heights().spacing_m();
-        // Places are measured from a node near the middle: far from it single precision has fewer digits to spare.
-        let past_middle = |samples: u32| f64::from(samples / 2) - f64::from(samples - 1) / 2.0;
-        let node = middle + spacing * DVec2::new(past_middle(columns), past_middle(rows));
-        let place = MapBlock { node: node.as_vec2().to_array(), spacing: spacing.as_vec2().to_array(), columns, rows };
-        Ok(Shape::Map { coefficients, place })
-    }
-}
-
-const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
-
-/// The water on the device.
-pub struct Water {
-    pub grid: Grid,
-    pub vertices: Arc<Buffer>,
-    pub indices: Arc<Buffer>,
-    pub shape: Shape,
-    animate: Pass,
-}
-
-/// Floats of a `WaterVertex` of the shaders: position and normal, four each.
-pub const VERTEX_FLOATS: u32 = 8;
-
-impl Water {
-    /// Uploads shape and indices; `label` goes before the resources' names, `middle` is where the middle of a height map
-    /// lies, x and z in metres.
-    ///
-    /// # Errors
-    /// What the Vulkan layer answers.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        grid: Grid,
-        middle: DVec2,
-        parameters: &Parameters,
-    ) -> Result<Self, Error> {
-        let device = shaders.device();
-        let name = |what: &str| format!("{label}/{what}");
-        let shape = Shape::new(shaders, label, middle, parameters)?;
-        let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
-        let by_triangles = |error: Error| error.set_by("--water-triangles");
-        let vertices = Buffer::new(device, BufferDesc::new(name("water"), size_bytes).usage(STORAGE));
-        let vertices = vertices.map_err(by_triangles)?;
-        let indices = upload(
-            device,
-            &name("water-indices"),
-            vk::BufferUsageFlags::INDEX_BUFFER | STORAGE,
-            bytemuck::cast_slice(&grid.indices()),
-        )
-        .map_err(by_triangles)?;
-        let pass = |shader| Pass::compute("water-surface", "5.2", shader).with("water", &vertices);
-        let animate = match &shape {
-            Shape::Waves { list, .. } => {
-                pass("caustics/water-surface.comp").with("waves", list).constants::<WavesConstants>()
-            }
-            Shape::Map { coefficients, .. } => {
-                pass("caustics/water-surface-map.comp").with("coefficients", coefficients).constants::<MapConstants>()
-            }
-        };
-        Ok(Water { grid, vertices, indices, animate: animate.build(shaders)?, shape })
-    }
-
-    /// Evaluates the surface at `time_s`; a height map stands still.
-    pub fn animate(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
-        let Grid { corner, cell, columns, rows } = self.grid;
-        let (corner, cell) = (corner.as_vec2().to_array(), cell.as_vec2().to_array());
-        let (columns, rows, level_m) = (columns + 1, rows + 1, LEVEL_M as f32);
-        frame.compute(&self.animate, |dispatch| {
-            match self.shape {
-                Shape::Waves { count, .. } => dispatch.constants(&WavesConstants {
-                    corner,
-                    cell,
-                    columns,
-                    rows,
-                    wave_count: count,
-                    level_m,
-                    time_s: time_s as f32,
-                }),
-                Shape::Map { place, .. } => {
-                    dispatch.constants(&MapConstants { map: place, corner, cell, columns, rows, level_m })
-                }
-            }
-            .threads(self.grid.vertex_count(), 1, 1);
-        })
     }
 }

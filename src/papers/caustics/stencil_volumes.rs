@@ -1,0 +1,90 @@
+//! Pass `stencil-volumes` (section 3.2, Iwasaki et al.; the thesis has one sentence on it): each illumination volume is held
+//! by a closed prism, counted in the stencil buffer against the depth of what is seen, then drawn where the count is not
+//! zero, adding its light. It knows no occlusion: a surface in the shadow of another is lit as if nothing stood before it.
+
+use ash::vk;
+use glam::DVec3;
+
+use super::illumination_volumes::IlluminationVolumes;
+use super::receivers::Receivers;
+use super::resources::Context;
+use super::underwater::Underwater;
+use super::water_surface::WaterSurface;
+use crate::gpu::{Blend, DepthTest, Error, Frame, Load, Pass};
+use crate::host_block;
+
+/// Vertices of a volume: a prism's eight triangles.
+const VOLUME_VERTICES: u32 = 24;
+/// Distance of the volumes' bottom below every receiver, as a fraction of their depth.
+const BELOW: f64 = 0.1;
+
+host_block! {
+    pub struct VolumesBlock {
+        view_projection: [f32; 16],
+        u: [f32; 4],
+        v: [f32; 4],
+        w: [f32; 4],
+        intensity: [f32; 4],
+        bottom: f32,
+        _pad: [f32; 3],
+    }
+}
+
+/// The pass of one light.
+pub struct StencilVolumes {
+    pass: Pass,
+}
+
+impl StencilVolumes {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        context: Context<'_>,
+        water: &WaterSurface,
+        volumes: &IlluminationVolumes,
+        seen: &Receivers,
+        underwater: &Underwater,
+    ) -> Result<Self, Error> {
+        let axes = volumes.axes;
+        let lowest = seen.lowest_along(&axes) - volumes.reference.y;
+        let axis = |axis: DVec3, at: f64| axis.as_vec3().extend(at as f32).to_array();
+        let block = VolumesBlock {
+            view_projection: underwater.view_projection.to_cols_array(),
+            u: axis(axes.u, volumes.reference.x),
+            v: axis(axes.v, volumes.reference.y),
+            w: axis(axes.w, volumes.reference.z),
+            intensity: volumes.intensity.extend(context.parameters.absorption_per_m).to_array(),
+            bottom: (lowest - BELOW * lowest.abs()) as f32,
+            _pad: [0.0; 3],
+        };
+        let block = context.upload("volumes", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
+        let (vertex, fragment) = ("caustics/stencil-volumes.vert", "caustics/stencil-volumes.frag");
+        let pass = Pass::graphics("stencil-volumes", "3.2", vertex, fragment)
+            .with("rays", &volumes.rays)
+            .with("indices", &water.indices)
+            .with("volumes", &block)
+            .with("surface_position", &seen.position)
+            .with("surface_normal", &seen.normal)
+            .with("surface_albedo", &seen.albedo)
+            .with("nearest", context.nearest)
+            .counting("common/empty.frag", DepthTest::CountVolume)
+            .color(&underwater.color, Load::Keep, Blend::Add)
+            .depth(&underwater.depth, Load::Keep, DepthTest::InsideVolume)
+            .build(context.shaders)?;
+        Ok(StencilVolumes { pass })
+    }
+
+    /// The volumes one after the other: a draw that counts, a draw that lights.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, volumes: &IlluminationVolumes) -> Result<(), Error> {
+        frame.graphics(&self.pass, |draw| {
+            for volume in 0..volumes.index_count / 3 {
+                let first = volume * VOLUME_VERTICES;
+                draw.counting(true).vertices_from(first, VOLUME_VERTICES);
+                draw.counting(false).vertices_from(first, VOLUME_VERTICES);
+            }
+        })
+    }
+}

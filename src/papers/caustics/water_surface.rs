@@ -1,0 +1,168 @@
+//! Pass `water-surface` (section 5.2): vertices of the water's mesh in the shape of a sum of sine waves or of a height map.
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::DVec2;
+
+use super::resources::Context;
+use super::water::{Grid, LEVEL_M, waves};
+use super::water_map::WaterMap;
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass};
+use crate::host_block;
+
+const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
+
+host_block! {
+    pub struct WaveBlock {
+        vector: [f32; 4],
+        amplitude: [f32; 4],
+    }
+}
+
+host_block! {
+    /// Where a height map lies: x and z of its node (columns / 2, rows / 2), spacing, samples along x and z.
+    pub struct MapBlock {
+        node: [f32; 2],
+        spacing: [f32; 2],
+        columns: u32,
+        rows: u32,
+    }
+}
+
+host_block! {
+    struct WavesConstants {
+        corner: [f32; 2],
+        cell: [f32; 2],
+        columns: u32,
+        rows: u32,
+        wave_count: u32,
+        level_m: f32,
+        time_s: f32,
+    }
+}
+
+host_block! {
+    struct MapConstants {
+        map: MapBlock,
+        corner: [f32; 2],
+        cell: [f32; 2],
+        columns: u32,
+        rows: u32,
+        level_m: f32,
+    }
+}
+
+/// What gives the water its shape, on the device.
+pub enum Shape {
+    Waves { list: Arc<Buffer>, count: u32 },
+    Map { coefficients: Arc<Buffer>, place: MapBlock },
+}
+
+impl Shape {
+    fn new(context: Context<'_>, middle: DVec2) -> Result<Self, Error> {
+        match &context.parameters.water_map {
+            None => Self::waves(context),
+            Some(map) => Self::map(context, middle, map),
+        }
+    }
+
+    fn waves(context: Context<'_>) -> Result<Self, Error> {
+        let mut blocks: Vec<WaveBlock> = waves(context.parameters)
+            .iter()
+            .map(|wave| WaveBlock {
+                vector: [
+                    wave.vector.x as f32,
+                    wave.vector.y as f32,
+                    wave.angular_frequency as f32,
+                    wave.phase_rad as f32,
+                ],
+                amplitude: [wave.amplitude_m as f32, 0.0, 0.0, 0.0],
+            })
+            .collect();
+        let count = blocks.len() as u32;
+        // Flat water has no wave, but a buffer has at least one element.
+        blocks.resize(blocks.len().max(1), WaveBlock { vector: [0.0; 4], amplitude: [0.0; 4] });
+        let list = context.upload("waves", STORAGE, bytemuck::cast_slice(&blocks))?;
+        Ok(Shape::Waves { list, count })
+    }
+
+    fn map(context: Context<'_>, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
+        let coefficients = context
+            .upload("water-map", STORAGE, bytemuck::cast_slice(map.coefficients()))
+            .map_err(|error| error.set_by("--water-map"))?;
+        let (columns, rows) = (map.heights().width(), map.heights().height());
+        let spacing = map.heights().spacing_m();
+        // Places are measured from a node near the middle: far from it single precision has fewer digits to spare.
+        let past_middle = |samples: u32| f64::from(samples / 2) - f64::from(samples - 1) / 2.0;
+        let node = middle + spacing * DVec2::new(past_middle(columns), past_middle(rows));
+        let place = MapBlock { node: node.as_vec2().to_array(), spacing: spacing.as_vec2().to_array(), columns, rows };
+        Ok(Shape::Map { coefficients, place })
+    }
+}
+
+/// The pass, with the water on the device.
+pub struct WaterSurface {
+    pub grid: Grid,
+    pub vertices: Arc<Buffer>,
+    pub indices: Arc<Buffer>,
+    pub shape: Shape,
+    pass: Pass,
+}
+
+/// Floats of a `WaterVertex` of the shaders: position and normal, four each.
+pub const VERTEX_FLOATS: u32 = 8;
+
+impl WaterSurface {
+    /// Uploads shape and indices; `middle` is where the middle of a height map lies, x and z in metres.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(context: Context<'_>, grid: Grid, middle: DVec2) -> Result<Self, Error> {
+        let shape = Shape::new(context, middle)?;
+        let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
+        let by_triangles = |error: Error| error.set_by("--water-triangles");
+        let vertices = Buffer::new(context.device(), BufferDesc::new(context.name("water"), size_bytes).usage(STORAGE));
+        let vertices = vertices.map_err(by_triangles)?;
+        let usage = vk::BufferUsageFlags::INDEX_BUFFER | STORAGE;
+        let indices = context.upload("water-indices", usage, bytemuck::cast_slice(&grid.indices()));
+        let indices = indices.map_err(by_triangles)?;
+        let pass = |shader| Pass::compute("water-surface", "5.2", shader).with("water", &vertices);
+        let pass = match &shape {
+            Shape::Waves { list, .. } => {
+                pass("caustics/water-surface.comp").with("waves", list).constants::<WavesConstants>()
+            }
+            Shape::Map { coefficients, .. } => {
+                pass("caustics/water-surface-map.comp").with("coefficients", coefficients).constants::<MapConstants>()
+            }
+        };
+        Ok(WaterSurface { grid, vertices, indices, pass: pass.build(context.shaders)?, shape })
+    }
+
+    /// Evaluates the surface at `time_s`; a height map stands still.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
+        let Grid { corner, cell, columns, rows } = self.grid;
+        let (corner, cell) = (corner.as_vec2().to_array(), cell.as_vec2().to_array());
+        let (columns, rows, level_m) = (columns + 1, rows + 1, LEVEL_M as f32);
+        frame.compute(&self.pass, |dispatch| {
+            match self.shape {
+                Shape::Waves { count, .. } => dispatch.constants(&WavesConstants {
+                    corner,
+                    cell,
+                    columns,
+                    rows,
+                    wave_count: count,
+                    level_m,
+                    time_s: time_s as f32,
+                }),
+                Shape::Map { place, .. } => {
+                    dispatch.constants(&MapConstants { map: place, corner, cell, columns, rows, level_m })
+                }
+            }
+            .threads(self.grid.vertex_count(), 1, 1);
+        })
+    }
+}
