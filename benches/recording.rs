@@ -22,7 +22,7 @@ fn recording(criterion: &mut Criterion) {
     let parameters =
         Parameters { planes: 101, map_size: 1, water_triangles: 2, width: 1, height: 1, ..Parameters::default() };
     let meshes = vec![MeshSource::Box];
-    let setup = Setup { parameters, meshes, floor: false, preset: None, process: 0 };
+    let setup = Setup { parameters, meshes, ..Setup::default() };
     let scene = setup.load().expect("the box loads");
     for variant in [Variant::LevelMap, Variant::Volumetric] {
         let mut built = build(&machine, &setup, &scene, variant).expect("it builds");

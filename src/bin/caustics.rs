@@ -1,5 +1,5 @@
 //! `caustics`: the paper's own benchmark binary.
 
 fn main() -> std::process::ExitCode {
-    fumarole::cli::caustics()
+    fumarole::cli::binary::<fumarole::papers::caustics::setup::Setup>()
 }

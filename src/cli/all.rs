@@ -6,7 +6,6 @@ use clap::{Args, Parser};
 
 use super::bench;
 use super::burning::BurningArgs;
-use super::caustics::CausticsArgs;
 use super::failure::Failure;
 use super::gas::GasArgs;
 use super::lava::LavaArgs;
@@ -19,7 +18,8 @@ use crate::measure::bench::{Bench, load};
 use crate::measure::limits;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Schedule;
-use crate::measure::study::Study;
+use crate::measure::study::{Declared, Study, Visitor};
+use crate::papers;
 use crate::report::Record;
 use crate::report::record::{Limits, Run};
 use crate::report::trace::TraceRun;
@@ -66,12 +66,12 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     outcome::check(&output)?;
 
     // Every paper runs on one device, so that their figures compare.
-    let mut machine = Machine::open(&arguments.machine.resolve(), &[])?;
+    let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
     outcome::say_device(&output, &machine);
     let mut measured = Measured::default();
     measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     measure::<GasArgs>(&mut machine, &output, &mut measured)?;
-    measure::<CausticsArgs>(&mut machine, &output, &mut measured)?;
+    papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     measure::<BurningArgs>(&mut machine, &output, &mut measured)?;
     measure::<TerrainArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
@@ -79,11 +79,35 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
 }
 
 fn measure<P: PaperArgs>(machine: &mut Machine, output: &OutputArgs, measured: &mut Measured) -> Result<(), Failure> {
+    measure_quick(&P::quick(), &benched::<P>(), machine, output, measured)
+}
+
+struct All<'a> {
+    machine: &'a mut Machine,
+    output: &'a OutputArgs,
+    measured: &'a mut Measured,
+}
+
+impl Visitor for All<'_> {
+    type Error = Failure;
+
+    fn visit<S: Declared>(&mut self) -> Result<(), Failure> {
+        measure_quick(&S::quick(), S::BENCHED, self.machine, self.output, self.measured)
+    }
+}
+
+fn measure_quick<S: Study>(
+    study: &S,
+    variants: &[S::Variant],
+    machine: &mut Machine,
+    output: &OutputArgs,
+    measured: &mut Measured,
+) -> Result<(), Failure> {
     if interrupted().load(Ordering::Relaxed) && !measured.runs.is_empty() {
         return Ok(());
     }
-    let paper = P::Study::PAPER;
-    let lacks = machine.device.physical().lacks(P::Study::NEEDS);
+    let paper = S::PAPER;
+    let lacks = machine.device.physical().lacks(S::NEEDS);
     if !lacks.is_empty() {
         outcome::say(&format!("{paper}: left out, the device lacks {}", lacks.join(", ")));
         return Ok(());
@@ -93,15 +117,13 @@ fn measure<P: PaperArgs>(machine: &mut Machine, output: &OutputArgs, measured: &
     }
     let picture = output.out.join(format!("{paper}.png"));
     outcome::check_file(&picture)?;
-    let study = P::quick();
-    let loaded = load(&study)?;
-    let variants = benched::<P>();
+    let loaded = load(study)?;
     let limits = measured.limits.as_ref();
-    let bench = Bench { study: &study, loaded: &loaded, variants: &variants, schedule: SCHEDULE, limits };
+    let bench = Bench { study, loaded: &loaded, variants, schedule: SCHEDULE, limits };
     let found = watched(output.quiet, paper, |watch| bench.measure(machine, watch))?;
     let (mut runs, traces): (Vec<_>, Vec<_>) = found.into_iter().map(|m| (m.run, m.trace)).unzip();
     if let (Some(&variant), Some(run)) = (variants.first(), runs.first_mut()) {
-        run.image = Some(bench::write_picture(machine, &study, &loaded, variant, 0, &picture)?);
+        run.image = Some(bench::write_picture(machine, study, &loaded, variant, 0, &picture)?);
         outcome::wrote(output, &picture);
     }
     measured.runs.extend(runs);

@@ -38,7 +38,17 @@ const FRAMES: u32 = 10;
 const REPEAT: u32 = 3;
 
 pub fn run<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(), Failure> {
-    let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = &arguments.common;
+    let variants = chosen(&arguments.variant, &arguments.scene, benched::<P>);
+    publish(&arguments.common, &variants, || arguments.scene.resolve())
+}
+
+/// Measures `variants` of a study, or has fresh processes measure them, and publishes the record.
+pub fn publish<S: Study>(
+    common: &CommonArgs,
+    variants: &[S::Variant],
+    resolve: impl FnOnce() -> Result<S, Failure>,
+) -> Result<(), Failure> {
+    let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = common;
     outcome::check(output)?;
     if *processes > 1 {
         let record = processes::run(*processes, output.quiet)?;
@@ -46,27 +56,29 @@ pub fn run<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(), Failure> {
         output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
-    let (record, traces) = measure(arguments)?;
+    let (record, traces) = measure(&resolve()?, variants, common)?;
     outcome::publish(output, &record, &traces)
 }
 
-fn measure<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(Record, Vec<TraceRun>), Failure> {
-    let BenchArgs { scene, common: CommonArgs { machine, measure, output }, .. } = arguments;
-    let study = scene.resolve(measure.process)?;
-    let variants = chosen(&arguments.variant, scene, benched::<P>);
+fn measure<S: Study>(
+    study: &S,
+    variants: &[S::Variant],
+    common: &CommonArgs,
+) -> Result<(Record, Vec<TraceRun>), Failure> {
+    let CommonArgs { machine, measure, output } = common;
     let schedule = measure.schedule(FRAMES, REPEAT);
-    let loaded = load(&study)?;
-    let mut machine = Machine::open(&machine.resolve(), P::Study::NEEDS)?;
+    let loaded = load(study)?;
+    let mut machine = Machine::open(&machine.resolve(measure.process), S::NEEDS)?;
     // The table names the device itself.
     if output.json_to_stdout() {
         outcome::say_device(output, &machine);
     }
     let limits = measure.limits(&mut machine)?;
-    let bench = Bench { study: &study, loaded: &loaded, variants: &variants, schedule, limits: limits.as_ref() };
-    let measured = watched(output.quiet, P::Study::PAPER, |watch| bench.measure(&mut machine, watch))?;
+    let bench = Bench { study, loaded: &loaded, variants, schedule, limits: limits.as_ref() };
+    let measured = watched(output.quiet, S::PAPER, |watch| bench.measure(&mut machine, watch))?;
     let (mut runs, traces): (Vec<Run>, Vec<TraceRun>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
     if let (Some(path), Some(&variant), Some(run)) = (&output.image, variants.first(), runs.first_mut()) {
-        run.image = Some(write_picture(&mut machine, &study, &loaded, variant, schedule.frames - 1, path)?);
+        run.image = Some(write_picture(&mut machine, study, &loaded, variant, schedule.frames - 1, path)?);
         outcome::wrote(output, path);
     }
     Ok((Record::new(machine.environment(), std::env::args().collect(), runs), traces))

@@ -63,7 +63,7 @@ pub trait ExperimentArgs: Args + Debug + 'static {
 
     /// Opens the machine and says which it is.
     fn open(&self) -> Result<Machine, Failure> {
-        let machine = Machine::open(&self.common().machine.resolve(), Self::Study::NEEDS)?;
+        let machine = Machine::open(&self.common().machine.resolve(self.common().measure.process), Self::Study::NEEDS)?;
         outcome::say_device(&self.common().output, &machine);
         Ok(machine)
     }

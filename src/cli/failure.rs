@@ -1,5 +1,6 @@
 //! Exit codes: what a script can rely on.
 
+use std::fmt;
 use std::process::ExitCode;
 
 use super::outcome;
@@ -37,6 +38,23 @@ impl Failure {
     }
 }
 
+impl fmt::Display for Failure {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Running(message) | Failure::Input(message) | Failure::NoDevice(message) => {
+                formatter.write_str(message)
+            }
+            Failure::Regression => Ok(()),
+        }
+    }
+}
+
+impl From<clap::Error> for Failure {
+    fn from(error: clap::Error) -> Self {
+        Failure::Input(error.to_string())
+    }
+}
+
 impl From<gpu::Error> for Failure {
     fn from(error: gpu::Error) -> Self {
         use gpu::Error as E;
@@ -64,6 +82,7 @@ impl From<Error> for Failure {
         match error {
             Error::Gpu(error) => error.into(),
             Error::Image(error) => error.into(),
+            Error::Parameter(error) if !error.name.starts_with("--") => Failure::Input(format!("--{error}")),
             Error::Scene(_) | Error::Parameter(_) | Error::Output(_) | Error::Input(_) => {
                 Failure::Input(error.to_string())
             }

@@ -3,8 +3,8 @@
 mod all;
 mod bench;
 mod burning;
-mod caustics;
 mod compare;
+mod declared;
 mod devices;
 mod experiment;
 mod failure;
@@ -16,20 +16,24 @@ mod paper;
 mod passes;
 mod processes;
 mod render;
+mod spelling;
 mod terrain;
 mod watch;
 
+use std::convert::Infallible;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::burning::BurningArgs;
-use self::caustics::CausticsArgs;
 use self::failure::Failure;
 use self::gas::GasArgs;
 use self::lava::LavaArgs;
 use self::paper::PaperCommand;
 use self::terrain::TerrainArgs;
+use crate::measure::study::{Declared, Visitor};
+use crate::papers;
 
 /// Rendering papers on Vulkan, pass by pass, every pass measured.
 #[derive(Debug, Parser)]
@@ -51,17 +55,40 @@ enum Command {
     Lava(PaperCommand<LavaArgs>),
     /// Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent)
     Gas(PaperCommand<GasArgs>),
-    /// Refractive water caustics with level maps (Tipprasert)
-    Caustics(PaperCommand<CausticsArgs>),
     /// Burning, deforming and melting meshes (Amarasinghe)
     Burning(PaperCommand<BurningArgs>),
     /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
     Terrain(PaperCommand<TerrainArgs>),
 }
 
+/// The command with every paper below it, and what runs each.
+struct Papers {
+    command: clap::Command,
+    run: Vec<(&'static str, fn(&ArgMatches) -> Result<(), Failure>)>,
+}
+
+impl Visitor for Papers {
+    type Error = Infallible;
+
+    fn visit<S: Declared>(&mut self) -> Result<(), Infallible> {
+        self.command = std::mem::take(&mut self.command).subcommand(declared::command::<S>());
+        self.run.push((S::PAPER, declared::run::<S>));
+        Ok(())
+    }
+}
+
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
-    let parsed = Umbrella::parse();
+    let mut papers = Papers { command: Umbrella::command(), run: Vec::new() };
+    let Ok(()) = papers::each(&mut papers);
+    spelling::learn(&papers.command);
+    let matches = papers.command.get_matches();
+    if let Some((name, matches)) = matches.subcommand()
+        && let Some((_, run)) = papers.run.iter().find(|(paper, _)| *paper == name)
+    {
+        return end(run(matches));
+    }
+    let parsed = Umbrella::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     end(match &parsed.command {
         None => all::run(&all::AllArgs::plain()),
         Some(Command::All(arguments)) => all::run(arguments),
@@ -69,7 +96,6 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Lava(arguments)) => arguments.run(),
         Some(Command::Gas(arguments)) => arguments.run(),
-        Some(Command::Caustics(arguments)) => arguments.run(),
         Some(Command::Burning(arguments)) => arguments.run(),
         Some(Command::Terrain(arguments)) => arguments.run(),
     })
@@ -85,9 +111,17 @@ pub fn gas() -> ExitCode {
     end(paper::binary::<GasArgs>())
 }
 
-/// Runs the paper's own binary `caustics`.
-pub fn caustics() -> ExitCode {
-    end(paper::binary::<CausticsArgs>())
+/// Runs a paper's own binary.
+pub fn binary<S: Declared>() -> ExitCode {
+    paper_from::<S>(std::env::args_os())
+}
+
+/// Runs a paper with `arguments`, the first of which is the program's name.
+pub fn paper_from<S: Declared>(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let command = declared::command::<S>().version(env!("CARGO_PKG_VERSION")).propagate_version(true);
+    spelling::learn(&command);
+    let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());
+    end(declared::run::<S>(&matches))
 }
 
 /// Runs the paper's own binary `burning`.

@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Parser, ValueEnum};
 use glam::Vec3;
 
 use super::failure::Failure;
 use crate::gpu::Compiler;
+use crate::measure::experiment::{Destinations, MeasureOptions};
 use crate::measure::limits;
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::measure::Schedule;
@@ -22,6 +23,18 @@ pub struct CommonArgs {
     pub measure: MeasureArgs,
     #[command(flatten)]
     pub output: OutputArgs,
+}
+
+impl CommonArgs {
+    /// Those of a command without options.
+    pub fn defaults() -> Self {
+        #[derive(Parser)]
+        struct Plain {
+            #[command(flatten)]
+            arguments: CommonArgs,
+        }
+        Plain::parse_from(["fumarole"]).arguments
+    }
 }
 
 /// `--size 800x600` and its like.
@@ -107,8 +120,10 @@ pub struct MachineArgs {
 }
 
 impl MachineArgs {
-    pub fn resolve(&self) -> MachineOptions {
+    /// `process` is which of several fresh processes this is.
+    pub fn resolve(&self, process: u32) -> MachineOptions {
         MachineOptions {
+            process,
             device: self.device.clone(),
             validate: self.validate,
             compiler: match self.shader_compiler {
@@ -154,6 +169,17 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 }
 
 impl MeasureArgs {
+    /// As an experiment takes them.
+    pub fn options(&self) -> MeasureOptions {
+        MeasureOptions {
+            warmup: self.warmup,
+            frames: self.frames,
+            repeat: self.repeat,
+            min_time_s: self.min_time,
+            has_limits: !self.no_limits,
+        }
+    }
+
     pub fn schedule(&self, frames: u32, repeat: u32) -> Schedule {
         Schedule {
             warmup: self.warmup,
@@ -193,6 +219,11 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
+    /// As an experiment takes them.
+    pub fn destinations(&self) -> Destinations {
+        Destinations { folder: self.out.clone(), json: self.json.clone(), csv: self.csv.clone(), is_quiet: self.quiet }
+    }
+
     /// Whether the record goes to standard output, which then holds nothing else.
     pub fn json_to_stdout(&self) -> bool {
         self.json.as_deref().is_some_and(|path| path.as_os_str() == "-")

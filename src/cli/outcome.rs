@@ -5,8 +5,13 @@ use std::path::Path;
 
 use super::failure::Failure;
 use super::options::OutputArgs;
+use super::spelling;
+use super::watch::watched;
 use crate::image;
+use crate::measure::Error;
+use crate::measure::experiment::Console;
 use crate::measure::machine::Machine;
+use crate::measure::measure::Watch;
 use crate::report::output::{check_writable, write};
 use crate::report::record::Record;
 use crate::report::table::Style;
@@ -29,9 +34,9 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says a line on standard error, if anybody listens.
+/// Says a line on standard error, if anybody listens; its parameters are spelled as options.
 pub fn say(line: &str) {
-    let _unheard = writeln!(io::stderr(), "{line}");
+    let _unheard = writeln!(io::stderr(), "{}", spelling::options(line));
 }
 
 /// Says which device was chosen.
@@ -108,5 +113,34 @@ pub fn save(output: &OutputArgs, path: &Path, bytes: &[u8]) -> Result<(), Failur
 pub fn wrote(output: &OutputArgs, path: &Path) {
     if !output.quiet {
         say(&format!("wrote {}", path.display()));
+    }
+}
+
+/// The terminal, or what stands in its place.
+pub struct Terminal {
+    pub is_quiet: bool,
+}
+
+impl Console for Terminal {
+    fn print(&self, text: &str) -> Result<(), Error> {
+        print(text).map_err(|failure| Error::Input(failure.to_string()))
+    }
+
+    fn say(&self, line: &str) {
+        if !self.is_quiet {
+            say(line);
+        }
+    }
+
+    fn style(&self) -> Style {
+        style()
+    }
+
+    fn watch(&self, title: &str, work: &mut dyn FnMut(&mut Watch<'_>)) {
+        watched(self.is_quiet, title, work);
+    }
+
+    fn spell(&self, message: &str) -> String {
+        spelling::options(message)
     }
 }

@@ -29,11 +29,11 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     /// The variant of a picture that names neither one nor a preset.
     const RENDERED: &'static str;
 
-    /// What was typed, over the preset's numbers, over the defaults. `process` is which of several fresh processes this is.
+    /// What was typed, over the preset's numbers, over the defaults.
     ///
     /// # Errors
     /// [`Failure::Input`] for options of which one would not be heeded.
-    fn resolve(&self, process: u32) -> Result<Self::Study, Failure>;
+    fn resolve(&self) -> Result<Self::Study, Failure>;
 
     /// The variant that the named preset is made for, where it is one alone.
     fn preset_variant(&self) -> Option<VariantOf<Self>> {

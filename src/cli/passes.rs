@@ -37,19 +37,24 @@ struct Listed {
 }
 
 pub fn run<P: PaperArgs>(arguments: &PassesArgs<P>) -> Result<(), Failure> {
-    let study = arguments.scene.resolve(0)?;
+    let variants = chosen(&arguments.variant, &arguments.scene, || VariantOf::<P>::ALL.to_vec());
+    list(&arguments.scene.resolve()?, &variants, &arguments.machine, arguments.json)
+}
+
+/// Prints the pass tables of `variants`.
+pub fn list<S: Study>(study: &S, variants: &[S::Variant], machine: &MachineArgs, json: bool) -> Result<(), Failure> {
     let scene = study.load()?;
-    let mut machine = Machine::open(&arguments.machine.resolve(), P::Study::NEEDS)?;
+    let mut machine = Machine::open(&machine.resolve(0), S::NEEDS)?;
     let mut listed = Vec::new();
-    for variant in chosen(&arguments.variant, &arguments.scene, || VariantOf::<P>::ALL.to_vec()) {
-        let mut built = build(&machine, &study, &scene, variant)?;
+    for &variant in variants {
+        let mut built = build(&machine, study, &scene, variant)?;
         let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
         let passes = sample.passes.iter().map(|p| (p.info.clone(), p.calls)).collect();
         let targets = built.paper.targets();
-        listed.push(Listed { paper: P::Study::PAPER, variant: variant.as_str(), passes, targets });
+        listed.push(Listed { paper: S::PAPER, variant: variant.as_str(), passes, targets });
     }
     machine.check_validation()?;
-    if arguments.json {
+    if json {
         let document: Vec<Value> = listed.iter().map(json_of).collect();
         outcome::print(&outcome::text(&document)?)
     } else {

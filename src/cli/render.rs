@@ -24,6 +24,15 @@ pub struct RenderArgs<P: PaperArgs> {
         value_parser = variant_word::<VariantOf<P>>()
     )]
     variant: Option<VariantOf<P>>,
+    #[command(flatten)]
+    scene: P,
+    #[command(flatten)]
+    picture: PictureArgs,
+}
+
+/// Which frames are drawn, and where they go.
+#[derive(Debug, Clone, Args)]
+pub struct PictureArgs {
     /// Frame N, or the frames A..B from A up to but not including B
     #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]
     frame: Frames,
@@ -31,17 +40,15 @@ pub struct RenderArgs<P: PaperArgs> {
     #[arg(long, value_name = "TARGET=FILE", value_parser = parse_dump)]
     dump: Vec<Dump>,
     #[command(flatten)]
-    scene: P,
-    #[command(flatten)]
     machine: MachineArgs,
     /// File of the picture; of several frames, the number goes before its ending [default: in --out]
-    #[arg(long, value_name = "FILE.png")]
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     image: Option<PathBuf>,
     /// Folder of pictures that are not named
-    #[arg(long, value_name = "DIR", default_value = "fumarole-out")]
+    #[arg(long, value_name = "DIR", default_value = "fumarole-out", help_heading = "Output")]
     out: PathBuf,
     /// Print nothing but errors
-    #[arg(long, short)]
+    #[arg(long, short, help_heading = "Output")]
     quiet: bool,
 }
 
@@ -79,6 +86,16 @@ fn parse_dump(text: &str) -> Result<Dump, String> {
 }
 
 pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
+    let variant = arguments.variant.unwrap_or_else(|| arguments.scene.rendered());
+    draw(variant, &arguments.picture, || arguments.scene.resolve())
+}
+
+/// Draws the frames, and writes their pictures and targets.
+pub fn draw<S: Study>(
+    variant: S::Variant,
+    arguments: &PictureArgs,
+    resolve: impl FnOnce() -> Result<S, Failure>,
+) -> Result<(), Failure> {
     let output = OutputArgs {
         out: arguments.out.clone(),
         json: None,
@@ -87,7 +104,6 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
         image: None,
         quiet: arguments.quiet,
     };
-    let variant = arguments.variant.unwrap_or_else(|| arguments.scene.rendered());
     let frames = arguments.frame;
     let is_range = frames.end - frames.first > 1;
     if is_range && !arguments.dump.is_empty() {
@@ -96,7 +112,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     let picture_path = |number: u32| match &arguments.image {
         Some(path) if is_range => numbered(path, number),
         Some(path) => path.clone(),
-        None => arguments.out.join(format!("{}-{}-{number:04}.png", P::Study::PAPER, variant.as_str())),
+        None => arguments.out.join(format!("{}-{}-{number:04}.png", S::PAPER, variant.as_str())),
     };
     for dump in &arguments.dump {
         image::Format::of(&dump.file)?;
@@ -105,9 +121,9 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
     outcome::check_picture(&picture_path(frames.first))?;
     outcome::check_file(&picture_path(frames.first))?;
 
-    let study = arguments.scene.resolve(0)?;
+    let study = resolve()?;
     let scene = study.load()?;
-    let mut machine = Machine::open(&arguments.machine.resolve(), P::Study::NEEDS)?;
+    let mut machine = Machine::open(&arguments.machine.resolve(0), S::NEEDS)?;
     outcome::say_device(&output, &machine);
     let mut built = build(&machine, &study, &scene, variant)?;
     let targets = built.paper.targets();
@@ -118,7 +134,7 @@ pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
             return Err(Failure::Input(message));
         }
     }
-    let bar = progress_bar(arguments.quiet, P::Study::PAPER);
+    let bar = progress_bar(arguments.quiet, S::PAPER);
     bar.set_length(u64::from(frames.end - frames.first));
     let mut written = Vec::new();
     for number in frames.first..frames.end {

@@ -44,11 +44,11 @@ pub enum Error {
 }
 
 impl Error {
-    /// Names the option by which a user lowers what is beyond a limit, beside the object.
-    pub fn set_by(self, option: &str) -> Self {
+    /// Names the parameter by which a user lowers what is beyond a limit, beside the object.
+    pub fn set_by(self, parameter: &str) -> Self {
         match self {
             Error::Limit { object, what, wanted, limit } => {
-                Error::Limit { object: format!("{object} ({option})"), what, wanted, limit }
+                Error::Limit { object: format!("{object} (`{parameter}`)"), what, wanted, limit }
             }
             other => other,
         }

@@ -18,6 +18,8 @@ pub struct RunMetadata {
     pub paper: &'static str,
     pub variant: String,
     pub identity: Identity,
+    /// Which of several fresh processes measured it.
+    pub process: u32,
     pub config: Map<String, Value>,
     pub load_ms: f64,
     pub build_ms: f64,
@@ -57,7 +59,7 @@ pub fn assemble(subject: RunMetadata, measurement: &Measurement, schedule: Sched
         warmup: schedule.warmup.max(1),
         frames: schedule.frames,
         repeat: measurement.repeat.max(1),
-        process: subject.identity.process,
+        process: subject.process,
         overlap_ms: median(&measurement.bracket_ms).filter(|_| is_stamped).map(|bracket| gpu_ms - bracket),
         unaccounted_ms: frame_ms.as_ref().filter(|_| is_stamped).map(|frame| frame.median - gpu_ms - host_ms),
         stamp_floor_ms: subject.stamp_floor_ms,

@@ -115,6 +115,7 @@ impl<S: Study> Bench<'_, S> {
                 paper: S::PAPER,
                 variant: built.variant.as_str().to_owned(),
                 identity: identity.clone(),
+                process: machine.process,
                 config: study.config(&loaded.scene, &built.paper),
                 load_ms: loaded.load_ms,
                 build_ms: built.build_ms,

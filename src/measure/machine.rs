@@ -18,6 +18,8 @@ pub struct MachineOptions {
     pub compiler: Compiler,
     /// Shaders compiled at start in place of the built-in ones.
     pub shader_dir: Option<PathBuf>,
+    /// Which of several fresh processes this is.
+    pub process: u32,
 }
 
 /// An open machine.
@@ -27,6 +29,8 @@ pub struct Machine {
     pub device: Arc<Device>,
     /// RFC 3339, when it was opened.
     opened: String,
+    /// Which of several fresh processes this is.
+    pub process: u32,
 }
 
 impl Machine {
@@ -43,6 +47,7 @@ impl Machine {
             shaders: ShaderLibrary::new(&device, options.compiler, options.shader_dir.as_deref())?,
             device,
             opened: environment::date(),
+            process: options.process,
         })
     }
 

@@ -4,8 +4,10 @@ use serde_json::{Map, Value};
 
 use super::bench::Built;
 use super::error::Error;
+use super::experiment::Experiment;
 use super::machine::Machine;
 use super::measure::Measurement;
+use super::parameter::{Given, Parameter};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 
@@ -60,6 +62,79 @@ pub trait Study {
         Self: Sized;
 }
 
+/// A study that declares its parameters, presets and experiments; the command line follows from them.
+pub trait Declared: Study + Clone + Default + 'static {
+    /// One line on the paper.
+    const ABOUT: &'static str;
+    /// Variants of a bench that names none.
+    const BENCHED: &'static [Self::Variant];
+    /// The variant of a picture that names neither one nor a preset.
+    const RENDERED: Self::Variant;
+    /// Frames and repetitions at each point of an experiment that names none.
+    const EXPERIMENT_FRAMES: (u32, u32) = (3, 3);
+
+    /// The options of its experiments and own verbs, beside the parameters.
+    type Options: Default + 'static;
+
+    /// Every parameter, once, in the order in which values are set.
+    fn parameters() -> Vec<Parameter<Self>>;
+
+    /// The options of experiments and own verbs.
+    fn options() -> Vec<Parameter<Self::Options>> {
+        Vec::new()
+    }
+
+    /// The paper's figures and tables whose numbers can be taken.
+    fn presets() -> Vec<Preset<Self>> {
+        Vec::new()
+    }
+
+    /// The tables and figures that are reproduced.
+    fn experiments() -> Vec<Experiment<Self>>;
+
+    /// Verbs that no other paper has.
+    fn verbs() -> Vec<Experiment<Self>> {
+        Vec::new()
+    }
+
+    /// What the main job measures, in the variants of [`Declared::BENCHED`].
+    fn quick() -> Self;
+
+    /// The name of the preset that it was made of.
+    fn preset_mut(&mut self) -> &mut Option<String>;
+
+    /// Follows up what was given: values that depend on several parameters.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a parameter that would not be heeded; [`Error::Parameter`], [`Error::Scene`].
+    fn resolve(&mut self, _given: &Given) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The variant of a picture that names none.
+    fn rendered(&self, preset: Option<Self::Variant>) -> Self::Variant {
+        preset.unwrap_or(Self::RENDERED)
+    }
+}
+
+/// The numbers of one of a paper's figures or tables.
+pub struct Preset<S: Study> {
+    pub name: &'static str,
+    pub help: &'static str,
+    /// The variant that it is made for, where it is one alone.
+    pub variant: Option<S::Variant>,
+    pub setup: fn() -> S,
+}
+
+/// Is shown every paper, one after the other.
+pub trait Visitor {
+    type Error;
+
+    /// # Errors
+    /// What ends the visits.
+    fn visit<S: Declared>(&mut self) -> Result<(), Self::Error>;
+}
+
 /// What every configuration has.
 #[derive(Debug, Clone)]
 pub struct Identity {
@@ -68,8 +143,6 @@ pub struct Identity {
     pub width: u32,
     pub height: u32,
     pub seed: u64,
-    /// Which of several fresh processes this is.
-    pub process: u32,
 }
 
 /// What a paper has to say of a run.

@@ -1,9 +1,31 @@
 //! The papers, one folder each. They know no option's spelling, no window and no terminal.
 
-pub mod burning;
-pub mod caustics;
-pub mod gas;
-pub mod lava;
 #[cfg(test)]
 mod layout;
+
+pub mod burning;
+pub mod gas;
+pub mod lava;
 pub mod terrain;
+
+use crate::measure::study::Visitor;
+
+/// The list of papers: a new one is one line below.
+macro_rules! papers {
+    ($($paper:ident)+) => {
+        $(pub mod $paper;)+
+
+        /// Shows every paper to `visitor`, in the order of the list.
+        ///
+        /// # Errors
+        /// What ends the visits.
+        pub fn each<V: Visitor>(visitor: &mut V) -> Result<(), V::Error> {
+            $(visitor.visit::<$paper::setup::Setup>()?;)+
+            Ok(())
+        }
+    };
+}
+
+papers! {
+    caustics
+}

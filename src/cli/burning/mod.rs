@@ -245,8 +245,8 @@ impl PaperArgs for BurningArgs {
         self.preset.map(|word| word.preset().variant())
     }
 
-    fn resolve(&self, process: u32) -> Result<Setup, Failure> {
-        Ok(Setup { process, ..self.over(self.preset.map_or_else(Setup::default, |word| word.preset().setup())) })
+    fn resolve(&self) -> Result<Setup, Failure> {
+        Ok(self.over(self.preset.map_or_else(Setup::default, |word| word.preset().setup())))
     }
 }
 

@@ -134,12 +134,12 @@ impl PaperArgs for GasArgs {
         setup
     }
 
-    fn resolve(&self, process: u32) -> Result<Setup, Failure> {
+    fn resolve(&self) -> Result<Setup, Failure> {
         let setup = Setup::of(self.scene());
         let preset = self.preset.and(setup.preset.clone());
         let setup = self.over(setup);
         self.check([&setup])?;
-        Ok(Setup { process, preset, ..setup })
+        Ok(Setup { preset, ..setup })
     }
 
     /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.

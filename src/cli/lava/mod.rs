@@ -151,11 +151,11 @@ impl PaperArgs for LavaArgs {
     const RENDERED: &'static str = "paper";
 
     fn quick() -> Setup {
-        Setup { parameters: Parameters::default(), rock: None, objects: Vec::new(), preset: None, process: 0 }
+        Setup { parameters: Parameters::default(), rock: None, objects: Vec::new(), preset: None }
     }
 
-    fn resolve(&self, process: u32) -> Result<Setup, Failure> {
-        Ok(Setup { process, ..self.over(self.preset_parameters(), self.preset.map(|word| word.preset().as_str())) })
+    fn resolve(&self) -> Result<Setup, Failure> {
+        Ok(self.over(self.preset_parameters(), self.preset.map(|word| word.preset().as_str())))
     }
 }
 
@@ -204,7 +204,6 @@ impl LavaArgs {
             rock: self.rock.clone(),
             objects: self.object.clone(),
             preset: preset.map(str::to_owned),
-            process: 0,
         }
     }
 }

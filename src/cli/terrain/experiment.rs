@@ -94,7 +94,7 @@ impl ExperimentArgs for Experiments {
     }
 
     fn perform(&self, name: Name, publication: &Publication<'_>) -> Result<(), Failure> {
-        let mut setup = self.scene.resolve(self.common.measure.process)?;
+        let mut setup = self.scene.resolve()?;
         setup.preset = Some(publication.name.clone());
         let variants = resolve(&self.variant);
         match name.axis() {

@@ -120,8 +120,8 @@ impl PaperArgs for TerrainArgs {
         Setup::default()
     }
 
-    fn resolve(&self, process: u32) -> Result<Setup, Failure> {
-        let mut setup = Setup { process, ..Setup::default() };
+    fn resolve(&self) -> Result<Setup, Failure> {
+        let mut setup = Setup::default();
         let p: &mut Parameters = &mut setup.parameters;
         if let Some(preset) = self.preset {
             setup.resolution = figures::SIDE;

@@ -34,23 +34,13 @@ pub struct Setup {
     /// A PNG that covers the mesh by its texture coordinates, in place of the material.
     pub texture: Option<PathBuf>,
     pub preset: Option<String>,
-    /// Which of several fresh processes this is.
-    pub process: u32,
 }
 
 impl Default for Setup {
     /// The scanned bunny.
     fn default() -> Self {
         let parameters = Parameters::default();
-        Setup {
-            parameters,
-            mesh: MeshSource::Bunny,
-            stretch: Vec3::ONE,
-            triangles: None,
-            texture: None,
-            preset: None,
-            process: 0,
-        }
+        Setup { parameters, mesh: MeshSource::Bunny, stretch: Vec3::ONE, triangles: None, texture: None, preset: None }
     }
 }
 
@@ -132,7 +122,6 @@ impl Study for Setup {
             width: self.parameters.width,
             height: self.parameters.height,
             seed: self.parameters.seed,
-            process: self.process,
         }
     }
 

@@ -60,7 +60,7 @@ impl IlluminationVolumes {
         let size_bytes = u64::from(vertex_count) * std::mem::size_of::<Ray>() as u64;
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::VERTEX_BUFFER;
         let desc = BufferDesc::new(context.name("illumination-volumes"), size_bytes).usage(usage);
-        let rays = Buffer::new(context.device(), desc).map_err(|error| error.set_by("--water-triangles"))?;
+        let rays = Buffer::new(context.device(), desc).map_err(|error| error.set_by("water-triangles"))?;
         let pass = Pass::compute("illumination-volumes", "4.3", "caustics/illumination-volumes.comp")
             .with("water", &water.vertices)
             .with("rays", &rays)

@@ -6,6 +6,8 @@ use glam::Vec3;
 
 pub use super::planes::SmartPlacement;
 use super::water_map::WaterMap;
+use crate::field;
+use crate::measure::parameter::{self, Choice, Cost, Field, Parameter, Range, Size};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
@@ -62,7 +64,7 @@ impl WaveParameters {
     }
 }
 
-/// Every number of a configuration. [`Parameters::validate`] checks the ranges given here.
+/// Every number of a configuration, in the ranges of [`Parameters::declared`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     /// Reference (or sample) planes, 1 to 4096.
@@ -119,6 +121,49 @@ impl Default for Parameters {
     }
 }
 
+const SIZE: Field<Parameters, Size> = Field {
+    get: |p| Size { width: p.width, height: p.height },
+    set: |p, size| (p.width, p.height) = (size.width, size.height),
+};
+
+/// Names of [`SmartPlacement`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Placement {
+    Fitted,
+    Kept,
+}
+
+impl Choice for Placement {
+    const ALL: &'static [Self] = &[Placement::Fitted, Placement::Kept];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("fitted", "Planes fitted into the sub-boxes of valid levels"),
+        ("kept", "The uniform planes whose cell holds a texel"),
+    ];
+}
+
+const PLACEMENT: Field<Parameters, Placement> = Field {
+    get: |p| match p.smart.placement {
+        SmartPlacement::Fitted { .. } => Placement::Fitted,
+        SmartPlacement::Kept => Placement::Kept,
+    },
+    set: |p, placement| match placement {
+        Placement::Fitted => p.smart.placement = SmartPlacement::Fitted { epsilon_m: None },
+        Placement::Kept => p.smart.placement = SmartPlacement::Kept,
+    },
+};
+
+const EPSILON: Field<Parameters, Option<f32>> = Field {
+    get: |p| match p.smart.placement {
+        SmartPlacement::Fitted { epsilon_m } => epsilon_m,
+        SmartPlacement::Kept => None,
+    },
+    set: |p, epsilon| {
+        if let SmartPlacement::Fitted { epsilon_m } = &mut p.smart.placement {
+            *epsilon_m = epsilon;
+        }
+    },
+};
+
 /// The steepest water whose rays and normals still mean something.
 const STEEPEST: f32 = 10.0;
 
@@ -126,87 +171,135 @@ fn validate_map(map: &WaterMap) -> Result<(), ParameterError> {
     let (low, high) = map.heights().range_m();
     ParameterError::check(
         low >= -10.0 && high <= 10.0,
-        "--water-map",
+        "water-map",
         map.name(),
         &format!("its heights are {low} to {high} m; they must lie within 10 m of the water's level, y = 0"),
     )?;
     let slope = map.steepest_slope();
     ParameterError::check(
         slope <= STEEPEST,
-        "--water-map",
+        "water-map",
         map.name(),
         &format!("its slopes may reach {slope}; they must stay below 10: scale its heights down or its spacing up"),
     )
 }
 
 impl Parameters {
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Parameters>> {
+        vec![
+            Parameter::new("planes", field!(Parameters.planes))
+                .range(Range::from(1.0).to(4096.0))
+                .help("Reference (sample) planes of each receiver")
+                .section("4.2.1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("map-size", field!(Parameters.map_size))
+                .range(Range::from(1.0))
+                .unit("texel a side")
+                .help("Position, caustics and slice maps")
+                .section("4.2.2")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("water-triangles", field!(Parameters.water_triangles))
+                .range(Range::from(2.0).to(20e6))
+                .help("Triangles of the water's mesh, rounded to whole cells")
+                .section("5.2")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("mrt", field!(Parameters.mrt))
+                .help("Position and diffuse map in one pass with two targets (figure 5-6), or in two passes (figure 5-5)")
+                .section("5.2.3")
+                .cost(Cost::Pipelines),
+            Parameter::new("levels", field!(Parameters.smart.levels))
+                .range(Range::from(1.0).to(65_536.0))
+                .help("Depth levels of smart slicing's profile")
+                .section("4.7.2")
+                .cost(Cost::Buffers),
+            Parameter::new("smart-placement", PLACEMENT)
+                .help("Smart slicing: planes fitted into sub-boxes, or the uniform planes whose cell holds a texel")
+                .section("4.7.2"),
+            Parameter::new("epsilon", EPSILON)
+                .range(Range::above(0.0))
+                .unit("metres")
+                .help("Acceptance threshold of smart slicing")
+                .section("eq. 4-22")
+                .default_text("h / (2 (planes - 1)), as in table 5-4"),
+            Parameter::new("refraction-index", field!(Parameters.refraction_index))
+                .range(Range::above(1.0).to(4.0))
+                .help("Refraction index of water against air")
+                .section("eq. 4-1"),
+            Parameter::new("absorption", field!(Parameters.absorption_per_m))
+                .range(Range::from(0.0).to(1e6))
+                .unit("per metre")
+                .help("Absorption K of the water")
+                .section("eq. 4-17"),
+            Parameter::new("water-depth", field!(Parameters.water_depth_m))
+                .range(Range::above(0.0).to(1000.0))
+                .unit("metres")
+                .help("Depth of the pool")
+                .cost(Cost::Buffers),
+            Parameter::new("waves", field!(Parameters.waves.count))
+                .range(Range::from(0.0).to(64.0))
+                .help("Number of sine waves on the water, 0 for flat water")
+                .cost(Cost::Buffers),
+            Parameter::new("amplitude", field!(Parameters.waves.amplitude_m))
+                .range(Range::from(0.0).to(10.0))
+                .unit("metres")
+                .help("Sum of the waves' amplitudes")
+                .cost(Cost::Buffers),
+            Parameter::new("wavelength", field!(Parameters.waves.wavelength_m))
+                .range(Range::above(0.0).to(1000.0))
+                .unit("metres")
+                .help("Longest wavelength")
+                .cost(Cost::Buffers),
+            Parameter::new("size", SIZE)
+                .range(Range::from(1.0))
+                .unit("pixel")
+                .help("Size of the picture")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("seed", field!(Parameters.seed))
+                .help("Seed of the waves' directions and phases")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("time-step", field!(Parameters.time_step_s))
+                .range(Range::from(0.0))
+                .unit("seconds")
+                .help("Simulated time between two frames")
+                .default_text("1/30"),
+        ]
+    }
+
     /// Checks every range.
     ///
     /// # Errors
     /// The first parameter outside its range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        ParameterError::check((1..=4096).contains(&self.planes), "--planes", self.planes, "must be 1 to 4096")?;
-        ParameterError::check(self.map_size >= 1, "--map-size", self.map_size, "must be at least 1 texel")?;
-        ParameterError::check(
-            (2..=20_000_000).contains(&self.water_triangles),
-            "--water-triangles",
-            self.water_triangles,
-            "must be 2 to 20000000",
-        )?;
-        let levels = self.smart.levels;
-        ParameterError::check((1..=65_536).contains(&levels), "--levels", levels, "must be 1 to 65536")?;
-        if let SmartPlacement::Fitted { epsilon_m: Some(epsilon) } = self.smart.placement {
-            let good = epsilon > 0.0 && epsilon.is_finite();
-            ParameterError::check(good, "--epsilon", epsilon, "must be above 0 metres")?;
-        }
-        let n = self.refraction_index;
-        ParameterError::check(n > 1.0 && n <= 4.0, "--refraction-index", n, "must be above 1 and at most 4")?;
-        let k = self.absorption_per_m;
-        ParameterError::check((0.0..=1e6).contains(&k), "--absorption", k, "must be 0 to 1000000 per metre")?;
-        let depth = self.water_depth_m;
-        ParameterError::check(
-            depth > 0.0 && depth <= 1000.0,
-            "--water-depth",
-            depth,
-            "must be above 0 and at most 1000 metres",
-        )?;
+        parameter::check(&Self::declared(), self)?;
         let waves = self.waves;
-        ParameterError::check(waves.count <= 64, "--waves", waves.count, "must be 0 to 64")?;
-        ParameterError::check(
-            (0.0..=10.0).contains(&waves.amplitude_m),
-            "--amplitude",
-            waves.amplitude_m,
-            "must be 0 to 10 metres",
-        )?;
-        ParameterError::check(
-            waves.wavelength_m > 0.0 && waves.wavelength_m <= 1000.0,
-            "--wavelength",
-            waves.wavelength_m,
-            "must be above 0 and at most 1000 metres",
-        )?;
         ParameterError::check(
             waves.steepest_slope() <= STEEPEST,
-            "--amplitude",
+            "amplitude",
             waves.amplitude_m,
-            "with this --wavelength the waves are steeper than 10; lower one or raise the other",
+            "with this `wavelength` the waves are steeper than 10; lower one or raise the other",
         )?;
         if let Some(map) = &self.water_map {
             validate_map(map)?;
         }
-        ParameterError::check(!self.lights.is_empty(), "--light", "none", "at least one light is needed")?;
+        ParameterError::check(!self.lights.is_empty(), "light", "none", "at least one light is needed")?;
         for light in &self.lights {
             self.validate_light(light)?;
         }
-        let step = self.time_step_s;
-        ParameterError::check(step >= 0.0 && step.is_finite(), "--time-step", step, "must be at least 0 seconds")?;
-        ParameterError::check_size(self.width, self.height)?;
         ParameterError::check_camera(&self.camera)
     }
 
     fn validate_light(&self, light: &Light) -> Result<(), ParameterError> {
         let (name, value) = match *light {
-            Light::Parallel { direction, .. } => ("--light", components(direction)),
-            Light::Point { position, .. } => ("--point-light", components(position)),
+            Light::Parallel { direction, .. } => ("light", components(direction)),
+            Light::Point { position, .. } => ("point-light", components(position)),
         };
         let error = |range: &str| Err(ParameterError { name, value: value.clone(), range: range.to_owned() });
         let intensity = match *light {

@@ -68,7 +68,7 @@ impl<'a> Context<'a> {
     /// [`Error::Limit`] for a size that the device does not allow.
     pub fn image(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Arc<Image>, Error> {
         let desc = ImageDesc::new_2d(self.name(name), format, self.parameters.width, self.parameters.height);
-        Image::new(self.device(), desc.usage(usage)).map_err(|error| error.set_by("--size"))
+        Image::new(self.device(), desc.usage(usage)).map_err(|error| error.set_by("size"))
     }
 
     /// A square map, attached and fetched.
@@ -77,7 +77,7 @@ impl<'a> Context<'a> {
     /// [`Error::Limit`] for a size that the device does not allow.
     pub fn map(&self, name: &str, format: vk::Format) -> Result<Arc<ImageView>, Error> {
         let image = Image::new(self.device(), self.map_desc(name, format));
-        image.map_err(|error| error.set_by("--map-size"))?.view()
+        image.map_err(|error| error.set_by("map-size"))?.view()
     }
 
     /// Description of a square map.

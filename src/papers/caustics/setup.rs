@@ -1,10 +1,11 @@
 //! The experiments of the `caustics` paper: what a user set up, its scene, its measured runs.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value as Json, json};
 
 use crate::gpu::{self, Feature, Mode, ShaderLibrary};
 use crate::measure::Error;
@@ -12,9 +13,13 @@ use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::study::{Identity, Metrics, Study};
+use crate::measure::experiment::Experiment;
+use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
+use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use super::experiments::{self, Options};
+use crate::field;
 use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
-use crate::scene::{Bounds, HeightMap, HeightMapSource, MeshSource, Samples, shapes};
+use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
 /// over it.
@@ -26,16 +31,77 @@ const FLOOR_CELLS: u32 = 8;
 /// Side of the pool's floor in receivers.
 const FLOOR_SIZE: f32 = 3.0;
 
-/// What a user set up.
+/// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
     pub parameters: Parameters,
     pub meshes: Vec<MeshSource>,
-    /// Whether the pool's floor receives caustics as well.
+    /// The pool's floor receives caustics as well.
     pub floor: bool,
     pub preset: Option<String>,
-    /// Which of several fresh processes this is.
-    pub process: u32,
+    /// Directions of parallel light and places of point lights; the default light where there are neither.
+    pub parallel_lights: Vec<Vec3>,
+    pub point_lights: Vec<Vec3>,
+    /// Height map in place of the waves.
+    pub water_map: Option<HeightMapSource>,
+    /// Metres between its samples; those that it states where there are none.
+    pub water_map_spacing_m: Option<f32>,
+    /// Metres that its heights are scaled to span.
+    pub water_map_range_m: Option<f32>,
+    pub view: View,
+}
+
+/// Where the camera stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// Above the water, through its surface.
+    Above,
+    /// Plainly under water.
+    Below,
+    At(EyeAndTarget),
+}
+
+impl Value for View {
+    const SHAPE: Shape = Shape { placeholder: "above|below|EYE,TARGET", ..EyeAndTarget::SHAPE };
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        match one(texts)? {
+            "above" => Ok(View::Above),
+            "below" => Ok(View::Below),
+            _ => {
+                EyeAndTarget::parse(texts).map(View::At).map_err(|e| format!("above, below, or eye and target: {e}"))
+            }
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            View::Above => "above".to_owned(),
+            View::Below => "below".to_owned(),
+            View::At(place) => place.text(),
+        }
+    }
+
+    fn json(&self) -> Json {
+        json!(self.text())
+    }
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Setup {
+            parameters: Parameters::default(),
+            meshes: vec![MeshSource::Teapot],
+            floor: false,
+            preset: None,
+            parallel_lights: Vec::new(),
+            point_lights: Vec::new(),
+            water_map: None,
+            water_map_spacing_m: None,
+            water_map_range_m: None,
+            view: View::Above,
+        }
+    }
 }
 
 /// A setup with its meshes loaded and placed.
@@ -102,7 +168,6 @@ impl Study for Setup {
             width: self.parameters.width,
             height: self.parameters.height,
             seed: self.parameters.seed,
-            process: self.process,
         }
     }
 
@@ -123,39 +188,149 @@ impl Study for Setup {
         Ok(metrics.collect())
     }
 
-    fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Value> {
+    fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Json> {
         let p = &self.parameters;
-        let meshes: Vec<String> = self.meshes.iter().map(MeshSource::to_string).collect();
         let triangles: usize = scene.receivers.iter().map(|r| r.mesh.triangle_count()).sum();
-        let lights: Vec<Value> = p.lights.iter().map(config::light).collect();
-        let (placement, epsilon) = match p.smart.placement {
-            SmartPlacement::Fitted { epsilon_m } => ("fitted", epsilon_m),
-            SmartPlacement::Kept => ("kept", None),
-        };
-        let waves = if p.water_map.is_none() { Some(p.waves) } else { None };
-        entries([
-            ("mesh", json!(meshes)),
+        let lights: Vec<Json> = p.lights.iter().map(config::light).collect();
+        let mut config = parameter::config(&Self::parameters(), self);
+        config.extend(entries([
             ("receiver_triangles", json!(triangles)),
-            ("floor", json!(self.floor)),
-            ("planes", json!(p.planes)),
-            ("map_size", json!(p.map_size)),
             ("water_triangles", json!(paper.grid().triangle_count())),
-            ("mrt", json!(p.mrt)),
-            ("levels", json!(p.smart.levels)),
-            ("smart_placement", json!(placement)),
-            ("epsilon", json!(epsilon)),
-            ("refraction_index", json!(p.refraction_index)),
-            ("absorption", json!(p.absorption_per_m)),
-            ("water_depth", json!(p.water_depth_m)),
-            ("waves", json!(waves.map(|w| w.count))),
-            ("amplitude", json!(waves.map(|w| w.amplitude_m))),
-            ("wavelength", json!(waves.map(|w| w.wavelength_m))),
             ("water_map", json!(p.water_map.as_ref().map(map_value))),
             ("lights", json!(lights)),
             ("ambient", json!(p.ambient.to_array())),
             ("camera", config::camera(&p.camera)),
-            ("time_step", json!(p.time_step_s)),
-        ])
+        ]));
+        if p.water_map.is_some() {
+            config.extend(["waves", "amplitude", "wavelength"].map(|name| (name.to_owned(), Json::Null)));
+        }
+        config
+    }
+}
+
+impl Declared for Setup {
+    const ABOUT: &'static str = "Refractive water caustics with level maps (Tipprasert), pass by pass";
+    // The stencil method takes seconds a frame without a GPU.
+    const BENCHED: &'static [Variant] = &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric];
+    const RENDERED: Variant = Variant::LevelMap;
+
+    type Options = Options;
+
+    fn parameters() -> Vec<Parameter<Self>> {
+        let scene = [
+            Parameter::new("mesh", field!(Setup.meshes))
+                .help(
+                    "Receiver: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; its longest side is \
+                     scaled to 2 m, and it stands on the pool's floor",
+                )
+                .default_text("teapot")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("floor", field!(Setup.floor))
+                .help("The pool's floor receives caustics as well")
+                .cost(Cost::Buffers)
+                .everyday(),
+        ];
+        let water_and_light = [
+            Parameter::new("water-map", field!(Setup.water_map))
+                .help(
+                    "Water by a height map in place of waves: volcano, maunga-whau, jacksboro, or a file; heights are metres \
+                     about the water's level, within 10 m of it",
+                )
+                .excludes(&["waves", "amplitude", "wavelength"])
+                .cost(Cost::Buffers),
+            Parameter::new("water-map-spacing", field!(Setup.water_map_spacing_m))
+                .range(Range::above(0.0))
+                .unit("metres")
+                .help("Distance between the samples of `water-map`")
+                .default_text("what the map says of itself")
+                .requires("water-map")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("water-map-range", field!(Setup.water_map_range_m))
+                .range(Range::above(0.0))
+                .unit("metres")
+                .help("Scale `water-map` so that its heights span this much about the water's level")
+                .requires("water-map")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("light", field!(Setup.parallel_lights))
+                .help("Direction of parallel light, downwards")
+                .section("eq. 4-9")
+                .default_text("0,-1,0")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("point-light", field!(Setup.point_lights))
+                .help("Place of a point light above the water, metres")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("camera", field!(Setup.view))
+                .help(
+                    "Camera: above (through the water's surface), below (plainly underwater), or eye and target x,y,z,x,y,z in \
+                     metres, the water's level being y = 0",
+                )
+                .everyday(),
+        ];
+        let numbers = Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
+        scene.into_iter().chain(numbers).chain(water_and_light).collect()
+    }
+
+    fn options() -> Vec<Parameter<Options>> {
+        experiments::options()
+    }
+
+    fn presets() -> Vec<Preset<Self>> {
+        vec![Preset {
+            name: "5-1",
+            help: "Table 5-1 and figure 5-10 at their last row: teapot, 101 planes, 512 x 512 maps",
+            variant: None,
+            setup: || {
+                let numbers = Parameters { planes: 101, map_size: 512, water_triangles: 10_000, ..Parameters::default() };
+                Setup { parameters: numbers, ..Setup::default() }
+            },
+        }]
+    }
+
+    fn experiments() -> Vec<Experiment<Self>> {
+        experiments::all()
+    }
+
+    /// The scanned mesh over the pool's floor.
+    fn quick() -> Self {
+        Setup { meshes: vec![MeshSource::Bunny], floor: true, ..Setup::default() }
+    }
+
+    fn preset_mut(&mut self) -> &mut Option<String> {
+        &mut self.preset
+    }
+
+    fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        let p = &mut self.parameters;
+        if p.smart.placement == SmartPlacement::Kept && given.has("epsilon") {
+            let message = "`epsilon`: `smart-placement` kept keeps the uniform planes; leave one of them out";
+            return Err(Error::Input(message.to_owned()));
+        }
+        parameter::check(&Self::parameters(), self)?;
+        let p = &mut self.parameters;
+        if let Some(source) = &self.water_map {
+            p.water_map = Some(water_map(source, self.water_map_spacing_m, self.water_map_range_m)?);
+        }
+        let intensity = Vec3::ONE;
+        let parallel = self.parallel_lights.iter().map(|&direction| Light::Parallel { direction, intensity });
+        let points = self.point_lights.iter().map(|&position| Light::Point { position, intensity });
+        let lights: Vec<Light> = parallel.chain(points).collect();
+        if !lights.is_empty() {
+            p.lights = lights;
+        }
+        p.camera = match self.view {
+            View::Above => Parameters::camera_above(p.water_depth_m),
+            View::Below => Parameters::camera_below(p.water_depth_m),
+            View::At(EyeAndTarget { eye, target }) => {
+                Camera { eye, target, ..Parameters::camera_above(p.water_depth_m) }
+            }
+        };
+        Ok(())
     }
 }
 
@@ -170,7 +345,7 @@ pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Opti
         let (low, high) = map.range_m();
         let scale = range_m / (high - low);
         if !scale.is_finite() {
-            return Err(Error::Input(format!("--water-map-range {range_m}: {source} is flat; leave the range out")));
+            return Err(Error::Input(format!("`water-map-range` {range_m}: {source} is flat; leave the range out")));
         }
         let middle = low + (high - low) / 2.0;
         let places = (0..map.height()).flat_map(|row| (0..map.width()).map(move |column| (column, row)));
@@ -202,7 +377,7 @@ impl Setup {
     }
 }
 
-fn map_value(map: &WaterMap) -> Value {
+fn map_value(map: &WaterMap) -> Json {
     let heights = map.heights();
     let (low, high) = heights.range_m();
     json!({
@@ -272,7 +447,7 @@ fn floors_ms(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) ->
 }
 
 /// The paper's own figures: the intersection triangles of a frame and how fast they are drawn.
-fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -> Map<String, Value> {
+fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -> Map<String, Json> {
     let planes = paper.plane_counts().iter().sum::<usize>() as u64;
     let triangles = planes * u64::from(paper.grid().triangle_count());
     let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");

@@ -25,7 +25,7 @@ impl SliceImages {
         let depth = context.map("slice-depth", DEPTH)?;
         // A map of this size exists by now: what a device may still refuse is the number of layers.
         let desc = context.map_desc("illumination-map", LIGHT).layers(planes);
-        let image = Image::new(context.device(), desc).map_err(|error| error.set_by("--planes"))?;
+        let image = Image::new(context.device(), desc).map_err(|error| error.set_by("planes"))?;
         let slices = (0..planes).map(|i| image.layer(i)).collect::<Result<Vec<_>, _>>()?;
         let first = lit
             .map_pass("slice-images", "5.2.1", "caustics/diffuse-map.frag")

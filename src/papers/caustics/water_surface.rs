@@ -90,7 +90,7 @@ impl Shape {
     fn map(context: Context<'_>, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
         let coefficients = context
             .upload("water-map", STORAGE, bytemuck::cast_slice(map.coefficients()))
-            .map_err(|error| error.set_by("--water-map"))?;
+            .map_err(|error| error.set_by("water-map"))?;
         let (columns, rows) = (map.heights().width(), map.heights().height());
         let spacing = map.heights().spacing_m();
         // Places are measured from a node near the middle: far from it single precision has fewer digits to spare.
@@ -121,7 +121,7 @@ impl WaterSurface {
     pub fn new(context: Context<'_>, grid: Grid, middle: DVec2) -> Result<Self, Error> {
         let shape = Shape::new(context, middle)?;
         let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
-        let by_triangles = |error: Error| error.set_by("--water-triangles");
+        let by_triangles = |error: Error| error.set_by("water-triangles");
         let vertices = Buffer::new(context.device(), BufferDesc::new(context.name("water"), size_bytes).usage(STORAGE));
         let vertices = vertices.map_err(by_triangles)?;
         let usage = vk::BufferUsageFlags::INDEX_BUFFER | STORAGE;

@@ -27,8 +27,6 @@ pub struct Setup {
     /// Polygon meshes that stand in the scene beside its own surfaces, at their own size.
     pub objects: Vec<MeshSource>,
     pub preset: Option<String>,
-    /// Which of several fresh processes this is.
-    pub process: u32,
 }
 
 impl Setup {
@@ -37,7 +35,7 @@ impl Setup {
         let mut parameters = scene.scene().parameters;
         parameters.first_frame = scene.bench_frame();
         parameters.frame_step = 0;
-        Setup { parameters, scene, objects: Vec::new(), preset: Some(scene.as_str().to_owned()), process: 0 }
+        Setup { parameters, scene, objects: Vec::new(), preset: Some(scene.as_str().to_owned()) }
     }
 }
 
@@ -75,7 +73,6 @@ impl Study for Setup {
             width: self.parameters.width,
             height: self.parameters.height,
             seed: self.parameters.seed,
-            process: self.process,
         }
     }
 

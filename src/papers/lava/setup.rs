@@ -27,8 +27,6 @@ pub struct Setup {
     /// Polygon meshes in the simulation space, at their own size and place.
     pub objects: Vec<MeshSource>,
     pub preset: Option<String>,
-    /// Which of several fresh processes this is.
-    pub process: u32,
 }
 
 impl Setup {
@@ -91,7 +89,6 @@ impl Study for Setup {
             width: self.parameters.width,
             height: self.parameters.height,
             seed: self.parameters.seed,
-            process: self.process,
         }
     }
 

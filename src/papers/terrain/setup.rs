@@ -38,8 +38,6 @@ pub struct Setup {
     /// Of the synthetic volcano.
     pub seed: u64,
     pub preset: Option<String>,
-    /// Which of several fresh processes this is.
-    pub process: u32,
 }
 
 /// A map and where it lies.
@@ -62,7 +60,6 @@ impl Default for Setup {
             exaggeration: 1.0,
             seed: 1,
             preset: None,
-            process: 0,
         }
     }
 }
@@ -165,7 +162,6 @@ impl Study for Setup {
             width: self.parameters.width,
             height: self.parameters.height,
             seed: self.seed,
-            process: self.process,
         }
     }
 

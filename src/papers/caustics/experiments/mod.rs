@@ -1,6 +1,219 @@
-//! The tables and figures of the `caustics` paper, with the paper's own numbers.
+//! The thesis's tables and figures, with its own numbers.
 
-mod bars;
-pub mod slicing;
-pub mod sweep;
+mod ratios;
+mod slicing;
+mod sweep;
 mod thesis;
+
+use serde_json::json;
+
+use self::sweep::{ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome};
+use super::setup::{NamedMesh, Setup, sample_meshes};
+use super::{Parameters, Variant};
+use crate::field;
+use crate::measure::bench::build;
+use crate::measure::experiment::Experiment;
+use crate::measure::machine::Machine;
+use crate::measure::parameter::{Parameter, Range};
+use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study;
+use crate::measure::{Error, Variant as _, experiment, picture};
+use crate::scene::MeshSource;
+
+type Context<'a> = experiment::Context<'a, Setup>;
+
+/// Options of the experiments.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Plane counts of a sweep.
+    counts: Vec<u32>,
+    /// Step from 3 to 101 planes in place of the counts.
+    step: Option<u32>,
+}
+
+impl Options {
+    fn counts(&self) -> Vec<u32> {
+        match self.step {
+            Some(step) => (3..=101).step_by(step.clamp(1, 98) as usize).collect(),
+            None if self.counts.is_empty() => vec![3, 11, 31, 101],
+            None => self.counts.clone(),
+        }
+    }
+}
+
+/// The options of the experiments.
+pub fn options() -> Vec<Parameter<Options>> {
+    vec![
+        Parameter::new("counts", field!(Options.counts))
+            .placeholder("N,N,..")
+            .help("Plane counts of a sweep, comma-separated")
+            .default_text("3,11,31,101"),
+        Parameter::new("step", field!(Options.step))
+            .range(Range::from(1.0).to(98.0))
+            .help("Sweep 3 to 101 planes by this step instead: 1 is the thesis's full table")
+            .excludes(&["counts"]),
+    ]
+}
+
+/// Every experiment, in the thesis's order.
+pub fn all() -> Vec<Experiment<Setup>> {
+    let sweep = |name, help, run| Experiment {
+        name,
+        help,
+        options: &["counts", "step"],
+        refuses: &[("planes", "this experiment sweeps them; give `counts`")],
+        run,
+    };
+    let single = |name, help, run| Experiment {
+        name,
+        help,
+        options: &[],
+        refuses: &[
+            ("counts", "this experiment has no sweep; give `planes`"),
+            ("step", "this experiment has no sweep; give `planes`"),
+        ],
+        run,
+    };
+    vec![
+        sweep("5-1", "Table 5-1 and figure 5-10: level map against volumetric by number of planes", |context| {
+            compare(context, LEVEL_MAP_AGAINST_VOLUMETRIC).map(drop)
+        }),
+        single("5-2", "Table 5-2: polygons of the models", polygons),
+        sweep("5-3", "Table 5-3 and figure 5-11: normal against smart slicing by number of planes", |context| {
+            compare(context, NORMAL_AGAINST_SMART).map(drop)
+        }),
+        sweep("5-4", "Table 5-4: planes that smart slicing draws of those specified", planes),
+        sweep("5-5", "Table 5-5: Luv difference (eq. 2-9) between normal and smart slicing", differences),
+        sweep("memory", "Section 5.1: memory of the methods by number of planes", memory),
+        single(
+            "depth-profile",
+            "Figure 5-12 and the appendix's histograms: texels in each depth level",
+            |context| {
+                let (meshes, mut machine) = open(context)?;
+                let columns = &["mesh", "level", "texels"];
+                let rows = depth_profiles(context, &mut machine, &meshes)?;
+                let table = ResultTable { title: "Figure 5-12: texels in each depth level", columns, rows };
+                context.publish_table(&machine, &table)
+            },
+        ),
+        single("5-13", "Figure 5-13: the picture by normal and by smart slicing", picture_pairs),
+        sweep("appendix", "The appendix: three pictures, the curves and the histogram of every mesh given", appendix),
+    ]
+}
+
+/// The meshes that were named or the thesis's, after a look at every one and every count, and the machine: a sweep takes
+/// long to come to the last.
+fn open(context: &Context<'_>) -> Result<(Vec<MeshSource>, Machine), Error> {
+    let setup = &context.setup;
+    let meshes = if context.given.has("mesh") { setup.meshes.clone() } else { sample_meshes() };
+    for planes in context.options.counts() {
+        Parameters { planes, ..setup.parameters.clone() }.validate()?;
+    }
+    meshes.iter().try_for_each(|mesh| Setup { meshes: vec![mesh.clone()], ..setup.clone() }.load().map(drop))?;
+    Ok((meshes, context.open()?))
+}
+
+/// Pictures that are compared show the receiver itself, not the water's surface above it.
+fn look_from_below(context: &mut Context<'_>) {
+    if !context.given.has("camera") {
+        context.setup.parameters.camera = Parameters::camera_below(context.setup.parameters.water_depth_m);
+    }
+}
+
+fn compare(context: &mut Context<'_>, comparison: Comparison) -> Result<(Vec<MeshSource>, Machine), Error> {
+    let (meshes, mut machine) = open(context)?;
+    let points = comparison.points(&context.setup, &meshes, &context.options.counts());
+    let swept = context.sweep(&mut machine, &points)?;
+    let outcome = Outcome::new(comparison, &meshes, swept.rows);
+    let (table, plots) = (outcome.render(context.console.style()), outcome.plots()?);
+    context.publish_runs(&machine, outcome.into_runs(), table, &plots)?;
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok((meshes, machine)), Err)
+}
+
+fn polygons(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, machine) = open(context)?;
+    let table = slicing::polygon_counts(&context.setup, &meshes)?;
+    context.publish_plotted(&machine, &table, table.bars("triangles", &["triangles", "thesis"]))
+}
+
+fn planes(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, mut machine) = open(context)?;
+    let table = slicing::actual_planes(&mut machine, &context.setup, &meshes, &context.options.counts())?;
+    let plot = table.lines("specified", "planes drawn", &["fitted", "kept", "thesis"]);
+    context.publish_plotted(&machine, &table, plot)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn differences(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, mut machine) = open(context)?;
+    look_from_below(context);
+    let table = slicing::intensity_difference(&mut machine, &context.setup, &meshes, &context.options.counts())?;
+    let plot = table.lines("planes", "mean Luv difference", &["fitted mean", "kept mean", "thesis"]);
+    context.publish_plotted(&machine, &table, plot)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn memory(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, mut machine) = open(context)?;
+    let table = slicing::memory(&mut machine, &context.setup, &meshes, &context.options.counts())?;
+    let plot = table.lines("planes", "maps, bytes", &["maps, bytes"]);
+    context.publish_plotted(&machine, &table, plot)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+/// The histogram of each mesh as a plot; rows of mesh, level and texels.
+fn depth_profiles(
+    context: &Context<'_>,
+    machine: &mut Machine,
+    meshes: &[MeshSource],
+) -> Result<Vec<Vec<serde_json::Value>>, Error> {
+    let mut rows = Vec::new();
+    for NamedMesh { source, name, .. } in NamedMesh::all(meshes) {
+        let setup = Setup { meshes: vec![source], ..context.setup.clone() };
+        let scene = setup.load()?;
+        let histogram = slicing::depth_profile(machine, &setup, &scene)?;
+        let levels = histogram.iter().enumerate();
+        rows.extend(levels.map(|(level, texels)| vec![json!(name), json!(level + 1), json!(texels)]));
+        let svg = slicing::profile_chart(&name, &histogram).to_svg()?;
+        context.save(&context.file(&format!("-{name}-profile.svg")), svg.as_bytes())?;
+    }
+    machine.check_validation()?;
+    Ok(rows)
+}
+
+fn picture_pairs(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, mut machine) = open(context)?;
+    look_from_below(context);
+    let mut rows = Vec::new();
+    for NamedMesh { source, name, .. } in NamedMesh::all(&meshes) {
+        let setup = Setup { meshes: vec![source], ..context.setup.clone() };
+        let scene = setup.load()?;
+        let pair = slicing::picture_pair(&mut machine, &setup, &scene)?;
+        for (slicing, picture) in [("normal", &pair.normal), ("smart", &pair.smart)] {
+            context.picture(&format!("-{name}-{slicing}.png"), picture)?;
+        }
+        let d = pair.difference;
+        rows.push(vec![json!(name), json!(d.mean), json!(d.p99), json!(d.max), json!(d.pixels)]);
+    }
+    let columns = &["mesh", "mean", "p99", "max", "pixels"];
+    let table = ResultTable { title: "Figure 5-13: Luv difference of the picture pair", columns, rows };
+    context.publish_plotted(&machine, &table, table.bars("Luv difference", &["mean", "p99"]))?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn appendix(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, mut machine) = compare(context, ALL_THREE)?;
+    depth_profiles(context, &mut machine, &meshes)?;
+    look_from_below(context);
+    for NamedMesh { source, name, .. } in NamedMesh::all(&meshes) {
+        let setup = Setup { meshes: vec![source], ..context.setup.clone() };
+        let scene = setup.load()?;
+        for variant in [Variant::Volumetric, Variant::LevelMap, Variant::LevelMapSmart] {
+            let mut built = build(&machine, &setup, &scene, variant)?;
+            let rendered = picture::render(&mut machine, &mut built.paper, 0)?;
+            context.picture(&format!("-{name}-{}.png", variant.as_str()), &rendered)?;
+        }
+    }
+    machine.check_validation().map_err(Error::from).map(drop)
+}

@@ -4,7 +4,7 @@
 use serde_json::json;
 
 use super::super::setup::{NamedMesh, Setup};
-use super::bars::{self, Bars, LEAST_SAMPLES};
+use super::ratios::{self, LEAST_SAMPLES, Ratios};
 use super::thesis::{TABLE_5_1, TABLE_5_3};
 use crate::measure::Error;
 use crate::measure::Variant as _;
@@ -103,7 +103,7 @@ pub struct Outcome {
     comparison: Comparison,
     runs: Vec<Run>,
     rows: Vec<Row>,
-    bars: Vec<Bars>,
+    ratios: Vec<Ratios>,
 }
 
 impl Outcome {
@@ -113,7 +113,7 @@ impl Outcome {
         let meshes = NamedMesh::all(meshes);
         let place = |row: sweep::Row| ((row.label, row.x as u32), row.run);
         let (places, mut runs): (Vec<_>, Vec<_>) = rows.into_iter().map(place).unzip();
-        let mut outcome = Outcome { comparison, runs: Vec::new(), rows: Vec::new(), bars: Vec::new() };
+        let mut outcome = Outcome { comparison, runs: Vec::new(), rows: Vec::new(), ratios: Vec::new() };
         let methods = comparison.variants().len();
         for (places, runs) in places.chunks(methods).zip(runs.chunks_mut(methods)) {
             let (name, planes) = &places[0];
@@ -158,7 +158,7 @@ impl Outcome {
                 thesis,
             });
         }
-        self.bars.push(Bars::of(&mesh.name, planes, runs));
+        self.ratios.push(Ratios::of(&mesh.name, planes, runs));
     }
 
     /// The runs, for the record.
@@ -205,7 +205,7 @@ impl Outcome {
             );
         }
         text.push('\n');
-        text.push_str(&bars::render(&self.bars, style));
+        text.push_str(&ratios::render(&self.ratios, style));
         text
     }
 

@@ -8,7 +8,7 @@ use crate::scene::Camera;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{name} {value}: {range}")]
 pub struct ParameterError {
-    /// The option that sets it.
+    /// Its name, without the spelling of an option. (Papers that are not declared yet give the option itself.)
     pub name: &'static str,
     /// As it was typed.
     pub value: String,
@@ -33,7 +33,7 @@ impl ParameterError {
     /// # Errors
     /// Where there is none.
     pub fn check_size(width: u32, height: u32) -> Result<(), Self> {
-        ParameterError::check(width >= 1 && height >= 1, "--size", format!("{width}x{height}"), "has no pixel")
+        ParameterError::check(width >= 1 && height >= 1, "size", format!("{width}x{height}"), "has no pixel")
     }
 
     /// Passes for a camera that sees something.
@@ -42,7 +42,7 @@ impl ParameterError {
     /// As [`Camera::validate`].
     pub fn check_camera(camera: &Camera) -> Result<(), Self> {
         let value = [camera.eye, camera.target].map(components).join(",");
-        camera.validate().map_err(|e| ParameterError { name: "--camera", value, range: e.to_string() })
+        camera.validate().map_err(|e| ParameterError { name: "camera", value, range: e.to_string() })
     }
 }
 

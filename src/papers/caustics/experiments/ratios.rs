@@ -1,5 +1,5 @@
-//! What the level maps have to reach from 11 planes on, row by row: not to be slower than the volumetric method and to need
-//! less memory, and with smart slicing to cost no more and no less than the share of planes that is drawn.
+//! Ratios of the methods at one count of planes, with their intervals: level map against volumetric by time and memory,
+//! and smart slicing against slicing normally by the fraction of planes that it draws.
 
 use serde_json::{Map, Value, json};
 
@@ -13,31 +13,6 @@ use crate::report::table::{Align, Style, Table, interval, number};
 
 /// Fewer samples a method say nothing of their noise.
 pub const LEAST_SAMPLES: usize = 5;
-/// With fewer planes the work that no plane causes dominates.
-const LEAST_PLANES: u32 = 11;
-/// What the upper end of level map over volumetric may be.
-const SLOWEST: f64 = 1.05;
-/// How far the cost of smart slicing may lie from the share of planes.
-const FROM_SHARE: f64 = 0.15;
-
-/// Whether a row reaches what it has to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
-    Holds,
-    Missed,
-    /// The interval reaches both sides, or there are too few samples for one.
-    Undecided,
-}
-
-impl Verdict {
-    fn as_str(self) -> &'static str {
-        match self {
-            Verdict::Holds => "holds",
-            Verdict::Missed => "missed",
-            Verdict::Undecided => "undecided",
-        }
-    }
-}
 
 /// A ratio, and its interval where there are samples enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,44 +34,42 @@ impl Measured {
 struct AgainstVolumetric {
     time: Measured,
     has_less_memory: Option<bool>,
-    verdict: Option<Verdict>,
 }
 
 /// Smart slicing against slicing normally at one count of planes.
 struct AgainstNormal {
     /// Planes drawn of those that slicing normally draws.
-    share: f64,
+    fraction: f64,
     /// GPU time of the caustics maps, which depends on the planes alone.
     caustics_map: Option<Measured>,
     /// Frame less profiling and readback over the normal frame.
     cost: Option<Measured>,
-    verdict: Option<Verdict>,
 }
 
-/// The bars of one mesh at one count of planes, as far as the methods were measured that they compare.
-pub struct Bars {
+/// The ratios of one mesh at one count of planes, as far as the methods were measured that they compare.
+pub struct Ratios {
     mesh: String,
     planes: u32,
     against_volumetric: Option<AgainstVolumetric>,
     against_normal: Option<AgainstNormal>,
 }
 
-impl Bars {
-    /// From interleaved runs of one configuration, whose results it notes the figures in.
+impl Ratios {
+    /// Those of interleaved runs of one configuration, noted in their results.
     pub fn of(mesh: &str, planes: u32, runs: &mut [Run]) -> Self {
         let [level, smart, volumetric] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric]
             .map(|variant| runs.iter().position(|run| run.variant == variant.as_str()));
         let pair = |base: Option<usize>, over: Option<usize>| Some((&runs[base?], &runs[over?]));
         let against_volumetric =
-            pair(level, volumetric).and_then(|(level, other)| against_volumetric(planes, level, other));
-        let against_normal = pair(level, smart).and_then(|(level, smart)| against_normal(planes, level, smart));
-        if let (Some(bar), Some(at)) = (&against_volumetric, volumetric) {
-            runs[at].results.extend(bar.figures());
+            pair(level, volumetric).and_then(|(level, other)| against_volumetric(level, other));
+        let against_normal = pair(level, smart).and_then(|(level, smart)| against_normal(level, smart));
+        if let (Some(ratios), Some(at)) = (&against_volumetric, volumetric) {
+            runs[at].results.extend(ratios.results());
         }
-        if let (Some(bar), Some(at)) = (&against_normal, smart) {
-            runs[at].results.extend(bar.figures());
+        if let (Some(ratios), Some(at)) = (&against_normal, smart) {
+            runs[at].results.extend(ratios.results());
         }
-        Bars { mesh: mesh.to_owned(), planes, against_volumetric, against_normal }
+        Ratios { mesh: mesh.to_owned(), planes, against_volumetric, against_normal }
     }
 }
 
@@ -104,33 +77,22 @@ fn pass<'a>(run: &'a Run, name: &str) -> Option<&'a Pass> {
     run.passes.iter().find(|pass| pass.name == name)
 }
 
-fn against_volumetric(planes: u32, level: &Run, volumetric: &Run) -> Option<AgainstVolumetric> {
+fn against_volumetric(level: &Run, volumetric: &Run) -> Option<AgainstVolumetric> {
     let time = Measured::of(level.frame_samples(), volumetric.frame_samples())?;
     let bytes = level.memory.device_bytes.zip(volumetric.memory.device_bytes);
     let has_less_memory = bytes.map(|(level, volumetric)| level < volumetric);
-    let verdict = match (time.interval, has_less_memory) {
-        (_, Some(false)) => Verdict::Missed,
-        (Some([_, high]), Some(true)) if high <= SLOWEST => Verdict::Holds,
-        (Some(_), Some(true)) => Verdict::Missed,
-        _ => Verdict::Undecided,
-    };
-    Some(AgainstVolumetric { time, has_less_memory, verdict: (planes >= LEAST_PLANES).then_some(verdict) })
+    Some(AgainstVolumetric { time, has_less_memory })
 }
 
-fn against_normal(planes: u32, level: &Run, smart: &Run) -> Option<AgainstNormal> {
+fn against_normal(level: &Run, smart: &Run) -> Option<AgainstNormal> {
     let drawn = |run: &Run| run.results.get("planes_drawn").and_then(Value::as_f64).filter(|&planes| planes > 0.0);
-    let share = drawn(smart)? / drawn(level)?;
+    let fraction = drawn(smart)? / drawn(level)?;
     fn gpu_ms(run: &Run) -> Option<&[f64]> {
         Some(&pass(run, "caustics-map")?.gpu_ms.as_ref()?.samples)
     }
     let caustics_map = gpu_ms(smart).zip(gpu_ms(level)).and_then(|(smart, level)| Measured::of(smart, level));
     let cost = without_profiling(smart).and_then(|smart| Measured::of(&smart, level.frame_samples()));
-    let verdict = match cost.and_then(|cost| cost.interval).map(|interval| interval.map(|end| end / share - 1.0)) {
-        Some([low, high]) if low >= -FROM_SHARE && high <= FROM_SHARE => Verdict::Holds,
-        Some([low, high]) if high < -FROM_SHARE || low > FROM_SHARE => Verdict::Missed,
-        _ => Verdict::Undecided,
-    };
-    Some(AgainstNormal { share, caustics_map, cost, verdict: (planes >= LEAST_PLANES).then_some(verdict) })
+    Some(AgainstNormal { fraction, caustics_map, cost })
 }
 
 /// Frame times of smart slicing without what it does beyond slicing normally: the profile, and the wait for the position
@@ -150,61 +112,52 @@ fn without_profiling(smart: &Run) -> Option<Vec<f64>> {
 }
 
 impl AgainstVolumetric {
-    fn figures(&self) -> Map<String, Value> {
+    fn results(&self) -> Map<String, Value> {
         entries([
             ("level_map_over_volumetric", json!(self.time.ratio)),
             ("level_map_over_volumetric_interval", json!(self.time.interval)),
             ("level_map_has_less_memory", json!(self.has_less_memory)),
-            ("level_map_bar", json!(self.verdict.map(Verdict::as_str))),
         ])
     }
 }
 
 impl AgainstNormal {
-    fn figures(&self) -> Map<String, Value> {
+    fn results(&self) -> Map<String, Value> {
         entries([
-            ("planes_share", json!(self.share)),
+            ("planes_share", json!(self.fraction)),
             ("caustics_map_over_normal", json!(self.caustics_map.map(|m| m.ratio))),
             ("caustics_map_over_normal_interval", json!(self.caustics_map.and_then(|m| m.interval))),
             ("cost_over_normal", json!(self.cost.map(|m| m.ratio))),
             ("cost_over_normal_interval", json!(self.cost.and_then(|m| m.interval))),
-            ("cost_over_share", json!(self.cost.map(|m| m.ratio / self.share))),
-            ("smart_bar", json!(self.verdict.map(Verdict::as_str))),
+            ("cost_over_share", json!(self.cost.map(|m| m.ratio / self.fraction))),
         ])
     }
 }
 
-/// The bars of a sweep as tables; nothing where it compares neither.
-pub fn render(bars: &[Bars], style: Style) -> String {
+/// The ratios of a sweep as tables; nothing where it compares neither.
+pub fn render(all: &[Ratios], style: Style) -> String {
     let mut text = String::new();
-    let verdict = |verdict: Option<Verdict>| verdict.map_or("", Verdict::as_str).to_owned();
-    if bars.iter().any(|bars| bars.against_volumetric.is_some()) {
+    if all.iter().any(|ratios| ratios.against_volumetric.is_some()) {
         let mut table = Table::new(&[
             ("mesh", Align::Left),
             ("planes", Align::Right),
             ("level-map / volumetric", Align::Right),
             ("95 % interval", Align::Left),
             ("less memory", Align::Left),
-            ("bar", Align::Left),
         ]);
-        for Bars { mesh, planes, against_volumetric, .. } in bars {
-            let Some(bar) = against_volumetric else { continue };
+        for Ratios { mesh, planes, against_volumetric, .. } in all {
+            let Some(row) = against_volumetric else { continue };
             table.push(vec![
                 mesh.clone(),
                 planes.to_string(),
-                number(Some(bar.time.ratio), 3),
-                interval(bar.time.interval),
-                bar.has_less_memory.map_or("", |less| if less { "yes" } else { "no" }).to_owned(),
-                verdict(bar.verdict),
+                number(Some(row.time.ratio), 3),
+                interval(row.time.interval),
+                row.has_less_memory.map_or("", |less| if less { "yes" } else { "no" }).to_owned(),
             ]);
         }
         text.push_str(&table.render(style));
-        text.push_str(&format!(
-            "bar: from {LEAST_PLANES} planes on the interval's upper end is at most {SLOWEST}, and the level map needs less \
-             memory\n"
-        ));
     }
-    if bars.iter().any(|bars| bars.against_normal.is_some()) {
+    if all.iter().any(|ratios| ratios.against_normal.is_some()) {
         let mut table = Table::new(&[
             ("mesh", Align::Left),
             ("planes", Align::Right),
@@ -214,29 +167,26 @@ pub fn render(bars: &[Bars], style: Style) -> String {
             ("cost", Align::Right),
             ("95 % interval", Align::Left),
             ("cost / share", Align::Right),
-            ("bar", Align::Left),
         ]);
-        for Bars { mesh, planes, against_normal, .. } in bars {
-            let Some(bar) = against_normal else { continue };
+        for Ratios { mesh, planes, against_normal, .. } in all {
+            let Some(row) = against_normal else { continue };
             table.push(vec![
                 mesh.clone(),
                 planes.to_string(),
-                format!("{:.3}", bar.share),
-                number(bar.caustics_map.map(|m| m.ratio), 3),
-                interval(bar.caustics_map.and_then(|m| m.interval)),
-                number(bar.cost.map(|m| m.ratio), 3),
-                interval(bar.cost.and_then(|m| m.interval)),
-                number(bar.cost.map(|m| m.ratio / bar.share), 3),
-                verdict(bar.verdict),
+                format!("{:.3}", row.fraction),
+                number(row.caustics_map.map(|m| m.ratio), 3),
+                interval(row.caustics_map.and_then(|m| m.interval)),
+                number(row.cost.map(|m| m.ratio), 3),
+                interval(row.cost.and_then(|m| m.interval)),
+                number(row.cost.map(|m| m.ratio / row.fraction), 3),
             ]);
         }
         text.push_str(&table.render(style));
-        text.push_str(&format!(
+        text.push_str(
             "smart slicing over slicing normally. caustics-map: GPU time of that pass. cost: frame less depth-profile and the \
-             wait for the position map, but for the maps' own GPU time\nbar: from {LEAST_PLANES} planes on the interval of \
-             cost / share lies within {:.0} % of 1\n",
-            100.0 * FROM_SHARE
-        ));
+             wait for the position map, but for the maps' own GPU time
+",
+        );
     }
     text
 }
@@ -260,26 +210,22 @@ mod tests {
         run
     }
 
-    fn verdict(runs: &[Run], variant: Variant, bar: &str) -> Value {
-        runs.iter().find(|run| run.variant == variant.as_str()).unwrap().results[bar].clone()
-    }
-
     #[test]
-    fn the_level_map_may_be_slower_by_a_twentieth_and_needs_less_memory() {
-        let of = |planes: u32, level_ms: f64, count: usize, bytes: u64| {
+    fn the_level_map_is_set_against_the_volumetric_method() {
+        let of = |level_ms: f64, count: usize, bytes: u64| {
             let mut runs = [
-                run(Variant::LevelMap, &frames(level_ms, count), planes, bytes),
-                run(Variant::Volumetric, &frames(10.0, count), planes, 100),
+                run(Variant::LevelMap, &frames(level_ms, count), 11, bytes),
+                run(Variant::Volumetric, &frames(10.0, count), 11, 100),
             ];
-            Bars::of("sphere", planes, &mut runs);
-            verdict(&runs, Variant::Volumetric, "level_map_bar")
+            Ratios::of("sphere", 11, &mut runs);
+            runs[1].results.clone()
         };
-        assert_eq!(of(11, 9.0, 9, 50), "holds");
-        assert_eq!(of(11, 10.2, 9, 50), "holds");
-        assert_eq!(of(11, 11.0, 9, 50), "missed");
-        assert_eq!(of(11, 9.0, 9, 100), "missed");
-        assert_eq!(of(11, 9.0, 3, 50), "undecided");
-        assert_eq!(of(3, 11.0, 9, 50), Value::Null);
+        let results = of(9.0, 9, 50);
+        assert!((results["level_map_over_volumetric"].as_f64().unwrap() - 0.9).abs() < 1e-9);
+        assert!(results["level_map_over_volumetric_interval"].is_array());
+        assert_eq!(results["level_map_has_less_memory"], true);
+        assert_eq!(of(9.0, 9, 100)["level_map_has_less_memory"], false);
+        assert_eq!(of(9.0, 3, 50)["level_map_over_volumetric_interval"], Value::Null);
     }
 
     fn timed(name: &str, time: impl Fn(&mut Pass)) -> Pass {
@@ -306,30 +252,24 @@ mod tests {
     fn smart_slicing_costs_its_share_without_what_profiling_takes() {
         // Less 1 ms of profile and 5 ms of waiting, of which 2 ms draw the maps.
         let mut runs = sliced(14.0);
-        let bars = [Bars::of("sphere", 20, &mut runs)];
+        let all = [Ratios::of("sphere", 20, &mut runs)];
         let results = &runs[0].results;
         let of = |name: &str| results[name].as_f64().unwrap();
         assert_eq!(of("planes_share"), 0.5);
         assert!((of("caustics_map_over_normal") - 0.6).abs() < 1e-9);
         assert!((of("cost_over_normal") - 0.5).abs() < 1e-9);
         assert!((of("cost_over_share") - 1.0).abs() < 1e-9);
-        assert_eq!(results["smart_bar"], "holds");
-        assert!(render(&bars, Style::default()).contains("holds"));
-
-        for (frame_ms, expected) in [(18.0, "missed"), (10.0, "missed"), (15.5, "undecided")] {
-            let mut runs = sliced(frame_ms);
-            Bars::of("sphere", 20, &mut runs);
-            assert_eq!(runs[0].results["smart_bar"], expected, "{frame_ms}");
-        }
+        let text = render(&all, Style::default());
+        assert!(text.contains("0.500") && text.contains("1.000"), "{text}");
     }
 
     #[test]
     fn what_was_not_timed_is_absent() {
         let mut runs = sliced(14.0);
         runs[0].passes.retain(|pass| pass.name != "depth-profile");
-        let bars = [Bars::of("sphere", 20, &mut runs)];
+        let all = [Ratios::of("sphere", 20, &mut runs)];
         assert_eq!(runs[0].results["cost_over_normal"], Value::Null);
-        assert_eq!(runs[0].results["smart_bar"], "undecided");
-        assert!(render(&bars, Style::default()).contains("undecided"));
+        assert_eq!(runs[0].results["cost_over_normal_interval"], Value::Null);
+        assert!(render(&all, Style::default()).contains("0.500"));
     }
 }

@@ -1,0 +1,332 @@
+//! A paper's command line, made of its declarations: options of its parameters, and the verbs.
+
+use std::ffi::{OsStr, OsString};
+use std::path::PathBuf;
+
+use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+
+use super::failure::Failure;
+use super::options::{CommonArgs, MachineArgs};
+use super::outcome::{self, Terminal};
+use super::render::PictureArgs;
+use super::{bench, passes, render, spelling};
+use crate::measure::Variant;
+use crate::measure::experiment::{Context, Experiment};
+use crate::measure::parameter::{Given, Parameter, Shape};
+use crate::measure::study::{Declared, Preset};
+
+/// Options of all papers that the short help lists.
+const EVERYDAY: [&str; 14] = [
+    "variant", "preset", "name", "list", "counts", "frame", "dump", "device", "validate", "frames", "repeat", "json",
+    "image", "quiet",
+];
+
+/// The command of a paper with all its verbs.
+pub fn command<S: Declared>() -> Command {
+    Command::new(S::PAPER)
+        .about(S::ABOUT)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(passes_command::<S>())
+        .subcommand(bench_command::<S>())
+        .subcommand(experiment_command::<S>())
+        .subcommand(render_command::<S>())
+        .subcommands(S::verbs().iter().map(own_command))
+}
+
+fn passes_command<S: Declared>() -> Command {
+    let command = Command::new("passes")
+        .arg(variant_list::<S>("Variants to list, comma-separated, or all", "that of a preset made for one, or all"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"));
+    finish(MachineArgs::augment_args(with_scene::<S>(command)), "List the passes in the paper's order")
+}
+
+fn bench_command<S: Declared>() -> Command {
+    let benched = S::BENCHED.iter().map(|v| v.as_str()).collect::<Vec<_>>().join(",");
+    let default = format!("that of a preset made for one, or {benched}");
+    let variants = variant_list::<S>("Variants to measure, comma-separated, or all", &default);
+    let command = with_scene::<S>(Command::new("bench").arg(variants));
+    finish(CommonArgs::augment_args(command), "Time one configuration in one or more variants, interleaved")
+}
+
+fn experiment_command<S: Declared>() -> Command {
+    let names = S::experiments().into_iter().map(|e| PossibleValue::new(e.name).help(e.help));
+    let name = Arg::new("name").help("Table or figure of the paper").required_unless_present("list");
+    let command = Command::new("experiment")
+        .arg(name.value_parser(PossibleValuesParser::new(names)))
+        .arg(Arg::new("list").long("list").action(ArgAction::SetTrue).help("List the experiments"))
+        .args(options(&S::options(), &S::Options::default()));
+    let command = CommonArgs::augment_args(with_scene::<S>(command));
+    finish(command, "Reproduce one table or figure, ours beside the paper's")
+}
+
+fn render_command<S: Declared>() -> Command {
+    let rendered = S::RENDERED.as_str();
+    let variant = Arg::new("variant")
+        .long("variant")
+        .value_name("VARIANT")
+        .help(format!("Variant to render [default: the preset's if it has one, or {rendered}]"))
+        .value_parser(PossibleValuesParser::new(S::Variant::ALL.iter().map(|v| v.as_str())));
+    let command = with_scene::<S>(Command::new("render").arg(variant));
+    finish(PictureArgs::augment_args(command), "Write pictures and intermediate targets")
+}
+
+/// A verb that no other paper has, with the parameters and options that it heeds.
+fn own_command<S: Declared>(verb: &Experiment<S>) -> Command {
+    let heeded = |p: &Parameter<S>| !verb.refuses.iter().any(|(name, _)| *name == p.name);
+    let scene: Vec<_> = S::parameters().into_iter().filter(heeded).collect();
+    let own: Vec<_> = S::options().into_iter().filter(|o| verb.options.contains(&o.name)).collect();
+    let json = Arg::new("json").long("json").value_name("FILE").num_args(0..=1).default_missing_value("-");
+    let command =
+        Command::new(verb.name).args(options(&own, &S::Options::default())).args(options(&scene, &S::default())).arg(
+            json.value_parser(OsStringValueParser::new())
+                .help_heading("Output")
+                .help("Write what was found as JSON; to standard output without a file"),
+        );
+    finish(command, verb.help)
+}
+
+/// The short help lists everyday options, the long one all of them.
+fn finish(command: Command, about: &'static str) -> Command {
+    let parameters = ["Device", "Measuring", "Output"];
+    let is_everyday = |arg: &Arg| {
+        let is_common = arg.get_help_heading().is_none_or(|heading| parameters.contains(&heading));
+        !is_common || EVERYDAY.contains(&arg.get_id().as_str())
+    };
+    command
+        .about(about)
+        .long_about(None)
+        .disable_help_flag(true)
+        .disable_version_flag(true)
+        .mut_args(|arg| if is_everyday(&arg) { arg } else { arg.hide_short_help(true) })
+        .arg(
+            Arg::new("help")
+                .short('h')
+                .long("help")
+                .action(ArgAction::HelpShort)
+                .help("Print help on everyday options"),
+        )
+        .arg(Arg::new("help-all").long("help-all").action(ArgAction::HelpLong).help("Print help on every option"))
+}
+
+/// The command with the paper's parameters and presets as options.
+fn with_scene<S: Declared>(command: Command) -> Command {
+    let presets = S::presets();
+    let command = if presets.is_empty() { command } else { command.arg(preset_option(&presets)) };
+    command.args(options(&S::parameters(), &S::default()))
+}
+
+fn preset_option<S: Declared>(presets: &[Preset<S>]) -> Arg {
+    let names = presets.iter().map(|preset| PossibleValue::new(preset.name).help(preset.help));
+    Arg::new("preset")
+        .long("preset")
+        .help_heading("Scene")
+        .value_name("NAME")
+        .value_parser(PossibleValuesParser::new(names))
+        .help("Take the numbers of a figure or table; options given beside it win")
+}
+
+fn variant_list<S: Declared>(help: &str, default: &str) -> Arg {
+    Arg::new("variant")
+        .long("variant")
+        .value_name("VARIANT,..")
+        .action(ArgAction::Append)
+        .value_delimiter(',')
+        .help(format!("{help} [default: {default}]"))
+        .value_parser(PossibleValuesParser::new(S::Variant::ALL.iter().map(|v| v.as_str()).chain(["all"])))
+}
+
+/// The option of each parameter; of one that is on by default also its opposite.
+fn options<S: 'static>(parameters: &[Parameter<S>], default: &S) -> Vec<Arg> {
+    parameters.iter().flat_map(|parameter| arguments(parameter, default)).collect()
+}
+
+/// Names of the opposites of flags.
+fn opposite(name: &str) -> String {
+    format!("no-{name}")
+}
+
+fn arguments<S: 'static>(parameter: &Parameter<S>, default: &S) -> Vec<Arg> {
+    let shape = parameter.shape();
+    let is_on = parameter.text(default) == "on";
+    let option = |name: String| {
+        let arg = Arg::new(name.clone()).long(name).help_heading(parameter.group);
+        if parameter.is_everyday { arg } else { arg.hide_short_help(true) }
+    };
+    if shape.is_flag {
+        // The one that changes nothing is taken and not listed.
+        let [flag, other] = [(parameter.name.to_owned(), is_on), (opposite(parameter.name), !is_on)]
+            .map(|(name, hidden)| option(name).action(ArgAction::SetTrue).help(help(parameter, default)).hide(hidden));
+        return vec![flag.overrides_with(opposite(parameter.name)), other.overrides_with(parameter.name)];
+    }
+    let action = if shape.is_list { ArgAction::Append } else { ArgAction::Set };
+    let arg = option(parameter.name.to_owned())
+        .value_name(parameter.placeholder)
+        .action(action)
+        .help(help(parameter, default))
+        .allow_hyphen_values(shape.is_signed && shape.placeholder.contains([',', 'x']))
+        .allow_negative_numbers(shape.is_signed)
+        .conflicts_with_all(parameter.excludes);
+    let arg = if shape.is_list && shape.joins { arg.value_delimiter(',') } else { arg };
+    let arg = parameter.requires.into_iter().fold(arg, |arg, name| arg.requires(name));
+    vec![if shape.choices.is_empty() { arg.value_parser(parser(parameter)) } else { arg.value_parser(names(shape)) }]
+}
+
+fn names(shape: Shape) -> impl TypedValueParser<Value = OsString> {
+    let names = shape.choices.iter().map(|(name, help)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(names).map(OsString::from)
+}
+
+/// Checks the form of a value and passes it on as it was typed.
+fn parser<S: 'static>(parameter: &Parameter<S>) -> impl TypedValueParser<Value = OsString> + use<S> {
+    let parse = parameter.parser();
+    OsStringValueParser::new().try_map(move |text| parse(&[OsStr::new(&text)]).map(|()| text))
+}
+
+/// Help with range, unit, default and section.
+fn help<S: 'static>(parameter: &Parameter<S>, default: &S) -> String {
+    let bounds = Some(parameter.bounds()).filter(|bounds| !bounds.is_empty()).map(|bounds| format!(", {bounds}"));
+    let repeatable = if parameter.shape().is_list && !parameter.shape().joins { "; repeatable" } else { "" };
+    let default = if parameter.shape().is_flag { String::new() } else { parameter.default_of(default) };
+    let default = if default.is_empty() { default } else { format!(" [default: {default}]") };
+    let section = if parameter.section.is_empty() { String::new() } else { format!(" ({})", parameter.section) };
+    let help = spelling::every(parameter.help);
+    format!("{help}{}{repeatable}{section}{default}", bounds.unwrap_or_default())
+}
+
+/// Sets the parameters that were typed, in the order in which they are declared.
+fn read<S: 'static>(matches: &ArgMatches, parameters: &[Parameter<S>], setup: &mut S) -> Result<(), Failure> {
+    for parameter in parameters {
+        let name = parameter.name;
+        let result = if parameter.shape().is_flag {
+            let flag = |name: &str| matches.try_get_one::<bool>(name).ok().flatten() == Some(&true);
+            match (flag(name), flag(&opposite(name))) {
+                (true, _) => parameter.set(setup, &[OsStr::new("true")]),
+                (_, true) => parameter.set(setup, &[OsStr::new("false")]),
+                _ => Ok(()),
+            }
+        } else {
+            let Ok(Some(values)) = matches.try_get_many::<OsString>(name) else { continue };
+            parameter.set(setup, &values.map(OsString::as_os_str).collect::<Vec<_>>())
+        };
+        result.map_err(|reason| Failure::Input(format!("--{name}: {reason}")))?;
+    }
+    Ok(())
+}
+
+/// Names that were typed.
+fn given(matches: &ArgMatches) -> Given {
+    let typed = |id: &clap::Id| matches.value_source(id.as_str()) == Some(ValueSource::CommandLine);
+    let names = matches.ids().filter(|id| typed(id));
+    names.map(|id| id.as_str().strip_prefix("no-").unwrap_or(id.as_str()).to_owned()).collect()
+}
+
+/// A scene as it was typed.
+struct Typed<'a, S: Declared> {
+    matches: &'a ArgMatches,
+    preset: Option<Preset<S>>,
+}
+
+impl<'a, S: Declared> Typed<'a, S> {
+    fn new(matches: &'a ArgMatches) -> Self {
+        let name = matches.try_get_one::<String>("preset").ok().flatten();
+        let preset = name.and_then(|name| S::presets().into_iter().find(|preset| preset.name == name));
+        Typed { matches, preset }
+    }
+
+    /// What was typed, over the preset's numbers, over the defaults.
+    fn resolve(&self) -> Result<S, Failure> {
+        let mut setup = self.preset.as_ref().map_or_else(S::default, |preset| (preset.setup)());
+        *setup.preset_mut() = self.preset.as_ref().map(|preset| preset.name.to_owned());
+        read(self.matches, &S::parameters(), &mut setup)?;
+        setup.resolve(&given(self.matches))?;
+        Ok(setup)
+    }
+
+    fn preset_variant(&self) -> Option<S::Variant> {
+        self.preset.as_ref().and_then(|preset| preset.variant)
+    }
+
+    /// The variants that were named, each once, or else the preset's, or else `usual`.
+    fn variants(&self, usual: &[S::Variant]) -> Vec<S::Variant> {
+        let named: Vec<&String> = self.matches.get_many("variant").into_iter().flatten().collect();
+        match (named.as_slice(), self.preset_variant()) {
+            ([], Some(variant)) => vec![variant],
+            ([], None) => usual.to_vec(),
+            (names, _) => {
+                let is_named = |v: &S::Variant| names.iter().any(|name| *name == "all" || *name == v.as_str());
+                S::Variant::ALL.iter().copied().filter(is_named).collect()
+            }
+        }
+    }
+}
+
+/// Runs the verb that was typed.
+pub fn run<S: Declared>(matches: &ArgMatches) -> Result<(), Failure> {
+    let Some((verb, matches)) = matches.subcommand() else { return Ok(()) };
+    let typed = Typed::<S>::new(matches);
+    match verb {
+        "passes" => {
+            let machine = MachineArgs::from_arg_matches(matches)?;
+            passes::list(&typed.resolve()?, &typed.variants(S::Variant::ALL), &machine, matches.get_flag("json"))
+        }
+        "bench" => {
+            bench::publish(&CommonArgs::from_arg_matches(matches)?, &typed.variants(S::BENCHED), || typed.resolve())
+        }
+        "render" => {
+            let setup = typed.resolve()?;
+            let name = matches.get_one::<String>("variant");
+            let named = name.and_then(|name| S::Variant::ALL.iter().copied().find(|v| v.as_str() == name));
+            let variant = named.unwrap_or_else(|| setup.rendered(typed.preset_variant()));
+            render::draw(variant, &PictureArgs::from_arg_matches(matches)?, || Ok(setup))
+        }
+        "experiment" => experiment(matches, &typed),
+        verb => own_verb(verb, matches, &typed),
+    }
+}
+
+fn experiment<S: Declared>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
+    let experiments = S::experiments();
+    let name = matches.get_one::<String>("name").filter(|_| !matches.get_flag("list"));
+    let Some(experiment) = name.and_then(|name| experiments.iter().find(|e| e.name == name)) else {
+        return outcome::print(&experiments.iter().map(|e| format!("{:14}{}\n", e.name, e.help)).collect::<String>());
+    };
+    let common = CommonArgs::from_arg_matches(matches)?;
+    outcome::check(&common.output)?;
+    let mut options = S::Options::default();
+    read(matches, &S::options(), &mut options)?;
+    let mut context = Context {
+        name: experiment.name,
+        setup: typed.resolve()?,
+        options,
+        given: given(matches),
+        machine: common.machine.resolve(common.measure.process),
+        measure: common.measure.options(),
+        destinations: common.output.destinations(),
+        console: &Terminal { is_quiet: common.output.quiet },
+    };
+    *context.setup.preset_mut() = Some(experiment.name.to_owned());
+    Ok(context.run(experiment)?)
+}
+
+fn own_verb<S: Declared>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
+    let Some(verb) = S::verbs().into_iter().find(|verb| verb.name == name) else { return Ok(()) };
+    let mut options = S::Options::default();
+    read(matches, &S::options(), &mut options)?;
+    let defaults = CommonArgs::defaults();
+    let mut destinations = defaults.output.destinations();
+    destinations.json = matches.get_one::<OsString>("json").map(PathBuf::from);
+    let mut context = Context {
+        name: verb.name,
+        setup: typed.resolve()?,
+        options,
+        given: given(matches),
+        machine: defaults.machine.resolve(0),
+        measure: defaults.measure.options(),
+        destinations,
+        console: &Terminal { is_quiet: false },
+    };
+    Ok((verb.run)(&mut context)?)
+}

@@ -1,0 +1,277 @@
+//! A paper's experiments: one table or figure each, ours beside the paper's, with what they run in.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::error::Error;
+use super::limits;
+use super::machine::{Machine, MachineOptions};
+use super::measure::{Schedule, Watch};
+use super::parameter::Given;
+use super::result_table::ResultTable;
+use super::study::Declared;
+use super::sweep::{Plan, Point, Swept};
+use crate::image::{self, Raster, Rgba8};
+use crate::report::output::{check_writable, write};
+use crate::report::plot::PlotError;
+use crate::report::record::Run;
+use crate::report::table::Style;
+use crate::report::{Record, csv, json as writer};
+
+/// One table or figure of a paper.
+pub struct Experiment<S: Declared> {
+    /// The paper's own name for it: `5-1`.
+    pub name: &'static str,
+    pub help: &'static str,
+    /// Names among [`Declared::options`] that it heeds; the others are refused.
+    pub options: &'static [&'static str],
+    /// Names of parameters and options that it does not heed, each with the reason. Names in backticks are options.
+    pub refuses: &'static [(&'static str, &'static str)],
+    /// Reproduces it.
+    pub run: fn(&mut Context<'_, S>) -> Result<(), Error>,
+}
+
+/// What a user sees of an experiment while it runs and after it.
+pub trait Console {
+    /// Prints on standard output.
+    ///
+    /// # Errors
+    /// Where nothing can be printed.
+    fn print(&self, text: &str) -> Result<(), Error>;
+
+    /// Prints a line on standard error, unless the user wants quiet.
+    fn say(&self, line: &str);
+
+    /// Decoration of text on standard output.
+    fn style(&self) -> Style;
+
+    /// Runs measured work under a progress bar.
+    fn watch(&self, title: &str, work: &mut dyn FnMut(&mut Watch<'_>));
+
+    /// A message with its parameters named as the user names them.
+    fn spell(&self, message: &str) -> String;
+}
+
+/// Files that results go to.
+#[derive(Debug, Clone)]
+pub struct Destinations {
+    /// Folder of all files that have no name of their own.
+    pub folder: PathBuf,
+    /// The record; `-` is standard output, which then holds nothing else.
+    pub json: Option<PathBuf>,
+    /// The record's rows.
+    pub csv: Option<PathBuf>,
+    pub is_quiet: bool,
+}
+
+/// Frames, repetitions and limits as they were asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct MeasureOptions {
+    pub warmup: u32,
+    pub frames: Option<u32>,
+    pub repeat: Option<u32>,
+    pub min_time_s: f64,
+    /// Measure the device's own limits first.
+    pub has_limits: bool,
+}
+
+impl MeasureOptions {
+    /// What was asked for, or `frames` and `repeat`.
+    pub fn schedule(&self, (frames, repeat): (u32, u32)) -> Schedule {
+        Schedule {
+            warmup: self.warmup,
+            frames: self.frames.unwrap_or(frames),
+            repeat: self.repeat.unwrap_or(repeat),
+            min_time_s: self.min_time_s,
+        }
+    }
+}
+
+/// An experiment that runs: what a user set up, and where its results go.
+pub struct Context<'a, S: Declared> {
+    pub name: &'static str,
+    pub setup: S,
+    /// The paper's options of experiments.
+    pub options: S::Options,
+    pub given: Given,
+    pub machine: MachineOptions,
+    pub measure: MeasureOptions,
+    pub destinations: Destinations,
+    pub console: &'a dyn Console,
+}
+
+impl<S: Declared> Context<'_, S> {
+    /// Runs an experiment after a look at its options and files.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for an option that it does not heed, [`Error::Output`] for a file that cannot be written, and
+    /// what the experiment answers.
+    pub fn run(&mut self, experiment: &Experiment<S>) -> Result<(), Error> {
+        self.refuse(experiment)?;
+        check_writable(&self.json_file())?;
+        check_writable(&self.csv_file())?;
+        // One file of the experiment's own stands for all: they go to one folder.
+        check_writable(&self.file(".json"))?;
+        (experiment.run)(self)
+    }
+
+    fn refuse(&self, experiment: &Experiment<S>) -> Result<(), Error> {
+        let never = [
+            ("processes", "an experiment runs in one process; bench takes several"),
+            ("trace", "an experiment has no trace; bench writes one"),
+            ("image", "an experiment names its own pictures; render writes one"),
+        ];
+        let refused = never.iter().chain(experiment.refuses).find(|(name, _)| self.given.has(name));
+        if let Some((name, reason)) = refused {
+            return Err(Error::Input(format!("`{name}`: {reason}")));
+        }
+        let options = S::options();
+        let unheeded = options.iter().find(|o| self.given.has(o.name) && !experiment.options.contains(&o.name));
+        unheeded.map_or(Ok(()), |option| Err(Error::Input(format!("`{}`: this experiment has none", option.name))))
+    }
+
+    /// Opens the machine and says which it is.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn open(&self) -> Result<Machine, Error> {
+        let machine = Machine::open(&self.machine, S::NEEDS)?;
+        self.console.say(&format!("device: {}", machine.description()));
+        Ok(machine)
+    }
+
+    pub fn schedule(&self) -> Schedule {
+        self.measure.schedule(S::EXPERIMENT_FRAMES)
+    }
+
+    /// Measures the points under a progress bar.
+    ///
+    /// # Errors
+    /// As [`Plan::measure`].
+    pub fn sweep(&self, machine: &mut Machine, points: &[Point<S>]) -> Result<Swept, Error> {
+        let limits = if self.measure.has_limits { Some(limits::measure(machine)?) } else { None };
+        let plan = Plan { schedule: self.schedule(), limits: limits.as_ref() };
+        let mut swept = Err(Error::Interrupted);
+        let title = format!("{} {}", S::PAPER, self.name);
+        self.console.watch(&title, &mut |watch| swept = plan.measure(points, machine, watch));
+        swept
+    }
+
+    /// A file of the experiment's own, in the folder for files that are not named.
+    pub fn file(&self, suffix: &str) -> PathBuf {
+        self.destinations.folder.join(format!("{}-{}{suffix}", S::PAPER, self.name))
+    }
+
+    /// Writes a file and says so.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn save(&self, path: &Path, bytes: &[u8]) -> Result<(), Error> {
+        write(path, bytes)?;
+        self.wrote(path);
+        Ok(())
+    }
+
+    /// Writes a picture under the experiment's name.
+    ///
+    /// # Errors
+    /// [`Error::Image`].
+    pub fn picture(&self, suffix: &str, picture: &Rgba8) -> Result<(), Error> {
+        let path = self.file(suffix);
+        image::write_png(&path, picture)?;
+        self.wrote(&path);
+        Ok(())
+    }
+
+    /// Writes a target as a drawing to look at.
+    ///
+    /// # Errors
+    /// [`Error::Image`].
+    pub fn drawing(&self, suffix: &str, raster: &Raster) -> Result<(), Error> {
+        let path = self.file(suffix);
+        image::write(&path, raster)?;
+        self.wrote(&path);
+        Ok(())
+    }
+
+    /// Publishes a measured table: the record, its rows and the plots, each with its file's suffix, as files, and
+    /// `table` or the record on standard output.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn publish_runs(
+        &self,
+        machine: &Machine,
+        mut runs: Vec<Run>,
+        table: String,
+        plots: &[(String, String)],
+    ) -> Result<(), Error> {
+        for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
+            *warning = self.console.spell(warning);
+        }
+        let record = Record::new(machine.environment(), std::env::args().collect(), runs);
+        let text = json_text(&record)?;
+        self.save(&self.json_file(), text.as_bytes())?;
+        self.save(&self.csv_file(), csv::to_string(&record).as_bytes())?;
+        for (suffix, svg) in plots {
+            self.save(&self.file(suffix), svg.as_bytes())?;
+        }
+        self.print(if self.is_json_printed() { text } else { table })
+    }
+
+    /// Publishes a table without times: JSON and CSV as files, and the table or the JSON on standard output.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn publish_table(&self, machine: &Machine, table: &ResultTable) -> Result<(), Error> {
+        let document: Value = json!({
+            "experiment": self.name, "environment": machine.environment(),
+            "command": std::env::args().collect::<Vec<_>>(), "table": table.json(),
+        });
+        let text = json_text(&document)?;
+        self.save(&self.json_file(), text.as_bytes())?;
+        self.save(&self.csv_file(), table.csv().as_bytes())?;
+        self.print(if self.is_json_printed() { text } else { table.render(self.console.style()) })
+    }
+
+    /// Publishes a table without times and its plot.
+    ///
+    /// # Errors
+    /// [`Error::Plot`], [`Error::Output`].
+    pub fn publish_plotted(
+        &self,
+        machine: &Machine,
+        table: &ResultTable,
+        plot: Result<String, PlotError>,
+    ) -> Result<(), Error> {
+        self.save(&self.file(".svg"), plot?.as_bytes())?;
+        self.publish_table(machine, table)
+    }
+
+    fn is_json_printed(&self) -> bool {
+        self.destinations.json.as_deref().is_some_and(|path| path.as_os_str() == "-")
+    }
+
+    fn json_file(&self) -> PathBuf {
+        self.destinations.json.clone().filter(|_| !self.is_json_printed()).unwrap_or_else(|| self.file(".json"))
+    }
+
+    fn csv_file(&self) -> PathBuf {
+        self.destinations.csv.clone().unwrap_or_else(|| self.file(".csv"))
+    }
+
+    /// Prints after the files: they are kept even when nothing can be printed.
+    fn print(&self, text: String) -> Result<(), Error> {
+        if self.is_json_printed() || !self.destinations.is_quiet { self.console.print(&text) } else { Ok(()) }
+    }
+
+    fn wrote(&self, path: &Path) {
+        self.console.say(&format!("wrote {}", path.display()));
+    }
+}
+
+/// A document as JSON text.
+fn json_text(document: &impl serde::Serialize) -> Result<String, Error> {
+    writer::to_string(document).map_err(|e| Error::Input(format!("writing JSON: {e}")))
+}
