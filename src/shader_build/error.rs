@@ -28,6 +28,8 @@ pub enum Error {
         "shader `{shader}` must build with naga too, but: {reason}; rewrite it or give the reason in NAGA_EXCEPTIONS"
     )]
     NagaRefused { shader: String, reason: String },
+    #[error("`{}` and `{}` both make the shader `{shader}`; rename one", files[0], files[1])]
+    MadeTwice { shader: String, files: [String; 2] },
     #[error("NAGA_EXCEPTIONS lists `{shader}`, {problem}; remove the entry")]
     StaleException { shader: String, problem: &'static str },
     #[error("shader `{shader}`: {source}")]
@@ -45,6 +47,13 @@ pub enum DirectiveProblem {
     IncludeCycle(String),
     #[error("`#include` inside `#if`; move it out, a file is included once whatever the condition")]
     IncludeConditional,
+    #[error(
+        "expected `#pragma variants NAME=value,value NAME=value,value`: names in capitals, values in small letters and digits, \
+         none twice"
+    )]
+    VariantsSyntax,
+    #[error("`#pragma variants` stands once, in the shader's own file and outside `#if`; move it there")]
+    VariantsPlace,
     #[error("`#line` is not supported; remove it, lines are mapped to their files already")]
     Line,
 }

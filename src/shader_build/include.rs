@@ -4,31 +4,54 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use super::error::{DirectiveProblem, Error};
+use super::variants::{self, Definition};
 
 /// A shader with its includes pasted in.
 #[derive(Debug)]
 pub struct Source {
     /// Text for the compilers. It is ASCII: any other character, legal in comments only, became `?`.
     pub text: String,
+    /// What its variant defines, in the order of the pragma.
+    definitions: Vec<Definition>,
     files: Vec<PathBuf>,
     /// For each line of `text`: index into `files`, line in that file from 1.
     origins: Vec<(usize, usize)>,
 }
 
 impl Source {
-    /// Reads the shader `name` (a path below `root`) and everything it includes.
+    /// Reads the shaders that `file` (a path below `root`) makes, one for each of its variants, with everything they
+    /// include; with each its name.
     ///
     /// # Errors
-    /// A file that cannot be read, a first line other than `#version 450`, and an include that is
-    /// misspelt, missing, cyclic or conditional.
-    pub fn read(root: &Path, name: &str) -> Result<Source, Error> {
-        let path = root.join(name);
+    /// A file that cannot be read, a first line other than `#version 450`, an include that is misspelt, missing, cyclic
+    /// or conditional, and variants that are misspelt or misplaced.
+    pub fn read_variants(root: &Path, file: &str) -> Result<Vec<(String, Source)>, Error> {
+        let path = root.join(file);
         let text = read_text(&path)?;
+        let pragma = lines(&text).find_map(|(line, _, directive)| match directive {
+            Some(("pragma", rest)) => Some((line, variant_list(rest)?)),
+            _ => None,
+        });
+        let variants = match pragma {
+            None => vec![Vec::new()],
+            Some((line, list)) => {
+                variants::parse(list).map_err(|problem| Error::Directive { path: path.clone(), line, problem })?
+            }
+        };
+        let read = |definitions: Vec<Definition>| {
+            let name = variants::shader_name(file, &definitions);
+            Ok((name, Source::read(root, &path, &text, definitions)?))
+        };
+        variants.into_iter().map(read).collect()
+    }
+
+    fn read(root: &Path, path: &Path, text: &str, definitions: Vec<Definition>) -> Result<Source, Error> {
         if text.lines().next().map(str::trim_end) != Some("#version 450") {
-            return Err(Error::Version { path });
+            return Err(Error::Version { path: path.to_owned() });
         }
-        let mut source = Source { text: String::new(), files: vec![path], origins: Vec::new() };
-        source.append(root, &text, &mut vec![0])?;
+        let files = vec![path.to_owned()];
+        let mut source = Source { text: String::new(), definitions, files, origins: Vec::new() };
+        source.append(root, text, &mut vec![0])?;
         Ok(source)
     }
 
@@ -46,21 +69,19 @@ impl Source {
     /// Appends the text of the file on top of `stack` (indices into `files`, includer first).
     fn append(&mut self, root: &Path, text: &str, stack: &mut Vec<usize>) -> Result<(), Error> {
         let file = stack[stack.len() - 1];
-        let mut in_comment = false;
         let mut condition_depth = 0_usize;
-        for (index, line) in text.lines().enumerate() {
-            let line_number = index + 1;
+        let mut has_variants = false;
+        for (line_number, line, directive) in lines(text) {
             let problem = |problem| Error::Directive { path: self.files[file].clone(), line: line_number, problem };
-            let directive = (!in_comment).then(|| split_directive(line)).flatten();
-            in_comment = ends_in_comment(line, in_comment);
             match directive {
                 Some(("include", rest)) => {
                     if condition_depth > 0 {
                         return Err(problem(DirectiveProblem::IncludeConditional));
                     }
                     let name = quoted(rest).ok_or_else(|| problem(DirectiveProblem::IncludeSyntax))?;
-                    let path = resolve(root, name)
-                        .ok_or_else(|| problem(DirectiveProblem::IncludeMissing(name.to_owned())))?;
+                    let name = variants::substitute(name, &self.definitions);
+                    let path =
+                        resolve(root, &name).ok_or_else(|| problem(DirectiveProblem::IncludeMissing(name.clone())))?;
                     match self.files.iter().position(|known| *known == path) {
                         Some(known) if stack.contains(&known) => {
                             let chain = self.describe_cycle(root, stack, known);
@@ -75,6 +96,15 @@ impl Source {
                             stack.pop();
                         }
                     }
+                    continue;
+                }
+                Some(("pragma", rest)) if variant_list(rest).is_some() => {
+                    if stack.len() > 1 || condition_depth > 0 || has_variants {
+                        return Err(problem(DirectiveProblem::VariantsPlace));
+                    }
+                    has_variants = true;
+                    let defines: Vec<String> = self.definitions.iter().map(variants::define).collect();
+                    defines.iter().for_each(|define| self.push_line(define, file, line_number));
                     continue;
                 }
                 Some(("line", _)) => return Err(problem(DirectiveProblem::Line)),
@@ -117,6 +147,22 @@ fn resolve(root: &Path, name: &str) -> Option<PathBuf> {
     let below_root = |part| matches!(part, Component::Normal(_));
     let path = root.join(name);
     (Path::new(name).components().all(below_root) && path.is_file()).then_some(path)
+}
+
+/// The lines of a text with their numbers, from 1, and those outside comments that are directives split as one.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str, Option<(&str, &str)>)> {
+    let mut in_comment = false;
+    (1..).zip(text.lines()).map(move |(number, line)| {
+        let directive = (!in_comment).then(|| split_directive(line)).flatten();
+        in_comment = ends_in_comment(line, in_comment);
+        (number, line, directive)
+    })
+}
+
+/// The combinations in the rest of a `#pragma`; none of one that lists no variants.
+fn variant_list(rest: &str) -> Option<&str> {
+    let list = rest.trim_start().strip_prefix("variants")?;
+    (list.is_empty() || list.starts_with(char::is_whitespace)).then_some(list)
 }
 
 /// Splits `  # word rest` into word and rest.
@@ -171,9 +217,13 @@ mod tests {
         folder
     }
 
+    fn read(folder: &tempfile::TempDir) -> Source {
+        Source::read_variants(folder.path(), "a.frag").unwrap().remove(0).1
+    }
+
     fn problem(files: &[(&str, &str)]) -> (String, usize, DirectiveProblem) {
         let folder = folder(files);
-        match Source::read(folder.path(), "a.frag") {
+        match Source::read_variants(folder.path(), "a.frag") {
             Err(Error::Directive { path, line, problem }) => {
                 let name = path.strip_prefix(folder.path()).unwrap();
                 (name.to_str().unwrap().to_owned(), line, problem)
@@ -192,7 +242,7 @@ mod tests {
             ("common/outer.glsl", "int outer1;\n  #  include \"common/inner.glsl\"\nint outer3;\n"),
             ("common/inner.glsl", "int inner1;\r\nint inner2;"),
         ]);
-        let source = Source::read(folder.path(), "a.frag").unwrap();
+        let source = read(&folder);
         assert_eq!(source.text, "#version 450\nint outer1;\nint inner1;\nint inner2;\nint outer3;\nint a;\n\nint b;\n");
         let origin = |line| {
             let (path, line) = source.origin(line).unwrap();
@@ -231,6 +281,14 @@ mod tests {
             ("#include <b.glsl>", DirectiveProblem::IncludeSyntax),
             ("#include \"b.glsl\" x", DirectiveProblem::IncludeSyntax),
             ("#line 7", DirectiveProblem::Line),
+            ("#include \"{BASE}.glsl\"", DirectiveProblem::IncludeMissing("{BASE}.glsl".to_owned())),
+            ("#pragma variants", DirectiveProblem::VariantsSyntax),
+            ("#pragma variants BASE", DirectiveProblem::VariantsSyntax),
+            ("#pragma variants base=plane", DirectiveProblem::VariantsSyntax),
+            ("#pragma variants BASE=Plane", DirectiveProblem::VariantsSyntax),
+            ("#pragma variants BASE=plane,,curved", DirectiveProblem::VariantsSyntax),
+            ("#pragma variants BASE=plane,plane", DirectiveProblem::VariantsSyntax),
+            ("#pragma variants BASE=plane BASE=curved", DirectiveProblem::VariantsSyntax),
         ];
         for (line, expected) in cases {
             assert_eq!(shader(line), ("a.frag".to_owned(), 2, expected), "{line}");
@@ -239,13 +297,18 @@ mod tests {
             shader("#if 1\n#include \"b.glsl\""),
             ("a.frag".to_owned(), 3, DirectiveProblem::IncludeConditional)
         );
+        let misplaced = |file: &str, line| (file.to_owned(), line, DirectiveProblem::VariantsPlace);
+        assert_eq!(shader("#pragma variants A=b\n#pragma variants C=d"), misplaced("a.frag", 3));
+        assert_eq!(shader("#if 1\n#pragma variants A=b"), misplaced("a.frag", 3));
+        let included = [("a.frag", "#version 450\n#include \"b.glsl\"\n"), ("b.glsl", "\n#pragma variants A=b\n")];
+        assert_eq!(problem(&included), misplaced("b.glsl", 2));
     }
 
     #[test]
     fn includes_in_comments_are_left_alone() {
         let folder =
             folder(&[("a.frag", "#version 450\n// /* #include \"x\"\n/* a */ /* b\n#include \"x\"\n*/ int a; // é\n")]);
-        let source = Source::read(folder.path(), "a.frag").unwrap();
+        let source = read(&folder);
         assert!(source.text.contains("\n#include \"x\"\n"));
         assert!(source.text.ends_with("int a; // ?\n"));
     }
@@ -253,7 +316,7 @@ mod tests {
     #[test]
     fn the_version_line_comes_first() {
         let folder = folder(&[("a.frag", "// comment\n#version 450\n")]);
-        let error = Source::read(folder.path(), "a.frag").unwrap_err();
+        let error = Source::read_variants(folder.path(), "a.frag").unwrap_err();
         assert!(matches!(error, Error::Version { .. }));
     }
 }

@@ -10,6 +10,19 @@
 //! (`caustics/position-map.frag`); their first line is `#version 450`. `#include "common/refraction.glsl"`
 //! takes a path from the shader folder, wherever it stands; each file is pasted once, at its first include.
 //!
+//! One file makes several shaders where a line of it lists variants. `terrain/depth.comp` with
+//!
+//! ```glsl
+//! #pragma variants BASE=plane,curved LOD=pixel,exact
+//! #include "terrain/base-{BASE}.glsl"
+//! ```
+//!
+//! makes four, each named by its values: `terrain/depth-plane-pixel.comp` and so on. No shader is named
+//! `terrain/depth.comp` then. An include of the file, or of what it includes, puts the value for a name in
+//! braces; code asks `#ifdef BASE_PLANE`, as the pragma's line becomes `#define BASE_PLANE 1` and so on.
+//! Everything that goes by a shader's name, passes, records, [`NAGA_EXCEPTIONS`] and `--shader-dir`, knows the
+//! variants alone; an error names the file and the line that were written.
+//!
 //! # The GLSL that both compilers accept
 //!
 //! Tried with glslang 0.9.1 and naga 30.0.1; the binaries of both were run and compared.
@@ -49,6 +62,7 @@ mod naga;
 mod reflection;
 #[cfg(test)]
 mod tests;
+mod variants;
 
 use std::fmt;
 use std::fs;
@@ -107,7 +121,7 @@ impl fmt::Display for Compiler {
 /// A shader compiled by the build script.
 #[derive(Clone, Copy, Debug)]
 pub struct EmbeddedShader {
-    /// Path below the shader folder, with `/`: `caustics/position-map.frag`.
+    /// Path below the shader folder, with `/`: `caustics/position-map.frag`; of a variant with its values.
     pub name: &'static str,
     pub stage: Stage,
     /// SPIR-V words of glslang.
@@ -119,7 +133,7 @@ pub struct EmbeddedShader {
 /// A shader compiled from its file.
 #[derive(Clone, Debug)]
 pub struct CompiledShader {
-    /// Path below the shader folder, with `/`: `caustics/position-map.frag`.
+    /// Path below the shader folder, with `/`: `caustics/position-map.frag`; of a variant with its values.
     pub name: String,
     pub stage: Stage,
     /// SPIR-V words of glslang.
@@ -165,39 +179,48 @@ impl Diagnostic {
 /// Compiles every shader below `root`, sorted by name. Files with other endings are left alone.
 ///
 /// # Errors
-/// The first file that cannot be read, include that cannot be resolved and shader that glslang refuses.
+/// The first file that cannot be read, include that cannot be resolved, list of variants that is misspelt, name that
+/// two files make and shader that glslang refuses.
 /// A shader that naga refuses, or gives another interface, is no error here but the reason in
 /// [`CompiledShader::naga`], which [`check_exceptions`] judges.
 pub fn compile_dir(root: &Path) -> Result<Vec<CompiledShader>, Error> {
-    let mut names = Vec::new();
-    list_shaders(root, "", &mut names)?;
-    names.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-    names.iter().map(|(name, stage)| compile(root, name, *stage)).collect()
+    let mut files = Vec::new();
+    list_files(root, "", &mut files)?;
+    let mut sources = Vec::new();
+    for (file, stage) in &files {
+        let variants = Source::read_variants(root, file)?;
+        sources.extend(variants.into_iter().map(|(name, source)| (name, file, *stage, source)));
+    }
+    sources.sort_by(|a, b| a.0.cmp(&b.0));
+    if let Some(twice) = sources.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        let files = [twice[0].1.clone(), twice[1].1.clone()];
+        return Err(Error::MadeTwice { shader: twice[0].0.clone(), files });
+    }
+    sources.iter().map(|(name, _, stage, source)| compile(name, *stage, source)).collect()
 }
 
-fn list_shaders(folder: &Path, prefix: &str, names: &mut Vec<(String, Stage)>) -> Result<(), Error> {
+fn list_files(folder: &Path, prefix: &str, files: &mut Vec<(String, Stage)>) -> Result<(), Error> {
     let read_error = |source| Error::Read { path: folder.to_owned(), source };
     for entry in fs::read_dir(folder).map_err(read_error)? {
         let entry = entry.map_err(read_error)?;
         let file_name = entry.file_name();
         let name = format!("{prefix}{}", file_name.to_string_lossy());
         if entry.file_type().map_err(read_error)?.is_dir() {
-            list_shaders(&entry.path(), &format!("{name}/"), names)?;
+            list_files(&entry.path(), &format!("{name}/"), files)?;
         } else if let Some(stage) = Stage::from_file_name(&name) {
-            names.push((name, stage));
+            files.push((name, stage));
         }
     }
     Ok(())
 }
 
-fn compile(root: &Path, name: &str, stage: Stage) -> Result<CompiledShader, Error> {
-    let source = Source::read(root, name)?;
+fn compile(name: &str, stage: Stage, source: &Source) -> Result<CompiledShader, Error> {
     let glslang = glslang::compile(stage, &source.text)
-        .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Glslang, &source))?;
+        .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Glslang, source))?;
     let interface =
         Interface::reflect(&glslang).map_err(|source| Error::Reflect { shader: name.to_owned(), source })?;
     let naga = naga::compile(stage, &source.text)
-        .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Naga, &source).to_string())
+        .map_err(|diagnostic| diagnostic.into_error(name, Compiler::Naga, source).to_string())
         .and_then(|words| check_fit(&interface, &words).map(|()| words));
     let listed = NAGA_EXCEPTIONS.iter().find(|(exception, _)| *exception == name);
     Ok(CompiledShader {

@@ -112,6 +112,54 @@ fn naga_refuses_what_it_would_miscompile() {
     }
 }
 
+/// Compiles `a.frag`, beside which stand `b-red.glsl` and `b-blue.glsl`.
+fn compile_variants(shader: &str) -> Result<Vec<CompiledShader>, Error> {
+    let folder = tempfile::tempdir().unwrap();
+    let shader = format!("#version 450\n#pragma variants COLOR=red,blue LOD=0,1\n{shader}");
+    fs::write(folder.path().join("a.frag"), shader).unwrap();
+    fs::write(folder.path().join("b-red.glsl"), "float color() {\n    return 1.0;\n}\n").unwrap();
+    fs::write(folder.path().join("b-blue.glsl"), "\nfloat color() {\n    return level;\n}\n").unwrap();
+    compile_dir(folder.path())
+}
+
+#[test]
+fn each_combination_of_variants_is_a_shader_of_its_own() {
+    let main = "layout(location = 0) out vec4 target;\nvoid main() {\n    target = vec4(color());\n}\n";
+    let levels = "#ifdef LOD_0\nfloat level = 0.0;\n#else\nfloat level = 1.0;\n#endif\n";
+    let shaders = compile_variants(&format!("{levels}#include \"b-{{COLOR}}.glsl\"\n{main}")).unwrap();
+    let names: Vec<&str> = shaders.iter().map(|shader| shader.name.as_str()).collect();
+    assert_eq!(names, ["a-blue-0.frag", "a-blue-1.frag", "a-red-0.frag", "a-red-1.frag"]);
+    for (i, shader) in shaders.iter().enumerate() {
+        assert!(shader.naga.is_ok(), "{:?}", shader.naga);
+        assert!(shaders[..i].iter().all(|other| other.glslang != shader.glslang), "{}", shader.name);
+    }
+}
+
+#[test]
+fn an_error_in_a_variant_names_the_file_and_line_that_were_written() {
+    let Err(Error::Compile { shader, path, line, .. }) = compile_variants("\n#include \"b-{COLOR}.glsl\"\n") else {
+        panic!("expected a compile error");
+    };
+    assert_eq!((shader.as_str(), line), ("a-blue-0.frag", Some(3)));
+    assert!(path.ends_with("b-blue.glsl"));
+    let Err(Error::Compile { shader, path, line, .. }) = compile_variants("\nvoid main() {\n    missing();\n}\n")
+    else {
+        panic!("expected a compile error");
+    };
+    assert_eq!((shader.as_str(), line), ("a-blue-0.frag", Some(5)));
+    assert!(path.ends_with("a.frag"));
+}
+
+#[test]
+fn a_name_that_two_files_make_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.comp"), "#version 450\n#pragma variants B=c\nvoid main() {}\n").unwrap();
+    fs::write(folder.path().join("a-c.comp"), "#version 450\nvoid main() {}\n").unwrap();
+    let message = compile_dir(folder.path()).unwrap_err().to_string();
+    assert!(message.contains("both make the shader `a-c.comp`"), "{message}");
+    assert!(message.contains("`a.comp`"), "{message}");
+}
+
 #[test]
 fn vertex_inputs_outputs_and_buffers_reflect() {
     let interface = reflect_embedded("test/sprites.vert");

@@ -1,3 +1,15 @@
+#version 450
+
+#pragma variants BASE=plane,curved INTERPOLATION=bilinear,bicubic
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/terrain.glsl"
+#include "terrain/base-{BASE}.glsl"
+#include "terrain/interpolation-{INTERPOLATION}.glsl"
+#include "terrain/leaf-shadow.glsl"
+#include "terrain/traversal.glsl"
+#include "terrain/shadow.glsl"
 #include "terrain/tile.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

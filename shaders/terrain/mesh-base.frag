@@ -1,4 +1,13 @@
+#version 450
+
 // The base under and around the triangle grids.
+
+#pragma variants BASE=plane,curved
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/terrain.glsl"
+#include "terrain/base-{BASE}.glsl"
 
 layout(location = 0) out vec4 depth;
 

@@ -1,3 +1,13 @@
+#version 450
+
+#pragma variants INTERPOLATION=bilinear,bicubic
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/terrain.glsl"
+#include "terrain/interpolation-{INTERPOLATION}.glsl"
+#include "terrain/normal.glsl"
+
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 3, rgba32f) uniform writeonly image2D normal;

@@ -1,0 +1,18 @@
+#version 450
+
+#pragma variants BASE=plane,curved INTERPOLATION=bilinear,bicubic LOD=pixel,exact
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/terrain.glsl"
+#include "terrain/base-{BASE}.glsl"
+#include "terrain/interpolation-{INTERPOLATION}.glsl"
+#include "terrain/leaf-{LOD}.glsl"
+#include "terrain/traversal.glsl"
+#include "terrain/depth.glsl"
+
+layout(location = 0) out vec4 depth;
+
+void main() {
+    depth = find(ivec2(gl_FragCoord.xy));
+}
