@@ -6,7 +6,7 @@
 
 #include "terrain/terrain.glsl"
 #include "terrain/base-{BASE}.glsl"
-#include "terrain/interpolation-{INTERPOLATION}.glsl"
+#include "terrain/interpolation.glsl"
 #include "terrain/leaf-{LOD}.glsl"
 #include "terrain/traversal.glsl"
 #include "terrain/depth.glsl"

@@ -5,7 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/terrain.glsl"
-#include "terrain/interpolation-{INTERPOLATION}.glsl"
+#include "terrain/interpolation.glsl"
 #include "terrain/normal.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

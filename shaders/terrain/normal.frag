@@ -5,7 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/terrain.glsl"
-#include "terrain/interpolation-{INTERPOLATION}.glsl"
+#include "terrain/interpolation.glsl"
 #include "terrain/normal.glsl"
 
 layout(location = 0) out vec4 normal;

@@ -116,6 +116,10 @@ float highest_at(int shift, ivec2 texel) {
     return value_in(1, shift, texel);
 }
 
+float lowest_at(int shift, ivec2 texel) {
+    return value_in(2, shift, texel);
+}
+
 ivec2 last_texel(int shift) {
     return map.last >> shift;
 }

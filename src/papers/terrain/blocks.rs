@@ -4,6 +4,7 @@ use bytemuck::Zeroable;
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use super::ground::Ground;
+use super::interpolation::OVERSHOOT;
 use super::parameters::{Interpolation, Parameters};
 use super::placement::Rays;
 use crate::host_block;
@@ -135,7 +136,7 @@ impl TerrainBlock {
         };
         let overshoot = match parameters.interpolation {
             Interpolation::Bilinear => 0.0,
-            Interpolation::Bicubic => (ground.highest - ground.lowest) * 9.0 / 32.0,
+            Interpolation::Bicubic => (ground.highest - ground.lowest) * OVERSHOOT,
         };
         // The ground is solid down to the base, so a ray may meet it below its lowest sample.
         let lowest = (ground.lowest - overshoot).min(ground.base);

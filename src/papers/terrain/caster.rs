@@ -9,10 +9,10 @@ use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::blocks::{PLANE, TerrainBlock};
 use super::hit::{Hit, NO_DEPTH, Surface};
+use super::interpolation;
 use super::parameters::{Interpolation, Lod};
 use super::pyramid::Texel;
 use super::relief::{Field, shift_for};
-use super::surface;
 use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of};
 
 /// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
@@ -126,7 +126,7 @@ impl<T: Texel> Caster<'_, T> {
         let near_m = way.depth_m(0.0);
         let first = way.segment(0.0, 0.0).near.xy();
         let shift = self.finest_shift(near_m);
-        if let Some(surface) = way.entered(surface::height(&self.field, self.interpolation, shift, first)) {
+        if let Some(surface) = way.entered(interpolation::height(&self.field, self.interpolation, shift, first)) {
             return Some(self.hit(near_m, first, surface, shift, 1));
         }
         let mut steps = 0;
@@ -160,7 +160,7 @@ impl<T: Texel> Caster<'_, T> {
     }
 
     fn highest_below(&self, low: Vec2, high: Vec2, shift: i32) -> f32 {
-        surface::highest_below(&self.field, self.interpolation, low, high, shift).unwrap_or(f32::NEG_INFINITY)
+        interpolation::highest_below(&self.field, self.interpolation, low, high, shift).unwrap_or(f32::NEG_INFINITY)
     }
 
     /// The level at which subdivision ends at a depth: the data's, or that of a pixel's footprint.
@@ -185,7 +185,7 @@ impl<T: Texel> Caster<'_, T> {
         let far = segment.near.lerp(segment.far, over.far);
         let part = match self.footprint {
             Footprint::Data => {
-                surface::intersect(&self.field, self.interpolation, near, far, self.terrain.height_tolerance)
+                interpolation::intersect(&self.field, self.interpolation, near, far, self.terrain.height_tolerance)
             }
             Footprint::Pixel | Footprint::Level(_) => {
                 self.intersect_footprint(near, far, self.finest_shift(segment.depth_m))
@@ -196,7 +196,7 @@ impl<T: Texel> Caster<'_, T> {
     }
 
     fn intersect_footprint(&self, near: Vec3, far: Vec3, shift: i32) -> Option<f32> {
-        let above = |place: Vec3| place.z - surface::height(&self.field, self.interpolation, shift, place.xy());
+        let above = |place: Vec3| place.z - interpolation::height(&self.field, self.interpolation, shift, place.xy());
         let first = above(near);
         if first <= 0.0 {
             return Some(0.0);

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 use super::curve::Curve;
+use super::interpolation::OVERSHOOT;
 use super::parameters::Base;
 use super::placement::{Extent, Placement};
 use super::pyramid::Shape;
@@ -92,7 +93,7 @@ impl Ground {
             closes: false,
         };
         let highest_m = (ground.highest - ground.base) * unit_m;
-        let overshoot_m = (ground.highest - ground.lowest) * unit_m * 9.0 / 32.0;
+        let overshoot_m = (ground.highest - ground.lowest) * unit_m * OVERSHOOT;
         let reach_m = (highest_m + overshoot_m).max(0.0);
         match base {
             Base::Plane => {

@@ -15,6 +15,7 @@ mod drape;
 pub mod experiments;
 mod ground;
 mod hit;
+mod interpolation;
 #[cfg(test)]
 mod layouts;
 mod levels;
@@ -23,7 +24,7 @@ mod mesh;
 mod nearest;
 mod objects;
 mod parameters;
-mod patch;
+
 mod placement;
 mod pyramid;
 mod ray_cast;
@@ -35,7 +36,7 @@ mod shading;
 mod shadows;
 mod solid;
 mod stage;
-mod surface;
+
 mod way;
 
 use std::sync::Arc;

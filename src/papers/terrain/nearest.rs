@@ -8,12 +8,11 @@
 use glam::{DVec2, DVec3, IVec2};
 
 use super::hit::Surface;
+use super::interpolation::{Patch, highest_below};
 use super::parameters::Interpolation;
-use super::patch::Patch;
 use super::pyramid::Texel;
 use super::relief::{Field, FieldWork};
 use super::solid::Solid;
-use super::surface::highest_below;
 
 /// Distances are found to this share of a cell.
 const TOLERANCE_CELLS: f64 = 1e-7;

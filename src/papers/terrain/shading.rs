@@ -6,8 +6,8 @@ use super::blocks::{CYLINDER, LightBlock, PLANE, TerrainBlock};
 use super::caster::Caster;
 use super::drape::Drape;
 use super::hit::{Hit, Surface};
+use super::interpolation;
 use super::pyramid::Texel;
-use super::surface;
 use super::way::meridian;
 
 /// Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
@@ -65,12 +65,12 @@ pub fn normal_of<T: Texel>(caster: &Caster<'_, T>, direction: Vec3, hit: &Hit) -
     let (terrain, field, shift) = (caster.terrain, &caster.field, hit.shift as i32);
     let unit_m = terrain.height_unit_m;
     let place = Vec2::from_array(hit.place);
-    let height_m = (surface::height(field, caster.interpolation, shift, place) - terrain.base_height) * unit_m;
+    let height_m = (interpolation::height(field, caster.interpolation, shift, place) - terrain.base_height) * unit_m;
     let local = Local::at(terrain, place, height_m);
     let normal = match hit.surface {
         Surface::Sky | Surface::Base => local.up,
         Surface::Terrain => {
-            let slope = surface::slope(field, caster.interpolation, shift, place);
+            let slope = interpolation::slope(field, caster.interpolation, shift, place);
             let slope = slope * ((-shift as f32).exp2() * unit_m) / local.spacing_m;
             local.up - slope.x * local.east - slope.y * local.south
         }

@@ -1,14 +1,16 @@
-//! The surface between the samples of a map on the processor: `shaders/terrain/interpolation-bilinear.glsl` and
-//! `interpolation-bicubic.glsl`.
+//! The surface between the samples of a map on the processor: in single precision, as `shaders/terrain/interpolation.glsl`
+//! has it, for rays; over one cell in double precision, as a Bézier patch, for what is exact about collisions.
 
-use glam::{IVec2, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
+use std::ops::{Add, Div, Sub};
+
+use glam::{DVec2, DVec3, IVec2, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 
 use super::parameters::Interpolation;
 use super::pyramid::{Bound, Texel};
 use super::relief::{Cell, Field};
 
-/// How much Catmull-Rom surfaces may exceed their nodes, as a share of the nodes' range: the negative weights' sum.
-pub const OVERSHOOT: f32 = 9.0 / 32.0;
+/// How much Catmull-Rom surfaces may exceed their nodes, as a fraction of the nodes' range: the negative weights' sum.
+pub const OVERSHOOT: f64 = 9.0 / 32.0;
 
 /// The height at a place in nodes, on a level.
 pub fn height<T: Texel>(field: &Field<'_, T>, interpolation: Interpolation, shift: i32, place: Vec2) -> f32 {
@@ -77,19 +79,19 @@ pub fn highest_below<T: Texel>(
         Interpolation::Bicubic => {
             let lowest =
                 four.map(|texel| field.value(Bound::Lowest, level, texel)).into_iter().fold(f32::MAX, f32::min);
-            highest + OVERSHOOT * (highest - lowest)
+            highest + OVERSHOOT as f32 * (highest - lowest)
         }
     })
 }
 
-/// The part of a line over at most three cells of the data at which it first meets the surface. `met` is how near a height
-/// counts as met where the root is approached.
+/// The ray parameter, 0 to 1 from `near` to `far`, at which a line over at most three cells of the data first meets the
+/// surface. `tolerance` is how near a height counts as met where the root is approached.
 pub fn intersect<T: Texel>(
     field: &Field<'_, T>,
     interpolation: Interpolation,
     near: Vec3,
     far: Vec3,
-    met: f32,
+    tolerance: f32,
 ) -> Option<f32> {
     let whole = far - near;
     let u = crossing(near.x, far.x);
@@ -103,15 +105,15 @@ pub fn intersect<T: Texel>(
         let from = near + ends[0] * whole;
         let Cell { corner, .. } = field.cell(0, (from + 0.5 * size * whole).xy());
         let inside = Vec3::new(from.x - corner.x as f32, from.y - corner.y as f32, from.z);
-        let part = match interpolation {
+        let t = match interpolation {
             Interpolation::Bilinear => touch_bilinear(corners(field, 0, corner), inside, size * whole),
-            Interpolation::Bicubic => touch_bicubic(around(field, 0, corner), inside, size * whole, met),
+            Interpolation::Bicubic => touch_bicubic(around(field, 0, corner), inside, size * whole, tolerance),
         };
-        part.map(|part| ends[0] + part * size)
+        t.map(|t| ends[0] + t * size)
     })
 }
 
-/// The part of the way from one number to another at which it crosses a whole one; 1 where it crosses none.
+/// The fraction of the change from one number to another at which it crosses a whole one; 1 where it crosses none.
 fn crossing(from: f32, to: f32) -> f32 {
     if from.floor() == to.floor() {
         return 1.0;
@@ -126,14 +128,14 @@ fn corners<T: Texel>(field: &Field<'_, T>, shift: i32, a: IVec2) -> Vec4 {
     Vec4::from_array(four.map(|texel| field.value(Bound::Highest, shift, texel)))
 }
 
-/// Where a line that moves by `way` from `from` inside a cell first touches the cell's surface, as a part of `way`. Along a
-/// line the surface (eq. 7) is a quadratic.
-fn touch_bilinear(corners: Vec4, from: Vec3, way: Vec3) -> Option<f32> {
+/// The ray parameter, 0 to 1, at which a line from `from` along `direction` inside a cell first touches the cell's surface.
+/// Along a line the surface (eq. 7) is a quadratic.
+fn touch_bilinear(corners: Vec4, from: Vec3, direction: Vec3) -> Option<f32> {
     let a = corners.x;
     let (b, c) = (corners.y - a, corners.z - a);
     let e = corners.w - corners.y - c;
-    let qa = -e * way.x * way.y;
-    let qb = way.z - b * way.x - c * way.y - e * (from.x * way.y + from.y * way.x);
+    let qa = -e * direction.x * direction.y;
+    let qb = direction.z - b * direction.x - c * direction.y - e * (from.x * direction.y + from.y * direction.x);
     let qc = from.z - (a + b * from.x + c * from.y + e * from.x * from.y);
     if qc <= 0.0 {
         return Some(0.0);
@@ -148,20 +150,21 @@ fn touch_bilinear(corners: Vec4, from: Vec3, way: Vec3) -> Option<f32> {
     (qa + qb + qc <= 0.0).then_some(1.0)
 }
 
-/// The sixteen values around a cell: columns are rows from north to south, borders repeated.
-fn around<T: Texel>(field: &Field<'_, T>, shift: i32, cell: IVec2) -> Mat4 {
+/// The sixteen values around a cell: rows from north to south, borders repeated.
+fn rows_around<T: Texel>(field: &Field<'_, T>, shift: i32, cell: IVec2) -> [[f32; 4]; 4] {
     let last = field.last(shift);
-    let row = |row: i32| {
-        let value = |column: i32| {
-            let texel = (cell + IVec2::new(column, row)).clamp(IVec2::ZERO, last);
-            field.value(Bound::Highest, shift, texel)
-        };
-        Vec4::new(value(-1), value(0), value(1), value(2))
+    let value = |column: i32, row: i32| {
+        let texel = (cell + IVec2::new(column, row)).clamp(IVec2::ZERO, last);
+        field.value(Bound::Highest, shift, texel)
     };
-    Mat4::from_cols(row(-1), row(0), row(1), row(2))
+    [-1, 0, 1, 2].map(|row| [-1, 0, 1, 2].map(|column| value(column, row)))
 }
 
-/// Catmull-Rom.
+fn around<T: Texel>(field: &Field<'_, T>, shift: i32, cell: IVec2) -> Mat4 {
+    Mat4::from_cols_array_2d(&rows_around(field, shift, cell))
+}
+
+/// Of Catmull-Rom.
 fn weights(t: f32) -> Vec4 {
     0.5 * Vec4::new(
         t * (-1.0 + t * (2.0 - t)),
@@ -175,7 +178,7 @@ fn weight_slopes(t: f32) -> Vec4 {
     0.5 * Vec4::new(-1.0 + t * (4.0 - 3.0 * t), t * (9.0 * t - 10.0), 1.0 + t * (8.0 - 9.0 * t), t * (3.0 * t - 2.0))
 }
 
-/// The part from `s` to `e` of four curves at once, given and left as Bezier points.
+/// Four curves at once from `s` to `e`, given and left as Bézier points.
 fn restricted(p: Mat4, s: f32, e: f32) -> Mat4 {
     let mix = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;
     let [p0, p1, p2, p3] = [p.x_axis, p.y_axis, p.z_axis, p.w_axis];
@@ -190,23 +193,31 @@ fn restricted(p: Mat4, s: f32, e: f32) -> Mat4 {
     )
 }
 
-/// Catmull-Rom values as Bezier points.
-fn bezier(p: Mat4) -> Mat4 {
-    let [p0, p1, p2, p3] = [p.x_axis, p.y_axis, p.z_axis, p.w_axis];
-    Mat4::from_cols(p1, p1 + (p2 - p0) / 6.0, p2 - (p3 - p1) / 6.0, p2)
+/// The Bézier points of the Catmull-Rom curve between the second value and the third.
+fn bezier<V, S: From<u8>>([before, from, to, after]: [V; 4]) -> [V; 4]
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Div<S, Output = V>,
+{
+    [from, from + (to - before) / S::from(6), to - (after - from) / S::from(6), to]
 }
 
-/// As [`touch_bilinear`]. Along a line the surface is of the sixth degree. Its Bezier points bound it, so the line is free up
+/// The same of four curves at once.
+fn bezier_columns(p: Mat4) -> Mat4 {
+    let [a, b, c, d] = bezier::<Vec4, f32>([p.x_axis, p.y_axis, p.z_axis, p.w_axis]);
+    Mat4::from_cols(a, b, c, d)
+}
+
+/// As [`touch_bilinear`]. Along a line the surface is of the sixth degree. Its Bézier points bound it, so the line is free up
 /// to where their hull meets it; what is left is restricted and bounded anew. This approaches the first root from the near
 /// side and misses none. The hull's lower edge may start at any point above, not only at the first.
-fn touch_bicubic(mut values: Mat4, from: Vec3, way: Vec3, met: f32) -> Option<f32> {
+fn touch_bicubic(mut values: Mat4, from: Vec3, direction: Vec3, tolerance: f32) -> Option<f32> {
     let reference = values.y_axis.y;
     for row in 0..4 {
         *values.col_mut(row) -= Vec4::splat(reference);
     }
-    let points = restricted(bezier(values), from.y, from.y + way.y).transpose();
-    let c = restricted(bezier(points), from.x, from.x + way.x).to_cols_array_2d();
-    let (above, rise) = (from.z - reference, way.z / 6.0);
+    let points = restricted(bezier_columns(values), from.y, from.y + direction.y).transpose();
+    let c = restricted(bezier_columns(points), from.x, from.x + direction.x).to_cols_array_2d();
+    let (above, rise) = (from.z - reference, direction.z / 6.0);
     let mut g = [
         above - c[0][0],
         above + rise - 0.5 * (c[0][1] + c[1][0]),
@@ -230,9 +241,89 @@ fn touch_bicubic(mut values: Mat4, from: Vec3, way: Vec3, met: f32) -> Option<f3
             }
         }
         start += free * (1.0 - start);
-        if g[0] <= met {
+        if g[0] <= tolerance {
             break;
         }
     }
     Some(start)
+}
+
+/// Sixteen points in metres above the base, of which the surface is a weighted mean: `[row][column]`, from the cell's
+/// north-west corner. A bilinear cell (eq. 7) is one whose points lie on its lines.
+#[derive(Debug, Clone)]
+pub struct Patch {
+    points: [[f64; 4]; 4],
+}
+
+/// The surface at a place of the cell: the height, and its derivatives along u and v, metres for a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    pub height_m: f64,
+    pub slope: DVec2,
+}
+
+impl Patch {
+    /// Of the cell whose north-west corner is `cell`; `above_base_m` turns the map's own numbers into metres.
+    pub fn new<T: Texel>(
+        field: &Field<'_, T>,
+        interpolation: Interpolation,
+        cell: IVec2,
+        above_base_m: impl Fn(f64) -> f64,
+    ) -> Self {
+        let along = |values: [f64; 4]| match interpolation {
+            Interpolation::Bilinear => line(values[1], values[2]),
+            Interpolation::Bicubic => bezier::<f64, f64>(values),
+        };
+        let metres = |row: [f32; 4]| row.map(|number| above_base_m(number.into()));
+        let rows = rows_around(field, 0, cell).map(|row| along(metres(row)));
+        let columns = [0, 1, 2, 3].map(|column| along(rows.map(|row| row[column])));
+        Patch { points: [0, 1, 2, 3].map(|row| columns.map(|column| column[row])) }
+    }
+
+    /// At a place of 0 to 1 along u and v.
+    pub fn at(&self, place: DVec2) -> Sample {
+        let (u, v) = (bernstein(place.x), bernstein(place.y));
+        let (du, dv) = (bernstein_slopes(place.x), bernstein_slopes(place.y));
+        let sum = |across: &[f64; 4], down: &[f64; 4]| -> f64 {
+            self.points.iter().zip(down).map(|(row, d)| d * dot(row, across)).sum()
+        };
+        Sample { height_m: sum(&u, &v), slope: DVec2::new(sum(&du, &v), sum(&u, &dv)) }
+    }
+
+    /// The largest second derivatives over the cell: along u twice, along u and v, along v twice; metres.
+    pub fn bends(&self) -> DVec3 {
+        let p = &self.points;
+        let bend =
+            |line: &[f64; 4]| line.windows(3).map(|w| 6.0 * (w[0] - 2.0 * w[1] + w[2]).abs()).fold(0.0, f64::max);
+        let columns = [0, 1, 2, 3].map(|column| p.map(|row| row[column]));
+        let along_u = p.iter().map(bend).fold(0.0, f64::max);
+        let along_v = columns.iter().map(bend).fold(0.0, f64::max);
+        let mut bends = DVec3::new(along_u, 0.0, along_v);
+        for i in 0..3 {
+            for j in 0..3 {
+                let mixed = p[i + 1][j + 1] - p[i + 1][j] - p[i][j + 1] + p[i][j];
+                bends.y = bends.y.max(9.0 * mixed.abs());
+            }
+        }
+        bends
+    }
+}
+
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn line(from: f64, to: f64) -> [f64; 4] {
+    let third = (to - from) / 3.0;
+    [from, from + third, to - third, to]
+}
+
+fn bernstein(t: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
+}
+
+fn bernstein_slopes(t: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t]
 }
