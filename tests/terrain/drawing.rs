@@ -56,7 +56,7 @@ impl Painter {
     }
 
     pub fn from(&mut self, camera: Camera) -> Drawing {
-        self.paper.look(View::Camera(camera));
+        self.paper.set_view(View::Camera(camera));
         self.draw()
     }
 

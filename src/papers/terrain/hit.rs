@@ -1,4 +1,4 @@
-//! What a pixel's ray met, as the passes hand it on.
+//! The hit of a pixel's ray, as the passes hand it on.
 
 /// Depth of a ray that meets nothing, metres.
 pub const NO_DEPTH: f32 = 1.0e30;
@@ -61,6 +61,8 @@ pub struct Hit {
 }
 
 impl Hit {
+    pub const SKY: Hit = Hit { depth_m: NO_DEPTH, place: [0.0; 2], surface: Surface::Sky, shift: 0, map: 0, steps: 0 };
+
     pub fn from_texel(texel: [f32; 4]) -> Self {
         let code = texel[3] as u32;
         Hit {

@@ -5,112 +5,123 @@ use std::ops::{Add, Div, Sub};
 
 use glam::{DVec2, DVec3, IVec2, Mat4, Vec2, Vec3, Vec3Swizzles, Vec4};
 
+use super::height_field::{Cell, Field};
 use super::parameters::Interpolation;
 use super::pyramid::{Bound, Texel};
-use super::relief::{Cell, Field};
 
 /// How much Catmull-Rom surfaces may exceed their nodes, as a fraction of the nodes' range: the negative weights' sum.
 pub const OVERSHOOT: f64 = 9.0 / 32.0;
 
-/// The height at a place in nodes, on a level.
-pub fn height<T: Texel>(field: &Field<'_, T>, interpolation: Interpolation, shift: i32, place: Vec2) -> f32 {
-    let cell = field.cell(shift, place);
-    match interpolation {
-        Interpolation::Bilinear => {
-            let c = corners(field, shift, cell.corner);
-            let north = c.x + (c.y - c.x) * cell.part.x;
-            let south = c.z + (c.w - c.z) * cell.part.x;
-            north + (south - north) * cell.part.y
-        }
-        Interpolation::Bicubic => {
-            let rows = around(field, shift, cell.corner).transpose() * weights(cell.part.x);
-            rows.dot(weights(cell.part.y))
-        }
-    }
-}
-
-/// Change of the height over a texel of the level along u and v.
-pub fn slope<T: Texel>(field: &Field<'_, T>, interpolation: Interpolation, shift: i32, place: Vec2) -> Vec2 {
-    let cell = field.cell(shift, place);
-    match interpolation {
-        Interpolation::Bilinear => {
-            let c = corners(field, shift, cell.corner);
-            let (north, south) = (c.y - c.x, c.w - c.z);
-            let (west, east) = (c.z - c.x, c.w - c.y);
-            Vec2::new(north + (south - north) * cell.part.y, west + (east - west) * cell.part.x)
-        }
-        Interpolation::Bicubic => {
-            let rows = around(field, shift, cell.corner).transpose();
-            Vec2::new(
-                (rows * weight_slopes(cell.part.x)).dot(weights(cell.part.y)),
-                (rows * weights(cell.part.x)).dot(weight_slopes(cell.part.y)),
-            )
+impl<T: Texel> Field<'_, T> {
+    /// The height at a place in nodes, on a level.
+    pub fn height(&self, shift: i32, place: Vec2) -> f32 {
+        let cell = self.cell(shift, place);
+        match self.interpolation {
+            Interpolation::Bilinear => {
+                let c = self.corners(shift, cell.corner);
+                let north = c.x + (c.y - c.x) * cell.uv.x;
+                let south = c.z + (c.w - c.z) * cell.uv.x;
+                north + (south - north) * cell.uv.y
+            }
+            Interpolation::Bicubic => {
+                let rows = self.around(shift, cell.corner).transpose() * weights(cell.uv.x);
+                rows.dot(weights(cell.uv.y))
+            }
         }
     }
-}
 
-/// A height that nothing which interpolation reads between two places exceeds; none where no map is. `shift` is that of the
-/// rectangle's extent; a coarser level answers where more than four texels of it are touched.
-pub fn highest_below<T: Texel>(
-    field: &Field<'_, T>,
-    interpolation: Interpolation,
-    low: Vec2,
-    high: Vec2,
-    shift: i32,
-) -> Option<f32> {
-    let last_node = field.last(0);
-    let end = last_node.as_vec2();
-    if high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y {
-        return None;
-    }
-    let (before, after) = match interpolation {
-        Interpolation::Bilinear => (0, 1),
-        Interpolation::Bicubic => (1, 2),
-    };
-    let first = (low.max(Vec2::splat(-4.0)).floor().as_ivec2() - before).clamp(IVec2::ZERO, last_node);
-    let last = (high.min(end + 4.0).floor().as_ivec2() + after).clamp(IVec2::ZERO, last_node);
-    let most = ((last >> shift) - (first >> shift)).max_element().max(1) as u32;
-    let level = (shift + (2 * most - 1).ilog2() as i32).min(field.shape().top as i32);
-    let (a, b) = (first >> level, last >> level);
-    let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
-    let highest = four.map(|texel| field.value(Bound::Highest, level, texel)).into_iter().fold(f32::MIN, f32::max);
-    Some(match interpolation {
-        Interpolation::Bilinear => highest,
-        Interpolation::Bicubic => {
-            let lowest =
-                four.map(|texel| field.value(Bound::Lowest, level, texel)).into_iter().fold(f32::MAX, f32::min);
-            highest + OVERSHOOT as f32 * (highest - lowest)
+    /// Change of the height over a texel of the level along u and v.
+    pub fn slope(&self, shift: i32, place: Vec2) -> Vec2 {
+        let cell = self.cell(shift, place);
+        match self.interpolation {
+            Interpolation::Bilinear => {
+                let c = self.corners(shift, cell.corner);
+                let (north, south) = (c.y - c.x, c.w - c.z);
+                let (west, east) = (c.z - c.x, c.w - c.y);
+                Vec2::new(north + (south - north) * cell.uv.y, west + (east - west) * cell.uv.x)
+            }
+            Interpolation::Bicubic => {
+                let rows = self.around(shift, cell.corner).transpose();
+                Vec2::new(
+                    (rows * weight_slopes(cell.uv.x)).dot(weights(cell.uv.y)),
+                    (rows * weights(cell.uv.x)).dot(weight_slopes(cell.uv.y)),
+                )
+            }
         }
-    })
-}
+    }
 
-/// The ray parameter, 0 to 1 from `near` to `far`, at which a line over at most three cells of the data first meets the
-/// surface. `tolerance` is how near a height counts as met where the root is approached.
-pub fn intersect<T: Texel>(
-    field: &Field<'_, T>,
-    interpolation: Interpolation,
-    near: Vec3,
-    far: Vec3,
-    tolerance: f32,
-) -> Option<f32> {
-    let whole = far - near;
-    let u = crossing(near.x, far.x);
-    let v = crossing(near.y, far.y);
-    let ends = [0.0, u.min(v), u.max(v), 1.0];
-    ends.windows(2).find_map(|ends| {
-        let size = ends[1] - ends[0];
-        if size <= 0.0 {
+    /// A height that nothing which interpolation reads between two places exceeds; none where no map is. `shift` is that of the
+    /// rectangle's extent; a coarser level answers where more than four texels of it are touched.
+    pub fn highest_below(&self, low: Vec2, high: Vec2, shift: i32) -> Option<f32> {
+        let last_node = self.last(0);
+        let end = last_node.as_vec2();
+        if high.x < 0.0 || high.y < 0.0 || low.x > end.x || low.y > end.y {
             return None;
         }
-        let from = near + ends[0] * whole;
-        let Cell { corner, .. } = field.cell(0, (from + 0.5 * size * whole).xy());
-        let inside = Vec3::new(from.x - corner.x as f32, from.y - corner.y as f32, from.z);
-        let t = match interpolation {
-            Interpolation::Bilinear => touch_bilinear(corners(field, 0, corner), inside, size * whole),
-            Interpolation::Bicubic => touch_bicubic(around(field, 0, corner), inside, size * whole, tolerance),
+        let (before, after) = match self.interpolation {
+            Interpolation::Bilinear => (0, 1),
+            Interpolation::Bicubic => (1, 2),
         };
-        t.map(|t| ends[0] + t * size)
-    })
+        let first = (low.max(Vec2::splat(-4.0)).floor().as_ivec2() - before).clamp(IVec2::ZERO, last_node);
+        let last = (high.min(end + 4.0).floor().as_ivec2() + after).clamp(IVec2::ZERO, last_node);
+        let most = ((last >> shift) - (first >> shift)).max_element().max(1) as u32;
+        let level = (shift + (2 * most - 1).ilog2() as i32).min(self.shape().top as i32);
+        let (a, b) = (first >> level, last >> level);
+        let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
+        let highest = four.map(|texel| self.value(Bound::Highest, level, texel)).into_iter().fold(f32::MIN, f32::max);
+        Some(match self.interpolation {
+            Interpolation::Bilinear => highest,
+            Interpolation::Bicubic => {
+                let lowest =
+                    four.map(|texel| self.value(Bound::Lowest, level, texel)).into_iter().fold(f32::MAX, f32::min);
+                highest + OVERSHOOT as f32 * (highest - lowest)
+            }
+        })
+    }
+
+    /// The ray parameter, 0 to 1 from `near` to `far`, at which a line over at most three cells of the data first meets the
+    /// surface. `tolerance` is how near a height counts as met where the root is approached.
+    pub fn intersect(&self, near: Vec3, far: Vec3, tolerance: f32) -> Option<f32> {
+        let whole = far - near;
+        let u = crossing(near.x, far.x);
+        let v = crossing(near.y, far.y);
+        let ends = [0.0, u.min(v), u.max(v), 1.0];
+        ends.windows(2).find_map(|ends| {
+            let size = ends[1] - ends[0];
+            if size <= 0.0 {
+                return None;
+            }
+            let from = near + ends[0] * whole;
+            let Cell { corner, .. } = self.cell(0, (from + 0.5 * size * whole).xy());
+            let inside = Vec3::new(from.x - corner.x as f32, from.y - corner.y as f32, from.z);
+            let t = match self.interpolation {
+                Interpolation::Bilinear => touch_bilinear(self.corners(0, corner), inside, size * whole),
+                Interpolation::Bicubic => touch_bicubic(self.around(0, corner), inside, size * whole, tolerance),
+            };
+            t.map(|t| ends[0] + t * size)
+        })
+    }
+
+    /// Four corner values: north-west, north-east, south-west, south-east.
+    fn corners(&self, shift: i32, a: IVec2) -> Vec4 {
+        let b = (a + 1).min(self.last(shift));
+        let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
+        Vec4::from_array(four.map(|texel| self.value(Bound::Highest, shift, texel)))
+    }
+
+    /// The sixteen values around a cell: rows from north to south, borders repeated.
+    fn rows_around(&self, shift: i32, cell: IVec2) -> [[f32; 4]; 4] {
+        let last = self.last(shift);
+        let value = |column: i32, row: i32| {
+            let texel = (cell + IVec2::new(column, row)).clamp(IVec2::ZERO, last);
+            self.value(Bound::Highest, shift, texel)
+        };
+        [-1, 0, 1, 2].map(|row| [-1, 0, 1, 2].map(|column| value(column, row)))
+    }
+
+    fn around(&self, shift: i32, cell: IVec2) -> Mat4 {
+        Mat4::from_cols_array_2d(&self.rows_around(shift, cell))
+    }
 }
 
 /// The fraction of the change from one number to another at which it crosses a whole one; 1 where it crosses none.
@@ -119,13 +130,6 @@ fn crossing(from: f32, to: f32) -> f32 {
         return 1.0;
     }
     ((from.floor().max(to.floor()) - from) / (to - from)).clamp(0.0, 1.0)
-}
-
-/// Four corner values: north-west, north-east, south-west, south-east.
-fn corners<T: Texel>(field: &Field<'_, T>, shift: i32, a: IVec2) -> Vec4 {
-    let b = (a + 1).min(field.last(shift));
-    let four = [a, IVec2::new(b.x, a.y), IVec2::new(a.x, b.y), b];
-    Vec4::from_array(four.map(|texel| field.value(Bound::Highest, shift, texel)))
 }
 
 /// The ray parameter, 0 to 1, at which a line from `from` along `direction` inside a cell first touches the cell's surface.
@@ -148,20 +152,6 @@ fn touch_bilinear(corners: Vec4, from: Vec3, direction: Vec3) -> Option<f32> {
         return Some(numerator / denominator);
     }
     (qa + qb + qc <= 0.0).then_some(1.0)
-}
-
-/// The sixteen values around a cell: rows from north to south, borders repeated.
-fn rows_around<T: Texel>(field: &Field<'_, T>, shift: i32, cell: IVec2) -> [[f32; 4]; 4] {
-    let last = field.last(shift);
-    let value = |column: i32, row: i32| {
-        let texel = (cell + IVec2::new(column, row)).clamp(IVec2::ZERO, last);
-        field.value(Bound::Highest, shift, texel)
-    };
-    [-1, 0, 1, 2].map(|row| [-1, 0, 1, 2].map(|column| value(column, row)))
-}
-
-fn around<T: Texel>(field: &Field<'_, T>, shift: i32, cell: IVec2) -> Mat4 {
-    Mat4::from_cols_array_2d(&rows_around(field, shift, cell))
 }
 
 /// Of Catmull-Rom.
@@ -264,18 +254,13 @@ pub struct Sample {
 
 impl Patch {
     /// Of the cell whose north-west corner is `cell`; `above_base_m` turns the map's own numbers into metres.
-    pub fn new<T: Texel>(
-        field: &Field<'_, T>,
-        interpolation: Interpolation,
-        cell: IVec2,
-        above_base_m: impl Fn(f64) -> f64,
-    ) -> Self {
-        let along = |values: [f64; 4]| match interpolation {
+    pub fn new<T: Texel>(field: &Field<'_, T>, cell: IVec2, above_base_m: impl Fn(f64) -> f64) -> Self {
+        let along = |values: [f64; 4]| match field.interpolation {
             Interpolation::Bilinear => line(values[1], values[2]),
             Interpolation::Bicubic => bezier::<f64, f64>(values),
         };
         let metres = |row: [f32; 4]| row.map(|number| above_base_m(number.into()));
-        let rows = rows_around(field, 0, cell).map(|row| along(metres(row)));
+        let rows = field.rows_around(0, cell).map(|row| along(metres(row)));
         let columns = [0, 1, 2, 3].map(|column| along(rows.map(|row| row[column])));
         Patch { points: [0, 1, 2, 3].map(|row| columns.map(|column| column[row])) }
     }

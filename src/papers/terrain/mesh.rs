@@ -1,18 +1,16 @@
-//! What a user would do without the method: the map as an indexed triangle grid, rasterised. It fills the same target as the
-//! rays do.
-
-use std::sync::Arc;
+//! The pass `mesh` (section 4) of the variant `mesh`, what a user would do without the method: the map as an indexed
+//! triangle grid, rasterised. It fills the same target as the pass `depth`. Once for each map.
 
 use ash::vk;
 
+use super::base::BasePass;
+use super::geometric_transformation::SceneView;
 use super::ground::Ground;
-use super::hit::{NO_DEPTH, Surface};
-use super::parameters::Parameters;
+use super::hit::Surface;
 use super::pyramid::Shape;
-use super::scene::{DeviceScene, Seen};
-use super::stage::Stage;
+use super::scene::DeviceScene;
 use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, DepthTest, Error, Frame, Load, Pass, ShaderLibrary};
 use crate::host_block;
 
 /// The most samples a side that are drawn as triangles.
@@ -22,18 +20,18 @@ const BLOCK_INDICES: u32 = 1 << 20;
 
 host_block! {
     struct MeshConstants {
+        /// From u, v and h; w is the depth along the view's axis in metres.
         to_clip: [f32; 16],
+        /// Of the block of rows that is drawn.
         first_row: i32,
+        /// A [`Surface`].
         surface: i32,
     }
 }
 
 /// The grids of all maps.
 pub struct Mesh {
-    base: Pass,
     grids: Vec<Grid>,
-    /// What the grids and the base cover.
-    pub depth: Arc<ImageView>,
 }
 
 struct Grid {
@@ -43,31 +41,17 @@ struct Grid {
 }
 
 impl Mesh {
+    /// Draws into the targets of `base`.
+    ///
     /// # Errors
     /// [`Error::Limit`] for a map of more than [`MESH_SIDE`] samples a side, what Vulkan answers.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
-        parameters: &Parameters,
         grounds: &[Ground],
         scene: &DeviceScene,
+        base: &BasePass,
     ) -> Result<Self, Error> {
-        let device = shaders.device();
-        let size = (parameters.width, parameters.height);
-        let format = vk::Format::R32G32B32A32_SFLOAT;
-        let depth = Stage::Fragment.image(device, format!("{label}/depth"), format, size)?;
-        let desc = ImageDesc::new_2d(format!("{label}/tested"), vk::Format::D32_SFLOAT, size.0, size.1);
-        let tested = Image::new(device, desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()?;
-        let Some(first) = scene.maps.first() else {
-            return Err(Error::Pass { pass: "mesh".into(), problem: "there is no map".into() });
-        };
-        let fragment = format!("terrain/mesh-base-{}.frag", parameters.base.kind());
-        let base = Pass::graphics("base", "2", "common/fullscreen.vert", &fragment)
-            .with("terrain", &first.terrain)
-            .with("levels", &first.levels.view)
-            .color(&depth, Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]), Blend::Replace)
-            .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
-            .build(shaders)?;
         let mut grids = Vec::new();
         for (index, (ground, map)) in grounds.iter().zip(&scene.maps).enumerate() {
             let shape = ground.shape;
@@ -83,28 +67,26 @@ impl Mesh {
             let block_rows = (BLOCK_INDICES / (6 * (shape.width - 1))).clamp(1, shape.height - 1);
             let name = format!("{label}/mesh-indices");
             let bytes = block_indices(shape.width, block_rows);
-            let indices = upload(device, &name, vk::BufferUsageFlags::INDEX_BUFFER, bytemuck::cast_slice(&bytes))?;
+            let indices =
+                upload(shaders.device(), &name, vk::BufferUsageFlags::INDEX_BUFFER, bytemuck::cast_slice(&bytes))?;
             let pass = Pass::graphics("mesh", "4", "terrain/mesh.vert", "terrain/mesh.frag")
                 .with("terrain", &map.terrain)
                 .with("levels", &map.levels.view)
                 .indices(&indices)
                 .constants::<MeshConstants>()
-                .color(&depth, Load::Keep, Blend::Replace)
-                .depth(&tested, Load::Keep, DepthTest::LessWrite)
+                .color(&base.target, Load::Keep, Blend::Replace)
+                .depth(&base.tested, Load::Keep, DepthTest::LessWrite)
                 .build(shaders)?;
             grids.push(Grid { shape, block_rows, pass });
         }
-        Ok(Mesh { base, grids, depth })
+        Ok(Mesh { grids })
     }
 
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn record(&self, frame: &mut Frame<'_>, grounds: &[Ground], seen: &Seen) -> Result<(), Error> {
-        frame.graphics(&self.base, |draw| {
-            draw.vertices(3);
-        })?;
+    pub fn record(&self, frame: &mut Frame<'_>, grounds: &[Ground], view: &SceneView) -> Result<(), Error> {
         for (grid, ground) in self.grids.iter().zip(grounds) {
-            let to_clip = (seen.to_clip * ground.to_frame.inverse()).as_mat4().to_cols_array();
+            let to_clip = (view.to_clip * ground.to_frame.inverse()).as_mat4().to_cols_array();
             let constants = |surface: Surface, first_row: u32| MeshConstants {
                 to_clip,
                 first_row: first_row as i32,

@@ -6,59 +6,71 @@
 //! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow) ─► illumination (...)   (mesh)
 //! ```
 
+mod base;
 mod blocks;
-mod caster;
 mod collision;
-mod cpu;
 mod curve;
+mod depth;
 mod drape;
 pub mod experiments;
+mod geodesy;
+mod geometric_transformation;
 mod ground;
+mod height_field;
 mod hit;
+mod illumination;
 mod interpolation;
 #[cfg(test)]
 mod layouts;
 mod levels;
-mod lighting;
 mod mesh;
 mod nearest;
+mod normal;
+mod object_depth;
+mod object_hits;
+mod object_shadow;
 mod objects;
 mod parameters;
-
 mod placement;
 mod pyramid;
-mod ray_cast;
+mod ray_caster;
+mod ray_segment;
 pub mod reference;
-mod relief;
 mod scene;
 pub mod setup;
-mod shading;
-mod shadows;
+mod shadow;
+mod show;
 mod solid;
 mod stage;
 
-mod way;
-
 use std::sync::Arc;
 
+use self::base::BasePass;
 pub use self::collision::{Collider, Contact, Touch};
-use self::cpu::Cpu;
+use self::depth::{Depth, HostDepth};
 pub use self::drape::Drape;
+use self::geometric_transformation::{GeometricTransformation, SceneView};
 pub use self::ground::{Ground, Origin};
+use self::height_field::HeightField;
 pub use self::hit::{Hit, NO_DEPTH, Surface};
+use self::illumination::{HostIllumination, Illumination};
 pub use self::levels::Levels;
-use self::lighting::Lighting;
 pub use self::mesh::MESH_SIDE;
 use self::mesh::Mesh;
-use self::objects::Objects;
+use self::normal::{HostNormal, Normal};
+use self::object_depth::ObjectDepth;
+use self::object_hits::ObjectHits;
+use self::object_shadow::object_shadow;
+use self::objects::{ObjectMesh, Objects};
 pub use self::parameters::{Base, Interpolation, Lod, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
-use self::ray_cast::RayCast;
 use self::scene::{DeviceScene, Scene};
 pub use self::scene::{Inputs, MapInput};
+use self::shadow::{HostShadow, Shadow, all_lit};
+use self::show::Show;
 use self::stage::Stage;
-use crate::gpu::{Error, Feature, Frame, ImageView, PassInfo, ShaderLibrary};
+use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::HeightMap;
 
@@ -69,21 +81,45 @@ pub const NEEDS: [Feature; 0] = [];
 pub struct Terrain {
     parameters: Parameters,
     scene: Scene,
-    transformation: Arc<PassInfo>,
+    geometric_transformation: GeometricTransformation,
+    /// The maps on the device, where a pass reads them there.
+    device_scene: Option<DeviceScene>,
     technique: Technique,
-    objects: Option<Objects>,
+    objects: Option<ObjectPasses>,
 }
 
+/// The passes that make the picture of the terrain.
 enum Technique {
-    /// With the maps on the device where those throw shadows on objects, which the device draws.
-    Cpu(Cpu, Option<DeviceScene>),
-    Device(DeviceScene, DepthMethod, Lighting),
+    Cpu(HostPasses),
+    RayCast(Depth, Shading),
+    Mesh(BasePass, Mesh, Shading),
 }
 
-/// How the device finds what a pixel sees.
-enum DepthMethod {
-    RayCast(RayCast),
-    Mesh(Mesh),
+/// Everything on the processor.
+struct HostPasses {
+    maps: Vec<HeightField>,
+    depth: HostDepth,
+    normal: HostNormal,
+    shadow: Option<HostShadow>,
+    illumination: HostIllumination,
+    show: Show,
+}
+
+/// What follows the depth on the device, whoever found it.
+struct Shading {
+    depth: Arc<ImageView>,
+    normal: Normal,
+    shadow: Option<Shadow>,
+    illumination: Illumination,
+}
+
+/// Polygon objects in the picture of the terrain.
+struct ObjectPasses {
+    meshes: Vec<ObjectMesh>,
+    depth: ObjectDepth,
+    /// Where the maps throw shadows.
+    shadow: Option<(ObjectHits, Shadow)>,
+    objects: Objects,
 }
 
 impl Terrain {
@@ -108,88 +144,193 @@ impl Terrain {
             });
         }
         let scene = Scene::new(parameters, inputs);
-        let technique = match variant {
+        let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene.maps, drape);
+        let (device_scene, technique) = match variant {
             Variant::Cpu => {
-                let cpu = Cpu::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
+                let host = HostPasses::new(shaders, label, parameters, &scene, inputs)?;
                 let shades_objects = parameters.shadows && !inputs.objects.is_empty();
-                let device_scene =
-                    shades_objects.then(|| DeviceScene::new(shaders, label, parameters, &scene.maps, None));
-                Technique::Cpu(cpu, device_scene.transpose()?)
+                (shades_objects.then(|| on_device(None)).transpose()?, Technique::Cpu(host))
             }
             Variant::GpuCompute | Variant::GpuFragment => {
                 let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
-                let device_scene = DeviceScene::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
-                let ray_cast = RayCast::new(shaders, label, stage, parameters, &device_scene)?;
-                let lighting = Lighting::new(shaders, label, stage, parameters, &device_scene, &ray_cast.depth)?;
-                Technique::Device(device_scene, DepthMethod::RayCast(ray_cast), lighting)
+                let maps = on_device(inputs.drape)?;
+                let depth = Depth::new(shaders, label, stage, parameters, &maps)?;
+                let shading = Shading::new(shaders, label, stage, parameters, &maps, &depth.target)?;
+                (Some(maps), Technique::RayCast(depth, shading))
             }
             Variant::Mesh => {
-                let device_scene = DeviceScene::new(shaders, label, parameters, &scene.maps, inputs.drape)?;
-                let mesh = Mesh::new(shaders, label, parameters, &scene.grounds, &device_scene)?;
-                let lighting = Lighting::new(shaders, label, Stage::Fragment, parameters, &device_scene, &mesh.depth)?;
-                Technique::Device(device_scene, DepthMethod::Mesh(mesh), lighting)
+                let maps = on_device(inputs.drape)?;
+                let base = BasePass::new(shaders, label, parameters, &maps)?;
+                let mesh = Mesh::new(shaders, label, &scene.grounds, &maps, &base)?;
+                let shading = Shading::new(shaders, label, Stage::Fragment, parameters, &maps, &base.target)?;
+                (Some(maps), Technique::Mesh(base, mesh, shading))
             }
         };
-        let (depth, picture, device_scene) = match &technique {
-            Technique::Cpu(cpu, device_scene) => (cpu.depth(), cpu.picture(), device_scene.as_ref()),
-            Technique::Device(device_scene, _, lighting) => (lighting.depth(), &lighting.picture, Some(device_scene)),
+        let mut terrain = Terrain {
+            parameters: parameters.clone(),
+            scene,
+            geometric_transformation: GeometricTransformation::new(),
+            device_scene,
+            technique,
+            objects: None,
         };
-        let objects = match inputs.objects {
-            [] => None,
-            meshes => {
-                let maps = device_scene.filter(|_| parameters.shadows);
-                Some(Objects::new(shaders, label, parameters, meshes, (depth, picture), maps)?)
-            }
-        };
-        let reads = ["camera", "placement"];
-        let transformation = PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &["land", "light"]);
-        Ok(Terrain { parameters: parameters.clone(), scene, transformation, technique, objects })
+        if !inputs.objects.is_empty() {
+            let maps = terrain.device_scene.as_ref().filter(|_| parameters.shadows);
+            let (depth, picture) = (terrain.depth(), terrain.picture());
+            let objects = ObjectPasses::new(shaders, label, parameters, inputs.objects, (depth, picture), maps)?;
+            terrain.objects = Some(objects);
+        }
+        Ok(terrain)
     }
 
-    /// Sees the next frames from elsewhere. The caller has validated the view.
-    pub fn look(&mut self, view: View) {
+    /// Sets the view of the next frames. The caller has validated it.
+    pub fn set_view(&mut self, view: View) {
         self.parameters.view = view;
+    }
+
+    /// A [`Hit`] of each pixel, on the device.
+    fn depth(&self) -> &Arc<ImageView> {
+        match &self.technique {
+            Technique::Cpu(host) => &host.show.depth,
+            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => &shading.depth,
+        }
+    }
+
+    fn record_passes(&mut self, frame: &mut Frame<'_>, shows: bool) -> Result<(), Error> {
+        let Terrain { geometric_transformation, scene, parameters, device_scene, .. } = self;
+        let view = geometric_transformation.record(frame, scene, parameters, device_scene.as_ref())?;
+        match &mut self.technique {
+            Technique::Cpu(host) => {
+                let hits = host.depth.record(frame, &host.maps, &view);
+                let normals = host.normal.record(frame, &host.maps, &view, hits);
+                let shadow = host.shadow.as_mut();
+                let sunlit = shadow.map_or(&[][..], |shadow| shadow.record(frame, &host.maps, &view, hits));
+                let colors = host.illumination.record(frame, &view, (hits, normals, sunlit));
+                // Polygons are drawn by the device, so the processor's picture has to be there first.
+                if shows || self.objects.is_some() {
+                    host.show.record(frame, (hits, normals, colors))?;
+                }
+            }
+            Technique::RayCast(depth, shading) => {
+                depth.record(frame)?;
+                shading.record(frame)?;
+            }
+            Technique::Mesh(base, mesh, shading) => {
+                base.record(frame)?;
+                mesh.record(frame, &self.scene.grounds, &view)?;
+                shading.record(frame)?;
+            }
+        }
+        self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame, &view))
+    }
+}
+
+impl HostPasses {
+    fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        scene: &Scene,
+        inputs: &Inputs<'_>,
+    ) -> Result<Self, Error> {
+        Ok(HostPasses {
+            show: Show::new(shaders, label, parameters)?,
+            maps: scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation)).collect(),
+            depth: HostDepth::new(parameters),
+            normal: HostNormal::new(parameters),
+            shadow: parameters.shadows.then(|| HostShadow::new(parameters)),
+            illumination: HostIllumination::new(parameters, inputs.drape),
+        })
+    }
+}
+
+impl Shading {
+    fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        stage: Stage,
+        parameters: &Parameters,
+        scene: &DeviceScene,
+        depth: &Arc<ImageView>,
+    ) -> Result<Self, Error> {
+        let normal = Normal::new(shaders, label, stage, parameters, scene, depth)?;
+        let shadow =
+            parameters.shadows.then(|| Shadow::new(shaders, label, (stage, "shadow"), parameters, scene, depth));
+        let shadow = shadow.transpose()?;
+        let sunlit = match &shadow {
+            Some(shadow) => shadow.target.clone(),
+            None => all_lit(shaders.device(), label)?,
+        };
+        let found = [depth, &normal.target, &sunlit];
+        let illumination = Illumination::new(shaders, label, stage, parameters, scene, found)?;
+        Ok(Shading { depth: depth.clone(), normal, shadow, illumination })
+    }
+
+    fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.normal.record(frame)?;
+        self.shadow.as_ref().map_or(Ok(()), |shadow| shadow.record(frame))?;
+        self.illumination.record(frame)
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        let mut targets = vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal.target)];
+        targets.extend(self.shadow.as_ref().map(|shadow| Target::image("shadow", &shadow.target)));
+        targets
+    }
+}
+
+impl ObjectPasses {
+    /// `scene` is that of the maps that throw shadows.
+    fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        meshes: &[crate::scene::Mesh],
+        (depth, picture): (&Arc<ImageView>, &Arc<ImageView>),
+        scene: Option<&DeviceScene>,
+    ) -> Result<Self, Error> {
+        let object_depth = ObjectDepth::new(shaders, label, parameters, depth)?;
+        let meshes = meshes.iter().map(|mesh| ObjectMesh::new(shaders, label, mesh)).collect::<Result<Vec<_>, _>>()?;
+        let shadow = match scene {
+            None => None,
+            Some(scene) => {
+                let hits = ObjectHits::new(shaders, label, parameters, &meshes, &object_depth)?;
+                let shadow = object_shadow(shaders, label, parameters, scene, &hits.target)?;
+                Some((hits, shadow))
+            }
+        };
+        let (sunlit, test) = match &shadow {
+            None => (all_lit(shaders.device(), &format!("{label}/objects"))?, DepthTest::LessWrite),
+            Some((_, shadow)) => (shadow.target.clone(), DepthTest::EqualReadOnly),
+        };
+        let objects = Objects::new(shaders, &meshes, (&object_depth, test), &sunlit, picture)?;
+        Ok(ObjectPasses { meshes, depth: object_depth, shadow, objects })
+    }
+
+    fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
+        self.depth.record(frame, view)?;
+        if let Some((hits, shadow)) = &self.shadow {
+            hits.record(frame, &self.meshes, view)?;
+            shadow.record(frame)?;
+        }
+        self.objects.record(frame, &self.meshes, view)
+    }
+
+    fn targets(&self) -> Vec<Target> {
+        let shadow = |(hits, shadow): &(ObjectHits, Shadow)| {
+            [Target::image("object-hits", &hits.target), Target::image("object-shadow", &shadow.target)]
+        };
+        self.shadow.iter().flat_map(shadow).collect()
     }
 }
 
 impl Paper for Terrain {
     fn record(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
-        let (scene, parameters) = (&self.scene, &self.parameters);
-        match &mut self.technique {
-            Technique::Cpu(cpu, device_scene) => {
-                let seen = frame.host(&self.transformation, || {
-                    let seen = scene.transform(parameters);
-                    device_scene.as_ref().map_or(Ok(()), |maps| maps.write(&seen)).map(|()| seen)
-                })?;
-                cpu.record(frame, &seen);
-                // Polygons are drawn by the device, so the processor's picture has to be there first.
-                if let Some(objects) = &self.objects {
-                    cpu.show(frame)?;
-                    objects.record(frame, &seen)?;
-                }
-                Ok(())
-            }
-            Technique::Device(device_scene, method, lighting) => {
-                let seen = frame.host(&self.transformation, || {
-                    let seen = scene.transform(parameters);
-                    device_scene.write(&seen).map(|()| seen)
-                })?;
-                match method {
-                    DepthMethod::RayCast(ray_cast) => ray_cast.record(frame)?,
-                    DepthMethod::Mesh(mesh) => mesh.record(frame, &scene.grounds, &seen)?,
-                }
-                lighting.record(frame)?;
-                self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame, &seen))
-            }
-        }
+        self.record_passes(frame, false)
     }
 
-    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        self.record(frame, number)?;
-        match &self.technique {
-            Technique::Cpu(cpu, _) if self.objects.is_none() => cpu.show(frame),
-            _ => Ok(()),
-        }
+    fn record_picture(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
+        self.record_passes(frame, true)
     }
 
     fn warnings(&self) -> Vec<String> {
@@ -204,19 +345,17 @@ impl Paper for Terrain {
 
     fn picture(&self) -> &Arc<ImageView> {
         match &self.technique {
-            Technique::Cpu(cpu, _) => cpu.picture(),
-            Technique::Device(_, _, lighting) => &lighting.picture,
+            Technique::Cpu(host) => &host.show.picture,
+            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => &shading.illumination.picture,
         }
     }
 
     fn targets(&self) -> Vec<Target> {
         let mut targets = match &self.technique {
-            Technique::Cpu(cpu, _) => cpu.targets(),
-            Technique::Device(_, _, lighting) => lighting.targets(),
+            Technique::Cpu(host) => host.show.targets(),
+            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => shading.targets(),
         };
-        if let Some(objects) = &self.objects {
-            targets.extend(objects.targets());
-        }
+        targets.extend(self.objects.iter().flat_map(ObjectPasses::targets));
         targets.push(Target::image("picture", self.picture()));
         targets
     }

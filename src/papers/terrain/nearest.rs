@@ -7,11 +7,10 @@
 
 use glam::{DVec2, DVec3, IVec2};
 
+use super::height_field::{Field, FieldWork};
 use super::hit::Surface;
-use super::interpolation::{Patch, highest_below};
-use super::parameters::Interpolation;
+use super::interpolation::Patch;
 use super::pyramid::Texel;
-use super::relief::{Field, FieldWork};
 use super::solid::Solid;
 
 /// Distances are found to this share of a cell.
@@ -35,7 +34,6 @@ pub struct Nearest {
 /// Looks for what is nearer than `best`.
 pub struct Search<'a> {
     pub solid: Solid<'a>,
-    pub interpolation: Interpolation,
     pub center: DVec3,
     pub best: Nearest,
 }
@@ -106,7 +104,7 @@ impl Search<'_> {
     }
 
     fn patch<T: Texel>(&self, field: &Field<'_, T>, cell: IVec2) -> Patch {
-        Patch::new(field, self.interpolation, cell, |number| self.solid.above_base_m(number))
+        Patch::new(field, cell, |number| self.solid.above_base_m(number))
     }
 
     /// The sides of the solid: the feet on them of the centre, and the edges between them.
@@ -152,7 +150,7 @@ impl Search<'_> {
             return None;
         }
         self.best.steps += 1;
-        let highest = highest_below(field, self.interpolation, low.as_vec2(), high.as_vec2(), shift)?;
+        let highest = field.highest_below(low.as_vec2(), high.as_vec2(), shift)?;
         let top_m = self.solid.above_base_m(highest.into());
         let top_m = top_m + ROUNDING * (top_m.abs() + self.solid.above_base_m(0.0).abs());
         if top_m < 0.0 {

@@ -224,6 +224,11 @@ impl Parameters {
         ParameterError::check(is_turnable, "--place", &place, "only maps on a plane can be turned; give 0 degrees")
     }
 
+    /// The number of pixels of the picture.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
     /// Width over height of the picture.
     pub fn aspect(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)

@@ -4,10 +4,11 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use ash::vk;
-use glam::{DMat4, DVec4, Vec2};
+use glam::Vec2;
 
 use super::blocks::{LightBlock, TerrainBlock};
 use super::drape::Drape;
+use super::geometric_transformation::SceneView;
 use super::ground::{Ground, Origin, REPEATED};
 use super::hit::NO_DEPTH;
 use super::levels::Levels;
@@ -16,7 +17,7 @@ use super::placement::{Extent, Placement, Rays};
 use super::pyramid::Bound;
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location, ShaderLibrary};
-use crate::scene::{Camera, HeightMap, Mesh, Samples};
+use crate::scene::{HeightMap, Mesh, Samples};
 
 /// A height map and its place.
 #[derive(Debug, Clone)]
@@ -94,7 +95,7 @@ impl Scene {
     }
 
     /// Every map as `rays` see it.
-    pub fn terrains<'a>(
+    pub fn terrain_blocks<'a>(
         &'a self,
         parameters: &'a Parameters,
         rays: &'a Rays,
@@ -106,42 +107,14 @@ impl Scene {
         })
     }
 
-    /// The pass `geometric-transformation`: eq. 10 and 11 for every map. Only the base's matrix is touched.
-    pub fn transform(&self, parameters: &Parameters) -> Seen {
-        let camera = parameters.camera(&self.extent);
-        let rays = Rays::new(&camera, parameters.width, parameters.height);
-        let light = LightBlock {
+    pub fn light_block(&self, parameters: &Parameters, rays: &Rays, near_m: f32) -> LightBlock {
+        LightBlock {
             drape_cells: self.drape_cells,
             drape_first_column: self.drape_first_column,
             is_draped: self.is_draped.into(),
-            ..LightBlock::new(parameters, &rays, self.range_m, camera.near_m)
-        };
-        Seen {
-            terrains: self.terrains(parameters, &rays, camera.near_m).collect(),
-            light,
-            to_clip: to_clip(&camera, parameters.aspect()),
+            ..LightBlock::new(parameters, rays, self.range_m, near_m)
         }
     }
-}
-
-/// The scene in the camera's eyes.
-pub struct Seen {
-    pub terrains: Vec<TerrainBlock>,
-    pub light: LightBlock,
-    /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
-    /// 1 - near / w, without a far plane.
-    pub to_clip: DMat4,
-}
-
-fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
-    let scale = 1.0 / (f64::from(camera.vertical_fov_rad) / 2.0).tan();
-    let projection = DMat4::from_cols(
-        DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
-        DVec4::new(0.0, -scale, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, -1.0, -1.0),
-        DVec4::new(0.0, 0.0, -f64::from(camera.near_m), 0.0),
-    );
-    projection * camera.view().as_dmat4()
 }
 
 /// A map on the device.
@@ -155,8 +128,8 @@ pub struct DeviceScene {
     pub maps: Vec<Map>,
     pub light: Arc<Buffer>,
     pub drape: Arc<ImageView>,
-    /// A single texel: no map has been looked at.
-    pub nothing: Arc<ImageView>,
+    /// A single texel, of the sky: what is found before the first map.
+    pub no_hits: Arc<ImageView>,
 }
 
 impl DeviceScene {
@@ -189,20 +162,20 @@ impl DeviceScene {
         })?;
         let texel = [NO_DEPTH, 0.0, 0.0, 0.0];
         let vector = vk::Format::R32G32B32A32_SFLOAT;
-        let nothing = texels(device, &format!("{label}/nothing"), vector, (1, 1), |_, bytes| {
+        let no_hits = texels(device, &format!("{label}/nothing"), vector, (1, 1), |_, bytes| {
             bytes.copy_from_slice(bytemuck::bytes_of(&texel));
         })?;
         let light = block_buffer::<LightBlock>(device, &format!("{label}/light"))?;
-        Ok(DeviceScene { maps, light, drape, nothing })
+        Ok(DeviceScene { maps, light, drape, no_hits })
     }
 
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn write(&self, seen: &Seen) -> Result<(), Error> {
-        for (map, terrain) in self.maps.iter().zip(&seen.terrains) {
+    pub fn write(&self, view: &SceneView) -> Result<(), Error> {
+        for (map, terrain) in self.maps.iter().zip(&view.terrains) {
             map.terrain.write(0, bytemuck::bytes_of(terrain))?;
         }
-        self.light.write(0, bytemuck::bytes_of(&seen.light))
+        self.light.write(0, bytemuck::bytes_of(&view.light))
     }
 }
 

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::parameters::Parameters;
 use crate::gpu::bindings::Resource;
 use crate::gpu::pass::PassBuilder;
-use crate::gpu::{Blend, Device, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
+use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 
 /// The stages that a device offers for one program over all pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,18 +30,19 @@ impl Stage {
         written | vk::ImageUsageFlags::SAMPLED
     }
 
-    /// An image that this stage writes and later passes read.
+    /// An image of the picture's size that this stage writes and later passes read.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn image(
         self,
-        device: &Arc<Device>,
+        shaders: &ShaderLibrary,
         name: String,
         format: vk::Format,
-        (width, height): (u32, u32),
+        parameters: &Parameters,
     ) -> Result<Arc<ImageView>, Error> {
-        Image::new(device, ImageDesc::new_2d(name, format, width, height).usage(self.usage()))?.view()
+        let desc = ImageDesc::new_2d(name, format, parameters.width, parameters.height).usage(self.usage());
+        Image::new(shaders.device(), desc)?.view()
     }
 
     /// Records `pass` over all pixels of `target`.
@@ -58,15 +60,15 @@ impl Stage {
         }
     }
 
-    /// One sentence for both: `program` over all pixels of `target`, which compute stages know by the pass's name.
-    pub fn say(
+    /// A pass for either stage: `program` over all pixels of `target`, which compute stages know by the pass's name.
+    pub fn pass(
         self,
         (name, section): (&'static str, &'static str),
         program: &str,
         (target, load): (&Arc<ImageView>, Load),
         resources: &[(&'static str, Resource)],
     ) -> PassBuilder {
-        let sentence = match self {
+        let pass = match self {
             Stage::Compute => Pass::compute(name, section, &self.file(program)).with(name, target),
             Stage::Fragment => Pass::graphics(name, section, "common/fullscreen.vert", &self.file(program)).color(
                 target,
@@ -74,6 +76,15 @@ impl Stage {
                 Blend::Replace,
             ),
         };
-        resources.iter().fold(sentence, |sentence, (name, resource)| sentence.with(name, resource.clone()))
+        resources.iter().fold(pass, |pass, (name, resource)| pass.with(name, resource.clone()))
     }
+}
+
+/// A depth buffer of the picture's size.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn depth_buffer(shaders: &ShaderLibrary, name: String, parameters: &Parameters) -> Result<Arc<ImageView>, Error> {
+    let desc = ImageDesc::new_2d(name, vk::Format::D32_SFLOAT, parameters.width, parameters.height);
+    Image::new(shaders.device(), desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()
 }

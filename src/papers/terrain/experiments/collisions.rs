@@ -70,8 +70,8 @@ impl Body {
     fn meet(&self, collider: &Collider) -> Option<Meeting> {
         match *self {
             Body::Segment { from, to } => collider.segment(from, to).map(|contact| Meeting {
-                parameter: Some(contact.part),
-                distance_m: contact.part * from.distance(to),
+                parameter: Some(contact.t),
+                distance_m: contact.t * from.distance(to),
                 point: contact.point,
                 normal: contact.normal,
                 surface: contact.surface,

@@ -8,12 +8,11 @@
 use glam::{Vec2, Vec3, Vec3Swizzles};
 
 use super::blocks::{PLANE, TerrainBlock};
+use super::height_field::{Field, shift_for};
 use super::hit::{Hit, NO_DEPTH, Surface};
-use super::interpolation;
-use super::parameters::{Interpolation, Lod};
+use super::parameters::Lod;
 use super::pyramid::Texel;
-use super::relief::{Field, shift_for};
-use super::way::{CurvedWay, PlaneWay, Segment, Way, base_of};
+use super::ray_segment::{CurvedSegment, RaySegment, StraightSegment, Subsegment, base_of};
 
 /// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
 const WHOLE: u32 = 1 << 23;
@@ -41,11 +40,10 @@ impl From<Lod> for Footprint {
 }
 
 /// Casts rays at one map.
-pub struct Caster<'a, T> {
+pub struct RayCaster<'a, T> {
     pub terrain: &'a TerrainBlock,
     pub field: Field<'a, T>,
     pub footprint: Footprint,
-    pub interpolation: Interpolation,
 }
 
 /// Where a segment begins on its ray and how long it is, in units.
@@ -77,7 +75,7 @@ impl Span {
     }
 }
 
-impl<T: Texel> Caster<'_, T> {
+impl<T: Texel> RayCaster<'_, T> {
     /// The direction through the middle of a pixel.
     pub fn direction(&self, x: u32, y: u32) -> Vec3 {
         let TerrainBlock { corner_direction, right_step, down_step, .. } = *self.terrain;
@@ -103,16 +101,16 @@ impl<T: Texel> Caster<'_, T> {
         // A texel away from the surface itself.
         let away_m = self.terrain.widest_spacing_m * (shift as f32).exp2() + 1e-5 * hit.depth_m;
         let from = self.terrain.eye + hit.depth_m * direction + away_m * sun;
-        let caster = Caster { footprint: Footprint::Level(shift), ..*self };
+        let caster = RayCaster { footprint: Footprint::Level(shift), ..*self };
         caster.trace(from, sun, NO_DEPTH).is_some()
     }
 
     /// The first place where a ray is not above the map's surface, before `limit_m`.
     pub fn trace(&self, eye: Vec3, direction: Vec3, limit_m: f32) -> Option<Hit> {
         if self.terrain.base_kind == PLANE {
-            self.follow(&PlaneWay::new(self.terrain, eye, direction, limit_m)?)
+            self.follow(&StraightSegment::new(self.terrain, eye, direction, limit_m)?)
         } else {
-            self.follow(&CurvedWay::new(self.terrain, eye, direction, limit_m)?)
+            self.follow(&CurvedSegment::new(self.terrain, eye, direction, limit_m)?)
         }
     }
 
@@ -121,19 +119,19 @@ impl<T: Texel> Caster<'_, T> {
         Hit { depth_m, place: place.to_array(), surface, shift: shift as u32, map, steps }
     }
 
-    fn follow(&self, way: &impl Way) -> Option<Hit> {
+    fn follow(&self, ray: &impl RaySegment) -> Option<Hit> {
         let (terrain, top) = (self.terrain, self.field.shape().top);
-        let near_m = way.depth_m(0.0);
-        let first = way.segment(0.0, 0.0).near.xy();
+        let near_m = ray.depth_m(0.0);
+        let first = ray.subsegment(0.0, 0.0).near.xy();
         let shift = self.finest_shift(near_m);
-        if let Some(surface) = way.entered(interpolation::height(&self.field, self.interpolation, shift, first)) {
+        if let Some(surface) = ray.entry_surface(self.field.height(shift, first)) {
             return Some(self.hit(near_m, first, surface, shift, 1));
         }
         let mut steps = 0;
-        let mut span = Span { at: 0, units: WHOLE >> way.first_depth() };
+        let mut span = Span { at: 0, units: WHOLE >> ray.first_depth() };
         while !span.is_done() {
             let (start, size) = (span.start(), span.size());
-            let segment = way.segment(start, size);
+            let segment = ray.subsegment(start, size);
             let (near, far, slack) = (segment.near.xy(), segment.far.xy(), segment.slack);
             let (low, high) = (near.min(far) - slack.xy(), near.max(far) + slack.xy());
             let shift = shift_for((high - low).max_element(), top);
@@ -146,9 +144,9 @@ impl<T: Texel> Caster<'_, T> {
             if lowest > self.highest_below(low - terrain.rounding_nodes, high + terrain.rounding_nodes, shift) {
                 span.advance();
             } else if (shift <= finest && is_straight) || span.units == 1 {
-                if let Some((part, surface)) = self.meet(way, &segment) {
-                    let depth_m = way.depth_m(start + part * size);
-                    let place = near.lerp(far, part);
+                if let Some((fraction, surface)) = self.intersect(ray, &segment) {
+                    let depth_m = ray.depth_m(start + fraction * size);
+                    let place = near.lerp(far, fraction);
                     return Some(self.hit(depth_m, place, surface, self.finest_shift(depth_m), steps));
                 }
                 span.advance();
@@ -160,7 +158,7 @@ impl<T: Texel> Caster<'_, T> {
     }
 
     fn highest_below(&self, low: Vec2, high: Vec2, shift: i32) -> f32 {
-        interpolation::highest_below(&self.field, self.interpolation, low, high, shift).unwrap_or(f32::NEG_INFINITY)
+        self.field.highest_below(low, high, shift).unwrap_or(f32::NEG_INFINITY)
     }
 
     /// The level at which subdivision ends at a depth: the data's, or that of a pixel's footprint.
@@ -175,28 +173,26 @@ impl<T: Texel> Caster<'_, T> {
         }
     }
 
-    /// The part of a last segment at which it meets a surface, and which.
-    fn meet(&self, way: &impl Way, segment: &Segment) -> Option<(f32, Surface)> {
-        let over = way.over_map(segment);
-        if over.near > over.far {
+    /// The fraction of a last subsegment at which it meets a surface, and which.
+    fn intersect(&self, ray: &impl RaySegment, segment: &Subsegment) -> Option<(f32, Surface)> {
+        let clip = ray.clip_to_map(segment);
+        if clip.near > clip.far {
             return None;
         }
-        let near = segment.near.lerp(segment.far, over.near);
-        let far = segment.near.lerp(segment.far, over.far);
-        let part = match self.footprint {
-            Footprint::Data => {
-                interpolation::intersect(&self.field, self.interpolation, near, far, self.terrain.height_tolerance)
-            }
+        let near = segment.near.lerp(segment.far, clip.near);
+        let far = segment.near.lerp(segment.far, clip.far);
+        let t = match self.footprint {
+            Footprint::Data => self.field.intersect(near, far, self.terrain.height_tolerance),
             Footprint::Pixel | Footprint::Level(_) => {
                 self.intersect_footprint(near, far, self.finest_shift(segment.depth_m))
             }
         }?;
-        let surface = if part > 0.0 { Surface::Terrain } else { over.surface };
-        Some((over.near + part * (over.far - over.near), surface))
+        let surface = if t > 0.0 { Surface::Terrain } else { clip.surface };
+        Some((clip.near + t * (clip.far - clip.near), surface))
     }
 
     fn intersect_footprint(&self, near: Vec3, far: Vec3, shift: i32) -> Option<f32> {
-        let above = |place: Vec3| place.z - interpolation::height(&self.field, self.interpolation, shift, place.xy());
+        let above = |place: Vec3| place.z - self.field.height(shift, place.xy());
         let first = above(near);
         if first <= 0.0 {
             return Some(0.0);

@@ -1,4 +1,4 @@
-//! A map with its pyramid on the CPU.
+//! A map with its pyramid on the processor.
 
 use std::sync::Arc;
 
@@ -10,9 +10,10 @@ use crate::scene::{HeightMap, Samples};
 
 /// The samples of a map and the levels above them.
 #[derive(Debug, Clone)]
-pub struct Relief {
+pub struct HeightField {
     map: Arc<HeightMap>,
     levels: Levels,
+    interpolation: Interpolation,
 }
 
 #[derive(Debug, Clone)]
@@ -36,8 +37,8 @@ impl<T: Texel> Bounds<T> {
         Bounds { highest: build(Bound::Highest), lowest }
     }
 
-    fn field<'a>(&'a self, map: &'a HeightMap) -> Field<'a, T> {
-        Field { data: T::samples_of(map), highest: &self.highest, lowest: self.lowest.as_ref() }
+    fn field<'a>(&'a self, map: &'a HeightMap, interpolation: Interpolation) -> Field<'a, T> {
+        Field { data: T::samples_of(map), highest: &self.highest, lowest: self.lowest.as_ref(), interpolation }
     }
 }
 
@@ -48,37 +49,38 @@ pub trait FieldWork {
     fn run<T: Texel>(self, field: Field<'_, T>) -> Self::Output;
 }
 
-impl Relief {
+impl HeightField {
     /// Builds the levels on all cores.
     pub fn new(map: &Arc<HeightMap>, interpolation: Interpolation) -> Self {
         let levels = match map.samples() {
             Samples::Steps { .. } => Levels::Steps(Bounds::new(map, interpolation)),
             Samples::Float(_) => Levels::Float(Bounds::new(map, interpolation)),
         };
-        Relief { map: map.clone(), levels }
+        HeightField { map: map.clone(), levels, interpolation }
     }
 
     pub fn with<W: FieldWork>(&self, work: W) -> W::Output {
         match &self.levels {
-            Levels::Steps(bounds) => work.run(bounds.field(&self.map)),
-            Levels::Float(bounds) => work.run(bounds.field(&self.map)),
+            Levels::Steps(bounds) => work.run(bounds.field(&self.map, self.interpolation)),
+            Levels::Float(bounds) => work.run(bounds.field(&self.map, self.interpolation)),
         }
     }
 }
 
-/// The values of one map.
+/// The values of one map, and the surface between its samples.
 #[derive(Clone, Copy)]
 pub struct Field<'a, T> {
     data: &'a [T],
     highest: &'a Pyramid<T>,
     lowest: Option<&'a Pyramid<T>>,
+    pub interpolation: Interpolation,
 }
 
 /// The cell of a level around a place: its north-west corner, and where the place lies in it, 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
     pub corner: IVec2,
-    pub part: Vec2,
+    pub uv: Vec2,
 }
 
 impl<T: Texel> Field<'_, T> {
@@ -110,7 +112,7 @@ impl<T: Texel> Field<'_, T> {
         let last = self.last(shift);
         let texel = (place * size + (0.5 * size - 0.5)).clamp(Vec2::ZERO, last.as_vec2());
         let corner = texel.as_ivec2().min((last - 1).max(IVec2::ZERO));
-        Cell { corner, part: texel - corner.as_vec2() }
+        Cell { corner, uv: texel - corner.as_vec2() }
     }
 }
 

@@ -1,0 +1,54 @@
+//! The pass `base` (section 2) of the variant `mesh`: the base surface under and around the triangle grids.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::hit::NO_DEPTH;
+use super::parameters::Parameters;
+use super::scene::DeviceScene;
+use super::stage::{Stage, depth_buffer};
+use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+
+/// The pass, and the targets that it shares with the pass `mesh`.
+pub struct BasePass {
+    pass: Pass,
+    /// A hit of each pixel, of base and grids.
+    pub target: Arc<ImageView>,
+    /// The depth buffer: 1 - near / depth.
+    pub tested: Arc<ImageView>,
+}
+
+impl BasePass {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        scene: &DeviceScene,
+    ) -> Result<Self, Error> {
+        let format = vk::Format::R32G32B32A32_SFLOAT;
+        let target = Stage::Fragment.image(shaders, format!("{label}/depth"), format, parameters)?;
+        let tested = depth_buffer(shaders, format!("{label}/tested"), parameters)?;
+        let Some(first) = scene.maps.first() else {
+            return Err(Error::Pass { pass: "mesh".into(), problem: "there is no map".into() });
+        };
+        let fragment = format!("terrain/mesh-base-{}.frag", parameters.base.kind());
+        let pass = Pass::graphics("base", "2", "common/fullscreen.vert", &fragment)
+            .with("terrain", &first.terrain)
+            .with("levels", &first.levels.view)
+            .color(&target, Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]), Blend::Replace)
+            .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
+            .build(shaders)?;
+        Ok(BasePass { pass, target, tested })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.graphics(&self.pass, |draw| {
+            draw.vertices(3);
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! The pass `geometric-transformation` (section 3, eq. 10 and 11): the maps, the light and the camera as the other passes
+//! read them. Of a map only its base's matrix is touched; heights never are.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec4};
+
+use super::blocks::{LightBlock, TerrainBlock};
+use super::parameters::Parameters;
+use super::placement::Rays;
+use super::scene::{DeviceScene, Scene};
+use crate::gpu::{Error, Frame, PassInfo};
+use crate::scene::Camera;
+
+/// The scene as the camera sees it.
+pub struct SceneView {
+    /// Of each map.
+    pub terrains: Vec<TerrainBlock>,
+    pub light: LightBlock,
+    /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
+    /// 1 - near / w, without a far plane.
+    pub to_clip: DMat4,
+}
+
+impl SceneView {
+    fn new(scene: &Scene, parameters: &Parameters) -> Self {
+        let camera = parameters.camera(&scene.extent);
+        let rays = Rays::new(&camera, parameters.width, parameters.height);
+        SceneView {
+            terrains: scene.terrain_blocks(parameters, &rays, camera.near_m).collect(),
+            light: scene.light_block(parameters, &rays, camera.near_m),
+            to_clip: to_clip(&camera, parameters.aspect()),
+        }
+    }
+}
+
+fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
+    let scale = 1.0 / (f64::from(camera.vertical_fov_rad) / 2.0).tan();
+    let projection = DMat4::from_cols(
+        DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, -scale, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, -1.0, -1.0),
+        DVec4::new(0.0, 0.0, -f64::from(camera.near_m), 0.0),
+    );
+    projection * camera.view().as_dmat4()
+}
+
+/// The pass, on the host.
+pub struct GeometricTransformation {
+    info: Arc<PassInfo>,
+}
+
+impl GeometricTransformation {
+    pub fn new() -> Self {
+        let (reads, writes) = (["camera", "placement"], ["land", "light"]);
+        GeometricTransformation { info: PassInfo::host("geometric-transformation", "3, eq. 10", &reads, &writes) }
+    }
+
+    /// Writes the view's blocks where the device reads them as well, if it holds the maps.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(
+        &self,
+        frame: &mut Frame<'_>,
+        scene: &Scene,
+        parameters: &Parameters,
+        device_scene: Option<&DeviceScene>,
+    ) -> Result<SceneView, Error> {
+        frame.host(&self.info, || {
+            let view = SceneView::new(scene, parameters);
+            device_scene.map_or(Ok(()), |device_scene| device_scene.write(&view))?;
+            Ok(view)
+        })
+    }
+}

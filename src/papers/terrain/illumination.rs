@@ -1,0 +1,160 @@
+//! The pass `illumination` (section 4) of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or
+//! from a draped picture, haze by distance. The paper names the pass and no model of light.
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::blocks::LightBlock;
+use super::drape::Drape;
+use super::geometric_transformation::SceneView;
+use super::hit::{Hit, Surface};
+use super::parameters::Parameters;
+use super::scene::DeviceScene;
+use super::stage::Stage;
+use crate::gpu::{Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLibrary};
+
+/// Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
+const TINTS: [Vec3; 6] = [
+    Vec3::new(0.22, 0.30, 0.10),
+    Vec3::new(0.10, 0.20, 0.06),
+    Vec3::new(0.24, 0.20, 0.10),
+    Vec3::new(0.25, 0.17, 0.11),
+    Vec3::new(0.30, 0.26, 0.23),
+    Vec3::new(0.55, 0.53, 0.51),
+];
+const ROCK: Vec3 = Vec3::new(0.20, 0.17, 0.15);
+const BASE_TINT: Vec3 = Vec3::new(0.17, 0.22, 0.12);
+const ZENITH: Vec3 = Vec3::new(0.16, 0.34, 0.68);
+const SUNLIGHT: Vec3 = Vec3::new(2.0, 1.88, 1.7);
+const SKYLIGHT: Vec3 = Vec3::new(0.55, 0.68, 0.9);
+
+/// The pass on the device.
+pub struct Illumination {
+    stage: Stage,
+    pass: Pass,
+    pub picture: Arc<ImageView>,
+}
+
+impl Illumination {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        stage: Stage,
+        parameters: &Parameters,
+        scene: &DeviceScene,
+        [depth, normal, shadow]: [&Arc<ImageView>; 3],
+    ) -> Result<Self, Error> {
+        let picture = stage.image(shaders, format!("{label}/picture"), vk::Format::R8G8B8A8_UNORM, parameters)?;
+        let resources = [
+            ("light", (&scene.light).into()),
+            ("depth", depth.into()),
+            ("normal", normal.into()),
+            ("shadow", shadow.into()),
+            ("drape", (&scene.drape).into()),
+        ];
+        let pass = stage.pass(("illumination", "4"), "illumination", (&picture, Load::Discard), &resources);
+        Ok(Illumination { stage, pass: pass.build(shaders)?, picture })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.stage.record(frame, &self.pass, &self.picture)
+    }
+}
+
+/// The pass on the processor.
+pub struct HostIllumination {
+    info: Arc<PassInfo>,
+    width: u32,
+    drape: Option<Drape>,
+    colors: Vec<[u8; 4]>,
+}
+
+impl HostIllumination {
+    pub fn new(parameters: &Parameters, drape: Option<&Drape>) -> Self {
+        HostIllumination {
+            info: PassInfo::host("illumination", "4", &["light", "depth", "normal"], &["picture"]),
+            width: parameters.width,
+            drape: drape.cloned(),
+            colors: vec![[0; 4]; parameters.pixels()],
+        }
+    }
+
+    /// The picture, 8-bit sRGB; `sunlit` is empty where no shadows are thrown.
+    pub fn record(
+        &mut self,
+        frame: &mut Frame<'_>,
+        view: &SceneView,
+        (hits, normals, sunlit): (&[Hit], &[Vec4], &[f32]),
+    ) -> &[[u8; 4]] {
+        let HostIllumination { ref info, width, ref drape, ref mut colors } = *self;
+        frame.host(info, || {
+            let rows = colors.par_chunks_mut(width as usize).enumerate();
+            rows.for_each(|(y, row)| {
+                for (x, color) in row.iter_mut().enumerate() {
+                    let index = y * width as usize + x;
+                    let sunlit = sunlit.get(index).copied().unwrap_or(1.0);
+                    let pixel = (x as u32, y as u32);
+                    *color = color_of(&view.light, drape.as_ref(), pixel, &hits[index], normals[index], sunlit);
+                }
+            });
+        });
+        colors
+    }
+}
+
+/// The colour of a pixel, 8-bit sRGB: Lambert's law under the sun and the sky, the ground's colour by height or from a draped
+/// picture, haze by distance. `sunlit` is 0 in the shadow and 1 outside.
+pub fn color_of(
+    light: &LightBlock,
+    drape: Option<&Drape>,
+    (x, y): (u32, u32),
+    hit: &Hit,
+    facing: Vec4,
+    sunlit: f32,
+) -> [u8; 4] {
+    let direction = light.corner_direction + x as f32 * light.right_step + y as f32 * light.down_step;
+    let normal = facing.truncate();
+    let haze = light.haze_color;
+    let color = if hit.surface == Surface::Sky {
+        haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt())
+    } else {
+        let height = (facing.w - light.lowest_m) / (light.highest_m - light.lowest_m).max(1e-6);
+        let albedo = match drape {
+            Some(drape) if hit.surface == Surface::Terrain && hit.map == 0 => drape
+                .color((Vec2::from_array(hit.place) - Vec2::new(light.drape_first_column, 0.0)) / light.drape_cells),
+            _ => albedo_at(hit.surface, normal, height),
+        };
+        let lit = sunlit * normal.dot(light.to_sun).max(0.0);
+        let open = light.sky_strength * (0.5 + 0.5 * normal.y);
+        let seen = albedo * (SUNLIGHT * lit + SKYLIGHT * open);
+        haze.lerp(seen, (-light.extinction_per_m * hit.depth_m * direction.length()).exp())
+    };
+    let [r, g, b] = color.to_array().map(encode);
+    [r, g, b, 255]
+}
+
+/// Of the ground at a height of 0 to 1 from the lowest to the highest.
+fn albedo_at(surface: Surface, normal: Vec3, height: f32) -> Vec3 {
+    let place = height.clamp(0.0, 1.0) * 5.0;
+    let below = (place as usize).min(4);
+    let tint = match surface {
+        Surface::Base => BASE_TINT,
+        _ => TINTS[below].lerp(TINTS[below + 1], place - below as f32),
+    };
+    // Nothing grows on a cliff.
+    let flat = ((normal.y - 0.45) / 0.3).clamp(0.0, 1.0);
+    ROCK.lerp(tint, flat * flat * (3.0 - 2.0 * flat))
+}
+
+fn encode(linear: f32) -> u8 {
+    let c = linear.clamp(0.0, 1.0);
+    let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0).round() as u8
+}

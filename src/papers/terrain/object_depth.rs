@@ -1,0 +1,48 @@
+//! The pass `object-depth` (section 1: "does support traditional objects"): what the rays or the grids found as a depth
+//! buffer for polygon objects, so that terrain and objects hide each other.
+
+use std::sync::Arc;
+
+use super::blocks::LightBlock;
+use super::geometric_transformation::SceneView;
+use super::parameters::Parameters;
+use super::scene::block_buffer;
+use super::stage::depth_buffer;
+use crate::gpu::{Buffer, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+
+/// The pass, and what it shares with the passes that draw the objects.
+pub struct ObjectDepth {
+    pass: Pass,
+    pub light: Arc<Buffer>,
+    /// The depth buffer.
+    pub tested: Arc<ImageView>,
+}
+
+impl ObjectDepth {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        depth: &Arc<ImageView>,
+    ) -> Result<Self, Error> {
+        let tested = depth_buffer(shaders, format!("{label}/object-depth"), parameters)?;
+        let light = block_buffer::<LightBlock>(shaders.device(), &format!("{label}/object-light"))?;
+        let pass = Pass::graphics("object-depth", "1", "common/fullscreen.vert", "terrain/object-depth.frag")
+            .with("light", &light)
+            .with("depth", depth)
+            .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
+            .build(shaders)?;
+        Ok(ObjectDepth { pass, light, tested })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
+        self.light.write(0, bytemuck::bytes_of(&view.light))?;
+        frame.graphics(&self.pass, |draw| {
+            draw.vertices(3);
+        })
+    }
+}

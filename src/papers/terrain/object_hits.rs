@@ -1,0 +1,52 @@
+//! The pass `object-hits` (section 1): where polygon objects are seen, as the pass `depth` has it of the terrain. Rays to the
+//! sun start there. Once for each mesh.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::geometric_transformation::SceneView;
+use super::hit::NO_DEPTH;
+use super::object_depth::ObjectDepth;
+use super::objects::ObjectMesh;
+use super::parameters::Parameters;
+use super::stage::Stage;
+use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+
+pub struct ObjectHits {
+    passes: Vec<Pass>,
+    /// A hit of each pixel that sees an object.
+    pub target: Arc<ImageView>,
+}
+
+impl ObjectHits {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        meshes: &[ObjectMesh],
+        object_depth: &ObjectDepth,
+    ) -> Result<Self, Error> {
+        let format = vk::Format::R32G32B32A32_SFLOAT;
+        let target = Stage::Fragment.image(shaders, format!("{label}/object-hits"), format, parameters)?;
+        let mut passes = Vec::new();
+        for (number, mesh) in meshes.iter().enumerate() {
+            let load = if number == 0 { Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]) } else { Load::Keep };
+            let pass = mesh.pass("object-hits", "terrain/object-hit.frag").color(&target, load, Blend::Replace).depth(
+                &object_depth.tested,
+                Load::Keep,
+                DepthTest::LessWrite,
+            );
+            passes.push(pass.build(shaders)?);
+        }
+        Ok(ObjectHits { passes, target })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, meshes: &[ObjectMesh], view: &SceneView) -> Result<(), Error> {
+        self.passes.iter().zip(meshes).try_for_each(|(pass, mesh)| mesh.draw(frame, pass, view))
+    }
+}
