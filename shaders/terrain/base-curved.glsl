@@ -1,24 +1,24 @@
 // The base as a cylinder or an ellipsoid of revolution: F = P + n h (eq. 5, 6). A ray is bent in the map's frame. Its height over
-// the base is convex, so that the lowest of a segment is below its ends by its sagitta at most; latitude and longitude leave
-// the straight line between its ends by what their second derivatives allow. Segments are halved until both are nothing.
+// the base is convex, so that the lowest of a subsegment is below its ends by its sagitta at most; latitude and longitude leave
+// the straight line between its ends by what their second derivatives allow. Subsegments are halved until both are nothing.
 
-#include "terrain/between.glsl"
-#include "terrain/round.glsl"
+#include "terrain/slab.glsl"
+#include "terrain/geodesy.glsl"
 
-// How far a last segment may be from straight, in texels of the level that it is met at.
+// How far a last subsegment may be from straight, in texels of the level that it is met at.
 const float STRAIGHT = 2.5e-4;
 
-// The part of a ray that can meet the map.
-struct Way {
+// The segment of a ray that can meet the map; its ray parameter t is 0 at the near end and 1 at the far one.
+struct RaySegment {
     float near_m; // depth of its ends, metres
     float far_m;
     vec3 from; // metres from the map's middle: east, off the axis, along it
     vec3 whole;
-    float cut; // the part of it at which it passes behind the axis, where longitudes end; 0 where it does not
+    float cut; // the fraction of it at which it passes behind the axis, where longitudes end; 0 where it does not
 };
 
 // A piece of a ray in the map's frame (eq. 9), the depth of its near end, and how far it may leave the straight line.
-struct Segment {
+struct Subsegment {
     vec3 near;
     vec3 far;
     float depth_m;
@@ -52,10 +52,10 @@ vec2 base_depth(vec3 direction) {
 
 vec2 base_place(vec3 direction, float depth_m) {
     vec3 point = terrain.eye + depth_m * direction;
-    return depth_m < NO_DEPTH ? on_map(point, point.x).xy : vec2(0.0);
+    return depth_m < NO_DEPTH ? map_coordinates(point, point.x).xy : vec2(0.0);
 }
 
-Way way_of(vec3 eye, vec3 direction, float limit_m) {
+RaySegment ray_segment(vec3 eye, vec3 direction, float limit_m) {
     vec3 q = along_ray(eye, direction, terrain.shell_squares, terrain.shell_linear, terrain.shell_constant);
     float discriminant = q.y * q.y - q.x * q.z;
     float root = sqrt(max(discriminant, 0.0));
@@ -68,7 +68,7 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
         float outside = terrain.rounding_nodes;
         float low = -(terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
         float high = (float(terrain.size.y - 1) - terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
-        range = between(range, eye.z, direction.z, low, high);
+        range = clip_to_slab(range, eye.z, direction.z, low, high);
     }
     if (discriminant <= 0.0 || !(range.x < range.y)) {
         range = vec2(1.0, 0.0);
@@ -77,35 +77,35 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     vec3 whole = (range.y - range.x) * direction;
     float cut = whole.x != 0.0 ? -from.x / whole.x : 0.0;
     bool is_behind = terrain.axis_distance_m + from.y + cut * whole.y < 0.0;
-    return Way(range.x, range.y, from, whole, cut > 0.0 && cut < 1.0 && is_behind ? cut : 0.0);
+    return RaySegment(range.x, range.y, from, whole, cut > 0.0 && cut < 1.0 && is_behind ? cut : 0.0);
 }
 
-// The longest segment that is looked at, of `whole` units: a ray behind the axis is cut there before it is halved.
-int first_units(Way way, int whole) {
-    return way.cut > 0.0 ? whole / 2 : whole;
+// The longest subsegment that is tried, of `whole` units: a ray behind the axis is cut there before it is halved.
+int first_units(RaySegment ray, int whole) {
+    return ray.cut > 0.0 ? whole / 2 : whole;
 }
 
-float part_at(Way way, float start) {
-    float cut_part = start < 0.5 ? 2.0 * start * way.cut : way.cut + (2.0 * start - 1.0) * (1.0 - way.cut);
-    return way.cut > 0.0 ? cut_part : start;
+float fraction_at(RaySegment ray, float start) {
+    float cut_part = start < 0.5 ? 2.0 * start * ray.cut : ray.cut + (2.0 * start - 1.0) * (1.0 - ray.cut);
+    return ray.cut > 0.0 ? cut_part : start;
 }
 
-float depth_in(Way way, float start) {
-    return way.near_m + part_at(way, start) * (way.far_m - way.near_m);
+float depth_at(RaySegment ray, float start) {
+    return ray.near_m + fraction_at(ray, start) * (ray.far_m - ray.near_m);
 }
 
-Segment segment_of(Way way, float start, float size) {
-    vec3 a = way.from + part_at(way, start) * way.whole;
-    vec3 b = way.from + part_at(way, start + size) * way.whole;
-    float side = way.cut > 0.0 ? (start < 0.5 ? -way.whole.x : way.whole.x) : a.x + b.x;
+Subsegment subsegment_of(RaySegment ray, float start, float size) {
+    vec3 a = ray.from + fraction_at(ray, start) * ray.whole;
+    vec3 b = ray.from + fraction_at(ray, start + size) * ray.whole;
+    float side = ray.cut > 0.0 ? (start < 0.5 ? -ray.whole.x : ray.whole.x) : a.x + b.x;
     // The distance from the axis at its smallest.
     vec2 from = vec2(a.x, terrain.axis_distance_m + a.y);
     vec2 move = b.xy - a.xy;
     float nearest = clamp(-dot(from, move) / max(dot(move, move), 1.0e-30), 0.0, 1.0);
     float radius = max(length(from + nearest * move), 1.0e-6 * terrain.axis_distance_m);
-    float turn = length(move) / radius;
-    float longitude_slack = min(0.125 * turn * turn, 0.5 * turn);
-    vec3 slack = vec3(longitude_slack * terrain.nodes_per_unit.x, 0.0, 0.125 * length(move) * turn);
+    float angle = length(move) / radius;
+    float longitude_slack = min(0.125 * angle * angle, 0.5 * angle);
+    vec3 slack = vec3(longitude_slack * terrain.nodes_per_unit.x, 0.0, 0.125 * length(move) * angle);
     if (terrain.base_kind != CYLINDER) {
         float bend = length(b - a) / terrain.smallest_radius_m;
         float second = 0.125 * bend * bend * (2.0 + terrain.curvature_change + terrain.smallest_radius_m / radius);
@@ -113,36 +113,36 @@ Segment segment_of(Way way, float start, float size) {
         slack.z = 0.125 * length(b - a) * bend;
     }
     slack.z = slack.z / terrain.height_unit_m;
-    return Segment(on_map(a, side), on_map(b, side), depth_in(way, start), slack);
+    return Subsegment(map_coordinates(a, side), map_coordinates(b, side), depth_at(ray, start), slack);
 }
 
 // Whether the camera stands in the mountain. 0 where it does not.
-int entered(Way way, float height) {
-    vec3 eye = on_map(way.from, way.from.x);
+int entry_surface(RaySegment ray, float height) {
+    vec3 eye = map_coordinates(ray.from, ray.from.x);
     vec2 last = vec2(terrain.size - 1);
     bool is_over = eye.x >= 0.0 && eye.y >= 0.0 && eye.x <= last.x && eye.y <= last.y;
-    return way.near_m <= 0.0 && is_over && eye.z <= height ? INSIDE : 0;
+    return ray.near_m <= 0.0 && is_over && eye.z <= height ? INSIDE : 0;
 }
 
 // How far the ray may leave the straight line between the ends: nodes along u and v, height.
-vec3 slack_of(Segment segment) {
-    return segment.slack;
+vec3 slack_of(Subsegment subsegment) {
+    return subsegment.slack;
 }
 
-// Whether a segment is straight enough to be met at a level.
+// Whether a subsegment is straight enough to be met at a level.
 bool is_straight(vec3 slack, int shift) {
     float straight = STRAIGHT * exp2(float(shift));
     return max(slack.x, slack.y) <= straight && slack.z * terrain.height_unit_m <= straight * terrain.spacing_m.x;
 }
 
-Over over_map(Segment segment) {
-    vec2 move = segment.far.xy - segment.near.xy;
-    vec2 u = between(vec2(0.0, 1.0), segment.near.x, move.x, 0.0, float(terrain.size.x - 1));
-    vec2 v = between(vec2(0.0, 1.0), segment.near.y, move.y, 0.0, float(terrain.size.y - 1));
+Clip clip_to_map(Subsegment subsegment) {
+    vec2 move = subsegment.far.xy - subsegment.near.xy;
+    vec2 u = clip_to_slab(vec2(0.0, 1.0), subsegment.near.x, move.x, 0.0, float(terrain.size.x - 1));
+    vec2 v = clip_to_slab(vec2(0.0, 1.0), subsegment.near.y, move.y, 0.0, float(terrain.size.y - 1));
     int side = move.x > 0.0 ? WALL_WEST : WALL_EAST;
     if (v.x > u.x) {
         side = move.y > 0.0 ? WALL_NORTH : WALL_SOUTH;
     }
     float near = max(u.x, v.x);
-    return Over(near, min(u.y, v.y), near > 0.0 ? side : TERRAIN);
+    return Clip(near, min(u.y, v.y), near > 0.0 ? side : TERRAIN);
 }

@@ -1,9 +1,9 @@
 // The base as a plane: a ray stays straight in the map's frame, and so do its halves.
 
-#include "terrain/between.glsl"
+#include "terrain/slab.glsl"
 
-// The part of a ray that can meet the map.
-struct Way {
+// The segment of a ray that can meet the map; its ray parameter t is 0 at the near end and 1 at the far one.
+struct RaySegment {
     float near_m; // depth of its ends, metres
     float far_m;
     int side; // the surface it comes in through
@@ -12,7 +12,7 @@ struct Way {
 };
 
 // A piece of a ray in the map's frame (eq. 9), and the depth of its near end.
-struct Segment {
+struct Subsegment {
     vec3 near;
     vec3 far;
     float depth_m;
@@ -30,13 +30,13 @@ vec2 base_place(vec3 direction, float depth_m) {
     return terrain.eye.xy + depth_m * direction.xy;
 }
 
-Way way_of(vec3 eye, vec3 direction, float limit_m) {
+RaySegment ray_segment(vec3 eye, vec3 direction, float limit_m) {
     vec2 all = vec2(0.0, limit_m);
     vec2 last = vec2(map.last);
-    vec2 u = between(all, eye.x, direction.x, 0.0, last.x);
-    vec2 v = between(all, eye.y, direction.y, 0.0, last.y);
+    vec2 u = clip_to_slab(all, eye.x, direction.x, 0.0, last.x);
+    vec2 v = clip_to_slab(all, eye.y, direction.y, 0.0, last.y);
     float margin = terrain.rounding_height;
-    vec2 h = between(all, eye.z, direction.z, terrain.lowest - margin, terrain.highest + margin);
+    vec2 h = clip_to_slab(all, eye.z, direction.z, terrain.lowest - margin, terrain.highest + margin);
     float near_m = max(max(u.x, v.x), h.x);
     float far_m = min(min(u.y, v.y), h.y);
     int side = direction.x > 0.0 ? WALL_WEST : WALL_EAST;
@@ -49,38 +49,38 @@ Way way_of(vec3 eye, vec3 direction, float limit_m) {
     if (near_m <= 0.0) {
         side = INSIDE;
     }
-    return Way(near_m, far_m, side, eye + near_m * direction, (far_m - near_m) * direction);
+    return RaySegment(near_m, far_m, side, eye + near_m * direction, (far_m - near_m) * direction);
 }
 
-// The longest segment that is looked at, of `whole` units.
-int first_units(Way way, int whole) {
+// The longest subsegment that is tried, of `whole` units.
+int first_units(RaySegment ray, int whole) {
     return whole;
 }
 
-Segment segment_of(Way way, float start, float size) {
-    vec3 near = way.from + start * way.whole;
-    return Segment(near, way.from + (start + size) * way.whole, way.near_m + start * (way.far_m - way.near_m));
+Subsegment subsegment_of(RaySegment ray, float start, float size) {
+    vec3 near = ray.from + start * ray.whole;
+    return Subsegment(near, ray.from + (start + size) * ray.whole, ray.near_m + start * (ray.far_m - ray.near_m));
 }
 
-float depth_in(Way way, float start) {
-    return way.near_m + start * (way.far_m - way.near_m);
+float depth_at(RaySegment ray, float start) {
+    return ray.near_m + start * (ray.far_m - ray.near_m);
 }
 
 // Terrain is solid below its height: a wall where the ray comes in, or the inside of the mountain. 0 where it is neither.
-int entered(Way way, float height) {
-    return way.from.z <= height ? way.side : 0;
+int entry_surface(RaySegment ray, float height) {
+    return ray.from.z <= height ? ray.side : 0;
 }
 
 // How far the ray may leave the straight line between the ends: nodes along u and v, height.
-vec3 slack_of(Segment segment) {
+vec3 slack_of(Subsegment subsegment) {
     return vec3(0.0);
 }
 
-// Whether a segment is straight enough to be met at a level.
+// Whether a subsegment is straight enough to be met at a level.
 bool is_straight(vec3 slack, int shift) {
     return true;
 }
 
-Over over_map(Segment segment) {
-    return Over(0.0, 1.0, TERRAIN);
+Clip clip_to_map(Subsegment subsegment) {
+    return Clip(0.0, 1.0, TERRAIN);
 }

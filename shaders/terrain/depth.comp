@@ -21,5 +21,5 @@ void main() {
     if (pixel.x >= imageSize(depth).x || pixel.y >= imageSize(depth).y) {
         return;
     }
-    imageStore(depth, pixel, find(pixel));
+    imageStore(depth, pixel, find_hit(pixel));
 }

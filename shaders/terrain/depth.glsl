@@ -2,7 +2,7 @@
 
 layout(set = 0, binding = 2) uniform texture2D prior; // what the maps before this one found
 
-vec4 find(ivec2 pixel) {
+vec4 find_hit(ivec2 pixel) {
     read_map();
     vec3 direction = direction_of(vec2(pixel));
     vec4 before = texelFetch(prior, min(pixel, textureSize(prior, 0) - 1), 0);

@@ -1,4 +1,4 @@
-// Where a last segment as short as a texel of the level it is met at crosses the interpolated surface of that level.
+// Where a last subsegment as short as a texel of the level it is met at crosses the interpolated surface of that level.
 
 Crossing crossing_of(vec3 near, vec3 far, float depth_m) {
     int shift = finest_shift(depth_m);
@@ -11,10 +11,10 @@ Crossing crossing_of(vec3 near, vec3 far, float depth_m) {
 // Regula falsi once more. The height above the far end follows from the first guess.
 float refined(Crossing crossing, vec3 near, vec3 far, float depth_m) {
     float above = crossing.above;
-    float guess = crossing.part;
+    float guess = crossing.t;
     float below = above - above / guess;
     vec3 middle = mix(near, far, guess);
     float amid = middle.z - height_at(finest_shift(depth_m), middle.xy);
-    float part = amid <= 0.0 ? guess * above / (above - amid) : guess + (1.0 - guess) * amid / (amid - below);
-    return above <= 0.0 ? 0.0 : part;
+    float t = amid <= 0.0 ? guess * above / (above - amid) : guess + (1.0 - guess) * amid / (amid - below);
+    return above <= 0.0 ? 0.0 : t;
 }

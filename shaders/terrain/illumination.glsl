@@ -14,8 +14,9 @@ const vec3 TINTS[6] = vec3[](vec3(0.22, 0.30, 0.10), vec3(0.10, 0.20, 0.06), vec
 const vec3 ROCK = vec3(0.20, 0.17, 0.15);
 const vec3 BASE_TINT = vec3(0.17, 0.22, 0.12);
 
-vec3 tint_at(float share) {
-    float place = clamp(share, 0.0, 1.0) * 5.0;
+// At a height of 0 to 1 from the lowest to the highest.
+vec3 tint_at(float height) {
+    float place = clamp(height, 0.0, 1.0) * 5.0;
     int below = min(int(place), 4);
     return mix(TINTS[below], TINTS[below + 1], place - float(below));
 }
@@ -28,17 +29,18 @@ vec3 sky(vec3 direction) {
 // The draped picture, its corners on the map's, between its texels' middles.
 vec3 draped(vec2 place) {
     vec2 size = vec2(textureSize(drape, 0));
-    vec2 texel = clamp((place - vec2(light.drape_first_column, 0.0)) / light.drape_cells * size - 0.5, vec2(0.0), size - 1.0);
+    vec2 fraction = (place - vec2(light.drape_first_column, 0.0)) / light.drape_cells;
+    vec2 texel = clamp(fraction * size - 0.5, vec2(0.0), size - 1.0);
     ivec2 a = ivec2(texel);
     ivec2 b = min(a + 1, ivec2(size) - 1);
-    vec2 part = texel - vec2(a);
-    vec3 north = mix(texelFetch(drape, a, 0).xyz, texelFetch(drape, ivec2(b.x, a.y), 0).xyz, part.x);
-    vec3 south = mix(texelFetch(drape, ivec2(a.x, b.y), 0).xyz, texelFetch(drape, b, 0).xyz, part.x);
-    return mix(north, south, part.y);
+    vec2 uv = texel - vec2(a);
+    vec3 north = mix(texelFetch(drape, a, 0).xyz, texelFetch(drape, ivec2(b.x, a.y), 0).xyz, uv.x);
+    vec3 south = mix(texelFetch(drape, ivec2(a.x, b.y), 0).xyz, texelFetch(drape, b, 0).xyz, uv.x);
+    return mix(north, south, uv.y);
 }
 
-vec3 ground(int surface, vec3 facing, float share) {
-    vec3 tint = surface == 1 ? BASE_TINT : tint_at(share);
+vec3 albedo_at(int surface, vec3 facing, float height) {
+    vec3 tint = surface == 1 ? BASE_TINT : tint_at(height);
     // Nothing grows on a cliff.
     return mix(ROCK, tint, smoothstep(0.45, 0.75, facing.y));
 }
@@ -52,8 +54,8 @@ vec4 color_of(ivec2 pixel) {
     int map = (int(hit.w) >> 8) & 15;
     vec3 color = sky(direction);
     if (surface != 0) {
-        float share = (facing.w - light.lowest_m) / max(light.highest_m - light.lowest_m, 1.0e-6);
-        vec3 albedo = ground(surface, facing.xyz, share);
+        float height = (facing.w - light.lowest_m) / max(light.highest_m - light.lowest_m, 1.0e-6);
+        vec3 albedo = albedo_at(surface, facing.xyz, height);
         if (light.is_draped != 0 && surface == 2 && map == 0) {
             albedo = draped(hit.yz);
         }

@@ -20,7 +20,7 @@ vec3 view_direction(vec2 pixel) {
     return light.corner_direction + pixel.x * light.right_step + pixel.y * light.down_step;
 }
 
-// What a surface of a colour looks like from a distance.
+// The light of a surface of that colour as seen from a distance, through the haze.
 vec3 lit_color(vec3 albedo, vec3 facing, float sunlit, float distance_m) {
     float lit = sunlit * max(dot(facing, light.to_sun), 0.0);
     float open = light.sky_strength * (0.5 + 0.5 * facing.y);

@@ -4,7 +4,7 @@
 
 #include "terrain/terrain.glsl"
 #include "terrain/mesh.glsl"
-#include "terrain/round.glsl"
+#include "terrain/geodesy.glsl"
 
 layout(location = 0) out vec4 depth;
 
@@ -14,7 +14,7 @@ void main() {
     vec3 point = terrain.eye + depth_m * direction;
     vec2 place = point.xy;
     if (terrain.base_kind != PLANE) {
-        place = on_map(point, point.x).xy;
+        place = map_coordinates(point, point.x).xy;
     }
     depth = vec4(depth_m, clamp(place, vec2(0.0), vec2(terrain.size - 1)), surface_code(mesh.surface, 0, 0));
 }

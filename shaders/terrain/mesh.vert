@@ -7,7 +7,7 @@
 
 #include "terrain/terrain.glsl"
 #include "terrain/mesh.glsl"
-#include "terrain/round.glsl"
+#include "terrain/geodesy.glsl"
 
 void main() {
     read_map();
@@ -29,5 +29,5 @@ void main() {
     if (is_low) {
         height = min(terrain.base_height, height);
     }
-    gl_Position = mesh.to_clip * vec4(in_frame(vec2(node), height), 1.0);
+    gl_Position = mesh.to_clip * vec4(frame_point(vec2(node), height), 1.0);
 }

@@ -3,7 +3,7 @@
 
 layout(set = 0, binding = 2) uniform texture2D depth;
 
-#include "terrain/round.glsl"
+#include "terrain/geodesy.glsl"
 
 // Whether this map's pass answers for the pixel.
 bool is_ours(vec4 hit) {

@@ -1,5 +1,5 @@
 // The map and how the camera sees it: eq. 9 to 11. Heights are the map's own numbers (16-bit steps or metres), so that no
-// texel needs decoding on the way.
+// texel needs decoding on the ray.
 
 layout(set = 0, binding = 0, std140) uniform Terrain {
     vec3 eye; // in the map's frame
@@ -51,7 +51,7 @@ const int CYLINDER = 1;
 
 layout(set = 0, binding = 1) uniform utexture2DArray levels;
 
-// What every look at the map needs of the block, read once: a member of a block is fetched anew in each turn of a loop.
+// Members of the block that every read of the map needs, read once: a loop fetches a member of a block in every iteration.
 struct Map {
     ivec2 last; // column and row
     int top; // levels above the data
@@ -82,20 +82,20 @@ const float NO_DEPTH = 1.0e30;
 struct Hit {
     float depth; // metres along the view's axis
     vec2 place; // u and v, nodes
-    float surface; // which surface + 8 x level + 256 x map + 4096 x segments looked at
+    float surface; // which surface + 8 x level + 256 x map + 4096 x subsegments that were tried
 };
 
-// The part of a segment that is over the map, and the surface at its near end.
-struct Over {
+// The range of the fraction of a subsegment that is over the map, and the surface at its near end.
+struct Clip {
     float near;
     float far;
     int surface;
 };
 
-// Where a last segment crosses the surface: the part of it over the map, -1 where it does not, and how high above the surface
-// its near end is.
+// Where a last subsegment crosses the surface: t of 0 to 1 along what of it is over the map, -1 where it does not, and how
+// high above the surface its near end is.
 struct Crossing {
-    float part;
+    float t;
     float above;
 };
 

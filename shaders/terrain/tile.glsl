@@ -1,4 +1,4 @@
-// Eight invocations of a row look at 4 x 2 pixels, not at 8 x 1: rays beside each other in both directions take the same way
+// Eight invocations of a row answer for 4 x 2 pixels, not 8 x 1: rays beside each other in both directions take the same path
 // through the levels longer than those along a line.
 ivec2 pixel_of(uvec2 invocation) {
     ivec2 i = ivec2(invocation);

@@ -1,18 +1,18 @@
 // Section 3: a ray is a voxel between two points (eq. 8) that is halved (eq. 12), the near half first and then the far one,
 // until it lies above everything that the altitude map has below it or is short enough to be intersected. No stack: the ray
-// is WHOLE units long, and after a segment comes the longest that halving can make begin where it ends.
+// is WHOLE units long, and after a subsegment comes the longest that halving can make begin where it ends.
 //
-// The level follows the segment's projection: 1/2^(level + 1) < Lp <= 1/2^level, Lp being the larger of its sides as a share
-// of the map. Printed is the impossible 1/2^level < Lp < 1/2^(level + 1). Where the segment still touches more than four
+// The level follows the subsegment's projection: 1/2^(level + 1) < Lp <= 1/2^level, Lp being the larger of its sides as a fraction
+// of the map. Printed is the impossible 1/2^level < Lp < 1/2^(level + 1). Where the subsegment still touches more than four
 // texels of that level, a coarser one answers for all that it touches.
 //
 // Before this file stand one for the base, one for the interpolation and one for where subdivision ends.
 
-// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
+// A subsegment of one unit is intersected whatever it touches. Single precision counts them exactly.
 const int WHOLE = 1 << 23;
 
-vec3 part_of(Segment segment, float along) {
-    return mix(segment.near, segment.far, along);
+vec3 point_on(Subsegment subsegment, float fraction) {
+    return mix(subsegment.near, subsegment.far, fraction);
 }
 
 // The smallest number of levels above the data whose texels are as large as the extent, in nodes.
@@ -35,15 +35,15 @@ float highest_below(vec2 low, vec2 high, int shift) {
 
 // The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
 Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
-    Way way = way_of(eye, direction, limit_m);
-    Segment segment = segment_of(way, 0.0, 0.0);
+    RaySegment ray = ray_segment(eye, direction, limit_m);
+    Subsegment subsegment = subsegment_of(ray, 0.0, 0.0);
     Hit hit = before;
-    bool done = !(way.near_m < way.far_m);
+    bool done = !(ray.near_m < ray.far_m);
     if (!done) {
-        int shift = finest_shift(way.near_m);
-        int surface = entered(way, height_at(shift, segment.near.xy));
+        int shift = finest_shift(ray.near_m);
+        int surface = entry_surface(ray, height_at(shift, subsegment.near.xy));
         if (surface != 0) {
-            hit = Hit(way.near_m, segment.near.xy, surface_code(surface, shift, 1));
+            hit = Hit(ray.near_m, subsegment.near.xy, surface_code(surface, shift, 1));
             done = true;
         }
     }
@@ -52,17 +52,17 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     Crossing crossing = Crossing(-1.0, 0.0);
     int steps = 0;
     int at = 0;
-    int units = first_units(way, WHOLE);
+    int units = first_units(ray, WHOLE);
     while (!done) {
         bool is_last = false;
         while (!is_last && !done) {
-            segment = segment_of(way, float(at) / float(WHOLE), float(units) / float(WHOLE));
-            vec3 slack = slack_of(segment);
-            vec2 low = min(segment.near.xy, segment.far.xy) - slack.xy;
-            vec2 high = max(segment.near.xy, segment.far.xy) + slack.xy;
+            subsegment = subsegment_of(ray, float(at) / float(WHOLE), float(units) / float(WHOLE));
+            vec3 slack = slack_of(subsegment);
+            vec2 low = min(subsegment.near.xy, subsegment.far.xy) - slack.xy;
+            vec2 high = max(subsegment.near.xy, subsegment.far.xy) + slack.xy;
             int shift = shift_for(max(high.x - low.x, high.y - low.y));
-            int finest = finest_shift(segment.depth_m);
-            float lowest = min(segment.near.z, segment.far.z) - slack.z - rounding_height;
+            int finest = finest_shift(subsegment.depth_m);
+            float lowest = min(subsegment.near.z, subsegment.far.z) - slack.z - rounding_height;
             steps += 1;
             if (lowest > highest_below(low - rounding_nodes, high + rounding_nodes, shift)) {
                 at += units;
@@ -75,11 +75,11 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             }
         }
         if (is_last) {
-            Over over = over_map(segment);
-            if (over.near <= over.far) {
-                crossing = crossing_of(part_of(segment, over.near), part_of(segment, over.far), segment.depth_m);
+            Clip clip = clip_to_map(subsegment);
+            if (clip.near <= clip.far) {
+                crossing = crossing_of(point_on(subsegment, clip.near), point_on(subsegment, clip.far), subsegment.depth_m);
             }
-            done = crossing.part >= 0.0;
+            done = crossing.t >= 0.0;
             if (!done) {
                 at += units;
                 units = at & -at;
@@ -87,14 +87,14 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             }
         }
     }
-    if (crossing.part >= 0.0) {
-        Over over = over_map(segment);
-        vec3 near = part_of(segment, over.near);
-        float part = refined(crossing, near, part_of(segment, over.far), segment.depth_m);
-        float along = mix(over.near, over.far, part);
-        float depth_m = depth_in(way, (float(at) + along * float(units)) / float(WHOLE));
-        int surface = part > 0.0 ? TERRAIN : over.surface;
-        hit = Hit(depth_m, part_of(segment, along).xy, surface_code(surface, finest_shift(depth_m), steps));
+    if (crossing.t >= 0.0) {
+        Clip clip = clip_to_map(subsegment);
+        vec3 near = point_on(subsegment, clip.near);
+        float t = refined(crossing, near, point_on(subsegment, clip.far), subsegment.depth_m);
+        float fraction = mix(clip.near, clip.far, t);
+        float depth_m = depth_at(ray, (float(at) + fraction * float(units)) / float(WHOLE));
+        int surface = t > 0.0 ? TERRAIN : clip.surface;
+        hit = Hit(depth_m, point_on(subsegment, fraction).xy, surface_code(surface, finest_shift(depth_m), steps));
     }
     return hit;
 }

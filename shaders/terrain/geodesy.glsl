@@ -1,7 +1,7 @@
 // Angles on a round base, to single precision: the built-in functions promise much less.
 
 // The angle of (x, y), -pi to pi.
-float arc(float y, float x) {
+float arc_tangent(float y, float x) {
     float a = abs(y);
     float b = abs(x);
     float t = min(a, b) / max(max(a, b), 1.0e-30);
@@ -64,7 +64,8 @@ vec2 geodetic(float off, float along) {
     float s0 = terrain.sine_latitude;
     float c0 = terrain.cosine_latitude;
     float n0 = terrain.semi_major_m / sqrt(1.0 - e2 * s0 * s0);
-    float delta = arc(n0 * (1.0 - e2) * s0 + along, (terrain.axis_distance_m + off) * (1.0 - e2)) - arc(s0, c0);
+    float axis_m = (terrain.axis_distance_m + off) * (1.0 - e2);
+    float delta = arc_tangent(n0 * (1.0 - e2) * s0 + along, axis_m) - arc_tangent(s0, c0);
     float height_m = 0.0;
     for (int i = 0; i < 4; i++) {
         Meridian foot = meridian_at(delta);
@@ -78,10 +79,10 @@ vec2 geodetic(float off, float along) {
 
 // A point in metres from the map's middle on the base (east, off the axis, along the axis) in the map's coordinates; `side` is
 // that of the half-plane behind the axis that longitudes are counted to.
-vec3 on_map(vec3 point, float side) {
+vec3 map_coordinates(vec3 point, float side) {
     float off = terrain.axis_distance_m + point.y;
     float radius = length(vec2(point.x, off));
-    float longitude = arc(point.x, off);
+    float longitude = arc_tangent(point.x, off);
     if (off < 0.0) {
         longitude = side < 0.0 ? -abs(longitude) : abs(longitude);
     }
@@ -96,7 +97,7 @@ vec3 on_map(vec3 point, float side) {
 }
 
 // F = P + n h (eq. 6): the point over a place in nodes, in the map's frame.
-vec3 in_frame(vec2 place, float height) {
+vec3 frame_point(vec2 place, float height) {
     if (terrain.base_kind == PLANE) {
         return vec3(place, height);
     }
