@@ -1,4 +1,4 @@
-//! What the shaders read besides textures.
+//! The uniform blocks of the shaders.
 
 use bytemuck::Zeroable;
 use glam::{IVec2, UVec2, Vec2, Vec3};
@@ -41,13 +41,13 @@ host_block! {
         pub up: Vec3,
         pub base_height: f32,
         pub south: Vec3,
-        /// How near a height counts as met where a root is approached.
+        /// The height above the surface that counts as met where a root is approached.
         pub height_tolerance: f32,
         pub lowest: f32,
         pub highest: f32,
-        /// What rounding may have cost a place, in nodes.
+        /// Bound of the rounding of a place, in nodes.
         pub rounding_nodes: f32,
-        /// What rounding may have cost a height.
+        /// Bound of the rounding of a height.
         pub rounding_height: f32,
         /// Between columns and between rows.
         pub spacing_m: Vec2,
@@ -113,9 +113,9 @@ host_block! {
     }
 }
 
-/// What rounding may cost a coordinate, as a share of the largest number that it is made of.
+/// Bound of a coordinate's rounding, as a fraction of the largest number that it is made of.
 const ROUNDING: f64 = 1.0 / (1 << 21) as f64;
-/// How near a height counts as met where a root is approached, as a share of a cell.
+/// The height above the surface that counts as met where a root is approached, as a fraction of a cell.
 const HEIGHT_TOLERANCE: f64 = 2.5e-4;
 /// The haze's colour, linear: the sky at the horizon.
 const HAZE: Vec3 = Vec3::new(0.42, 0.53, 0.66);
@@ -125,14 +125,14 @@ const SKY: f32 = 0.45;
 impl TerrainBlock {
     /// Of the map that is number `index`; `rays` are the world's.
     pub fn new(ground: &Ground, parameters: &Parameters, is_float: bool, index: u32, rays: &Rays, near_m: f32) -> Self {
-        let seen = rays.in_map(&ground.to_frame);
+        let framed = rays.in_map(&ground.to_frame);
         let shape = ground.shape;
         let side = f64::from(shape.width.max(shape.height));
         let (spacing, unit) = (ground.spacing_m.min_element(), ground.unit_m);
         // How far away the eye is, in nodes and in heights.
         let (away, above) = match &ground.curve {
-            None => (seen.eye.x.abs().max(seen.eye.y.abs()), seen.eye.z.abs()),
-            Some(_) => (2.0 * seen.eye.length() / spacing, seen.eye.length() / unit),
+            None => (framed.eye.x.abs().max(framed.eye.y.abs()), framed.eye.z.abs()),
+            Some(_) => (2.0 * framed.eye.length() / spacing, framed.eye.length() / unit),
         };
         let overshoot = match parameters.interpolation {
             Interpolation::Bilinear => 0.0,
@@ -146,13 +146,13 @@ impl TerrainBlock {
         let (axis_u, axis_v) = shape.axis();
         let to_sun = ground.to_frame.transform_vector3(parameters.sun.direction().as_dvec3());
         let flat = TerrainBlock {
-            eye: seen.eye.as_vec3(),
+            eye: framed.eye.as_vec3(),
             pixel_nodes: (rays.pixel_m() / ground.spacing_m.max_element()) as f32,
-            corner_direction: seen.corner.as_vec3(),
+            corner_direction: framed.corner.as_vec3(),
             near_m,
-            right_step: seen.across.as_vec3(),
+            right_step: framed.across.as_vec3(),
             map_index: index as i32,
-            down_step: seen.down.as_vec3(),
+            down_step: framed.down.as_vec3(),
             base_kind: PLANE,
             to_sun: to_sun.as_vec3(),
             widest_spacing_m: ground.spacing_m.max_element() as f32,

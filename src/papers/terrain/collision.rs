@@ -19,7 +19,7 @@ use super::ray_caster::{Footprint, RayCaster};
 use super::scene::{Inputs, Scene};
 use super::solid::Solid;
 
-/// Where a moving point first touches the ground.
+/// The first contact of a moving point with the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// The parameter of the segment, 0 to 1; 0 where it begins in the ground.
@@ -29,13 +29,13 @@ pub struct Contact {
     /// Of the surface there, a unit vector of the world.
     pub normal: DVec3,
     pub surface: Surface,
-    /// Which of the maps; the base belongs to the first.
+    /// Number of the map; the base belongs to the first.
     pub map: u32,
-    /// Pieces of the segment that were looked at until the map's surface was met, up to 4095; 0 where none was.
+    /// Pieces of the segment that were tried until the map's surface was met, up to 4095; 0 where none was.
     pub steps: u32,
 }
 
-/// Where a sphere touches the ground: the ground's nearest point to its centre.
+/// The contact of a sphere with the ground: the ground's nearest point to its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Touch {
     /// From the centre, metres; 0 where the centre is in the ground.
@@ -45,9 +45,9 @@ pub struct Touch {
     /// From the point to the centre, a unit vector of the world; away from the base where the centre is in the ground.
     pub normal: DVec3,
     pub surface: Surface,
-    /// Which of the maps; the base belongs to the first.
+    /// Number of the map; the base belongs to the first.
     pub map: u32,
-    /// Blocks and pieces of cells that were looked at in all maps.
+    /// Blocks and pieces of cells that were tried in all maps.
     pub steps: u32,
 }
 
@@ -88,7 +88,7 @@ impl Collider {
         })
     }
 
-    /// Where a sphere, world, metres, touches the ground; none where the ground is farther from its centre than its radius.
+    /// The contact of a sphere, world, metres, with the ground; none where the ground is farther from its centre than its radius.
     pub fn sphere(&self, center: DVec3, radius_m: f64) -> Option<Touch> {
         let mut touch = Touch {
             distance_m: radius_m.next_up(),

@@ -21,9 +21,9 @@ pub struct Curve {
     pub steps: DVec2,
     /// Smallest radius of curvature.
     pub smallest_radius_m: f64,
-    /// The largest change of a meridian's radius of curvature over a radian, as a share of it.
+    /// The largest change of a meridian's radius of curvature over a radian, as a fraction of it.
     pub bend: f64,
-    /// How far the map reaches above the base.
+    /// The map's highest point above the base.
     reach_m: f64,
 }
 

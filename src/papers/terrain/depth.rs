@@ -26,7 +26,7 @@ pub struct Depth {
 
 impl Depth {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -52,7 +52,7 @@ impl Depth {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.passes.iter().try_for_each(|pass| self.stage.record(frame, pass, &self.target))
     }
@@ -76,7 +76,7 @@ impl HostDepth {
         }
     }
 
-    /// What each pixel's ray met, row by row.
+    /// The hit of each pixel's ray, row by row.
     pub fn record(&mut self, frame: &mut Frame<'_>, maps: &[HeightField], view: &SceneView) -> &[Hit] {
         let HostDepth { ref info, footprint, width, ref mut hits } = *self;
         frame.host(info, || {

@@ -40,17 +40,17 @@ impl Drape {
     }
 
     /// Its colour at a place on the map, 0 to 1 from the west and from the north, linear.
-    pub fn color(&self, share: Vec2) -> Vec3 {
+    pub fn color(&self, uv: Vec2) -> Vec3 {
         let size = UVec2::new(self.width, self.height);
-        let texel = (share * size.as_vec2() - 0.5).clamp(Vec2::ZERO, size.as_vec2() - 1.0);
-        let (a, part) = (texel.as_uvec2(), texel.fract());
+        let texel = (uv * size.as_vec2() - 0.5).clamp(Vec2::ZERO, size.as_vec2() - 1.0);
+        let (a, t) = (texel.as_uvec2(), texel.fract());
         let b = (a + 1).min(size - 1);
         let at = |x: u32, y: u32| {
             let texel = self.texels.get((y * self.width + x) as usize).copied().unwrap_or_default();
             Vec3::from_array([texel[0], texel[1], texel[2]].map(decode))
         };
-        let (north, south) = (at(a.x, a.y).lerp(at(b.x, a.y), part.x), at(a.x, b.y).lerp(at(b.x, b.y), part.x));
-        north.lerp(south, part.y)
+        let (north, south) = (at(a.x, a.y).lerp(at(b.x, a.y), t.x), at(a.x, b.y).lerp(at(b.x, b.y), t.x));
+        north.lerp(south, t.y)
     }
 }
 

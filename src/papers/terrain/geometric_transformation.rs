@@ -59,7 +59,7 @@ impl GeometricTransformation {
     /// Writes the view's blocks where the device reads them as well, if it holds the maps.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(
         &self,
         frame: &mut Frame<'_>,

@@ -47,7 +47,7 @@ pub struct Ground {
     /// World to the map's frame. On a plane u and v in nodes from the first sample and h in the map's own numbers: G = T M. On
     /// a curved base metres from the map's middle: east, off the axis, along it.
     pub to_frame: DMat4,
-    /// What the frame's axes are in the world: on a plane east, up and south; else those of `to_frame`.
+    /// The frame's axes in the world: on a plane east, up and south; else those of `to_frame`.
     pub axes: [DVec3; 3],
     /// Metres between columns and rows, in the middle of the map.
     pub spacing_m: DVec2,
@@ -58,7 +58,7 @@ pub struct Ground {
     pub highest: f64,
     pub base: f64,
     pub curve: Option<Curve>,
-    /// Whether the map's columns fill a whole turn, so that the first follows the last. `shape` then has two columns more on
+    /// True where the map's columns fill a whole turn, so that the first follows the last. `shape` then has two columns more on
     /// each side, which repeat those of the other.
     pub closes: bool,
 }
@@ -66,7 +66,7 @@ pub struct Ground {
 /// Columns that are repeated on each side of a map that closes: what bicubic interpolation reads beyond a cell, and half a
 /// cell.
 pub const REPEATED: u32 = 2;
-/// How near to a whole turn the columns must come, in nodes.
+/// The most by which the columns may miss a whole turn, in nodes.
 const WHOLE_TURN: f64 = 1e-3;
 
 impl Ground {
@@ -176,8 +176,8 @@ impl Ground {
         let last = DVec2::new(f64::from(self.shape.width - 1), f64::from(self.shape.height - 1));
         // Enough points for a curved base; the corners alone would do on a plane.
         let points = (0..17 * 17).flat_map(|i| {
-            let share = DVec2::new(f64::from(i % 17), f64::from(i / 17)) / 16.0;
-            [self.lowest.min(self.base), self.highest].map(|height| self.point(share * last, height))
+            let fraction = DVec2::new(f64::from(i % 17), f64::from(i / 17)) / 16.0;
+            [self.lowest.min(self.base), self.highest].map(|height| self.point(fraction * last, height))
         });
         Extent::of(points)
     }

@@ -54,9 +54,9 @@ pub struct Hit {
     pub surface: Surface,
     /// The level that the surface was taken from, counted from the data.
     pub shift: u32,
-    /// Which of the maps, 0 to 15.
+    /// Number of the map, 0 to 15.
     pub map: u32,
-    /// Segments of the ray that were looked at until the map's surface was met, up to 4095; 0 where none was.
+    /// Segments of the ray that were tried until the map's surface was met, up to 4095; 0 where none was.
     pub steps: u32,
 }
 

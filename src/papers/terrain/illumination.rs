@@ -40,7 +40,7 @@ pub struct Illumination {
 
 impl Illumination {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -62,7 +62,7 @@ impl Illumination {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.stage.record(frame, &self.pass, &self.picture)
     }

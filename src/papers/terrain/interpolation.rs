@@ -9,7 +9,7 @@ use super::height_field::{Cell, Field};
 use super::parameters::Interpolation;
 use super::pyramid::{Bound, Texel};
 
-/// How much Catmull-Rom surfaces may exceed their nodes, as a fraction of the nodes' range: the negative weights' sum.
+/// The most by which Catmull-Rom surfaces exceed their nodes, as a fraction of the nodes' range: the negative weights' sum.
 pub const OVERSHOOT: f64 = 9.0 / 32.0;
 
 impl<T: Texel> Field<'_, T> {

@@ -30,7 +30,7 @@ pub struct Levels {
     /// All layers.
     pub view: Arc<ImageView>,
     pub shape: Shape,
-    /// Whether texels are the bits of floats.
+    /// Texels are the bits of floats, not 16-bit steps.
     pub is_float: bool,
 }
 
@@ -38,7 +38,7 @@ impl Levels {
     /// Uploads the data in strips and builds the coarser levels of each of `bounds`, which take the layers from 1 on.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a map larger than the device's images, [`Error::OutOfMemory`], what Vulkan answers.
+    /// [`Error::Limit`] for a map larger than the device's images, [`Error::OutOfMemory`], errors of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, label: &str, map: &HeightMap, bounds: &[Bound]) -> Result<Self, Error> {
         let device = shaders.device();
         let shape = Shape::new(map.width(), map.height());

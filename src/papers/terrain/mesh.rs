@@ -44,7 +44,7 @@ impl Mesh {
     /// Draws into the targets of `base`.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a map of more than [`MESH_SIDE`] samples a side, what Vulkan answers.
+    /// [`Error::Limit`] for a map of more than [`MESH_SIDE`] samples a side, errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -83,7 +83,7 @@ impl Mesh {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, grounds: &[Ground], view: &SceneView) -> Result<(), Error> {
         for (grid, ground) in self.grids.iter().zip(grounds) {
             let to_clip = (view.to_clip * ground.to_frame.inverse()).as_mat4().to_cols_array();

@@ -74,7 +74,7 @@ use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::HeightMap;
 
-/// What a device must have for this paper, beyond the baseline of the Vulkan layer.
+/// The features that this paper needs of a device, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
 
 /// The paper under one variant.
@@ -105,7 +105,7 @@ struct HostPasses {
     show: Show,
 }
 
-/// What follows the depth on the device, whoever found it.
+/// The passes that follow the depth on the device.
 struct Shading {
     depth: Arc<ImageView>,
     normal: Normal,
@@ -117,7 +117,7 @@ struct Shading {
 struct ObjectPasses {
     meshes: Vec<ObjectMesh>,
     depth: ObjectDepth,
-    /// Where the maps throw shadows.
+    /// None where the maps throw no shadows.
     shadow: Option<(ObjectHits, Shadow)>,
     objects: Objects,
 }
@@ -126,7 +126,7 @@ impl Terrain {
     /// Makes every resource and pass, and the maps' pyramids; `label` goes before the names of the resources.
     ///
     /// # Errors
-    /// [`Error::Limit`] for too many maps and for a map that the device or the variant cannot hold, what the Vulkan layer
+    /// [`Error::Limit`] for too many maps and for a map that the device or the variant cannot hold, errors of the Vulkan layer
     /// answers. The caller has validated `parameters`, and there is a map.
     pub fn new(
         shaders: &ShaderLibrary,

@@ -13,11 +13,11 @@ use super::interpolation::Patch;
 use super::pyramid::Texel;
 use super::solid::Solid;
 
-/// Distances are found to this share of a cell.
+/// The precision of distances, as a fraction of a cell.
 const TOLERANCE_CELLS: f64 = 1e-7;
 /// Halvings of a cell after which a square is a point.
 const DEEPEST: u32 = 40;
-/// What single precision may have cost a level's maximum, as a share of the height.
+/// The rounding of a level's maximum in single precision, as a fraction of the height.
 const ROUNDING: f64 = 1e-6;
 
 /// The nearest point so far.
@@ -27,7 +27,7 @@ pub struct Nearest {
     /// In the map's frame.
     pub point: DVec3,
     pub surface: Surface,
-    /// Blocks and squares that were looked at.
+    /// Blocks and squares that were tried.
     pub steps: u32,
 }
 

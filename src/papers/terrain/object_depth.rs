@@ -20,7 +20,7 @@ pub struct ObjectDepth {
 
 impl ObjectDepth {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -38,7 +38,7 @@ impl ObjectDepth {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
         self.light.write(0, bytemuck::bytes_of(&view.light))?;
         frame.graphics(&self.pass, |draw| {

@@ -21,7 +21,7 @@ pub struct ObjectHits {
 
 impl ObjectHits {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -45,7 +45,7 @@ impl ObjectHits {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, meshes: &[ObjectMesh], view: &SceneView) -> Result<(), Error> {
         self.passes.iter().zip(meshes).try_for_each(|(pass, mesh)| mesh.draw(frame, pass, view))
     }

@@ -1,4 +1,4 @@
-//! The pass `object-shadow` (section 2): what the maps leave of the sunlight where polygon objects are seen.
+//! The pass `object-shadow` (section 2): the maps' shadow on polygon objects.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::gpu::{Error, ImageView, ShaderLibrary};
 /// The pass: `shadow` by fragment stages, from the objects' hits.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn object_shadow(
     shaders: &ShaderLibrary,
     label: &str,

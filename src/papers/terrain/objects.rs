@@ -36,7 +36,7 @@ impl Objects {
     /// Draws over the picture what passes `test` against the depth buffer, in the shadow of the maps.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         meshes: &[ObjectMesh],
@@ -56,7 +56,7 @@ impl Objects {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, meshes: &[ObjectMesh], view: &SceneView) -> Result<(), Error> {
         self.passes.iter().zip(meshes).try_for_each(|(pass, mesh)| mesh.draw(frame, pass, view))
     }
@@ -71,7 +71,7 @@ pub struct ObjectMesh {
 
 impl ObjectMesh {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, label: &str, mesh: &Mesh) -> Result<Self, Error> {
         let buffer = |what: &str, usage, bytes: &[u8]| {
             upload(shaders.device(), &format!("{label}/{}/{what}", mesh.name), usage, bytes)
@@ -96,7 +96,7 @@ impl ObjectMesh {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, view: &SceneView) -> Result<(), Error> {
         let constants = ObjectConstants { to_clip: view.to_clip.as_mat4().to_cols_array() };
         frame.graphics(pass, |draw| {

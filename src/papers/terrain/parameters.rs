@@ -1,4 +1,4 @@
-//! What a user can set.
+//! The numbers of a configuration.
 
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ impl measure::Variant for Variant {
     }
 }
 
-/// How far a ray is followed.
+/// The level of detail: the end of a ray's subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Lod {
     /// To the interpolated surface of the data.
@@ -95,7 +95,7 @@ impl Base {
     /// The Earth's, WGS84.
     pub const EARTH: Base = Base::Ellipsoid { equatorial_m: 6_378_137.0, polar_m: 6_356_752.5 };
 
-    /// What shaders call it in their names: rays stay straight over a plane alone.
+    /// The value of `BASE` in the shaders' variants: rays stay straight over a plane alone.
     pub fn kind(self) -> &'static str {
         match self {
             Base::Plane => "plane",
@@ -104,7 +104,7 @@ impl Base {
     }
 }
 
-/// Where the sun stands.
+/// The sun's place in the sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sun {
     /// Clockwise from north, -2 pi to 2 pi.
@@ -122,7 +122,7 @@ impl Sun {
     }
 }
 
-/// Where the picture is seen from.
+/// The camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum View {
     /// From the south and a little above, as figure 2.
@@ -143,7 +143,7 @@ pub struct Parameters {
     pub base_level_m: Option<f32>,
     pub view: View,
     pub sun: Sun,
-    /// Whether the terrain stands in its own light; adds the pass `shadow`.
+    /// The terrain throws shadows on itself; adds the pass `shadow`.
     pub shadows: bool,
     /// Extinction by haze per kilometre, 0 to 1000.
     pub haze_per_km: f32,

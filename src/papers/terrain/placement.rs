@@ -1,4 +1,4 @@
-//! Where maps lie, and which way the rays of a picture go.
+//! The placement of maps over the base, and the rays of a picture.
 
 use glam::{DMat4, DVec2, DVec3};
 

@@ -36,7 +36,7 @@ impl Shape {
         if self.width >= self.height { (1, 0) } else { (0, 1) }
     }
 
-    /// Where a coarser level, `shift` at least 1, begins in its layer: at its own padded width, so that none overlap and
+    /// The first texel of a coarser level, `shift` at least 1, in its layer: at its own padded width, so that none overlap and
     /// a shader finds it by shifting.
     pub fn origin(self, shift: u32) -> (u32, u32) {
         let (x, y) = self.axis();
@@ -53,7 +53,7 @@ impl Shape {
     }
 }
 
-/// Which of four texels a coarser one takes.
+/// The choice of a coarser texel among its four finer ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bound {
     Highest,

@@ -16,10 +16,10 @@ use super::ray_segment::{CurvedSegment, RaySegment, StraightSegment, Subsegment,
 
 /// A segment of one unit is intersected whatever it touches. Single precision counts them exactly.
 const WHOLE: u32 = 1 << 23;
-/// How far a last segment may be from straight, in texels of the level that it is met at.
+/// The most by which a last subsegment is not straight, in texels of the level that it is met at.
 const STRAIGHT: f32 = 2.5e-4;
 
-/// Where subdivision ends.
+/// The end of subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Footprint {
     /// At the data, with the exact place.
@@ -46,7 +46,7 @@ pub struct RayCaster<'a, T> {
     pub footprint: Footprint,
 }
 
-/// Where a segment begins on its ray and how long it is, in units.
+/// The beginning of a subsegment on its ray and its length, in units.
 struct Span {
     at: u32,
     units: u32,
@@ -82,7 +82,7 @@ impl<T: Texel> RayCaster<'_, T> {
         corner_direction + x as f32 * right_step + y as f32 * down_step
     }
 
-    /// What a ray meets: the base or the map, whichever comes first, if before `prior`.
+    /// The hit of a ray: the base or the map, the nearer one, if before `prior`.
     pub fn find(&self, direction: Vec3, prior: Hit) -> Hit {
         let (mut hit, mut limit_m) = (prior, prior.depth_m);
         let (base_m, slack_m, place) = base_of(self.terrain, direction);
@@ -94,7 +94,7 @@ impl<T: Texel> RayCaster<'_, T> {
         self.trace(self.terrain.eye, direction, limit_m).unwrap_or(hit)
     }
 
-    /// Whether the map stands between what a pixel saw and the sun.
+    /// True where the map stands between a pixel's hit and the sun.
     pub fn is_shadowed(&self, direction: Vec3, hit: &Hit) -> bool {
         let shift = hit.shift.min(self.field.shape().top) as i32;
         let sun = self.terrain.to_sun;

@@ -65,7 +65,7 @@ fn wall(u: Vec2, v: Vec2, direction: Vec2) -> Surface {
     }
 }
 
-/// Where a ray meets the base, how much farther it must go to be below it without doubt, and the place in nodes.
+/// The depth at which a ray meets the base, the length after which it is below it without doubt, and the place in nodes.
 pub fn base_of(terrain: &TerrainBlock, direction: Vec3) -> (f32, f32, Vec2) {
     if terrain.base_kind != PLANE {
         return CurvedSegment::base_of(terrain, direction);
@@ -232,11 +232,11 @@ impl RaySegment for CurvedSegment<'_> {
         let (from, moved) = (Vec2::new(a.x, off_m + a.y), b.xy() - a.xy());
         let nearest = (-from.dot(moved) / moved.length_squared().max(1e-30)).clamp(0.0, 1.0);
         let radius = (from + nearest * moved).length().max(1e-6 * off_m);
-        let turn = moved.length() / radius;
+        let angle = moved.length() / radius;
         let mut slack = Vec3::new(
-            (0.125 * turn * turn).min(0.5 * turn) * terrain.nodes_per_unit.x,
+            (0.125 * angle * angle).min(0.5 * angle) * terrain.nodes_per_unit.x,
             0.0,
-            0.125 * moved.length() * turn,
+            0.125 * moved.length() * angle,
         );
         if !is_cylinder(terrain) {
             let smallest = terrain.smallest_radius_m;

@@ -26,7 +26,7 @@ pub struct MapInput {
     pub placement: Placement,
 }
 
-/// What a scene is made of.
+/// The contents of a scene.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Inputs<'a> {
     /// At least one, at most [`Inputs::MAPS`].
@@ -134,7 +134,7 @@ pub struct DeviceScene {
 
 impl DeviceScene {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -170,7 +170,7 @@ impl DeviceScene {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn write(&self, view: &SceneView) -> Result<(), Error> {
         for (map, terrain) in self.maps.iter().zip(&view.terrains) {
             map.terrain.write(0, bytemuck::bytes_of(terrain))?;
@@ -182,7 +182,7 @@ impl DeviceScene {
 /// An image of texels that passes fetch; `fill` writes a strip from a row on.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn texels(
     device: &Arc<Device>,
     name: &str,
@@ -199,7 +199,7 @@ pub fn texels(
 /// A uniform block that the host writes.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn block_buffer<T>(device: &Arc<Device>, name: &str) -> Result<Arc<Buffer>, Error> {
     let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
     let desc = BufferDesc::new(name, size_of::<T>() as u64).usage(usage).location(Location::Upload);

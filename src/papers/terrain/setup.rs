@@ -19,7 +19,7 @@ use crate::measure::{Paper, ParameterError};
 use crate::papers::terrain::{Base, Drape, Inputs, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
 use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
 
-/// What a user set up.
+/// A user's configuration.
 #[derive(Debug, Clone)]
 pub struct Setup {
     pub parameters: Parameters,
@@ -33,7 +33,7 @@ pub struct Setup {
     pub resolution: u32,
     /// Metres between samples, in place of what a map says of itself.
     pub spacing_m: Option<f64>,
-    /// What heights are multiplied by.
+    /// Factor of the heights.
     pub exaggeration: f32,
     /// Of the synthetic volcano.
     pub seed: u64,
@@ -228,7 +228,7 @@ impl Study for Setup {
             let results = entries([
                 ("mrays_per_s", json!(frame_ms.map(|ms| rays / ms / 1e3))),
                 ("steps_per_ray", json!(steps)),
-                ("hit_share", json!(census.hit_share())),
+                ("hit_share", json!(census.hit_fraction())),
             ]);
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }

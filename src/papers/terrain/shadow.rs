@@ -20,7 +20,7 @@ use crate::gpu::{Device, Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLi
 /// A single texel for where the sun reaches everything.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn all_lit(device: &Arc<Device>, label: &str) -> Result<Arc<ImageView>, Error> {
     texels(device, &format!("{label}/all-lit"), vk::Format::R32_SFLOAT, (1, 1), |_, bytes| {
         bytes.copy_from_slice(bytemuck::bytes_of(&1.0_f32));
@@ -31,7 +31,7 @@ pub fn all_lit(device: &Arc<Device>, label: &str) -> Result<Arc<ImageView>, Erro
 pub struct Shadow {
     stage: Stage,
     passes: Vec<Pass>,
-    /// What the maps leave of the sunlight: 0 in the shadow, 1 outside.
+    /// The maps' shadow: 0 inside, 1 in the sunlight.
     pub target: Arc<ImageView>,
 }
 
@@ -39,7 +39,7 @@ impl Shadow {
     /// The shadows of the scene's maps on what `depth` has, in passes of that name.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -69,7 +69,7 @@ impl Shadow {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.passes.iter().try_for_each(|pass| self.stage.record(frame, pass, &self.target))
     }
@@ -91,7 +91,7 @@ impl HostShadow {
         }
     }
 
-    /// What the maps leave of the sunlight at each pixel.
+    /// The maps' shadow at each pixel: 0 inside, 1 in the sunlight.
     pub fn record(&mut self, frame: &mut Frame<'_>, maps: &[HeightField], view: &SceneView, hits: &[Hit]) -> &[f32] {
         let HostShadow { ref info, width, ref mut sunlit } = *self;
         frame.host(info, || {

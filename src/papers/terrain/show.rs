@@ -33,7 +33,7 @@ pub struct Show {
 
 impl Show {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
         let buffer = |name: &str, pixel_bytes: usize| {
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -60,7 +60,7 @@ impl Show {
     /// Puts the targets where the device can read them, and draws picture and depth into images.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(
         &self,
         frame: &mut Frame<'_>,

@@ -62,7 +62,7 @@ impl<'a> Solid<'a> {
         }
     }
 
-    /// How far F may leave its tangent where u and v change by up to `reach` nodes and h by up to `rise_m`, to a height of
+    /// The most by which F leaves its tangent where u and v change by up to `reach` nodes and h by up to `rise_m`, to a height of
     /// `height_m` at most.
     pub fn bend_m(&self, reach: DVec2, rise_m: f64, height_m: f64) -> f64 {
         self.ground.curve.as_ref().map_or(0.0, |curve| curve.bend_m(reach, rise_m, height_m))
@@ -84,7 +84,7 @@ impl<'a> Solid<'a> {
         DVec2::new(f64::from(shape.width - 1), f64::from(shape.height - 1))
     }
 
-    /// Whether the map goes once round, and has no eastern and western side.
+    /// True of a map that goes once round and has no eastern and western side.
     pub fn closes(&self) -> bool {
         self.ground.closes
     }

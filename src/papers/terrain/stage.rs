@@ -33,7 +33,7 @@ impl Stage {
     /// An image of the picture's size that this stage writes and later passes read.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn image(
         self,
         shaders: &ShaderLibrary,
@@ -48,7 +48,7 @@ impl Stage {
     /// Records `pass` over all pixels of `target`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(self, frame: &mut Frame<'_>, pass: &Pass, target: &ImageView) -> Result<(), Error> {
         match self {
             Stage::Compute => frame.compute(pass, |dispatch| {
@@ -83,7 +83,7 @@ impl Stage {
 /// A depth buffer of the picture's size.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn depth_buffer(shaders: &ShaderLibrary, name: String, parameters: &Parameters) -> Result<Arc<ImageView>, Error> {
     let desc = ImageDesc::new_2d(name, vk::Format::D32_SFLOAT, parameters.width, parameters.height);
     Image::new(shaders.device(), desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()

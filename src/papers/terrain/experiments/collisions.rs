@@ -1,4 +1,4 @@
-//! "Detection of spatial collisions" (section 1): what bodies meet in a setup's land.
+//! "Detection of spatial collisions" (section 1): what bodies meet in a setup's terrain.
 
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -12,7 +12,7 @@ use crate::papers::terrain::{Collider, Inputs, Surface};
 /// A coordinate's and a radius' largest value, metres.
 const FAR_M: f64 = 1.0e8;
 
-/// What may meet the ground, in the maps' frame: metres east, up from the base, south.
+/// A body that may meet the ground, in the maps' frame: metres east, up from the base, south.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Body {
     /// A point that moves straight from one place to another.
@@ -26,7 +26,7 @@ pub enum Body {
     },
 }
 
-/// What a body meets first.
+/// A body's first contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
     /// The part of the segment before it, 0 to 1; none for a sphere.
@@ -38,7 +38,7 @@ pub struct Meeting {
     pub normal: DVec3,
     pub surface: Surface,
     pub map: u32,
-    /// Pieces and blocks that were looked at.
+    /// Pieces and blocks that were tried.
     pub steps: u32,
 }
 
@@ -104,7 +104,7 @@ impl std::fmt::Display for Body {
     }
 }
 
-/// What each body meets, in their order.
+/// The first contacts of bodies, in their order.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a body without extent or too far away, [`Error::Scene`].

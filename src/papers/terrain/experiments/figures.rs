@@ -23,20 +23,20 @@ pub fn draw(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Rg
     picture::render(machine, &mut built.paper, 0)
 }
 
-/// What the rays of a frame met.
+/// The hits of a frame's rays.
 pub struct Census {
     /// Row by row.
     pub hits: Vec<Hit>,
 }
 
 impl Census {
-    /// Share of the rays that met a map's terrain.
-    pub fn hit_share(&self) -> f64 {
+    /// Fraction of the rays that met a map's terrain.
+    pub fn hit_fraction(&self) -> f64 {
         let met = self.hits.iter().filter(|hit| !matches!(hit.surface, Surface::Sky | Surface::Base)).count();
         met as f64 / self.hits.len() as f64
     }
 
-    /// Mean number of segments that a ray of the picture looked at; rays that met no map count none.
+    /// Mean number of segments that a ray of the picture tried; rays that met no map count none.
     pub fn steps_per_ray(&self) -> f64 {
         self.hits.iter().map(|hit| f64::from(hit.steps)).sum::<f64>() / self.hits.len() as f64
     }
@@ -68,16 +68,16 @@ const HEAT: [[f32; 3]; 6] = [
     [252.0, 253.0, 191.0],
 ];
 
-fn heat(share: f32) -> [u8; 4] {
-    let place = share.clamp(0.0, 1.0) * (HEAT.len() - 1) as f32;
+fn heat(fraction: f32) -> [u8; 4] {
+    let place = fraction.clamp(0.0, 1.0) * (HEAT.len() - 1) as f32;
     let below = (place as usize).min(HEAT.len() - 2);
-    let part = place - below as f32;
-    let channel = |i: usize| (HEAT[below][i] + part * (HEAT[below + 1][i] - HEAT[below][i])).round() as u8;
+    let t = place - below as f32;
+    let channel = |i: usize| (HEAT[below][i] + t * (HEAT[below + 1][i] - HEAT[below][i])).round() as u8;
     [channel(0), channel(1), channel(2), 255]
 }
 
 /// Steps of each ray by heat, one picture for each setup. All share one ramp, from no step to the most that any ray took, which
-/// is given as well. It follows the logarithm: few rays graze the land, and those take many times the steps of the others.
+/// is given as well. It follows the logarithm: few rays graze the terrain, and those take many times the steps of the others.
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Scene`], [`Error::Image`], [`Error::Parameter`].

@@ -34,7 +34,7 @@ fn paper_ms(variant: &str, side: f64) -> Option<f64> {
     }
 }
 
-/// What is swept.
+/// The axis of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// Samples a side of the synthetic volcano.

@@ -42,7 +42,7 @@ pub struct Frame {
 }
 
 impl Base {
-    /// Whether u is an angle, equal to itself after a full turn.
+    /// True where u is an angle, equal to itself after a full turn.
     pub fn turns(&self) -> bool {
         !matches!(self, Base::Plane)
     }

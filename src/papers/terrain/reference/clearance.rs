@@ -1,4 +1,4 @@
-//! How near a ray passes to a silhouette, where rounding may decide either way.
+//! The distance of a ray from a silhouette, where rounding may decide either way.
 
 use crate::papers::terrain::reference::path::{Path, place_over};
 use crate::papers::terrain::reference::search::Search;
@@ -18,13 +18,13 @@ const REFINEMENTS: usize = 40;
 pub struct Clearance {
     /// From the start of the ray to the solid's boundary, on either side.
     pub start_cells: f64,
-    /// Where the ray passes the solid before its hit, or altogether.
+    /// The ray's least distance from the solid before its hit, or altogether.
     pub before_cells: f64,
-    /// How deep it is in the solid behind its hit before it comes out again.
+    /// Its depth in the solid behind its hit before it comes out again.
     pub after_cells: f64,
 }
 
-/// What is near a ray: a map or the base.
+/// Something near a ray: a map or the base.
 struct Neighbour<'a> {
     terrain: &'a Terrain,
     ray: &'a Ray,
@@ -64,7 +64,7 @@ impl Terrain {
         found
     }
 
-    /// Where a line is nearest to a curved base, or deepest in it, as far as rays that graze it are concerned.
+    /// The place at which a line is nearest to a curved base, or deepest in it, as far as rays that graze it are concerned.
     fn lowest_over_base(&self, ray: &Ray) -> Option<f64> {
         let [enter, leave] = self.base.shell(0.0, ray.origin, ray.direction).or_else(|| {
             let reach = ray.origin.length();

@@ -7,14 +7,14 @@ use glam::DVec3;
 /// Distances to a map are found to this share of its cell.
 const TOLERANCE_CELLS: f64 = 1e-6;
 
-/// Where a sphere touches the terrain.
+/// The contact of a sphere with the terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
     /// From the sphere's centre to the solid, in metres; 0 when the centre is in it.
     pub distance_m: f64,
     /// The solid's nearest point; the centre itself when it is inside.
     pub point: DVec3,
-    /// What is nearest.
+    /// The nearest surface.
     pub part: Part,
     /// The map's number; `None` for the base and inside.
     pub map: Option<usize>,

@@ -22,7 +22,7 @@ pub struct Grid {
     pub origin: [f64; 2],
     /// From node to node along u and v, in the base's units; above 0.
     pub spacing: [f64; 2],
-    /// Whether the first column follows the last one along u: the map goes once round.
+    /// The map goes once round: the first column follows the last one along u.
     pub closes: bool,
     pub(super) range_m: [f64; 2],
 }
@@ -88,7 +88,7 @@ impl Grid {
         }
     }
 
-    /// Whether (u, v) is in the map's rectangle, borders included.
+    /// True of a place (u, v) in the map's rectangle, borders included.
     pub fn contains(&self, uv: [f64; 2]) -> bool {
         let end = self.end();
         (0..2).all(|axis| axis == 0 && self.closes || self.origin[axis] <= uv[axis] && uv[axis] <= end[axis])

@@ -2,7 +2,7 @@
 
 use crate::papers::terrain::reference::Grid;
 
-/// Which of four neighbours a coarser level keeps.
+/// The choice of a coarser level among four neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extreme {
     /// The paper's.

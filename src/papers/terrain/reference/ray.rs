@@ -43,7 +43,7 @@ pub struct Terrain {
     pub maps: Vec<Grid>,
 }
 
-/// What a ray hit.
+/// The hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The ray starts in the solid.
@@ -67,7 +67,7 @@ pub struct Hit {
     pub place: Place,
     /// Unit normal out of the solid; of the interpolated surface, where a map was hit from above.
     pub normal: DVec3,
-    /// What was hit.
+    /// The surface that was hit.
     pub part: Part,
     /// The map's number; `None` for the base alone.
     pub map: Option<usize>,
@@ -86,7 +86,7 @@ impl Terrain {
         map.interpolate(self.interpolation, uv).height_m - self.base_level_m
     }
 
-    /// Whether a point is in the solid, its boundary included.
+    /// True of a point in the solid, its boundary included.
     pub fn is_solid(&self, point: DVec3) -> bool {
         self.base.place(point).h <= 0.0 || self.map_around(point).is_some()
     }
@@ -123,7 +123,7 @@ impl Terrain {
         }
     }
 
-    /// Where a ray from outside enters the base.
+    /// The t at which a ray from outside enters the base.
     pub(super) fn base_distance(&self, ray: &Ray, t_range: [f64; 2]) -> Option<f64> {
         let [enter, _] = self.base.shell(0.0, ray.origin, ray.direction)?;
         (t_range[0] <= enter && enter <= t_range[1]).then_some(enter)

@@ -18,7 +18,7 @@ pub(super) struct Search<'a> {
     patch: Patch,
 }
 
-/// What g = h - height is at least over a stretch, and how fast it changes.
+/// Lower bound of g = h - height over a stretch, and bounds of its change.
 struct Bounds {
     least: f64,
     slope: Interval,
@@ -40,7 +40,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether the ray stays `margin_m` above every height of the cell.
+    /// True where the ray stays `margin_m` above every height of the cell.
     pub(super) fn is_above(&self, from: f64, to: f64, margin_m: f64) -> bool {
         self.lowest(from, to) - margin_m > self.patch.bounds().high
     }

@@ -8,7 +8,7 @@ pub fn lambert(normal: DVec3, to_sun: DVec3) -> f64 {
     normal.dot(to_sun).max(0.0)
 }
 
-/// Whether no map stands between a place and the sun.
+/// True where no map stands between a place and the sun.
 pub fn is_lit(terrain: &Terrain, place: DVec3, to_sun: DVec3) -> bool {
     let hit = terrain.first_hit(&Ray::new(place, to_sun), [0.0, f64::INFINITY]);
     hit.is_none_or(|hit| hit.map.is_none())
