@@ -45,18 +45,18 @@ layout(set = 0, binding = 24, std430) buffer Alive {
     uint alive[]; // of vertices
 };
 
-layout(push_constant, std430) uniform Turn {
+layout(push_constant, std430) uniform Dispatch {
     uint level; // of the nodes to split; the finest one finds the eligible coarse triangles
     uint points; // barycentric points a coarse triangle
-} turn;
+} dispatch;
 
 // "Returns true if coarse triangle T is eligible."
 void find_eligible(uint thread) {
-    uint coarse = thread / turn.points;
+    uint coarse = thread / dispatch.points;
     if (coarse >= constants.coarse_count || eligible[coarse] != 0u) {
         return;
     }
-    uint vertex = triangles[3u * finest_at(coarse, 0u, 0u) + barycentric_points[thread % turn.points]];
+    uint vertex = triangles[3u * finest_at(coarse, 0u, 0u) + barycentric_points[thread % dispatch.points]];
     if (labels[vertex] >= VIRTUAL) {
         eligible[coarse] = 1u;
     }
@@ -68,14 +68,14 @@ bool midpoint_is_alive(uint coarse, uint level, uint index, uint edge) {
 
 bool must_be_split(uint coarse, uint index) {
     uint child = 4u * index;
-    if (turn.level + 1u == constants.levels) {
-        uint finest = finest_at(coarse, turn.level, index);
+    if (dispatch.level + 1u == constants.levels) {
+        uint finest = finest_at(coarse, dispatch.level, index);
         uint near = max(triangle_labels[finest], triangle_labels[finest + 1u]);
         uint far = max(triangle_labels[finest + 2u], triangle_labels[finest + 3u]);
         uint label = max(near, far);
         return label >= INITIAL || (label >= VIRTUAL && eligible[coarse] != 0u);
     }
-    uint below = turn.level + 1u;
+    uint below = dispatch.level + 1u;
     uint at = node_at(coarse, below, child);
     for (uint i = 0u; i < 4u; i++) {
         if (statuses[at + i] == INACTIVE) {
@@ -95,27 +95,27 @@ bool must_be_split(uint coarse, uint index) {
 
 void main() {
     uint thread = gl_GlobalInvocationID.x;
-    if (turn.level == constants.levels) {
+    if (dispatch.level == constants.levels) {
         find_eligible(thread);
         return;
     }
-    uint coarse = thread / power_of_four(turn.level);
-    uint index = thread % power_of_four(turn.level);
+    uint coarse = thread / power_of_four(dispatch.level);
+    uint index = thread % power_of_four(dispatch.level);
     if (coarse >= constants.coarse_count) {
         return;
     }
-    uint at = node_at(coarse, turn.level, index);
+    uint at = node_at(coarse, dispatch.level, index);
     if (statuses[at] == INACTIVE || !must_be_split(coarse, index)) {
         return;
     }
     statuses[at] = INACTIVE;
-    uint child = node_at(coarse, turn.level + 1u, 4u * index);
+    uint child = node_at(coarse, dispatch.level + 1u, 4u * index);
     for (uint i = 0u; i < 4u; i++) {
         if (statuses[child + i] == UNUSED) {
             statuses[child + i] = ACTIVE;
         }
     }
     for (uint edge = 0u; edge < 3u; edge++) {
-        alive[triangles[midpoint_at(coarse, turn.level, index, edge)]] = 1u;
+        alive[triangles[midpoint_at(coarse, dispatch.level, index, edge)]] = 1u;
     }
 }

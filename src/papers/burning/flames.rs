@@ -1,17 +1,19 @@
-//! `flames` and `draw-fire` (3.6): particles of fire and smoke, one group a block of the combustion-ready area.
+//! `flames` (3.6): particles of fire and smoke, one group a block of the combustion-ready area.
 
 use std::sync::Arc;
 
 use ash::vk;
 use glam::Vec3;
 
-use super::drawing::Drawing;
+use super::buffers::Buffers;
+use super::draw::Draw;
 use super::model::Model;
 use super::parameters::Parameters;
-use super::state::Buffers;
+use super::ping_pong::{PingPong, build, new};
 use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, Load, Pass, ShaderLibrary, Topology};
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
+use crate::scene::Camera;
 
 host_block! {
     /// The uniform block of `burning/billboards.glsl`, which says what each member is.
@@ -52,17 +54,16 @@ host_block! {
     }
 }
 
-/// The passes with their buffers.
+/// The pass with its buffers.
 pub struct Flames {
-    /// For either turn of the states.
-    turns: [[Pass; 3]; 2],
-    draw: Pass,
+    steps: PingPong<3>,
+    /// The uniform block of `burning/billboards.glsl`.
+    pub(super) billboards: Arc<Buffer>,
     /// [`Group`] of each block, and an end.
     pub groups: Arc<Buffer>,
     /// [`Particle`]s: fire, then smoke.
     pub particles: Arc<Buffer>,
-    particle_count: u32,
-    vertices: u32,
+    pub(super) particle_count: u32,
 }
 
 impl Flames {
@@ -76,7 +77,7 @@ impl Flames {
         parameters: &Parameters,
         buffers: &mut Buffers,
         model: &Model,
-        drawing: &Drawing,
+        draw: &Draw,
     ) -> Result<Option<Self>, Error> {
         let particle_count = parameters.fire + parameters.smoke;
         if particle_count == 0 {
@@ -94,7 +95,7 @@ impl Flames {
         let none = vec![0; size_of::<Particle>() * particle_count as usize];
         let particles = upload(device, &name("particles"), storage, &none)?;
         buffers.keep(shaders, &particles)?;
-        let block = billboards(parameters, drawing);
+        let block = billboards(parameters, &draw.camera);
         let billboards =
             upload(device, &name("billboards"), vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
 
@@ -103,75 +104,44 @@ impl Flames {
             .with("Blocks", &buffers.blocks)
             .with("Clock", &buffers.clock)
             .with("Groups", &groups)
+            .with("Listed", &listed);
+        let list = step("burning/flames-ready.comp")
+            .with("Labels", &buffers.labels)
+            .with("Cells", &buffers.cells)
+            .with("Alive", &buffers.alive)
+            .with("Groups", &groups)
             .with("Listed", &listed)
-            .build(shaders)?;
-        let turn = |turn: usize| -> Result<[Pass; 3], Error> {
-            let list = step("burning/flames-ready.comp")
-                .with("NewState", &buffers.states[turn])
-                .with("Labels", &buffers.labels)
-                .with("Cells", &buffers.cells)
-                .with("Alive", &buffers.alive)
-                .with("Groups", &groups)
-                .with("Listed", &listed)
-                .with("Ready", &ready)
-                .build(shaders)?;
-            let burn = step("burning/flames.comp")
-                .with("billboards", &billboards)
-                .with("NewState", &buffers.states[turn])
-                .with("Blocks", &buffers.blocks)
-                .with("NewRotations", &buffers.rotations[turn])
-                .with("Clock", &buffers.clock)
-                .with("Groups", &groups)
-                .with("Ready", &ready)
-                .with("Particles", &particles)
-                .build(shaders)?;
-            Ok(Pass::steps([share.clone(), list, burn]))
-        };
-        let turns = [turn(0)?, turn(1)?];
-        let draw = Pass::graphics("draw-fire", "3.6", "burning/draw-fire.vert", "burning/draw-fire.frag")
-            .with("constants", &buffers.constants)
-            .with("view", &drawing.view)
+            .with("Ready", &ready);
+        let burn = step("burning/flames.comp")
             .with("billboards", &billboards)
-            .with("Particles", &particles)
-            .with("mesh_depth", &drawing.depth)
-            .color(&drawing.picture, Load::Keep, Blend::Premultiplied)
-            .topology(Topology::TriangleStrip)
-            .build(shaders)?;
-        Ok(Some(Flames { turns, draw, groups, particles, particle_count, vertices: model.rest.len() as u32 }))
+            .with("Blocks", &buffers.blocks)
+            .with("Clock", &buffers.clock)
+            .with("Groups", &groups)
+            .with("Ready", &ready)
+            .with("Particles", &particles);
+        let state = new("NewState", &buffers.states);
+        let rotations = new("NewRotations", &buffers.rotations);
+        let steps = PingPong::new([
+            (build(shaders, share, &[])?, 1),
+            (build(shaders, list, &[state])?, model.vertex_count()),
+            (build(shaders, burn, &[state, rotations])?, particle_count),
+        ]);
+        Ok(Some(Flames { steps, billboards, groups, particles, particle_count }))
     }
 
-    /// Moves the flames on in the tick that leaves its state in buffer `turn`.
+    /// Advances the particles by the tick that writes the state of index `tick`.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn record(&self, frame: &mut Frame<'_>, turn: usize) -> Result<(), Error> {
-        let [share, list, burn] = &self.turns[turn];
-        frame.compute(share, |dispatch| {
-            dispatch.threads(1, 1, 1);
-        })?;
-        frame.compute(list, |dispatch| {
-            dispatch.threads(self.vertices, 1, 1);
-        })?;
-        frame.compute(burn, |dispatch| {
-            dispatch.threads(self.particle_count, 1, 1);
-        })
-    }
-
-    /// Draws the particles over the mesh.
-    ///
-    /// # Errors
-    /// What the Vulkan layer answers.
-    pub fn draw(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        frame.graphics(&self.draw, |draw| {
-            draw.instances(4, self.particle_count);
-        })
+    pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
+        self.steps.record(frame, tick)
     }
 }
 
 /// The picture's axes in space, and how its depth is turned into a distance.
-fn billboards(parameters: &Parameters, drawing: &Drawing) -> BillboardsBlock {
-    let view = drawing.camera.view();
-    let projection = drawing.camera.projection(parameters.aspect());
+fn billboards(parameters: &Parameters, camera: &Camera) -> BillboardsBlock {
+    let view = camera.view();
+    let projection = camera.projection(parameters.aspect());
     BillboardsBlock {
         right: view.row(0).truncate(),
         particle_radius: parameters.particle_radius,

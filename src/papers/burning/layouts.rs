@@ -1,8 +1,8 @@
 //! Host structs against the blocks of buffers that hold them.
 
-use super::drawing::ViewBlock;
+use super::buffers::{BlockCounts, Constants, Counts, RestVertex, VertexState};
+use super::draw::ViewBlock;
 use super::flames::{BillboardsBlock, Group, Particle};
-use super::state::{BlockCounts, Constants, Counts, RestVertex, VertexState};
 use super::texture::TextureLevel;
 use crate::papers::layout::{block, check_block, check_list};
 

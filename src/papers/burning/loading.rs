@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::state::Buffers;
+use super::buffers::Buffers;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, Location, Pass};
 

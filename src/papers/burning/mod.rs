@@ -11,48 +11,56 @@
 //! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the state lives on
 //! the device, and a frame sends it constants at most (3.7.4).
 
-mod blocks;
-mod deformation;
-mod drawing;
+mod block_rotation;
+mod block_weights;
+mod buffers;
+mod draw;
+mod draw_fire;
+mod draw_wire;
 pub mod experiments;
 mod flames;
 mod framing;
-mod heat;
+mod heat_boundary;
+mod internal_deformation;
 #[cfg(test)]
 mod layouts;
 mod loading;
 pub mod model;
 mod normals;
 pub mod parameters;
+mod ping_pong;
 pub mod reference;
 mod refinement;
-mod removal;
 pub mod setup;
-mod state;
+mod surface_removal;
 mod texture;
-mod wire;
+mod vertex_mapping;
 
 use std::sync::Arc;
 
-use self::blocks::Blocks;
-use self::deformation::Deformation;
-use self::drawing::Drawing;
-use self::heat::HeatBoundary;
+use self::block_rotation::block_rotation;
+use self::block_weights::block_weights;
+use self::draw::Draw;
+use self::draw_fire::DrawFire;
+use self::draw_wire::DrawWire;
+use self::heat_boundary::heat_boundary;
+use self::internal_deformation::InternalDeformation;
 use self::loading::Loading;
 use self::model::Model;
 use self::normals::Normals;
+use self::ping_pong::PingPong;
 use self::refinement::Refinement;
-use self::removal::SurfaceRemoval;
-use self::wire::Wire;
+use self::surface_removal::SurfaceRemoval;
+use self::vertex_mapping::vertex_mapping;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Device, Error, Feature, Frame, ImageView, Mode, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
+pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
-pub use self::state::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::texture::{Level, Texture};
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
@@ -62,7 +70,7 @@ pub const NEEDS: [Feature; 0] = [];
 /// picture would not fit into memory at once.
 const MOST_SLICES: u64 = 1024;
 
-/// The paper under one variant.
+/// The paper under one variant: its buffers, and its passes in the order in which they are recorded.
 pub struct Burning {
     device: Arc<Device>,
     variant: Variant,
@@ -70,20 +78,24 @@ pub struct Burning {
     model: Model,
     buffers: Buffers,
     loading: Option<Loading>,
-    heat: HeatBoundary,
+    heat_boundary: PingPong<3>,
     refinement: Option<Refinement>,
-    deformation: Deformation,
-    blocks: Blocks,
-    removal: SurfaceRemoval,
-    normals: Normals,
-    drawing: Drawing,
-    wire: Option<Wire>,
+    internal_deformation: InternalDeformation,
+    block_weights: PingPong<2>,
+    block_rotation: PingPong<1>,
     flames: Option<Flames>,
-    /// Slices of ticks since the fire was lit, and at the start.
+    vertex_mapping: PingPong<1>,
+    surface_removal: SurfaceRemoval,
+    normals: Normals,
+    draw: Draw,
+    draw_wire: Option<DrawWire>,
+    draw_fire: Option<DrawFire>,
+    /// Slices of ticks since the fire was lit.
     slices: u64,
+    /// Slices before frame 0.
     start_slices: u64,
     next_frame: u32,
-    /// Whether the stream and the normals are those of the state.
+    /// The stream and the normals are those of the newest state.
     is_shaded: bool,
 }
 
@@ -108,26 +120,38 @@ impl Burning {
         } else {
             None
         };
-        let drawing = Drawing::new(shaders, label, parameters, &buffers, &model)?;
-        let wire = match parameters.shading {
-            Shading::Wire => Some(Wire::new(shaders, &buffers, &drawing, &model)?),
+        let draw = Draw::new(shaders, label, parameters, &buffers, &model)?;
+        let draw_wire = match parameters.shading {
+            Shading::Wire => Some(DrawWire::new(shaders, &buffers, &draw, &model)?),
             _ => None,
         };
-        let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &drawing)?;
-        let loading = if parameters.preload { None } else { Some(Loading::new(device, &buffers)?) };
+        let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &draw)?;
+        let draw_fire = match &flames {
+            Some(flames) => Some(DrawFire::new(shaders, &buffers, &draw, flames)?),
+            None => None,
+        };
         let mut burning = Burning {
             device: device.clone(),
             variant,
-            loading,
-            heat: HeatBoundary::new(shaders, &buffers, &model)?,
-            deformation: Deformation::new(shaders, variant, &buffers, &model)?,
-            blocks: Blocks::new(shaders, &buffers, &model)?,
-            removal: SurfaceRemoval::new(shaders, label, variant, &buffers, refinement.as_ref(), &model)?,
+            loading: if parameters.preload { None } else { Some(Loading::new(device, &buffers)?) },
+            heat_boundary: heat_boundary(shaders, &buffers, &model)?,
+            internal_deformation: InternalDeformation::new(
+                shaders,
+                variant,
+                parameters.time_division,
+                &buffers,
+                &model,
+            )?,
+            block_weights: block_weights(shaders, &buffers, &model)?,
+            block_rotation: block_rotation(shaders, &buffers, &model)?,
+            flames,
+            vertex_mapping: vertex_mapping(shaders, &buffers, &model)?,
+            surface_removal: SurfaceRemoval::new(shaders, label, variant, &buffers, refinement.as_ref(), &model)?,
             refinement,
             normals: Normals::new(shaders, &buffers, &model)?,
-            drawing,
-            wire,
-            flames,
+            draw,
+            draw_wire,
+            draw_fire,
             parameters: parameters.clone(),
             model,
             buffers,
@@ -140,7 +164,7 @@ impl Burning {
         Ok(burning)
     }
 
-    /// What was there before frame 0 becomes the start.
+    /// Simulates what is due before frame 0 and makes it the start.
     fn burn_to_first_frame(&mut self) -> Result<(), Error> {
         self.start_slices = self.parameters.slices_before();
         self.burn_until(self.start_slices)?;
@@ -154,8 +178,7 @@ impl Burning {
         let mut recorder = Recorder::new(&self.device)?;
         while self.slices < slices {
             let end = slices.min(self.slices + BATCH);
-            recorder.run(Mode::Plain, |frame| self.simulate(frame, end))?;
-            self.is_shaded = false;
+            recorder.run(Mode::Plain, |frame| self.simulate(frame, end, None))?;
         }
         Ok(())
     }
@@ -171,44 +194,42 @@ impl Burning {
     /// What the Vulkan layer answers.
     pub fn tick(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let end = (self.ticks() + 1) * u64::from(self.parameters.time_division);
-        self.is_shaded = false;
-        self.simulate(frame, end)
+        self.simulate(frame, end, None)
     }
 
-    fn simulate(&mut self, frame: &mut Frame<'_>, slices: u64) -> Result<(), Error> {
-        while self.slices < slices {
-            if self.slice(frame)? {
-                self.removal.mark(frame, self.turn())?;
+    /// Records the passes of the ticks up to a number of slices, and `vertex-mapping` after `mapped_tick`.
+    fn simulate(&mut self, frame: &mut Frame<'_>, end: u64, mapped_tick: Option<u64>) -> Result<(), Error> {
+        let division = self.parameters.time_division;
+        while self.slices < end {
+            let slice = (self.slices % u64::from(division)) as u32;
+            let tick = 1 - self.newest();
+            if slice == 0 {
+                self.heat_boundary.record(frame, tick)?;
+                if let Some(refinement) = &self.refinement {
+                    refinement.record(frame)?;
+                }
             }
+            self.internal_deformation.record(frame, tick, slice)?;
+            self.slices += 1;
+            if slice + 1 < division {
+                continue;
+            }
+            self.block_weights.record(frame, tick)?;
+            self.block_rotation.record(frame, tick)?;
+            if let Some(flames) = &self.flames {
+                flames.record(frame, tick)?;
+            }
+            if mapped_tick == Some(self.ticks()) {
+                self.vertex_mapping.record(frame, tick)?;
+            }
+            self.surface_removal.mark(frame, tick)?;
+            self.is_shaded = false;
         }
         Ok(())
     }
 
-    /// Records the next slice of a tick, all but the marks of surface-removal; whether it was the tick's last.
-    fn slice(&mut self, frame: &mut Frame<'_>) -> Result<bool, Error> {
-        let parts = self.parameters.time_division;
-        let part = (self.slices % u64::from(parts)) as u32;
-        let turn = 1 - self.turn();
-        if part == 0 {
-            self.heat.record(frame, turn)?;
-            if let Some(refinement) = &self.refinement {
-                refinement.record(frame)?;
-            }
-        }
-        self.deformation.record(frame, turn, part, parts)?;
-        let is_last = part + 1 == parts;
-        if is_last {
-            self.blocks.record(frame, turn)?;
-            if let Some(flames) = &self.flames {
-                flames.record(frame, turn)?;
-            }
-        }
-        self.slices += 1;
-        Ok(is_last)
-    }
-
-    /// Which buffer holds the state of the last whole tick.
-    fn turn(&self) -> usize {
+    /// Ping-pong index of the buffers that the last whole tick wrote.
+    fn newest(&self) -> usize {
         (self.ticks() % 2) as usize
     }
 
@@ -229,8 +250,8 @@ impl Burning {
 
     /// Position and L of the last whole tick, and the rotations of its blocks.
     pub fn state(&self) -> (&Arc<crate::gpu::Buffer>, &Arc<crate::gpu::Buffer>) {
-        let turn = self.turn();
-        (&self.buffers.states[turn], &self.buffers.rotations[turn])
+        let newest = self.newest();
+        (&self.buffers.states[newest], &self.buffers.rotations[newest])
     }
 
     /// Fire and smoke, where there is any.
@@ -239,7 +260,7 @@ impl Burning {
     }
 
     pub fn camera(&self) -> &Camera {
-        &self.drawing.camera
+        &self.draw.camera
     }
 
     /// What the device has counted up to the last frame.
@@ -280,34 +301,26 @@ impl Paper for Burning {
         if let Some(loading) = &self.loading {
             loading.record(frame)?;
         }
-        let last_tick = due / u64::from(self.parameters.time_division);
-        let mut is_mapped = self.is_shaded;
-        while self.slices < due {
-            if self.slice(frame)? {
-                self.is_shaded = false;
-                is_mapped = self.ticks() == last_tick;
-                if is_mapped {
-                    self.blocks.map(frame, self.turn())?;
-                }
-                self.removal.mark(frame, self.turn())?;
-            }
-        }
+        let shown_tick = due / u64::from(self.parameters.time_division);
+        let ends_a_tick = self.ticks() < shown_tick;
+        self.simulate(frame, due, Some(shown_tick))?;
         if !self.is_shaded {
-            if !is_mapped {
-                self.blocks.map(frame, self.turn())?;
+            let newest = self.newest();
+            if !ends_a_tick {
+                self.vertex_mapping.record(frame, newest)?;
             }
-            self.removal.compact(frame, self.turn())?;
+            self.surface_removal.compact(frame, newest)?;
             self.normals.record(frame)?;
             self.is_shaded = true;
         }
-        self.drawing.record(frame)?;
-        if let Some(wire) = &self.wire {
-            wire.record(frame)?;
+        self.draw.record(frame)?;
+        if let Some(draw_wire) = &self.draw_wire {
+            draw_wire.record(frame)?;
         }
-        match &self.flames {
-            Some(flames) => flames.draw(frame),
-            None => Ok(()),
+        if let Some(draw_fire) = &self.draw_fire {
+            draw_fire.record(frame)?;
         }
+        Ok(())
     }
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
@@ -340,7 +353,7 @@ impl Paper for Burning {
     }
 
     fn picture(&self) -> &Arc<ImageView> {
-        &self.drawing.picture
+        &self.draw.picture
     }
 
     fn targets(&self) -> Vec<Target> {
@@ -359,13 +372,13 @@ impl Paper for Burning {
             Target::table("mapped", &buffers.mapped, 4),
             Target::table("normals", &buffers.normals, 4),
             Target::table("colors", &buffers.colors, 4),
-            Target::image("depth", &self.drawing.depth),
-            Target::image("picture", &self.drawing.picture),
+            Target::image("depth", &self.draw.depth),
+            Target::image("picture", &self.draw.picture),
         ];
         if let Some(refinement) = &self.refinement {
             targets.push(Target::integers("statuses", &refinement.statuses, 1));
         }
-        if let Some(surface) = &self.drawing.surface {
+        if let Some(surface) = &self.draw.surface {
             targets.push(Target::table("texture-coordinates", &surface.coordinates, 2));
         }
         if let Some(flames) = &self.flames {

@@ -1,7 +1,7 @@
 //! `normals` (appendix B), with the colour of charring.
 
+use super::buffers::Buffers;
 use super::model::Model;
-use super::state::Buffers;
 use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
 
 /// The pass.
@@ -28,7 +28,7 @@ impl Normals {
             .with("Normals", &buffers.normals)
             .with("Colors", &buffers.colors)
             .build(shaders)?;
-        Ok(Normals { pass, draw_vertices: model.lattice.welds.len() as u32 })
+        Ok(Normals { pass, draw_vertices: model.draw_vertex_count() })
     }
 
     /// # Errors

@@ -4,40 +4,33 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::buffers::Buffers;
 use super::framing;
 use super::model::{Model, tree};
 use super::parameters::Parameters;
-use super::state::Buffers;
-use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
-    struct TurnConstants {
+    /// Push constants of `burning/refinement.comp`.
+    struct Dispatch {
+        /// Level of the nodes to split; the finest one finds the eligible coarse triangles.
         level: u32,
+        /// Barycentric points of a coarse triangle.
         points: u32,
     }
 }
-
-host_block! {
-    pub(super) struct LeavesConstants {
-        level_of_detail: u32,
-    }
-}
-
-/// Nodes that one thread of `burning/refined-count.comp` counts.
-const RUN: u32 = 16;
 
 /// The pass of an object whose triangles are refined where they are about to burn.
 pub struct Refinement {
     /// int\[coarse triangles * nodes\]: -1 split, 0 unused, 1 drawn. Nodes of a coarse triangle stand level by level.
     pub statuses: Arc<Buffer>,
     /// The finest level that is drawn.
-    level_of_detail: u32,
+    pub(super) level_of_detail: u32,
     pass: Pass,
     levels: u32,
-    coarse_triangles: u32,
+    coarse_count: u32,
     /// Barycentric points of a coarse triangle.
     points: u32,
 }
@@ -54,20 +47,20 @@ impl Refinement {
         buffers: &mut Buffers,
         model: &Model,
     ) -> Result<Self, Error> {
-        let (levels, coarse_triangles) = (model.levels, model.coarse_count());
+        let (levels, coarse_count) = (model.levels, model.coarse_count());
         let table = |name: &str, bytes: &[u8]| {
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
             upload(shaders.device(), &format!("{label}/{name}"), usage, bytes)
         };
-        let mut statuses = vec![0; coarse_triangles as usize * tree::nodes_of(levels) as usize];
+        let mut statuses = vec![0; coarse_count as usize * tree::nodes_of(levels) as usize];
         for root in statuses.iter_mut().step_by(tree::nodes_of(levels) as usize) {
             *root = 1;
         }
         let points = tree::barycentric_points(levels);
         let statuses = table("statuses", bytemuck::cast_slice::<i32, u8>(&statuses))?;
-        let eligible = table("eligible", &vec![0; 4 * coarse_triangles as usize])?;
+        let eligible = table("eligible", &vec![0; 4 * coarse_count as usize])?;
         let pass = Pass::compute("refinement", "4.4", "burning/refinement.comp")
-            .constants::<TurnConstants>()
+            .constants::<Dispatch>()
             .with("constants", &buffers.constants)
             .with("Triangles", &buffers.triangles)
             .with("BarycentricPoints", &table("barycentric-points", bytemuck::cast_slice(&points))?)
@@ -82,45 +75,12 @@ impl Refinement {
         let distance = framing::camera(parameters, model).eye.distance(model.bounds.center());
         let chosen = parameters.level_of_detail.unwrap_or_else(|| level_of_detail(levels, distance));
         let level_of_detail = chosen.min(levels);
-        Ok(Refinement { statuses, level_of_detail, pass, levels, coarse_triangles, points: points.len() as u32 })
+        Ok(Refinement { statuses, level_of_detail, pass, levels, coarse_count, points: points.len() as u32 })
     }
 
-    /// Counts the drawn triangles of runs of nodes into `sums`, and writes the stream from the sums before each run; the steps of
-    /// `surface-removal` that begin with what `step` says of all of them.
-    ///
-    /// # Errors
-    /// What the Vulkan layer answers.
-    pub(super) fn leaves(
-        &self,
-        shaders: &ShaderLibrary,
-        step: impl Fn(&str) -> PassBuilder,
-        buffers: &Buffers,
-        sums: &Arc<Buffer>,
-    ) -> Result<[Pass; 2], Error> {
-        let step = |shader: &str| {
-            step(shader)
-                .constants::<LeavesConstants>()
-                .with("Triangles", &buffers.triangles)
-                .with("Statuses", &self.statuses)
-                .with("Alive", &buffers.alive)
-                .with("Removed", &buffers.removed)
-                .with("GroupSums", sums)
-        };
-        let count = step("burning/refined-count.comp").build(shaders)?;
-        let write = step("burning/refined-write.comp")
-            .with("Corners", &buffers.corners)
-            .with("Stream", &buffers.stream)
-            .build(shaders)?;
-        Ok([count, write])
-    }
-
-    pub(super) fn leaves_constants(&self) -> LeavesConstants {
-        LeavesConstants { level_of_detail: self.level_of_detail }
-    }
-
-    /// Number of runs of nodes that [`Refinement::leaves`] counts.
-    pub(super) fn runs(&self) -> u32 {
-        (self.coarse_triangles * tree::nodes_of(self.levels)).div_ceil(RUN)
+    /// Nodes of the patterns of all coarse triangles.
+    pub(super) fn node_count(&self) -> u32 {
+        self.coarse_count * tree::nodes_of(self.levels)
     }
 
     /// Splits what the areas of this tick ask for.
@@ -128,15 +88,15 @@ impl Refinement {
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let mut turn = |level: u32, threads: u32| {
-            let constants = TurnConstants { level, points: self.points };
+        let mut dispatch_level = |level: u32, threads: u32| {
+            let constants = Dispatch { level, points: self.points };
             frame.compute(&self.pass, |dispatch| {
-                dispatch.constants(&constants).threads(self.coarse_triangles * threads, 1, 1);
+                dispatch.constants(&constants).threads(self.coarse_count * threads, 1, 1);
             })
         };
-        turn(self.levels, self.points)?;
+        dispatch_level(self.levels, self.points)?;
         // A level reads what the one below it wrote.
-        (0..self.levels).rev().try_for_each(|level| turn(level, tree::triangles_of(level)))
+        (0..self.levels).rev().try_for_each(|level| dispatch_level(level, tree::triangles_of(level)))
     }
 }
 

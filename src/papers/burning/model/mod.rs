@@ -10,8 +10,8 @@ mod weld;
 
 use glam::Vec3;
 
+use super::buffers::RestVertex;
 use super::parameters::{Parameters, Variant};
-use super::state::RestVertex;
 use crate::gpu::Error;
 use crate::scene::{Bounds, Mesh};
 
@@ -116,6 +116,25 @@ impl Model {
             degenerate,
             lattice,
         })
+    }
+
+    /// Simulated vertices.
+    pub fn vertex_count(&self) -> u32 {
+        self.rest.len() as u32
+    }
+
+    /// Vertices of the mesh as it is drawn.
+    pub fn draw_vertex_count(&self) -> u32 {
+        self.lattice.welds.len() as u32
+    }
+
+    /// Finest triangles.
+    pub fn triangle_count(&self) -> u32 {
+        self.triangles.len() as u32
+    }
+
+    pub fn block_count(&self) -> u32 {
+        self.grid.cell_count()
     }
 
     /// Triangles of the mesh before they are divided.

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{Mat4, Vec3};
 
+use super::buffers::Buffers;
 use super::framing;
 use super::model::Model;
 use super::parameters::{Material, Parameters};
-use super::state::Buffers;
 use super::texture::Surface;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
@@ -34,7 +34,7 @@ const BACKGROUND: Load = Load::Clear([0.012, 0.014, 0.02, 1.0]);
 const FAR: Load = Load::Clear([1.0, 0.0, 0.0, 0.0]);
 
 /// The pass with its targets.
-pub struct Drawing {
+pub struct Draw {
     pass: Pass,
     pub camera: Camera,
     pub view: Arc<Buffer>,
@@ -46,7 +46,7 @@ pub struct Drawing {
     pub surface: Option<Surface>,
 }
 
-impl Drawing {
+impl Draw {
     /// # Errors
     /// [`Error::Pass`] for a texture on a mesh without texture coordinates; what the Vulkan layer answers.
     pub fn new(
@@ -108,7 +108,7 @@ impl Drawing {
             .color(&picture, BACKGROUND, Blend::Replace)
             .depth(&depth, FAR, DepthTest::LessWrite)
             .build(shaders)?;
-        Ok(Drawing { pass, camera, view, depth, picture, surface })
+        Ok(Draw { pass, camera, view, depth, picture, surface })
     }
 
     /// # Errors

@@ -1,0 +1,18 @@
+//! `block-rotation` (3.5.2): blocks lean over as they lose weight.
+
+use super::buffers::Buffers;
+use super::model::Model;
+use super::ping_pong::{PingPong, build, new, old};
+use crate::gpu::{Error, Pass, ShaderLibrary};
+
+/// The pass.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn block_rotation(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<1>, Error> {
+    let rotate = Pass::compute("block-rotation", "3.5.2", "burning/block-rotation.comp")
+        .with("constants", &buffers.constants)
+        .with("Blocks", &buffers.blocks);
+    let rotations = [old("OldRotations", &buffers.rotations), new("NewRotations", &buffers.rotations)];
+    Ok(PingPong::new([(build(shaders, rotate, &rotations)?, model.block_count())]))
+}

@@ -1,0 +1,105 @@
+//! `internal-deformation`: 3.4, for solids 5.3 and for what melts 6.3.
+
+use super::buffers::Buffers;
+use super::model::Model;
+use super::parameters::Variant;
+use super::ping_pong::{self, new, old};
+use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    /// The vertices of one frame of a tick that is spread over several (3.7.2), as push constants.
+    struct Slice {
+        first: u32,
+        count: u32,
+    }
+}
+
+/// The pass for each ping-pong index of the tick.
+pub struct InternalDeformation {
+    /// Of what melts: moves the base points, which guide the vertices, before them.
+    base_points: Option<[Pass; 2]>,
+    vertices: [Pass; 2],
+    vertex_count: u32,
+    block_count: u32,
+    /// Frames that a tick is spread over.
+    time_division: u32,
+}
+
+impl InternalDeformation {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        variant: Variant,
+        time_division: u32,
+        buffers: &Buffers,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let (section, shader) = match variant {
+            Variant::Shell | Variant::LowPoly | Variant::FullySubdivided => ("3.4", "internal-deformation"),
+            Variant::Solid => ("5.3", "internal-deformation-solid"),
+            Variant::Melting => ("6.3", "internal-deformation-melting"),
+        };
+        let step = |shader: &str| {
+            Pass::compute("internal-deformation", section, &format!("burning/{shader}.comp"))
+                .with("constants", &buffers.constants)
+                .with("Labels", &buffers.labels)
+        };
+        let mut vertices = step(shader)
+            .constants::<Slice>()
+            .with("Triangles", &buffers.triangles)
+            .with("IncidenceOffsets", &buffers.incidence_offsets)
+            .with("Incidence", &buffers.incidence)
+            .with("Alive", &buffers.alive);
+        let mut swapped = vec![old("OldState", &buffers.states), new("NewState", &buffers.states)];
+        let new_bases = new("NewBases", &buffers.base_displacements);
+        if matches!(variant, Variant::Solid | Variant::Melting) {
+            vertices = vertices.with("Rest", &buffers.rest);
+        }
+        if variant == Variant::Melting {
+            vertices = vertices
+                .with("BasePoints", &buffers.base_points)
+                .with("Clock", &buffers.clock)
+                .with("Flows", &buffers.flows);
+            swapped.push(new_bases);
+        }
+        let vertices = ping_pong::build(shaders, vertices, &swapped)?;
+        let (vertex_count, block_count) = (model.vertex_count(), model.block_count());
+        if variant != Variant::Melting {
+            return Ok(InternalDeformation { base_points: None, vertices, vertex_count, block_count, time_division });
+        }
+        let base_points = step("base-points")
+            .with("Rest", &buffers.rest)
+            .with("BasePoints", &buffers.base_points)
+            .with("Blocks", &buffers.blocks)
+            .with("Clock", &buffers.clock);
+        let bases = [old("OldBases", &buffers.base_displacements), new_bases];
+        let [even, odd] = ping_pong::build(shaders, base_points, &bases)?;
+        let [even_vertices, odd_vertices] = vertices;
+        let [even, even_vertices] = Pass::steps([even, even_vertices]);
+        let [odd, odd_vertices] = Pass::steps([odd, odd_vertices]);
+        let (base_points, vertices) = (Some([even, odd]), [even_vertices, odd_vertices]);
+        Ok(InternalDeformation { base_points, vertices, vertex_count, block_count, time_division })
+    }
+
+    /// Records slice `slice` of the tick that writes the state of index `tick`.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, tick: usize, slice: u32) -> Result<(), Error> {
+        if let Some(base_points) = &self.base_points
+            && slice == 0
+        {
+            frame.compute(&base_points[tick], |dispatch| {
+                dispatch.threads(self.block_count, 1, 1);
+            })?;
+        }
+        let begin =
+            |slice: u32| (u64::from(self.vertex_count) * u64::from(slice) / u64::from(self.time_division)) as u32;
+        let (first, count) = (begin(slice), begin(slice + 1) - begin(slice));
+        frame.compute(&self.vertices[tick], |dispatch| {
+            dispatch.constants(&Slice { first, count }).threads(count, 1, 1);
+        })
+    }
+}

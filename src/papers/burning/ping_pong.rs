@@ -1,0 +1,58 @@
+//! Compute passes about buffers that swap with every tick: what one tick writes the next one reads.
+
+use std::sync::Arc;
+
+use crate::gpu::pass::PassBuilder;
+use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
+
+/// A binding's name with its buffer for each ping-pong index of the tick.
+pub type Swapped<'a> = (&'static str, [&'a Arc<Buffer>; 2]);
+
+/// The buffer of a pair that the tick writes, under the name of a binding.
+pub fn new<'a>(name: &'static str, [even, odd]: &'a [Arc<Buffer>; 2]) -> Swapped<'a> {
+    (name, [even, odd])
+}
+
+/// The buffer of a pair that the last tick wrote, under the name of a binding.
+pub fn old<'a>(name: &'static str, [even, odd]: &'a [Arc<Buffer>; 2]) -> Swapped<'a> {
+    (name, [odd, even])
+}
+
+/// One pass for each ping-pong index, with one pipeline.
+///
+/// # Errors
+/// What the Vulkan layer answers.
+pub fn build(shaders: &ShaderLibrary, pass: PassBuilder, swapped: &[Swapped<'_>]) -> Result<[Pass; 2], Error> {
+    let even = swapped.iter().fold(pass, |pass, &(name, [buffer, _])| pass.with(name, buffer)).build(shaders)?;
+    if swapped.is_empty() {
+        return Ok([even.clone(), even]);
+    }
+    let odd = swapped.iter().fold(even.rebind(), |pass, &(name, [_, buffer])| pass.with(name, buffer));
+    Ok([even, odd.build(shaders)?])
+}
+
+/// The dispatches of a pass in order, for each ping-pong index of the tick.
+pub struct PingPong<const STEPS: usize> {
+    passes: [[Pass; STEPS]; 2],
+    threads: [u32; STEPS],
+}
+
+impl<const STEPS: usize> PingPong<STEPS> {
+    /// One pass to the paper, of steps with their numbers of threads.
+    pub fn new(steps: [([Pass; 2], u32); STEPS]) -> Self {
+        let passes = [0, 1].map(|tick| Pass::steps(steps.each_ref().map(|(passes, _)| passes[tick].clone())));
+        PingPong { passes, threads: steps.map(|(_, threads)| threads) }
+    }
+
+    /// Records the steps of the tick that writes the buffers of index `tick`.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
+        self.passes[tick].iter().zip(self.threads).try_for_each(|(pass, threads)| {
+            frame.compute(pass, |dispatch| {
+                dispatch.threads(threads, 1, 1);
+            })
+        })
+    }
+}

@@ -1,0 +1,143 @@
+//! `surface-removal` (3.5.4): consumed triangles leave the drawn stream, and the mesh is not rebuilt.
+
+use ash::vk;
+
+use super::buffers::Buffers;
+use super::model::Model;
+use super::parameters::Variant;
+use super::ping_pong::{self, new};
+use super::refinement::Refinement;
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    /// Push constants of `burning/surface-removal-scan.comp`.
+    struct Groups {
+        /// Sums of the counting step.
+        count: u32,
+    }
+}
+
+host_block! {
+    /// Push constants of `burning/refined-leaves.glsl`.
+    struct Leaves {
+        /// Finest level of the refinement pattern that is drawn.
+        level_of_detail: u32,
+    }
+}
+
+/// Triangles that a workgroup counts of an object that is not refined.
+const GROUP: u32 = 256;
+/// Nodes that one thread counts of an object that is refined.
+const RUN: u32 = 16;
+
+/// The steps of the pass.
+pub struct SurfaceRemoval {
+    /// For each ping-pong index of the tick: the marks of what is consumed, and the three phases of the compaction.
+    steps: [[Pass; 4]; 2],
+    /// Consumed triangles leave the stream.
+    removes: bool,
+    triangle_count: u32,
+    /// Threads of the compaction's first and last phase: finest triangles, or runs of nodes of the refinement pattern.
+    threads: u32,
+    /// Numbers that the compaction's second phase scans.
+    sum_count: u32,
+    /// Of an object that is refined.
+    leaves: Option<Leaves>,
+}
+
+impl SurfaceRemoval {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        variant: Variant,
+        buffers: &Buffers,
+        refinement: Option<&Refinement>,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let step =
+            |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
+        let triangle_count = model.triangle_count();
+        let (threads, sum_count) = match refinement {
+            None => (triangle_count, triangle_count.div_ceil(GROUP)),
+            Some(refinement) => [refinement.node_count().div_ceil(RUN); 2].into(),
+        };
+        let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(sum_count));
+        let sums = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
+        let mark = step("burning/surface-removal-mark.comp")
+            .with("Triangles", &buffers.triangles)
+            .with("Removed", &buffers.removed)
+            .with("Cells", &buffers.cells)
+            .with("Blocks", &buffers.blocks)
+            .with("Clock", &buffers.clock);
+        let marks = ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])?;
+        let over_all = |shader: &str| {
+            let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);
+            match refinement {
+                None => step,
+                Some(refinement) => step
+                    .constants::<Leaves>()
+                    .with("Triangles", &buffers.triangles)
+                    .with("Statuses", &refinement.statuses)
+                    .with("Alive", &buffers.alive),
+            }
+        };
+        let [count, write] = match refinement {
+            None => ["burning/surface-removal-count.comp", "burning/surface-removal-scatter.comp"],
+            Some(_) => ["burning/refined-count.comp", "burning/refined-write.comp"],
+        };
+        let count = over_all(count).build(shaders)?;
+        let scan = step("burning/surface-removal-scan.comp")
+            .constants::<Groups>()
+            .with("Clock", &buffers.clock)
+            .with("Arguments", &buffers.arguments)
+            .with("GroupSums", &sums)
+            .build(shaders)?;
+        let write = over_all(write).with("Corners", &buffers.corners).with("Stream", &buffers.stream).build(shaders)?;
+        Ok(SurfaceRemoval {
+            steps: marks.map(|mark| Pass::steps([mark, count.clone(), scan.clone(), write.clone()])),
+            removes: variant.removes(),
+            triangle_count,
+            threads,
+            sum_count,
+            leaves: refinement.map(|refinement| Leaves { level_of_detail: refinement.level_of_detail }),
+        })
+    }
+
+    /// Marks what the tick that writes the state of index `tick` has consumed.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn mark(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
+        if !self.removes {
+            return Ok(());
+        }
+        let [mark, ..] = &self.steps[tick];
+        frame.compute(mark, |dispatch| {
+            dispatch.threads(self.triangle_count, 1, 1);
+        })
+    }
+
+    /// Makes the stream and its draw's parameters after the tick that wrote the state of index `tick`.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn compact(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
+        let [_, count, scan, write] = &self.steps[tick];
+        let over_all = |frame: &mut Frame<'_>, step: &Pass| {
+            frame.compute(step, |dispatch| {
+                if let Some(leaves) = &self.leaves {
+                    dispatch.constants(leaves);
+                }
+                dispatch.threads(self.threads, 1, 1);
+            })
+        };
+        over_all(frame, count)?;
+        frame.compute(scan, |dispatch| {
+            dispatch.constants(&Groups { count: self.sum_count }).threads(1, 1, 1);
+        })?;
+        over_all(frame, write)
+    }
+}
