@@ -113,15 +113,15 @@ pub fn gas() -> ExitCode {
 
 /// Runs a paper's own binary.
 pub fn binary<S: Declared>() -> ExitCode {
-    paper_from::<S>(std::env::args_os())
+    ExitCode::from(paper_from::<S>(std::env::args_os()))
 }
 
-/// Runs a paper with `arguments`, the first of which is the program's name.
-pub fn paper_from<S: Declared>(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// Runs a paper with `arguments`, the first of which is the program's name, and gives the exit code.
+pub fn paper_from<S: Declared>(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let command = declared::command::<S>().version(env!("CARGO_PKG_VERSION")).propagate_version(true);
     spelling::learn(&command);
     let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());
-    end(declared::run::<S>(&matches))
+    code(declared::run::<S>(&matches))
 }
 
 /// Runs the paper's own binary `burning`.
@@ -135,8 +135,9 @@ pub fn terrain() -> ExitCode {
 }
 
 fn end(result: Result<(), Failure>) -> ExitCode {
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(),
-    }
+    ExitCode::from(code(result))
+}
+
+fn code(result: Result<(), Failure>) -> u8 {
+    result.map_or_else(Failure::report, |()| 0)
 }

@@ -35,7 +35,9 @@ pub trait Paper {
     ///
     /// # Errors
     /// What the Vulkan layer answers.
-    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
+    fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
+        self.record(frame, number)
+    }
 
     /// Whether every frame so far had room for all that it made. If not, its pictures have gaps: the paper has made more room,
     /// and the frames must be recorded again.

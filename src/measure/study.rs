@@ -16,7 +16,7 @@ pub trait Study {
     /// The paper's word on the command line and in the record.
     const PAPER: &'static str;
     /// What a device must have, beyond the baseline of the Vulkan layer.
-    const NEEDS: &'static [Feature];
+    const NEEDS: &'static [Feature] = &[];
 
     type Variant: Variant;
     /// The input, loaded and placed.
@@ -47,19 +47,24 @@ pub trait Study {
     fn config(&self, scene: &Self::Scene, paper: &Self::Paper) -> Map<String, Value>;
 
     /// A few words on the configuration, for the trace.
-    fn summary(&self) -> String;
+    fn summary(&self) -> String {
+        String::new()
+    }
 
-    /// What the paper itself has to say of each subject, asked after the measured loop.
+    /// The paper's own figures and warnings of each variant, asked after the measured loop.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
     fn metrics(
         &self,
-        machine: &mut Machine,
+        _machine: &mut Machine,
         measured: &mut [(Built<Self>, Measurement)],
     ) -> Result<Vec<Metrics>, Error>
     where
-        Self: Sized;
+        Self: Sized,
+    {
+        Ok(measured.iter().map(|_| Metrics::default()).collect())
+    }
 }
 
 /// A study that declares its parameters, presets and experiments; the command line follows from them.
@@ -67,9 +72,9 @@ pub trait Declared: Study + Clone + Default + 'static {
     /// One line on the paper.
     const ABOUT: &'static str;
     /// Variants of a bench that names none.
-    const BENCHED: &'static [Self::Variant];
+    const BENCHED: &'static [Self::Variant] = Self::Variant::ALL;
     /// The variant of a picture that names neither one nor a preset.
-    const RENDERED: Self::Variant;
+    const RENDERED: Self::Variant = Self::Variant::ALL[0];
     /// Frames and repetitions at each point of an experiment that names none.
     const EXPERIMENT_FRAMES: (u32, u32) = (3, 3);
 
@@ -98,7 +103,9 @@ pub trait Declared: Study + Clone + Default + 'static {
     }
 
     /// What the main job measures, in the variants of [`Declared::BENCHED`].
-    fn quick() -> Self;
+    fn quick() -> Self {
+        Self::default()
+    }
 
     /// The name of the preset that it was made of.
     fn preset_mut(&mut self) -> &mut Option<String>;
