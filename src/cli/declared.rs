@@ -53,7 +53,7 @@ fn bench_command<S: Declared>() -> Command {
 
 fn experiment_command<S: Declared>() -> Command {
     let names = S::experiments().into_iter().map(|e| PossibleValue::new(e.name).help(e.help));
-    let name = Arg::new("name").help("Table or figure of the paper").required_unless_present("list");
+    let name = Arg::new("name").value_name("NAME").help("Table or figure of the paper").required_unless_present("list");
     let command = Command::new("experiment")
         .arg(name.value_parser(PossibleValuesParser::new(names)))
         .arg(Arg::new("list").long("list").action(ArgAction::SetTrue).help("List the experiments"))

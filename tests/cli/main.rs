@@ -14,6 +14,7 @@ mod interruption;
 mod lava;
 mod meshes;
 mod outputs;
+mod pages;
 mod passes;
 mod program;
 mod render;

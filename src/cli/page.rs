@@ -1,0 +1,49 @@
+//! The table of a paper's options, as its page shows it.
+
+use super::spelling;
+use crate::measure::parameter::Parameter;
+use crate::measure::study::Declared;
+
+/// Rows of option, default and meaning, in Markdown: presets, and every parameter in the order of its declaration.
+pub fn options_table<S: Declared>() -> String {
+    let mut table = "| option | default | meaning |\n| --- | --- | --- |\n".to_owned();
+    let presets = S::presets();
+    if !presets.is_empty() {
+        let names: Vec<String> = presets.iter().map(|preset| format!("`{}`: {}", preset.name, preset.help)).collect();
+        table += &row("--preset NAME", "", &format!("take the numbers of a figure or table. {}", names.join("; ")));
+    }
+    let default = S::default();
+    for parameter in S::parameters() {
+        table += &parameter_row(&parameter, &default);
+    }
+    table
+}
+
+fn parameter_row<S: 'static>(parameter: &Parameter<S>, default: &S) -> String {
+    let shape = parameter.shape();
+    let (option, value) = if shape.is_flag {
+        let prefix = if parameter.text(default) == "on" { "no-" } else { "" };
+        (format!("--{prefix}{}", parameter.name), "off".to_owned())
+    } else {
+        (format!("--{} {}", parameter.name, parameter.placeholder), parameter.default_of(default))
+    };
+    let mut meaning = spelling::every(parameter.help);
+    if !shape.choices.is_empty() {
+        let choices: Vec<String> = shape.choices.iter().map(|(name, help)| format!("`{name}`: {help}")).collect();
+        meaning += &format!(". {}", choices.join("; "));
+    }
+    for addition in [parameter.bounds(), parameter.section.to_owned()] {
+        if !addition.is_empty() {
+            meaning += &format!("; {addition}");
+        }
+    }
+    if shape.is_list && !shape.joins {
+        meaning += "; repeatable";
+    }
+    row(&option, &value, &meaning)
+}
+
+fn row(option: &str, default: &str, meaning: &str) -> String {
+    let cell = |text: &str| text.replace('|', "\\|");
+    format!("| `{}` | {} | {} |\n", cell(option), cell(default), cell(meaning))
+}
