@@ -2,18 +2,18 @@
 // Rows of maps run along +W and columns along +U, so row 0 lies at z = -depth/2.
 
 struct Box {
-    vec4 u; // axis, and the centre's coordinate along it
-    vec4 v;
-    vec4 w;
-    vec4 extent; // width along U, height along V, depth along W, in metres; then the map's texels a side
+    vec3 u; // unit axis
+    float center_u; // coordinate of the box's centre along it, metres
+    vec3 v;
+    float center_v;
+    vec3 w;
+    float center_w;
+    vec3 extent; // width along U, height along V, depth along W, metres
+    float texels; // texels a side of the box's maps
 };
 
 vec3 to_box(Box box, vec3 world) {
-    return vec3(dot(box.u.xyz, world) - box.u.w, dot(box.v.xyz, world) - box.v.w, dot(box.w.xyz, world) - box.w.w);
-}
-
-vec3 direction_to_box(Box box, vec3 world) {
-    return vec3(dot(box.u.xyz, world), dot(box.v.xyz, world), dot(box.w.xyz, world));
+    return vec3(dot(box.u, world) - box.center_u, dot(box.v, world) - box.center_v, dot(box.w, world) - box.center_w);
 }
 
 // Orthographic clip space of the maps, looking along -V (eq. 4-10 to 4-13): depth 0 at height `top`, 1 at `bottom`.

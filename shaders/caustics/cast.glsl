@@ -4,6 +4,7 @@ layout(set = 0, binding = 0) uniform Camera {
 
 layout(push_constant) uniform Cast {
     Box bounds;
-    vec4 albedo;
-    vec4 ambient; // I_a of eq. 4-20, added once: zero for every light but the first; w: how far the position map may lie from the surface, metres
+    vec3 albedo; // diffuse reflectance, linear RGB
+    float height_slack_m; // heights of the position map lie within it of the surface
+    vec3 ambient; // I_a of eq. 4-20, linear RGB, added once: zero for every light but the first
 } receiver;

@@ -7,7 +7,7 @@ layout(set = 0, binding = 1) uniform texture2D diffuse_map;
 layout(set = 0, binding = 2) uniform sampler nearest;
 
 layout(push_constant) uniform Combine {
-    vec4 intensity; // of the light, linear RGB
+    vec3 intensity; // of the light, linear RGB
 } combine;
 
 layout(location = 0) out vec4 lit;
@@ -16,5 +16,5 @@ void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     float caustics = texelFetch(sampler2D(caustics_map, nearest), texel, 0).r;
     vec4 diffuse = texelFetch(sampler2D(diffuse_map, nearest), texel, 0);
-    lit = vec4(combine.intensity.rgb * caustics * diffuse.rgb, diffuse.a);
+    lit = vec4(combine.intensity * caustics * diffuse.rgb, diffuse.a);
 }

@@ -11,7 +11,7 @@ layout(location = 1) in vec3 map_normal;
 
 layout(push_constant) uniform Map {
     Box bounds;
-    vec4 albedo;
+    vec3 albedo;
     float top;
     float bottom;
 } map;
@@ -19,5 +19,5 @@ layout(push_constant) uniform Map {
 layout(location = 0) out vec4 diffuse;
 
 void main() {
-    diffuse = diffuse_light(map.albedo.xyz, map_normal, map.bounds.v.xyz);
+    diffuse = diffuse_light(map.albedo, map_normal, map.bounds.v);
 }

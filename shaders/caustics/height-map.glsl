@@ -13,7 +13,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Coefficients {
     float list[]; // metres above the level, row by row
 } coefficients;
 
-// Weights of four coefficients at the share t of the way from the second to the third.
+// Weights of four coefficients at the fraction t between the second and the third.
 vec4 b_spline(float t) {
     float s = 1.0 - t;
     return vec4(s * s * s, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * s * s * s - 6.0 * s * s + 4.0, t * t * t) / 6.0;

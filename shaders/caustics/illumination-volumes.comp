@@ -9,14 +9,18 @@
 layout(local_size_x = 64) in;
 
 struct WaterVertex {
-    vec4 position;
-    vec4 normal;
+    vec4 position; // homogeneous point, metres
+    vec4 normal; // homogeneous unit direction
 };
 
 struct Ray {
-    vec4 origin; // along U, V, W, metres; then 1 where the ray enters the water, else 0
-    vec4 slope; // movement along U and W per metre of descent along V, then 1 / cos(theta_t), then unused
-    vec4 incident; // unit direction of the light in air, along U, V, W
+    vec3 origin; // along U, V, W from the light's reference point, metres
+    float enters; // 1 where the ray enters the water, else 0
+    vec2 slope; // movement along U and W per metre of descent along V
+    float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
+    float _pad_slope; // 0
+    vec3 incident; // unit direction of the light in air, along U, V, W
+    float _pad_incident; // 0
 };
 
 layout(std430, set = 0, binding = 0) readonly buffer Water {
@@ -28,17 +32,18 @@ layout(std430, set = 0, binding = 1) buffer Rays {
 } rays;
 
 layout(push_constant) uniform Light {
-    vec4 source; // xyz: direction of parallel light (w = 0) or position of a point light (w = 1)
-    vec4 u; // axes of the light's boxes
-    vec4 v;
-    vec4 w;
-    vec4 reference; // point of the water above the receiver, along U, V, W: keeps differences of positions precise
+    vec3 source; // unit direction of parallel light, or position of a point light in metres
+    uint is_point; // 1 for a point light, else 0
+    vec3 reference; // point of the water above the receiver, along U, V, W, metres: keeps differences of positions precise
     float eta; // refraction index of air over that of water
-    uint vertex_count;
+    vec3 u; // axes of the light's boxes
+    uint vertex_count; // of the water
+    vec3 v;
+    vec3 w;
 } light;
 
 vec3 along_axes(vec3 world) {
-    return vec3(dot(light.u.xyz, world), dot(light.v.xyz, world), dot(light.w.xyz, world));
+    return vec3(dot(light.u, world), dot(light.v, world), dot(light.w, world));
 }
 
 void main() {
@@ -48,15 +53,14 @@ void main() {
     }
     vec3 position = water.vertices[index].position.xyz;
     vec3 normal = water.vertices[index].normal.xyz;
-    vec3 incident = light.source.w == 0.0 ? light.source.xyz : normalize(position - light.source.xyz);
+    vec3 incident = light.is_point == 0u ? light.source : normalize(position - light.source);
     vec3 refracted;
     bool enters = refract_ray(incident, normal, light.eta, refracted);
     vec3 ray = along_axes(refracted);
     float cos_refracted = -ray.y;
     bool descends = cos_refracted > 0.0;
-    float per_descent = descends ? 1.0 / cos_refracted : 0.0;
+    float secant = descends ? 1.0 / cos_refracted : 0.0;
 
-    rays.list[index].origin = vec4(along_axes(position) - light.reference.xyz, enters && descends ? 1.0 : 0.0);
-    rays.list[index].slope = vec4(ray.xz * per_descent, per_descent, 0.0);
-    rays.list[index].incident = vec4(along_axes(incident), 0.0);
+    rays.list[index] = Ray(along_axes(position) - light.reference, enters && descends ? 1.0 : 0.0, ray.xz * secant, secant, 0.0,
+        along_axes(incident), 0.0);
 }

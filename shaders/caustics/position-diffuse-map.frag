@@ -10,7 +10,7 @@ layout(location = 1) in vec3 map_normal;
 
 layout(push_constant) uniform Map {
     Box bounds;
-    vec4 albedo;
+    vec3 albedo;
     float top;
     float bottom;
 } map;
@@ -20,5 +20,5 @@ layout(location = 1) out vec4 diffuse;
 
 void main() {
     position = height;
-    diffuse = diffuse_light(map.albedo.xyz, map_normal, map.bounds.v.xyz);
+    diffuse = diffuse_light(map.albedo, map_normal, map.bounds.v);
 }

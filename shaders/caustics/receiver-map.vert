@@ -9,7 +9,7 @@ layout(location = 1) in vec3 normal;
 
 layout(push_constant) uniform Map {
     Box bounds;
-    vec4 albedo;
+    vec3 albedo; // diffuse reflectance, linear RGB
     float top; // heights of the near and the far plane, metres of box space
     float bottom;
 } map;

@@ -13,8 +13,8 @@ layout(location = 2) out vec4 surface_normal;
 layout(location = 3) out vec4 surface_albedo;
 
 void main() {
-    color = vec4(receiver.albedo.rgb * receiver.ambient.rgb, 1.0);
+    color = vec4(receiver.albedo * receiver.ambient, 1.0);
     surface_position = vec4(world, 1.0);
     surface_normal = vec4(normalize(world_normal), 0.0);
-    surface_albedo = vec4(receiver.albedo.rgb, 1.0);
+    surface_albedo = vec4(receiver.albedo, 1.0);
 }

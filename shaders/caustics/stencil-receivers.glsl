@@ -3,6 +3,6 @@ layout(set = 0, binding = 0) uniform Camera {
 } camera;
 
 layout(push_constant) uniform Receiver {
-    vec4 albedo;
-    vec4 ambient; // I_a of eq. 4-20
+    vec3 albedo; // diffuse reflectance, linear RGB
+    vec3 ambient; // I_a of eq. 4-20, linear RGB
 } receiver;

@@ -20,7 +20,7 @@ float cross_2d(vec2 a, vec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// Whether a point lies to the left of the way from a to b. The order of the water's vertices decides where the way starts, so that
+// True for a point to the left of the segment from a to b. The order of the water's vertices decides its start, so that
 // the two volumes along a side agree to the bit and a point on the side belongs to one of them.
 bool is_left(vec2 a, vec2 b, bool in_order, vec2 point) {
     vec2 start = in_order ? a : b;
@@ -33,8 +33,8 @@ void main() {
     light = vec4(0.0);
     ivec2 texel = ivec2(gl_FragCoord.xy);
     vec3 world = texelFetch(sampler2D(surface_position, nearest), texel, 0).xyz;
-    vec3 point = vec3(dot(volumes.u.xyz, world) - volumes.u.w, dot(volumes.v.xyz, world) - volumes.v.w,
-        dot(volumes.w.xyz, world) - volumes.w.w);
+    vec3 point = vec3(dot(volumes.u, world) - volumes.reference_u, dot(volumes.v, world) - volumes.reference_v,
+        dot(volumes.w, world) - volumes.reference_w);
 
     uvec3 vertices = uvec3(water_vertex(volume, 0u), water_vertex(volume, 1u), water_vertex(volume, 2u));
     Ray a = rays.list[vertices.x];
@@ -44,9 +44,9 @@ void main() {
     if (min(descent.x, min(descent.y, descent.z)) <= 0.0) {
         return;
     }
-    vec2 at_a = a.origin.xz + a.slope.xy * descent.x;
-    vec2 at_b = b.origin.xz + b.slope.xy * descent.y;
-    vec2 at_c = c.origin.xz + c.slope.xy * descent.z;
+    vec2 at_a = a.origin.xz + a.slope * descent.x;
+    vec2 at_b = b.origin.xz + b.slope * descent.y;
+    vec2 at_c = c.origin.xz + c.slope * descent.z;
     float twice_area = cross_2d(at_b - at_a, at_c - at_a);
     if (twice_area == 0.0) {
         return;
@@ -59,19 +59,19 @@ void main() {
         return;
     }
     vec2 from_a = point.xz - at_a;
-    float share_b = cross_2d(from_a, at_c - at_a) / twice_area;
-    float share_c = cross_2d(at_b - at_a, from_a) / twice_area;
-    float share_a = 1.0 - share_b - share_c;
+    float weight_b = cross_2d(from_a, at_c - at_a) / twice_area;
+    float weight_c = cross_2d(at_b - at_a, from_a) / twice_area;
+    float weight_a = 1.0 - weight_b - weight_c;
 
     // Twice A_w along the face normal: against the incident ray it is 2 A_w cos theta_i.
-    vec3 water = cross(b.origin.xyz - a.origin.xyz, c.origin.xyz - a.origin.xyz);
-    float k = volumes.intensity.w;
-    vec3 weights = vec3(dot(water, a.incident.xyz) * a.slope.z * exp(-k * descent.x * a.slope.z),
-        dot(water, b.incident.xyz) * b.slope.z * exp(-k * descent.y * b.slope.z),
-        dot(water, c.incident.xyz) * c.slope.z * exp(-k * descent.z * c.slope.z));
-    float intensity = abs(dot(weights, vec3(share_a, share_b, share_c)) / twice_area);
+    vec3 water = cross(b.origin - a.origin, c.origin - a.origin);
+    float k = volumes.absorption_per_m;
+    vec3 weights = vec3(dot(water, a.incident) * a.secant * exp(-k * descent.x * a.secant),
+        dot(water, b.incident) * b.secant * exp(-k * descent.y * b.secant),
+        dot(water, c.incident) * c.secant * exp(-k * descent.z * c.secant));
+    float intensity = abs(dot(weights, vec3(weight_a, weight_b, weight_c)) / twice_area);
 
     vec3 normal = texelFetch(sampler2D(surface_normal, nearest), texel, 0).xyz;
     vec3 albedo = texelFetch(sampler2D(surface_albedo, nearest), texel, 0).rgb;
-    light = vec4(volumes.intensity.rgb * intensity * diffuse_light(albedo, normal, volumes.v.xyz).rgb, 0.0);
+    light = vec4(volumes.intensity * intensity * diffuse_light(albedo, normal, volumes.v).rgb, 0.0);
 }

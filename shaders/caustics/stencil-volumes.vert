@@ -9,11 +9,11 @@
 
 layout(location = 0) flat out uint volume;
 
-// How far beyond the volume the sides lie, so that rounding does not decide what is inside: a share of the water triangle.
+// Distance of the sides beyond the volume, so that rounding does not decide what is inside: a fraction of the water triangle.
 const float SLACK = 0.02;
 
 vec2 place_at(Ray ray, float height) {
-    return ray.origin.xz + ray.slope.xy * (ray.origin.y - height);
+    return ray.origin.xz + ray.slope * (ray.origin.y - height);
 }
 
 float cross_2d(vec2 a, vec2 b) {
@@ -56,11 +56,11 @@ void main() {
 
     // Without light all corners are one, and the prism has no fragments.
     vec3 point = vec3(0.0);
-    if (twice_area != 0.0 && min(here.origin.w, min(next.origin.w, last.origin.w)) > 0.0) {
+    if (twice_area != 0.0 && min(here.enters, min(next.enters, last.enters)) > 0.0) {
         vec2 meet = (reach_a * back - reach_b * towards) / abs(twice_area);
         point = vec3(base.x + meet.x, height, base.y + meet.y);
     }
-    vec3 along = point + vec3(volumes.u.w, volumes.v.w, volumes.w.w);
-    vec3 world = volumes.u.xyz * along.x + volumes.v.xyz * along.y + volumes.w.xyz * along.z;
+    vec3 along = point + vec3(volumes.reference_u, volumes.reference_v, volumes.reference_w);
+    vec3 world = volumes.u * along.x + volumes.v * along.y + volumes.w * along.z;
     gl_Position = volumes.view_projection * vec4(world, 1.0);
 }

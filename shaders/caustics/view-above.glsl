@@ -13,9 +13,11 @@ layout(set = 0, binding = 4) uniform View {
     mat4 inverse_view_projection; // of the viewer
     mat4 underwater_view_projection; // of the textures' camera
     mat4 underwater_inverse;
-    vec4 eye; // metres; w: height of the flat water
-    vec4 underwater_eye;
-    vec4 size; // of the picture in pixels; of the textures in texels
+    vec3 eye; // of the viewer, metres
+    float level_m; // height of the flat water
+    vec3 underwater_eye; // of the textures' camera, metres
+    vec2 picture_size; // pixels
+    vec2 texture_size; // texels
 } view;
 
 layout(location = 0) out vec4 color;
@@ -24,7 +26,7 @@ const vec3 DEEP_WATER = vec3(0.004, 0.030, 0.055); // light scattered back by de
 const int SURFACE_STEPS = 5; // Newton's method converges in three on waves of moderate slope
 const int SCENE_STEPS = 64;
 const int REFINEMENTS = 8;
-const float SAME_SURFACE = 0.02; // what neighbouring texels see may lie this share of the camera's distance apart
+const float SAME_SURFACE = 0.02; // what neighbouring texels see may lie this fraction of the camera's distance apart
 
 vec3 sky(vec3 direction) {
     float height = clamp(direction.y, 0.0, 1.0);
@@ -43,20 +45,20 @@ vec3 unproject(mat4 inverse, vec2 ndc, float depth) {
     return point.xyz / point.w;
 }
 
-// Where a point of the world is seen in the underwater textures, in texels.
+// Position of a point of the world in the underwater textures, texels.
 vec2 place_of(vec3 point) {
     vec4 clip = view.underwater_view_projection * vec4(point, 1.0);
     vec2 uv = 0.5 * clip.xy / max(clip.w, 1.0e-6) + 0.5;
-    return clamp(uv * view.size.zw, vec2(0.0), view.size.zw - 1.0);
+    return clamp(uv * view.texture_size, vec2(0.0), view.texture_size - 1.0);
 }
 
 // The point of the world that the underwater camera sees in a texel.
 vec3 seen_at(ivec2 texel, float depth) {
-    vec2 there = (vec2(texel) + 0.5) / view.size.zw * 2.0 - 1.0;
+    vec2 there = (vec2(texel) + 0.5) / view.texture_size * 2.0 - 1.0;
     return unproject(view.underwater_inverse, there, depth);
 }
 
-// How far a point lies behind the surface that the underwater camera sees in its direction, metres; negative in front of it, and
+// Distance of a point behind the surface that the underwater camera sees in its direction, metres; negative in front of it, and
 // where nothing is seen.
 float depth_behind(vec3 point) {
     ivec2 texel = ivec2(place_of(point));
@@ -64,21 +66,21 @@ float depth_behind(vec3 point) {
     if (depth >= 1.0) {
         return -1.0;
     }
-    return distance(point, view.underwater_eye.xyz) - distance(seen_at(texel, depth), view.underwater_eye.xyz);
+    return distance(point, view.underwater_eye) - distance(seen_at(texel, depth), view.underwater_eye);
 }
 
 // Light from a point: interpolated between the four nearest texels, but for those that see another surface.
 vec3 light_from(vec3 point) {
     vec2 place = place_of(point);
     vec2 base = floor(place - 0.5);
-    vec2 share = place - 0.5 - base;
-    float near_m = SAME_SURFACE * distance(point, view.underwater_eye.xyz);
+    vec2 fraction = place - 0.5 - base;
+    float near_m = SAME_SURFACE * distance(point, view.underwater_eye);
     vec3 light = vec3(0.0);
     float total = 0.0;
     for (int i = 0; i < 4; i++) {
         vec2 corner = vec2(float(i & 1), float(i >> 1));
-        vec2 weights = mix(1.0 - share, share, corner);
-        ivec2 texel = ivec2(clamp(base + corner, vec2(0.0), view.size.zw - 1.0));
+        vec2 weights = mix(1.0 - fraction, fraction, corner);
+        ivec2 texel = ivec2(clamp(base + corner, vec2(0.0), view.texture_size - 1.0));
         float depth = texelFetch(sampler2D(underwater_depth, nearest), texel, 0).r;
         float weight = distance(point, seen_at(texel, depth)) <= near_m ? weights.x * weights.y : 0.0;
         light += weight * texelFetch(sampler2D(underwater_color, nearest), texel, 0).rgb;
@@ -89,26 +91,26 @@ vec3 light_from(vec3 point) {
 }
 
 void main() {
-    vec2 ndc = 2.0 * gl_FragCoord.xy / view.size.xy - 1.0;
-    vec3 ray = normalize(unproject(view.inverse_view_projection, ndc, 1.0) - view.eye.xyz);
+    vec2 ndc = 2.0 * gl_FragCoord.xy / view.picture_size - 1.0;
+    vec3 ray = normalize(unproject(view.inverse_view_projection, ndc, 1.0) - view.eye);
     if (ray.y > -1.0e-3) {
         color = vec4(sky(ray), 1.0);
         return;
     }
 
-    // Where the ray meets the waves.
-    float way = (view.eye.w - view.eye.y) / ray.y;
+    // Ray parameter t at the waves, metres.
+    float t = (view.level_m - view.eye.y) / ray.y;
     vec3 wave = vec3(0.0);
     for (int i = 0; i < SURFACE_STEPS; i++) {
-        vec3 point = view.eye.xyz + ray * way;
+        vec3 point = view.eye + ray * t;
         wave = surface_at(point.xz);
-        float above = point.y - view.eye.w - wave.x;
+        float above = point.y - view.level_m - wave.x;
         float rate = min(ray.y - dot(wave.yz, ray.xz), -0.02);
-        way -= above / rate;
+        t -= above / rate;
     }
-    vec3 surface = view.eye.xyz + ray * way;
+    vec3 surface = view.eye + ray * t;
     // Far waves are smaller than a pixel; their slopes would be noise.
-    vec3 normal = surface_normal(wave.yz / (1.0 + 0.002 * way * way));
+    vec3 normal = surface_normal(wave.yz / (1.0 + 0.002 * t * t));
     vec3 mirrored = reflect(ray, normal);
     vec3 refracted;
     if (!refract_ray(ray, normal, water.eta, refracted)) {
@@ -118,7 +120,7 @@ void main() {
 
     // What the refracted ray hits: followed through the depth texture until it runs behind what is seen there. Far behind means
     // that it passes behind an object, which is no hit.
-    float reach = max(water.floor_depth_m + surface.y - view.eye.w, 0.0) / max(-refracted.y, 0.05) * 1.05;
+    float reach = max(water.floor_depth_m + surface.y - view.level_m, 0.0) / max(-refracted.y, 0.05) * 1.05;
     float stride = reach / float(SCENE_STEPS);
     float travel = 0.0;
     float nearer = 0.0;

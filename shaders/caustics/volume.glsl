@@ -1,9 +1,13 @@
 // Illumination volumes as the stencil method reads them: rays along the light's axes U, V = -T, W from its reference point.
 
 struct Ray {
-    vec4 origin; // metres; then 1 where the ray enters the water, else 0
-    vec4 slope; // movement along U and W per metre of descent along V, then 1 / cos(theta_t)
-    vec4 incident;
+    vec3 origin; // along U, V, W from the light's reference point, metres
+    float enters; // 1 where the ray enters the water, else 0
+    vec2 slope; // movement along U and W per metre of descent along V
+    float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
+    float _pad_slope; // 0
+    vec3 incident; // unit direction of the light in air, along U, V, W
+    float _pad_incident; // 0
 };
 
 layout(std430, set = 0, binding = 0) readonly buffer Rays {
@@ -16,11 +20,15 @@ layout(std430, set = 0, binding = 1) readonly buffer Indices {
 
 layout(set = 0, binding = 2) uniform Volumes {
     mat4 view_projection;
-    vec4 u; // axis, and the reference point's coordinate along it
-    vec4 v;
-    vec4 w;
-    vec4 intensity; // of the light, linear RGB; then K of eq. 4-17 per metre
-    float bottom; // height along V below every receiver, from the reference point
+    vec3 u; // unit axis
+    float reference_u; // coordinate of the reference point along it, metres
+    vec3 v;
+    float reference_v;
+    vec3 w;
+    float reference_w;
+    vec3 intensity; // of the light, linear RGB
+    float absorption_per_m; // K of eq. 4-17
+    float bottom; // height along V below every receiver, from the reference point, metres
 } volumes;
 
 uint water_vertex(uint triangle, uint corner) {

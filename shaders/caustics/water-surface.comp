@@ -8,8 +8,8 @@
 layout(local_size_x = 64) in;
 
 struct WaterVertex {
-    vec4 position; // metres
-    vec4 normal; // unit
+    vec4 position; // homogeneous point, metres
+    vec4 normal; // homogeneous unit direction
 };
 
 layout(std430, set = 0, binding = 1) buffer Water {

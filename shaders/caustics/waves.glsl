@@ -2,8 +2,10 @@
 // to the program; it is its controlled variable (section 5.2). The includer declares the buffer `waves` with the list of waves.
 
 struct Wave {
-    vec4 vector; // k along x and z in rad/m, omega in rad/s, phase in rad
-    vec4 amplitude; // metres, in x
+    vec2 vector; // k along x and z, rad/m
+    float angular_frequency; // omega, rad/s
+    float phase_rad;
+    float amplitude_m;
 };
 
 layout(std430, set = 0, binding = 0) readonly buffer Waves {
@@ -15,9 +17,9 @@ vec3 wave_at(vec2 place, float time_s, uint count) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < count; i++) {
         Wave wave = waves.list[i];
-        float angle = dot(wave.vector.xy, place) - wave.vector.z * time_s + wave.vector.w;
-        sum.x += wave.amplitude.x * sin(angle);
-        sum.yz += wave.amplitude.x * cos(angle) * wave.vector.xy;
+        float angle = dot(wave.vector, place) - wave.angular_frequency * time_s + wave.phase_rad;
+        sum.x += wave.amplitude_m * sin(angle);
+        sum.yz += wave.amplitude_m * cos(angle) * wave.vector;
     }
     return sum;
 }

@@ -20,3 +20,12 @@ pub fn check_block<T: HostBlock>(shader: &str, name: &str) {
 pub fn check_list<T: HostBlock>(shader: &str, name: &str) {
     assert_eq!(block(shader, name).members[0].check_elements::<T>(), Ok(()), "{shader}: {name}");
 }
+
+/// Fails unless the member of that name in the push constants of `shader` is a `T`.
+pub fn check_constants_member<T: HostBlock>(shader: &str, name: &str) {
+    let embedded = EMBEDDED.iter().find(|s| s.name == shader).expect("the shader is built in");
+    let constants =
+        Interface::reflect(embedded.glslang).expect("it reflects").push_constants.expect("it has constants");
+    let member = constants.members.into_iter().find(|m| m.name == name).expect("it has the member");
+    assert_eq!(member.block.expect("it is a structure").check_host::<T>(), Ok(()), "{shader}: {name}");
+}

@@ -11,8 +11,9 @@ use crate::host_block;
 host_block! {
     struct CastConstants {
         bounds: BoxBlock,
-        albedo: [f32; 4],
-        ambient: [f32; 4],
+        albedo: [f32; 3],
+        height_slack_m: f32,
+        ambient: [f32; 3],
     }
 }
 
@@ -59,11 +60,11 @@ impl Cast {
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver, height_slack_m: f32) -> Result<(), Error> {
-        let [r, g, b] = self.ambient;
         let constants = CastConstants {
             bounds: lit.box_block(),
-            albedo: lit.receiver.albedo.extend(0.0).to_array(),
-            ambient: [r, g, b, height_slack_m],
+            albedo: lit.receiver.albedo.to_array(),
+            height_slack_m,
+            ambient: self.ambient,
         };
         frame.graphics(&self.pass, |draw| {
             draw.constants(&constants).indices(lit.receiver.index_count);

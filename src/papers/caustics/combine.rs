@@ -10,13 +10,13 @@ use crate::host_block;
 host_block! {
     /// The light's colour, where I_c is combined with I_d.
     pub struct CombineConstants {
-        intensity: [f32; 4],
+        intensity: [f32; 3],
     }
 }
 
 impl CombineConstants {
     pub fn new(volumes: &IlluminationVolumes) -> Self {
-        CombineConstants { intensity: volumes.intensity.extend(0.0).to_array() }
+        CombineConstants { intensity: volumes.intensity.to_array() }
     }
 }
 

@@ -17,9 +17,13 @@ use crate::scene::Light;
 host_block! {
     /// A ray as the planes' vertex stage reads it.
     pub struct Ray {
-        origin: [f32; 4],
-        slope: [f32; 4],
-        incident: [f32; 4],
+        origin: [f32; 3],
+        enters: f32,
+        slope: [f32; 2],
+        secant: f32,
+        _pad_slope: f32,
+        incident: [f32; 3],
+        _pad_incident: f32,
     }
 }
 
@@ -28,13 +32,15 @@ pub const RAY_FLOATS: u32 = (std::mem::size_of::<Ray>() / 4) as u32;
 
 host_block! {
     struct LightConstants {
-        source: [f32; 4],
-        u: [f32; 4],
-        v: [f32; 4],
-        w: [f32; 4],
-        reference: [f32; 4],
+        source: [f32; 3],
+        is_point: u32,
+        reference: [f32; 3],
         eta: f32,
+        u: [f32; 3],
         vertex_count: u32,
+        v: [f32; 3],
+        _pad: f32,
+        w: [f32; 3],
     }
 }
 
@@ -68,19 +74,20 @@ impl IlluminationVolumes {
             .build(context.shaders)?;
         let middle = water.grid.center();
         let reference = axes.along(DVec3::new(middle.x, LEVEL_M, middle.y));
-        let four = |v: DVec3, w: f32| v.as_vec3().extend(w).to_array();
-        let (source, intensity) = match *light {
-            Light::Parallel { direction, intensity } => (four(direction.as_dvec3().normalize(), 0.0), intensity),
-            Light::Point { position, intensity } => (four(position.as_dvec3(), 1.0), intensity),
+        let (source, is_point, intensity) = match *light {
+            Light::Parallel { direction, intensity } => (direction.as_dvec3().normalize().as_vec3(), 0, intensity),
+            Light::Point { position, intensity } => (position, 1, intensity),
         };
         let constants = LightConstants {
-            source,
-            u: four(axes.u, 0.0),
-            v: four(axes.v, 0.0),
-            w: four(axes.w, 0.0),
-            reference: four(reference, 0.0),
+            source: source.to_array(),
+            is_point,
+            reference: reference.as_vec3().to_array(),
             eta: 1.0 / context.parameters.refraction_index,
+            u: axes.u.as_vec3().to_array(),
             vertex_count,
+            v: axes.v.as_vec3().to_array(),
+            _pad: 0.0,
+            w: axes.w.as_vec3().to_array(),
         };
         let index_count = 3 * water.grid.triangle_count();
         Ok(IlluminationVolumes { rays, index_count, axes, reference, intensity, pass, constants })

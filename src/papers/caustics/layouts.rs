@@ -1,11 +1,12 @@
 //! Host structs against the blocks of buffers that hold them.
 
 use super::illumination_volumes::Ray;
+use super::receiver::BoxBlock;
 use super::stencil_volumes::VolumesBlock;
 use super::underwater::CameraBlock;
 use super::view::ViewBlock;
-use super::water_surface::{VERTEX_FLOATS, WaveBlock};
-use crate::papers::layout::{block, check_block, check_list};
+use super::water_surface::{MapBlock, VERTEX_FLOATS, WaveBlock};
+use crate::papers::layout::{block, check_block, check_constants_member, check_list};
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
@@ -22,6 +23,12 @@ fn the_buffers_hold_what_the_shaders_read() {
     }
     for shader in ["caustics/view-above.frag", "caustics/view-above-map.frag"] {
         check_block::<ViewBlock>(shader, "view");
+    }
+    for shader in ["caustics/receiver-map.vert", "caustics/diffuse-map.frag", "caustics/cast.frag"] {
+        check_constants_member::<BoxBlock>(shader, "bounds");
+    }
+    for shader in ["caustics/water-surface-map.comp", "caustics/view-above-map.frag"] {
+        check_constants_member::<MapBlock>(shader, "map");
     }
     let water =
         ["caustics/water-surface.comp", "caustics/water-surface-map.comp", "caustics/illumination-volumes.comp"];

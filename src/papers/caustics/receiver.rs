@@ -25,10 +25,14 @@ host_block! {
 host_block! {
     /// A box as `box.glsl` reads it.
     pub struct BoxBlock {
-        u: [f32; 4],
-        v: [f32; 4],
-        w: [f32; 4],
-        extent: [f32; 4],
+        u: [f32; 3],
+        center_u: f32,
+        v: [f32; 3],
+        center_v: f32,
+        w: [f32; 3],
+        center_w: f32,
+        extent: [f32; 3],
+        texels: f32,
     }
 }
 
@@ -36,10 +40,9 @@ host_block! {
     /// Constants of the passes that draw the receiver into a map.
     struct MapConstants {
         bounds: BoxBlock,
-        albedo: [f32; 4],
+        albedo: [f32; 3],
         top: f32,
         bottom: f32,
-        _pad: [f32; 2],
     }
 }
 
@@ -141,10 +144,9 @@ impl LitReceiver {
         let half = (self.aligned.extent.y / 2.0) as f32;
         let constants = MapConstants {
             bounds: self.box_block(),
-            albedo: self.receiver.albedo.extend(0.0).to_array(),
+            albedo: self.receiver.albedo.to_array(),
             top: within.map_or(half, |cell| cell.upper),
             bottom: within.map_or(-half, |cell| cell.lower),
-            _pad: [0.0; 2],
         };
         frame.graphics(pass, |draw| {
             draw.constants(&constants).indices(self.receiver.index_count);
@@ -158,12 +160,15 @@ impl LitReceiver {
 
     pub fn box_block(&self) -> BoxBlock {
         let ReceiverBox { axes, center, extent } = self.aligned;
-        let axis = |axis: glam::DVec3, at: f64| axis.as_vec3().extend(at as f32).to_array();
         BoxBlock {
-            u: axis(axes.u, center.x),
-            v: axis(axes.v, center.y),
-            w: axis(axes.w, center.z),
-            extent: extent.as_vec3().extend(self.map_size as f32).to_array(),
+            u: axes.u.as_vec3().to_array(),
+            center_u: center.x as f32,
+            v: axes.v.as_vec3().to_array(),
+            center_v: center.y as f32,
+            w: axes.w.as_vec3().to_array(),
+            center_w: center.z as f32,
+            extent: extent.as_vec3().to_array(),
+            texels: self.map_size as f32,
         }
     }
 }

@@ -14,15 +14,16 @@ use crate::host_block;
 
 host_block! {
     struct ReceiverConstants {
-        albedo: [f32; 4],
-        ambient: [f32; 4],
+        albedo: [f32; 3],
+        _pad: f32,
+        ambient: [f32; 3],
     }
 }
 
 /// The pass.
 pub struct Receivers {
     passes: Vec<(Pass, Arc<Receiver>)>,
-    ambient: [f32; 4],
+    ambient: [f32; 3],
     /// Position of the surface that is seen, metres.
     pub position: Arc<ImageView>,
     /// Its unit normal.
@@ -56,7 +57,7 @@ impl Receivers {
             Ok((pass, receiver.clone()))
         };
         let passes = receivers.iter().enumerate().map(pass).collect::<Result<_, Error>>()?;
-        Ok(Receivers { passes, ambient: context.parameters.ambient.extend(0.0).to_array(), position, normal, albedo })
+        Ok(Receivers { passes, ambient: context.parameters.ambient.to_array(), position, normal, albedo })
     }
 
     /// The lowest height of a receiver along V, metres.
@@ -69,7 +70,7 @@ impl Receivers {
     /// What the Vulkan layer answers.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.passes.iter().try_for_each(|(pass, receiver)| {
-            let constants = ReceiverConstants { albedo: receiver.albedo.extend(0.0).to_array(), ambient: self.ambient };
+            let constants = ReceiverConstants { albedo: receiver.albedo.to_array(), _pad: 0.0, ambient: self.ambient };
             frame.graphics(pass, |draw| {
                 draw.constants(&constants).indices(receiver.index_count);
             })

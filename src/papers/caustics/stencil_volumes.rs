@@ -3,7 +3,6 @@
 //! zero, adding its light. It knows no occlusion: a surface in the shadow of another is lit as if nothing stood before it.
 
 use ash::vk;
-use glam::DVec3;
 
 use super::illumination_volumes::IlluminationVolumes;
 use super::receivers::Receivers;
@@ -21,10 +20,14 @@ const BELOW: f64 = 0.1;
 host_block! {
     pub struct VolumesBlock {
         view_projection: [f32; 16],
-        u: [f32; 4],
-        v: [f32; 4],
-        w: [f32; 4],
-        intensity: [f32; 4],
+        u: [f32; 3],
+        reference_u: f32,
+        v: [f32; 3],
+        reference_v: f32,
+        w: [f32; 3],
+        reference_w: f32,
+        intensity: [f32; 3],
+        absorption_per_m: f32,
         bottom: f32,
         _pad: [f32; 3],
     }
@@ -47,13 +50,16 @@ impl StencilVolumes {
     ) -> Result<Self, Error> {
         let axes = volumes.axes;
         let lowest = seen.lowest_along(&axes) - volumes.reference.y;
-        let axis = |axis: DVec3, at: f64| axis.as_vec3().extend(at as f32).to_array();
         let block = VolumesBlock {
             view_projection: underwater.view_projection.to_cols_array(),
-            u: axis(axes.u, volumes.reference.x),
-            v: axis(axes.v, volumes.reference.y),
-            w: axis(axes.w, volumes.reference.z),
-            intensity: volumes.intensity.extend(context.parameters.absorption_per_m).to_array(),
+            u: axes.u.as_vec3().to_array(),
+            reference_u: volumes.reference.x as f32,
+            v: axes.v.as_vec3().to_array(),
+            reference_v: volumes.reference.y as f32,
+            w: axes.w.as_vec3().to_array(),
+            reference_w: volumes.reference.z as f32,
+            intensity: volumes.intensity.to_array(),
+            absorption_per_m: context.parameters.absorption_per_m,
             bottom: (lowest - BELOW * lowest.abs()) as f32,
             _pad: [0.0; 3],
         };

@@ -16,9 +16,12 @@ host_block! {
         inverse_view_projection: [f32; 16],
         underwater_view_projection: [f32; 16],
         underwater_inverse: [f32; 16],
-        eye: [f32; 4],
-        underwater_eye: [f32; 4],
-        size: [f32; 4],
+        eye: [f32; 3],
+        level_m: f32,
+        underwater_eye: [f32; 3],
+        _pad: f32,
+        picture_size: [f32; 2],
+        texture_size: [f32; 2],
     }
 }
 
@@ -73,14 +76,16 @@ impl View {
         }
         let camera = &parameters.camera;
         let matrix = camera.projection(parameters.aspect()) * camera.view();
-        let (texel_width, texel_height) = (underwater.color.width(), underwater.color.height());
         let block = ViewBlock {
             inverse_view_projection: matrix.inverse().to_cols_array(),
             underwater_view_projection: underwater.view_projection.to_cols_array(),
             underwater_inverse: underwater.view_projection.inverse().to_cols_array(),
-            eye: camera.eye.extend(LEVEL_M as f32).to_array(),
-            underwater_eye: underwater.eye.extend(0.0).to_array(),
-            size: [parameters.width as f32, parameters.height as f32, texel_width as f32, texel_height as f32],
+            eye: camera.eye.to_array(),
+            level_m: LEVEL_M as f32,
+            underwater_eye: underwater.eye.to_array(),
+            _pad: 0.0,
+            picture_size: [parameters.width as f32, parameters.height as f32],
+            texture_size: [underwater.color.width() as f32, underwater.color.height() as f32],
         };
         let view = context.upload("view", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let pass = |shader| {

@@ -15,8 +15,11 @@ const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 
 host_block! {
     pub struct WaveBlock {
-        vector: [f32; 4],
-        amplitude: [f32; 4],
+        vector: [f32; 2],
+        angular_frequency: f32,
+        phase_rad: f32,
+        amplitude_m: f32,
+        _pad: f32,
     }
 }
 
@@ -71,18 +74,16 @@ impl Shape {
         let mut blocks: Vec<WaveBlock> = waves(context.parameters)
             .iter()
             .map(|wave| WaveBlock {
-                vector: [
-                    wave.vector.x as f32,
-                    wave.vector.y as f32,
-                    wave.angular_frequency as f32,
-                    wave.phase_rad as f32,
-                ],
-                amplitude: [wave.amplitude_m as f32, 0.0, 0.0, 0.0],
+                vector: wave.vector.as_vec2().to_array(),
+                angular_frequency: wave.angular_frequency as f32,
+                phase_rad: wave.phase_rad as f32,
+                amplitude_m: wave.amplitude_m as f32,
+                _pad: 0.0,
             })
             .collect();
         let count = blocks.len() as u32;
         // Flat water has no wave, but a buffer has at least one element.
-        blocks.resize(blocks.len().max(1), WaveBlock { vector: [0.0; 4], amplitude: [0.0; 4] });
+        blocks.resize(blocks.len().max(1), bytemuck::Zeroable::zeroed());
         let list = context.upload("waves", STORAGE, bytemuck::cast_slice(&blocks))?;
         Ok(Shape::Waves { list, count })
     }
