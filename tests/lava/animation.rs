@@ -26,7 +26,7 @@ fn particles_stay_in_the_space_for_10_000_frames() {
         let mut crossings = BTreeSet::new();
         for _ in 0..100 {
             recorder.run(Mode::Plain, |frame| (0..100).try_for_each(|_| animation.animate(frame))).unwrap();
-            let (positions, velocities) = animation.state();
+            let [positions, velocities] = animation.state();
             let positions: Vec<[f32; 4]> = texels(device, positions);
             let velocities: Vec<[f32; 4]> = texels(device, velocities);
             let mut turned = BTreeSet::new();
@@ -62,7 +62,7 @@ fn particles_follow_listing_5_1() {
         let mut off = 0;
         for number in 1..=60 {
             recorder.run(Mode::Plain, |frame| animation.animate(frame)).unwrap();
-            let (positions, velocities) = animation.state();
+            let [positions, velocities] = animation.state();
             let positions: Vec<[f32; 4]> = texels(device, positions);
             let velocities: Vec<[f32; 4]> = texels(device, velocities);
             for (i, (p, v)) in expected.iter_mut().enumerate() {
@@ -89,7 +89,7 @@ fn a_restart_returns_to_the_start() {
         let mut recorder = Recorder::new(device).unwrap();
         let mut after = |animation: &mut Animation, steps: u32| -> Vec<f32> {
             recorder.run(Mode::Plain, |frame| (0..steps).try_for_each(|_| animation.animate(frame))).unwrap();
-            texels(device, animation.state().0)
+            texels(device, animation.state()[0])
         };
         let first = after(&mut animation, 7);
         let further = after(&mut animation, 2);

@@ -51,7 +51,7 @@ pub fn texels<T: Pod>(device: &Arc<Device>, view: &Arc<ImageView>) -> Vec<T> {
 
 /// Particles in the last frame's clusters, from the position texture: inside the space, as `cluster` takes them.
 pub fn clamped(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<DVec3> {
-    let positions: Vec<[f32; 4]> = texels(device, lava.animation().state().0);
+    let positions: Vec<[f32; 4]> = texels(device, lava.animation().state()[0]);
     let places = positions.iter().take(parameters.particles as usize);
     places.map(|&[x, y, z, _]| Vec3::new(x, y, z).clamp(Vec3::ZERO, parameters.space_m).as_dvec3()).collect()
 }

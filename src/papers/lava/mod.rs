@@ -12,44 +12,70 @@
 //!
 //! Where there are polygon objects, `objects` draws them into the picture after the thesis's last pass.
 
-mod animation;
-mod clusters;
+mod accumulate_depths;
+mod animate;
+mod blending;
+mod cluster;
+mod density;
 pub mod experiments;
-mod floors;
-mod isosurface;
+mod extract;
 #[cfg(test)]
 mod layouts;
+mod normal_height;
+mod normalisation;
 mod objects;
 pub mod parameters;
 mod particles;
 mod pattern;
-mod points;
+mod read_density;
+mod read_positions;
 pub mod reference;
 mod rock;
 pub mod setup;
-mod splatting;
+mod splats;
+mod start;
 mod targets;
+mod visibility;
 
 use std::sync::Arc;
 
+use self::accumulate_depths::AccumulateDepths;
+use self::animate::Animate;
+use self::blending::Blending;
+use self::cluster::Cluster;
+use self::density::{Density, GridPlanes};
+use self::extract::Extract;
+use self::normal_height::NormalHeight;
+use self::normalisation::Normalisation;
 use self::objects::Objects;
-use self::points::Points;
-use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
+use self::particles::ParticlePoints;
+use self::read_density::ReadDensity;
+use self::read_positions::ReadPositions;
+use self::splats::{Splats, SplatsFloor};
+use self::targets::Context;
+use self::visibility::Visibility;
+use crate::gpu::{Buffer, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::Mesh;
 
-pub use self::animation::Animation;
-pub use self::clusters::{Clusters, Point};
-pub use self::floors::FLOORS;
-pub use self::isosurface::Isosurface;
+pub use self::cluster::Point;
 pub use self::parameters::{CAMERAS, Parameters, Preset, Shading, Variant};
-pub use self::particles::Particles;
 pub use self::rock::Rock;
-pub use self::splatting::{Splatting, depth_range_m};
+pub use self::splats::depth_range_m;
+pub use self::start::Particles;
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer. Without a geometry stage the splats
 /// are instanced quads, and [`Paper::warnings`] says so.
 pub const NEEDS: [Feature; 2] = [Feature::BlendRgba32Float, Feature::LargePoints];
+
+/// Each pass that draws points or splats, with the pass of the same vertices and primitives that has an empty fragment stage:
+/// what it costs at least. The splats of stage three are the same twice.
+pub const FLOORS: [(&str, &str); 4] = [
+    ("density", "density-floor"),
+    ("accumulate-depths", "accumulate-depths-floor"),
+    ("visibility", "splats-floor"),
+    ("blending", "splats-floor"),
+];
 
 /// The paper with its resources.
 pub struct Lava {
@@ -57,87 +83,87 @@ pub struct Lava {
     animation: Animation,
     isosurface: Isosurface,
     splatting: Splatting,
+    /// `None` without polygon objects.
     objects: Option<Objects>,
-    /// Where the picture shows particles instead of the surface.
-    points: Option<Points>,
+    /// `None` but for a picture of particles instead of the surface.
+    points: Option<ParticlePoints>,
     lacks_geometry_stage: bool,
 }
 
-impl Lava {
-    /// Makes every resource and pass; `label` goes before the names of the resources. `objects` are valid meshes in the
-    /// simulation space, metres.
-    ///
-    /// # Errors
-    /// What the Vulkan layer answers. The caller has validated `parameters` and `rock`; there is at least one particle.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        particles: &Particles,
-        rock: &Rock,
-        objects: &[Mesh],
-    ) -> Result<Self, Error> {
-        let has_geometry_stage = shaders.device().physical().has(Feature::GeometryShader);
-        let instanced = !(parameters.geometry_stage && has_geometry_stage);
-        let animation = Animation::new(shaders, label, parameters, particles)?;
-        let isosurface = Isosurface::new(shaders, label, parameters, animation.vertices(), instanced)?;
-        let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
-        let objects = match objects {
-            [] => None,
-            meshes => Some(Objects::new(shaders, label, parameters, meshes, &splatting)?),
-        };
-        let points = (parameters.shading == Shading::Particles)
-            .then(|| Points::new(shaders, &animation, &splatting))
-            .transpose()?;
-        let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
-        Ok(Lava {
-            parameters: parameters.clone(),
-            animation,
-            isosurface,
-            splatting,
-            objects,
-            points,
-            lacks_geometry_stage,
-        })
-    }
+/// Stage one (chapter 5): the particles move on the device, are read back and sorted into clusters on the host.
+pub struct Animation {
+    animate: Animate,
+    read_positions: ReadPositions,
+    cluster: Cluster,
+}
 
-    /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what their
-    /// vertices and primitives cost alone. It changes no texture.
+/// Stage two (chapter 6): the density of every cluster's four grid planes, the accepted grid points, and from them the
+/// texture of normals and heights.
+pub struct Isosurface {
+    /// Of each cluster.
+    planes: Vec<GridPlanes>,
+    density: Density,
+    read_density: ReadDensity,
+    extract: Extract,
+    accumulate_depths: AccumulateDepths,
+    normal_height: NormalHeight,
+}
+
+/// Stage three (chapter 7): the surface as splats, blended and normalised.
+pub struct Splatting {
+    splats: Splats,
+    visibility: Visibility,
+    blending: Blending,
+    normalisation: Normalisation,
+    floor: SplatsFloor,
+}
+
+impl Animation {
+    /// Moves the particles one step, reads them back and clusters them.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
-    pub fn record_floors(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.isosurface.record_floors(frame, self.animation.clusters())?;
-        self.splatting.record_floor(frame)
+    pub fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.animate.record(frame)?;
+        let positions = self.read_positions.record(frame, self.animate.current())?;
+        self.cluster.record(frame, positions)
     }
+}
 
-    /// Stage one.
-    pub fn animation(&self) -> &Animation {
-        &self.animation
+impl Isosurface {
+    /// Densities and accepted points cluster by cluster, then heights and normals. `clusters` are the particles in the
+    /// vertex buffers.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&mut self, frame: &mut Frame<'_>, clusters: &[Vec<Point>]) -> Result<(), Error> {
+        self.extract.clear();
+        for (k, (particles, planes)) in clusters.iter().zip(&self.planes).enumerate() {
+            self.density.record(frame, k, planes, particles)?;
+            let densities = self.read_density.record(frame, k)?;
+            self.extract.record(frame, densities, planes)?;
+        }
+        let isosurface = self.extract.accepted();
+        self.accumulate_depths.record(frame, isosurface)?;
+        self.normal_height.record(frame)
     }
+}
 
-    /// Stage two.
-    pub fn isosurface(&self) -> &Isosurface {
-        &self.isosurface
-    }
-
-    /// Stage three.
-    pub fn splatting(&self) -> &Splatting {
-        &self.splatting
-    }
-
-    /// How far the rock has drifted in frame `number`: as far as the mean particle.
-    fn drift_m(&self, number: u32) -> f32 {
-        let time_s = f64::from(number) * f64::from(self.parameters.time_step_s);
-        let drift_m = time_s * f64::from(self.parameters.speed_m_s);
-        // Whole tiles change nothing and would cost precision.
-        (drift_m % f64::from(self.parameters.rock_tile_m)) as f32
+impl Splatting {
+    /// Draws the surface; the rock has drifted `drift_m` along x.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
+        self.visibility.record(frame, &self.splats)?;
+        self.blending.record(frame, &self.splats, drift_m)?;
+        self.normalisation.record(frame)
     }
 }
 
 impl Paper for Lava {
     fn restart(&mut self) -> Result<(), Error> {
-        self.animation.restart();
+        self.animation.animate.restart();
         Ok(())
     }
 
@@ -153,7 +179,7 @@ impl Paper for Lava {
             return Err(Error::Pass { pass: "animate".into(), problem });
         }
         for _ in steps..number {
-            self.animation.animate(frame)?;
+            self.animation.animate.record(frame)?;
         }
         self.animation.record(frame)?;
         self.isosurface.record(frame, self.animation.clusters())?;
@@ -165,7 +191,7 @@ impl Paper for Lava {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         match &self.points {
-            Some(points) => points.record(frame, &self.animation),
+            Some(points) => points.record(frame, self.animation.animate.current()),
             None => Ok(()),
         }
     }
@@ -195,7 +221,7 @@ impl Paper for Lava {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let (positions, velocities) = self.animation.state();
+        let [positions, velocities] = self.animation.state();
         vec![
             Target::image("positions", positions),
             Target::image("velocities", velocities),
@@ -206,5 +232,199 @@ impl Paper for Lava {
             Target::image("accumulated-colors", self.splatting.accumulated_colors()),
             Target::image("picture", self.splatting.picture()),
         ]
+    }
+}
+
+impl Lava {
+    /// Makes every resource and pass; `label` goes before the names of the resources. `objects` are valid meshes in the
+    /// simulation space, metres.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers. The caller has validated `parameters` and `rock`; there is at least one particle.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        particles: &Particles,
+        rock: &Rock,
+        objects: &[Mesh],
+    ) -> Result<Self, Error> {
+        let context = Context { shaders, label, parameters };
+        let has_geometry_stage = shaders.device().physical().has(Feature::GeometryShader);
+        let instanced = !(parameters.geometry_stage && has_geometry_stage);
+        let animation = Animation::new(shaders, label, parameters, particles)?;
+        let isosurface = Isosurface::new(context, &animation.cluster.vertices, instanced)?;
+        let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
+        let Splatting { splats, visibility, normalisation, .. } = &splatting;
+        let objects = match objects {
+            [] => None,
+            meshes => Some(Objects::new(context, meshes, splats, visibility, normalisation)?),
+        };
+        let count = particles.positions.len() as u32;
+        let points = (parameters.shading == Shading::Particles)
+            .then(|| ParticlePoints::new(context, &animation.animate, count, splats, normalisation))
+            .transpose()?;
+        let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
+        let parameters = parameters.clone();
+        Ok(Lava { parameters, animation, isosurface, splatting, objects, points, lacks_geometry_stage })
+    }
+
+    /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what their
+    /// vertices and primitives cost alone. It changes no texture.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floors(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        let Isosurface { planes, density, extract, accumulate_depths, .. } = &self.isosurface;
+        for (k, (particles, planes)) in self.animation.clusters().iter().zip(planes).enumerate() {
+            density.record_floor(frame, k, planes, particles)?;
+        }
+        accumulate_depths.record_floor(frame, extract.accepted())?;
+        self.splatting.floor.record(frame, &self.splatting.splats)
+    }
+
+    /// Stage one.
+    pub fn animation(&self) -> &Animation {
+        &self.animation
+    }
+
+    /// Stage two.
+    pub fn isosurface(&self) -> &Isosurface {
+        &self.isosurface
+    }
+
+    /// Stage three.
+    pub fn splatting(&self) -> &Splatting {
+        &self.splatting
+    }
+
+    /// Distance that the rock has drifted in frame `number`, metres: as far as the mean particle.
+    fn drift_m(&self, number: u32) -> f32 {
+        let time_s = f64::from(number) * f64::from(self.parameters.time_step_s);
+        let drift_m = time_s * f64::from(self.parameters.speed_m_s);
+        // Whole tiles change nothing and would cost precision.
+        (drift_m % f64::from(self.parameters.rock_tile_m)) as f32
+    }
+}
+
+impl Animation {
+    /// # Errors
+    /// What the Vulkan layer answers; [`Error::Limit`] for more particles than a texture holds.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        particles: &Particles,
+    ) -> Result<Self, Error> {
+        let context = Context { shaders, label, parameters };
+        let animate = Animate::new(context, particles)?;
+        let read_positions = ReadPositions::new(context, &animate.states)?;
+        let cluster = Cluster::new(context, &read_positions.readback, particles.positions.len())?;
+        Ok(Animation { animate, read_positions, cluster })
+    }
+
+    /// Moves the particles one step.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn animate(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.animate.record(frame)
+    }
+
+    /// Back to the start.
+    pub fn restart(&mut self) {
+        self.animate.restart();
+    }
+
+    /// Steps since the start.
+    pub fn steps(&self) -> u32 {
+        self.animate.steps()
+    }
+
+    /// The particles of the last frame's clusters, lowest cluster first.
+    pub fn clusters(&self) -> &[Vec<Point>] {
+        self.cluster.particles()
+    }
+
+    /// Positions and velocities after the last step; the first state before any.
+    pub fn state(&self) -> [&Arc<ImageView>; 2] {
+        let state = &self.animate.states[self.animate.current()];
+        [&state.positions, &state.velocities]
+    }
+}
+
+impl Isosurface {
+    fn new(context: Context<'_>, cluster_vertices: &[Arc<Buffer>], instanced: bool) -> Result<Self, Error> {
+        let density = Density::new(context, cluster_vertices)?;
+        let read_density = ReadDensity::new(context, &density.layers)?;
+        let extract = Extract::new(context, &read_density.readback)?;
+        let accumulate_depths = AccumulateDepths::new(context, &extract.vertices, instanced)?;
+        let normal_height = NormalHeight::new(context, &accumulate_depths.sums)?;
+        let planes = GridPlanes::all(context.parameters);
+        Ok(Isosurface { planes, density, read_density, extract, accumulate_depths, normal_height })
+    }
+
+    /// The grid points that the last frame accepted, metres.
+    pub fn accepted(&self) -> &[Point] {
+        self.extract.accepted()
+    }
+
+    /// Lowest and highest density at a grid point in the last frame.
+    pub fn density_range(&self) -> [f32; 2] {
+        self.extract.density_range()
+    }
+
+    /// A layer for each cluster, a component for each of its planes.
+    pub fn density(&self) -> &Arc<ImageView> {
+        &self.density.density
+    }
+
+    /// Sum of weighted heights in red, sum of weights in alpha.
+    pub fn accumulated_depths(&self) -> &Arc<ImageView> {
+        &self.accumulate_depths.sums
+    }
+
+    /// Normals in RGB, heights in metres in alpha.
+    pub fn normal_height(&self) -> &Arc<ImageView> {
+        &self.normal_height.surface
+    }
+}
+
+impl Splatting {
+    /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats are
+    /// quads without a geometry stage.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        normal_height: &Arc<ImageView>,
+        rock: &Rock,
+        instanced: bool,
+    ) -> Result<Self, Error> {
+        let context = Context { shaders, label, parameters };
+        let splats = Splats::new(context, normal_height, rock, instanced)?;
+        let visibility = Visibility::new(context, &splats)?;
+        let blending = Blending::new(context, &splats, &visibility, rock)?;
+        let normalisation = Normalisation::new(context, &blending.sums)?;
+        let floor = SplatsFloor::new(context, &splats, &blending.sums)?;
+        Ok(Splatting { splats, visibility, blending, normalisation, floor })
+    }
+
+    /// Eye-space depth of the nearest splat plus epsilon (eq. 7.1), as a fraction of [`depth_range_m`].
+    pub fn visibility(&self) -> &Arc<ImageView> {
+        &self.visibility.depth
+    }
+
+    /// Weighted colours, sum of weights in alpha.
+    pub fn accumulated_colors(&self) -> &Arc<ImageView> {
+        &self.blending.sums
+    }
+
+    /// 8-bit sRGB, though its format does not say so.
+    pub fn picture(&self) -> &Arc<ImageView> {
+        &self.normalisation.picture
     }
 }

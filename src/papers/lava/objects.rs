@@ -1,13 +1,13 @@
-//! Polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture without objects is
+//! Pass `objects`: polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture without objects is
 //! the thesis's own.
 
 use ash::vk;
 
-use super::parameters::Parameters;
-use super::splatting::Splatting;
-use super::targets::{DEPTH, FAR};
-use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, Load, Pass, ShaderLibrary};
+use super::normalisation::Normalisation;
+use super::splats::Splats;
+use super::targets::{Context, DEPTH, FAR};
+use super::visibility::Visibility;
+use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, Load, Pass};
 use crate::host_block;
 use crate::scene::Mesh;
 
@@ -24,7 +24,7 @@ host_block! {
     }
 }
 
-/// The pass `objects`, a call for each mesh.
+/// The pass, a call for each mesh.
 pub struct Objects {
     /// Each with its number of indices.
     passes: Vec<(Pass, u32)>,
@@ -37,20 +37,19 @@ impl Objects {
     /// # Errors
     /// What the Vulkan layer answers.
     pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
+        context: Context<'_>,
         meshes: &[Mesh],
-        splatting: &Splatting,
+        splats: &Splats,
+        visibility: &Visibility,
+        normalisation: &Normalisation,
     ) -> Result<Self, Error> {
-        let device = shaders.device();
-        let desc = ImageDesc::new_2d(format!("{label}/object-depth"), DEPTH, parameters.width, parameters.height);
-        let depth = Image::new(device, desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()?;
+        let Context { shaders, parameters, .. } = context;
+        let desc = ImageDesc::new_2d(context.name("object-depth"), DEPTH, parameters.width, parameters.height);
+        let depth = Image::new(context.device(), desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()?;
         let mut passes: Vec<(Pass, u32)> = Vec::with_capacity(meshes.len());
         for mesh in meshes {
-            let buffer = |what: &str, usage, bytes: &[u8]| {
-                upload(device, &format!("{label}/{}/{what}", mesh.name), usage, bytes)
-            };
+            let buffer =
+                |what: &str, usage, bytes: &[u8]| context.upload(&format!("{}/{what}", mesh.name), usage, bytes);
             let pairs = mesh.positions.iter().zip(&mesh.normals);
             let vertices: Vec<ObjectVertex> =
                 pairs.map(|(p, n)| ObjectVertex { position: p.to_array(), normal: n.to_array() }).collect();
@@ -63,9 +62,9 @@ impl Objects {
                     .vertices::<ObjectVertex>(&vertices)
                     .indices(&indices)
                     .constants::<ObjectConstants>()
-                    .with("scene", splatting.scene())
-                    .with("visibility", splatting.visibility())
-                    .color(splatting.picture(), Load::Keep, Blend::Replace)
+                    .with("scene", &splats.scene)
+                    .with("visibility", &visibility.depth)
+                    .color(&normalisation.picture, Load::Keep, Blend::Replace)
                     .depth(&depth, FAR, DepthTest::LessWrite)
                     .build(shaders)?,
                 Some((first, _)) => {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::targets::desc;
+use super::targets::Context;
 use crate::gpu::transfer::upload_rows;
-use crate::gpu::{Error, Image, ImageView, ShaderLibrary};
+use crate::gpu::{Error, ImageView};
 use crate::measure::ParameterError;
 
 /// Texels of a rock, rows from the top, sRGB with an alpha that is ignored. It repeats in both directions.
@@ -41,13 +41,10 @@ impl Rock {
     ///
     /// # Errors
     /// What the Vulkan layer answers.
-    pub(super) fn load(&self, shaders: &ShaderLibrary, label: &str) -> Result<Arc<ImageView>, Error> {
-        let device = shaders.device();
-        let name = format!("{label}/rock");
-        let desc = desc(name.clone(), vk::Format::R8G8B8A8_UNORM, self.width + 2, self.height + 2);
-        let image = Image::new(device, desc)?.view()?;
+    pub(super) fn load(&self, context: Context<'_>) -> Result<Arc<ImageView>, Error> {
+        let image = context.target("rock", vk::Format::R8G8B8A8_UNORM, self.width + 2, self.height + 2)?;
         let wrapped = |at: u32, count: u32| (at + count - 1) % count;
-        upload_rows(device, &image, (image.width(), image.height()), |first_row, bytes| {
+        upload_rows(context.device(), &image, (image.width(), image.height()), |first_row, bytes| {
             let rows = bytes.chunks_exact_mut(4 * image.width() as usize);
             for (row, bytes) in (first_row..).zip(rows) {
                 let from = (wrapped(row, self.height) * self.width) as usize;

@@ -1,0 +1,90 @@
+//! Pass `accumulate-depths` (section 6.3): the accepted grid points as splats, their weighted heights added up.
+
+use std::sync::Arc;
+
+use super::FLOORS;
+use super::cluster::Point;
+use super::targets::{Context, EMPTY, ZERO};
+use crate::gpu::{Blend, Buffer, Error, Frame, ImageView, Load, Pass, Topology};
+use crate::host_block;
+
+host_block! {
+    struct DepthConstants {
+        space_m: [f32; 2],
+        columns: [f32; 2],
+        radius_m: f32,
+    }
+}
+
+/// The pass.
+pub struct AccumulateDepths {
+    pass: Pass,
+    /// The same splats with an empty fragment stage.
+    floor: Pass,
+    instanced: bool,
+    constants: DepthConstants,
+    /// Sum of weighted heights in red, metres; sum of weights in alpha.
+    pub sums: Arc<ImageView>,
+}
+
+impl AccumulateDepths {
+    /// `instanced` splats are quads without a geometry stage.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(context: Context<'_>, vertices: &Arc<Buffer>, instanced: bool) -> Result<Self, Error> {
+        let parameters = context.parameters;
+        let sums = context.grid_target("accumulated-depths")?;
+        let splats = |name, fragment| {
+            let splats = if instanced {
+                Pass::graphics(name, "6.3", "lava/depth-splat-quad.vert", fragment)
+                    .instances::<Point>(vertices)
+                    .topology(Topology::TriangleStrip)
+            } else {
+                Pass::graphics(name, "6.3", "lava/point.vert", fragment)
+                    .geometry("lava/depth-splat.geom")
+                    .vertices::<Point>(vertices)
+                    .topology(Topology::Points)
+            };
+            splats.constants::<DepthConstants>()
+        };
+        let pass = splats("accumulate-depths", "lava/accumulate-depths.frag")
+            .color(&sums, ZERO, Blend::Add)
+            .build(context.shaders)?;
+        let floor = splats(FLOORS[1].1, EMPTY).color(&sums, Load::Keep, Blend::Masked).build(context.shaders)?;
+        let constants = DepthConstants {
+            space_m: [parameters.space_m.x, parameters.space_m.z],
+            columns: [sums.width() as f32, sums.height() as f32],
+            radius_m: parameters.radius_m,
+        };
+        Ok(AccumulateDepths { pass, floor, instanced, constants, sums })
+    }
+
+    /// Draws the accepted points, which the vertex buffer holds.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
+        self.draw(frame, &self.pass, accepted)
+    }
+
+    /// Draws them with an empty fragment stage. It changes no texture.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floor(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
+        self.draw(frame, &self.floor, accepted)
+    }
+
+    fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, accepted: &[Point]) -> Result<(), Error> {
+        let points = accepted.len() as u32;
+        frame.graphics(pass, |draw| {
+            draw.constants(&self.constants);
+            if self.instanced {
+                draw.instances(4, points)
+            } else {
+                draw.vertices(points)
+            };
+        })
+    }
+}

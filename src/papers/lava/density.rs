@@ -1,0 +1,144 @@
+//! Pass `density` (section 6.1): the particles of a cluster as points, added up over its four grid planes.
+
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+use super::FLOORS;
+use super::cluster::Point;
+use super::parameters::Parameters;
+use super::targets::{Context, EMPTY, FLOATS, ZERO};
+use crate::gpu::{Blend, Buffer, Error, Frame, Image, ImageView, Load, Pass, Topology};
+use crate::host_block;
+
+host_block! {
+    struct DensityConstants {
+        plane_heights_m: [f32; 4],
+        space_m: [f32; 3],
+        radius_m: f32,
+        columns: [f32; 2],
+        point_size_px: f32,
+        peak: f32,
+    }
+}
+
+/// No height reaches a plane that is not there.
+const NO_PLANE_M: f32 = 1.0e9;
+
+/// Four successive grid planes, the lowest first.
+#[derive(Debug, Clone, Copy)]
+pub struct GridPlanes {
+    pub heights_m: [f32; 4],
+    /// Planes that are there, 1 to 4.
+    pub count: usize,
+}
+
+impl GridPlanes {
+    /// The planes of each cluster.
+    pub fn all(parameters: &Parameters) -> Vec<Self> {
+        let planes = |k: u32| {
+            let count = (parameters.density[1] - 4 * k).min(4);
+            let height_m = |j: u32| if j < count { parameters.plane_height_m(4 * k + j) } else { NO_PLANE_M };
+            GridPlanes { heights_m: [0, 1, 2, 3].map(height_m), count: count as usize }
+        };
+        (0..parameters.clusters()).map(planes).collect()
+    }
+}
+
+/// The pass.
+pub struct Density {
+    /// One for each cluster.
+    passes: Vec<Pass>,
+    /// The same points with an empty fragment stage.
+    floors: Vec<Pass>,
+    constants: DensityConstants,
+    /// A layer for each cluster, a component for each of its planes.
+    pub density: Arc<ImageView>,
+    /// Each layer by itself.
+    pub layers: Vec<Arc<ImageView>>,
+}
+
+impl Density {
+    /// # Errors
+    /// What the Vulkan layer answers; [`Error::Limit`] for a grid or a point size (eq. 6.1) beyond the device's.
+    pub fn new(context: Context<'_>, cluster_vertices: &[Arc<Buffer>]) -> Result<Self, Error> {
+        let Context { shaders, parameters, .. } = context;
+        check_point_size(context)?;
+        let [x, _, z] = parameters.density;
+        let desc = context.desc("density", FLOATS, x, z).layers(parameters.clusters());
+        let image = Image::new(context.device(), desc)?;
+        let layers = (0..parameters.clusters()).map(|k| image.layer(k)).collect::<Result<Vec<_>, _>>()?;
+        let each = |name, fragment, load, blend| -> Result<Vec<Pass>, Error> {
+            let first = Pass::graphics(name, "6.1", "lava/density.vert", fragment)
+                .vertices::<Point>(&cluster_vertices[0])
+                .topology(Topology::Points)
+                .constants::<DensityConstants>()
+                .color(&layers[0], load, blend)
+                .build(shaders)?;
+            let others = cluster_vertices.iter().zip(&layers).skip(1);
+            let others = others.map(|(v, layer)| first.rebind().vertices(v).color(0, layer, load).build(shaders));
+            std::iter::once(Ok(first.clone())).chain(others).collect()
+        };
+        let passes = each("density", "lava/density.frag", ZERO, Blend::Add)?;
+        let floors = each(FLOORS[0].1, EMPTY, Load::Keep, Blend::Masked)?;
+        let constants = DensityConstants {
+            plane_heights_m: [0.0; 4],
+            space_m: parameters.space_m.to_array(),
+            radius_m: parameters.radius_m,
+            columns: [x as f32, z as f32],
+            point_size_px: parameters.point_size_px(),
+            // Eq. 6.2 at r = 0, with h to the first power as it is printed.
+            peak: 405.0 / (748.0 * PI * parameters.radius_m),
+        };
+        Ok(Density { passes, floors, constants, density: image.view()?, layers })
+    }
+
+    /// Draws the particles of one cluster, which its vertex buffer holds.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(
+        &self,
+        frame: &mut Frame<'_>,
+        cluster: usize,
+        planes: &GridPlanes,
+        particles: &[Point],
+    ) -> Result<(), Error> {
+        self.draw(frame, &self.passes[cluster], planes, particles)
+    }
+
+    /// Draws them with an empty fragment stage. It changes no texture.
+    ///
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record_floor(
+        &self,
+        frame: &mut Frame<'_>,
+        cluster: usize,
+        planes: &GridPlanes,
+        particles: &[Point],
+    ) -> Result<(), Error> {
+        self.draw(frame, &self.floors[cluster], planes, particles)
+    }
+
+    fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, planes: &GridPlanes, particles: &[Point]) -> Result<(), Error> {
+        let constants = DensityConstants { plane_heights_m: planes.heights_m, ..self.constants };
+        frame.graphics(pass, |draw| {
+            draw.constants(&constants).vertices(particles.len() as u32);
+        })
+    }
+}
+
+/// A point beyond the device's size would be clamped in silence.
+fn check_point_size(context: Context<'_>) -> Result<(), Error> {
+    let limit = context.device().physical().limits.point_size_range[1];
+    let size = context.parameters.point_size_px();
+    if size <= limit {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        object: context.name("density"),
+        what: "point size in pixels (eq. 6.1: 2 x radius / space x density)",
+        wanted: size.ceil() as u64,
+        limit: limit as u64,
+    })
+}

@@ -1,0 +1,39 @@
+//! Pass `normalisation` (section 7.3): the weighted mean of the colours, which is the picture.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::targets::Context;
+use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
+
+/// The pass.
+pub struct Normalisation {
+    pass: Pass,
+    /// 8-bit sRGB, though its format does not say so.
+    pub picture: Arc<ImageView>,
+}
+
+impl Normalisation {
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn new(context: Context<'_>, accumulated_colors: &Arc<ImageView>) -> Result<Self, Error> {
+        let (width, height) = (context.parameters.width, context.parameters.height);
+        // The values are those of the display already.
+        let desc = ImageDesc::new_2d(context.name("picture"), vk::Format::R8G8B8A8_UNORM, width, height);
+        let picture = Image::new(context.device(), desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
+        let pass = Pass::graphics("normalisation", "7.3", "common/fullscreen.vert", "lava/normalisation.frag")
+            .with("accumulated_colors", accumulated_colors)
+            .color(&picture, Load::Discard, Blend::Replace)
+            .build(context.shaders)?;
+        Ok(Normalisation { pass, picture })
+    }
+
+    /// # Errors
+    /// What the Vulkan layer answers.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.graphics(&self.pass, |draw| {
+            draw.vertices(3);
+        })
+    }
+}
