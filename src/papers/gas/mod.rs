@@ -8,36 +8,53 @@
 //!
 //! A picture whose lists no buffer of the device holds is done in bands of rows, one after the other.
 
+mod a_buffer;
+mod band;
 mod blocks;
 mod capacity;
+mod context;
+mod density_table;
+mod empty_lists;
 pub mod experiments;
-mod geometry;
+mod fragments;
 #[cfg(test)]
 mod layouts;
-mod lists;
-mod march;
+mod light_attenuation;
 pub mod model;
 pub mod parameters;
 pub mod reference;
 mod resolve;
+mod scene_buffers;
 pub mod scenes;
 pub mod setup;
-mod tables;
+mod shadow_table;
+mod sort;
+mod view;
+mod volume;
 
 use std::sync::Arc;
 
+use self::a_buffer::ABuffer;
+use self::band::Band;
 use self::blocks::Gases;
-use self::capacity::{Band, Most};
-use self::geometry::Geometry;
-use self::lists::Lists;
-use self::march::March;
+use self::capacity::BufferLimit;
+use self::context::Context;
+use self::density_table::DensityTable;
+use self::empty_lists::EmptyLists;
+use self::fragments::Fragments;
+use self::light_attenuation::LightAttenuation;
 use self::model::Object;
 use self::resolve::Resolve;
+use self::scene_buffers::SceneBuffers;
+use self::shadow_table::ShadowTable;
+use self::sort::Sort;
+use self::view::View;
+use self::volume::VolumeMarch;
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 
+pub use self::a_buffer::Fragment;
 pub use self::capacity::Capacity;
-pub use self::lists::Fragment;
 pub use self::parameters::{Parameters, Variant};
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
@@ -48,42 +65,67 @@ pub struct Gas {
     label: String,
     variant: Variant,
     parameters: Parameters,
-    geometry: Geometry,
+    scene: SceneBuffers,
     passes: Passes,
-    most: Most,
+    buffer_limit: BufferLimit,
     lacks_geometry_stage: bool,
 }
 
-/// Everything whose size follows the lists'.
+/// The passes, and the lists whose capacity all their resources follow.
 struct Passes {
-    lists: Lists,
-    march: Option<March>,
+    lists: ABuffer,
+    empty_lists: EmptyLists,
+    fragments: Fragments,
+    sort: Sort,
+    density_table: Option<DensityTable>,
+    shadow_table: Option<ShadowTable>,
+    volume: Option<VolumeMarch>,
+    light_attenuation: Option<LightAttenuation>,
     resolve: Resolve,
+    view: View,
 }
 
 impl Passes {
-    fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        geometry: &Geometry,
-        variant: Variant,
-        parameters: &Parameters,
-        capacity: Capacity,
-    ) -> Result<Self, Error> {
-        let lists = Lists::new(shaders, label, geometry, parameters, capacity)?;
-        let march = if variant == Variant::NoVolume || parameters.volumes.is_empty() {
-            None
-        } else {
-            Some(March::new(shaders, label, geometry, &lists, variant, parameters)?)
-        };
-        let resolve = Resolve::new(shaders, label, geometry, &lists, march.as_ref(), parameters)?;
-        Ok(Passes { lists, march, resolve })
+    fn new(context: &Context<'_>, scene: &SceneBuffers, variant: Variant, capacity: Capacity) -> Result<Self, Error> {
+        let has_volume = variant != Variant::NoVolume && !context.parameters.volumes.is_empty();
+        let has_tables = has_volume && variant == Variant::Table;
+        let shadows_surfaces = has_volume && variant != Variant::None;
+
+        let lists = ABuffer::new(context, capacity)?;
+        let empty_lists = EmptyLists::new(context, scene, &lists)?;
+        let fragments = Fragments::new(context, scene, &lists)?;
+        let sort = Sort::new(context, scene, &lists)?;
+        let density_table = has_tables.then(|| DensityTable::new(context, scene)).transpose()?;
+        let densities = density_table.as_ref().map(|table| &table.densities);
+        let shadow_table = densities.map(|densities| ShadowTable::new(context, scene, densities)).transpose()?;
+        let shadow_sums = shadow_table.as_ref().map(|table| &table.sums);
+        let volume = has_volume.then(|| VolumeMarch::new(context, scene, &lists, variant, shadow_sums)).transpose()?;
+        let sections = volume.as_ref().map(|volume| &volume.sections);
+        let light_attenuation = sections
+            .filter(|_| shadows_surfaces)
+            .map(|sections| LightAttenuation::new(context, scene, &lists, sections, shadow_sums))
+            .transpose()?;
+        let attenuations = light_attenuation.as_ref().map(|pass| &pass.attenuations);
+        let resolve = Resolve::new(context, scene, &lists, sections, attenuations)?;
+        let view = View::new(context, &resolve.radiance)?;
+        Ok(Passes {
+            lists,
+            empty_lists,
+            fragments,
+            sort,
+            density_table,
+            shadow_table,
+            volume,
+            light_attenuation,
+            resolve,
+            view,
+        })
     }
 }
 
 impl Gas {
-    /// Makes every resource and pass; `label` goes before the names of the resources. The lists begin with room for four
-    /// fragments and two sections a pixel, of as many rows as the device's buffers hold, or for what `capacity` says.
+    /// Makes every resource and pass; `label` goes before the names of the resources. The lists begin with slots for four
+    /// fragments and two sections a pixel, of as many rows as the device's buffers hold, or with those of `capacity`.
     ///
     /// # Errors
     /// What the Vulkan layer answers. The caller has validated `parameters` and `objects`.
@@ -95,14 +137,15 @@ impl Gas {
         objects: &[Object],
         capacity: Option<Capacity>,
     ) -> Result<Self, Error> {
-        let most = Most::of(shaders.device(), parameters);
-        let capacity = capacity.unwrap_or_else(|| Capacity::usual(parameters, most));
-        let geometry = Geometry::new(shaders, label, parameters, objects)?;
-        let passes = Passes::new(shaders, label, &geometry, variant, parameters, capacity)?;
+        let buffer_limit = BufferLimit::new(shaders.device(), parameters);
+        let capacity = capacity.unwrap_or_else(|| Capacity::initial(parameters, buffer_limit));
+        let context = Context { shaders, label, parameters };
+        let scene = SceneBuffers::new(&context, objects)?;
+        let passes = Passes::new(&context, &scene, variant, capacity)?;
         let (label, parameters) = (label.to_owned(), parameters.clone());
         let lacks_geometry_stage =
             parameters.geometry_stage && !shaders.device().physical().has(Feature::GeometryShader);
-        Ok(Gas { label, variant, parameters, geometry, passes, most, lacks_geometry_stage })
+        Ok(Gas { label, variant, parameters, scene, passes, buffer_limit, lacks_geometry_stage })
     }
 
     /// The rows that are done at once, and the most fragments and sections that they have wanted in a frame so far.
@@ -118,7 +161,7 @@ impl Gas {
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
     pub fn fragments(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<Fragment>>, Error> {
-        self.passes.lists.read(shaders, self.passes.march.as_ref().map(|march| &march.sections))
+        self.passes.lists.read(shaders, self.passes.volume.as_ref().map(|volume| &volume.sections))
     }
 
     /// Evaluations of the density along the viewer's rays in the last frame; in its last band, if there are several.
@@ -132,17 +175,37 @@ impl Gas {
 
 impl Paper for Gas {
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        let Passes { lists, march, resolve } = &self.passes;
+        let Passes {
+            lists,
+            empty_lists,
+            fragments,
+            sort,
+            density_table,
+            shadow_table,
+            volume,
+            light_attenuation,
+            resolve,
+            view: _,
+        } = &self.passes;
         let gas = Gases {
-            volume_count: if march.is_some() { self.parameters.volumes.len() } else { 0 },
-            are_shadowing: march.as_ref().is_some_and(|march| march.attenuations.is_some()),
+            volume_count: if volume.is_some() { self.parameters.volumes.len() } else { 0 },
+            are_shadowing: light_attenuation.is_some(),
         };
-        let number = self.parameters.scene_frame(number);
-        self.geometry.write(&self.parameters, number, gas, lists.capacity)?;
-        for band in Band::all(self.parameters.height, lists.capacity.rows) {
-            lists.record(frame, band)?;
-            if let Some(march) = march {
-                march.record(frame, band)?;
+        self.scene.write(&self.parameters, self.parameters.scene_frame(number), gas, lists.capacity)?;
+        for band in Band::all(self.parameters.width, self.parameters.height, lists.capacity.rows) {
+            empty_lists.record(frame, band)?;
+            fragments.record(frame, band)?;
+            sort.record(frame, band)?;
+            // All bands look up the same tables.
+            if let (Some(densities), Some(shadows), true) = (density_table, shadow_table, band.is_first()) {
+                densities.record(frame)?;
+                shadows.record(frame)?;
+            }
+            if let Some(volume) = volume {
+                volume.record(frame, band)?;
+            }
+            if let Some(light_attenuation) = light_attenuation {
+                light_attenuation.record(frame, band)?;
             }
             resolve.record(frame, band)?;
         }
@@ -151,13 +214,14 @@ impl Paper for Gas {
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
-        self.passes.resolve.draw(frame)
+        self.passes.view.record(frame)
     }
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
-        let demand = self.passes.lists.demand(shaders)?;
-        let Some(capacity) = self.passes.lists.capacity.grown(demand, self.most)? else { return Ok(true) };
-        self.passes = Passes::new(shaders, &self.label, &self.geometry, self.variant, &self.parameters, capacity)?;
+        let lists = &self.passes.lists;
+        let Some(capacity) = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)? else { return Ok(true) };
+        let context = Context { shaders, label: &self.label, parameters: &self.parameters };
+        self.passes = Passes::new(&context, &self.scene, self.variant, capacity)?;
         Ok(false)
     }
 
@@ -175,25 +239,20 @@ impl Paper for Gas {
     }
 
     fn picture(&self) -> &Arc<ImageView> {
-        &self.passes.resolve.picture
+        &self.passes.view.picture
     }
 
     fn targets(&self) -> Vec<Target> {
-        let mut targets = Vec::new();
-        if let Some(march) = &self.passes.march {
-            if let Some(tables) = &march.tables {
-                let row = self.parameters.table_size;
-                targets.push(Target::table("density-table", &tables.densities, row));
-                targets.push(Target::table("shadow-table", &tables.shadows, row));
-            }
-            targets.push(Target::table("sections", &march.sections, 8));
-            if let Some(attenuations) = &march.attenuations {
-                let lights = self.parameters.lights.len() as u32;
-                targets.push(Target::table("light-attenuations", attenuations, lights));
-            }
-        }
-        targets.push(Target::image("radiance", &self.passes.resolve.radiance));
-        targets.push(Target::image("picture", &self.passes.resolve.picture));
-        targets
+        let Passes { density_table, shadow_table, volume, light_attenuation, resolve, view, .. } = &self.passes;
+        let row = self.parameters.table_size;
+        let lights = self.parameters.lights.len() as u32;
+        let buffers = [
+            density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, row)),
+            shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, row)),
+            volume.as_ref().map(|pass| Target::table("sections", &pass.sections, 8)),
+            light_attenuation.as_ref().map(|pass| Target::table("light-attenuations", &pass.attenuations, lights)),
+        ];
+        let images = [Target::image("radiance", &resolve.radiance), Target::image("picture", &view.picture)];
+        buffers.into_iter().flatten().chain(images).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! The A-buffer: a list of fragments a pixel, sorted, with the slots of the sections to come.
+//! The A-buffer: a list of fragments a pixel, with sections of gas between them.
 
 use std::sync::Arc;
 
@@ -7,33 +7,27 @@ use glam::{Vec2, Vec3};
 use half::f16;
 
 use super::blocks::{ColorBlock, CountersBlock, LinkBlock, PixelBlock, SectionBlock, SurfaceBlock};
-use super::capacity::{Band, Capacity};
-use super::geometry::Geometry;
-use super::parameters::Parameters;
+use super::capacity::Capacity;
+use super::context::Context;
 use crate::gpu::transfer::{read_buffer, upload};
-use crate::gpu::{Buffer, BufferDesc, Error, Feature, Frame, Pass, ShaderLibrary, Topology};
+use crate::gpu::{Buffer, Error, ShaderLibrary};
 
-/// Of a link that leads to a section, see `lists.glsl`.
+/// The bit of a link that leads to a section, see `lists.glsl`.
 const SECTION_LINK: u32 = 1 << 31;
 
-/// The section of the paper that these passes come from.
-const SECTION: &str = "A-buffer";
-
-/// The lists of one configuration.
-pub struct Lists {
+/// The lists of the pixels of a band.
+pub struct ABuffer {
     pub capacity: Capacity,
+    /// Of each pixel, the first fragment or section of its list.
     pub heads: Arc<Buffer>,
+    /// Of each fragment, a [`LinkBlock`], a [`SurfaceBlock`] and a [`ColorBlock`].
     pub links: Arc<Buffer>,
     pub surfaces: Arc<Buffer>,
     pub colors: Arc<Buffer>,
+    /// Of each pixel, a [`PixelBlock`].
     pub pixels: Arc<Buffer>,
-    counters: Arc<Buffer>,
-    empty: Pass,
-    fragments: Pass,
-    sort: Pass,
-    width: u32,
-    /// Vertices that the fragments pass draws.
-    vertex_count: u32,
+    /// One [`CountersBlock`].
+    pub counters: Arc<Buffer>,
 }
 
 /// A fragment as the device left it.
@@ -47,103 +41,32 @@ pub struct Fragment {
     pub coverage: f32,
     /// 0 to 1.
     pub opacity: f32,
+    /// Index of the object.
     pub object: u32,
+    /// Index of the triangle among those of all objects.
     pub triangle: u32,
     /// Linear RGB, as half floats hold it.
     pub color: [f32; 3],
-    /// Of unit length, to the 16 bits that hold each half of it.
+    /// Unit vector, to the 16 bits that hold each half of it.
     pub normal: [f32; 3],
 }
 
-impl Lists {
+impl ABuffer {
     /// # Errors
     /// [`Error::Limit`] for a capacity or a picture beyond what the device binds.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        geometry: &Geometry,
-        parameters: &Parameters,
-        capacity: Capacity,
-    ) -> Result<Self, Error> {
-        let device = shaders.device();
-        let pixel_count = parameters.width.saturating_mul(capacity.rows);
-        let buffer = |name: &str, count: u32, element_bytes: usize| {
-            let desc = BufferDesc::new(format!("{label}/{name}"), u64::from(count) * element_bytes as u64);
-            Buffer::new(device, desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
-        };
-        let heads = buffer("heads", pixel_count, size_of::<u32>())?;
-        let links = buffer("fragment-links", capacity.fragments, size_of::<LinkBlock>())?;
-        let surfaces = buffer("fragment-surfaces", capacity.fragments, size_of::<SurfaceBlock>())?;
-        let colors = buffer("fragment-colors", capacity.fragments, size_of::<ColorBlock>())?;
-        let pixels = buffer("pixels", pixel_count, size_of::<PixelBlock>())?;
+    pub fn new(context: &Context<'_>, capacity: Capacity) -> Result<Self, Error> {
+        let pixel_count = context.parameters.width.saturating_mul(capacity.rows).into();
+        let fragment_count = capacity.fragments.into();
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let counters = upload(device, &format!("{label}/counters"), usage, &[0; size_of::<CountersBlock>()])?;
-        let empty = Pass::compute("empty-lists", SECTION, "gas/empty-lists.comp")
-            .with("frame", &geometry.frame)
-            .with("Heads", &heads)
-            .with("Counters", &counters)
-            .constants::<Band>()
-            .build(shaders)?;
-        let has_geometry_stage = parameters.geometry_stage && device.physical().has(Feature::GeometryShader);
-        let first = if has_geometry_stage {
-            Pass::graphics("fragments", SECTION, "gas/fragments.vert", "gas/fragments.frag")
-                .geometry("gas/fragments.geom")
-                .topology(Topology::Points)
-        } else {
-            Pass::graphics("fragments", SECTION, "gas/fragments-pulled.vert", "gas/fragments.frag")
-        };
-        let fragments = first
-            .with("frame", &geometry.frame)
-            .with("Volumes", &geometry.volumes)
-            .with("Offsets", &geometry.offsets)
-            .with("Vertices", &geometry.vertices)
-            .with("Triangles", &geometry.triangles)
-            .with("Objects", &geometry.objects)
-            .with("Heads", &heads)
-            .with("Links", &links)
-            .with("Surfaces", &surfaces)
-            .with("Colors", &colors)
-            .with("Counters", &counters)
-            .constants::<Band>()
-            .extent(parameters.width, parameters.height)
-            .build(shaders)?;
-        let sort = Pass::compute("sort", SECTION, "gas/sort.comp")
-            .with("frame", &geometry.frame)
-            .with("Volumes", &geometry.volumes)
-            .with("Heads", &heads)
-            .with("Links", &links)
-            .with("Surfaces", &surfaces)
-            .with("Colors", &colors)
-            .with("Counters", &counters)
-            .with("Pixels", &pixels)
-            .constants::<Band>()
-            .build(shaders)?;
-        Ok(Lists {
+        let zeros = [0; size_of::<CountersBlock>()];
+        Ok(ABuffer {
             capacity,
-            heads,
-            links,
-            surfaces,
-            colors,
-            pixels,
-            counters,
-            empty,
-            fragments,
-            sort,
-            width: parameters.width,
-            vertex_count: geometry.triangle_count.saturating_mul(if has_geometry_stage { 1 } else { 6 }),
-        })
-    }
-
-    /// Makes the sorted lists of a band.
-    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        frame.compute(&self.empty, |dispatch| {
-            dispatch.constants(&band).threads(self.width, band.rows(), 1);
-        })?;
-        frame.graphics(&self.fragments, |draw| {
-            draw.constants(&band).vertices(self.vertex_count);
-        })?;
-        frame.compute(&self.sort, |dispatch| {
-            dispatch.constants(&band).threads(self.width, band.rows(), 1);
+            heads: context.storage::<u32>("heads", pixel_count)?,
+            links: context.storage::<LinkBlock>("fragment-links", fragment_count)?,
+            surfaces: context.storage::<SurfaceBlock>("fragment-surfaces", fragment_count)?,
+            colors: context.storage::<ColorBlock>("fragment-colors", fragment_count)?,
+            pixels: context.storage::<PixelBlock>("pixels", pixel_count)?,
+            counters: upload(context.shaders.device(), &context.name("counters"), usage, &zeros)?,
         })
     }
 

@@ -6,15 +6,16 @@ use ash::vk;
 
 use super::blocks::{FrameBlock, Gases, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets};
 use super::capacity::Capacity;
+use super::context::Context;
 use super::model::Object;
 use super::parameters::Parameters;
 use crate::gpu::transfer::upload;
-use crate::gpu::{Buffer, BufferDesc, Error, Location, ShaderLibrary};
+use crate::gpu::{Buffer, BufferDesc, Error, Location};
 
 const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 
 /// Buffers of the scene, by the names the shaders give them.
-pub struct Geometry {
+pub struct SceneBuffers {
     pub frame: Arc<Buffer>,
     pub volumes: Arc<Buffer>,
     pub lights: Arc<Buffer>,
@@ -27,20 +28,14 @@ pub struct Geometry {
     moving: Vec<Object>,
 }
 
-impl Geometry {
+impl SceneBuffers {
     /// # Errors
     /// [`Error::Limit`] for meshes beyond what the device binds; what Vulkan answers.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        objects: &[Object],
-    ) -> Result<Self, Error> {
-        let device = shaders.device();
-        let name = |name: &str| format!("{label}/{name}");
+    pub fn new(context: &Context<'_>, objects: &[Object]) -> Result<Self, Error> {
+        let (device, parameters) = (context.shaders.device(), context.parameters);
         // Scenes are small: what is beyond a limit is a mesh of the user's.
         let storage = |what: &str, bytes: &[u8]| {
-            upload(device, &name(what), STORAGE, bytes).map_err(|error| error.set_by("--object"))
+            upload(device, &context.name(what), STORAGE, bytes).map_err(|error| error.set_by("--object"))
         };
         let mut volumes: Vec<VolumeBlock> =
             parameters.volumes.iter().map(|v| VolumeBlock::of_volume(v, parameters.steps)).collect();
@@ -62,9 +57,12 @@ impl Geometry {
         }
         let triangle_count = triangles.len() as u32;
         let mapped = |what: &str, bytes: usize, usage| {
-            Buffer::new(device, BufferDesc::new(name(what), bytes as u64).usage(usage).location(Location::Upload))
+            Buffer::new(
+                device,
+                BufferDesc::new(context.name(what), bytes as u64).usage(usage).location(Location::Upload),
+            )
         };
-        Ok(Geometry {
+        Ok(SceneBuffers {
             frame: mapped("frame", size_of::<FrameBlock>(), vk::BufferUsageFlags::UNIFORM_BUFFER)?,
             volumes: storage("volumes", bytemuck::cast_slice(&volumes))?,
             lights: storage("lights", bytemuck::cast_slice(&lights))?,

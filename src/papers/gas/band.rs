@@ -1,0 +1,81 @@
+//! Bands of rows, in which a picture is done whose lists no buffer of the device holds at once.
+
+use crate::gpu::{Error, Frame, Pass};
+use crate::host_block;
+
+/// Rows of a dispatch: a slow variant's picture is made of many short dispatches, which no watchdog ends.
+const DISPATCH_ROWS: u32 = 32;
+
+host_block! {
+    /// Rows of the picture: those whose lists are held, or a part of them.
+    pub struct BandConstants {
+        list_row: u32,
+        first_row: u32,
+        end_row: u32,
+    }
+}
+
+/// Rows of a picture whose lists are held at once.
+#[derive(Debug, Clone, Copy)]
+pub struct Band {
+    width: u32,
+    first_row: u32,
+    end_row: u32,
+}
+
+impl Band {
+    /// All bands of a picture of `width` x `height` pixels, `rows` rows each.
+    pub fn all(width: u32, height: u32, rows: u32) -> impl Iterator<Item = Band> {
+        ranges(0, height, rows).map(move |(first_row, end_row)| Band { width, first_row, end_row })
+    }
+
+    pub fn is_first(self) -> bool {
+        self.first_row == 0
+    }
+
+    pub fn constants(self) -> BandConstants {
+        BandConstants { list_row: self.first_row, first_row: self.first_row, end_row: self.end_row }
+    }
+
+    /// Dispatches a thread a pixel.
+    ///
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn dispatch(self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        frame.compute(pass, |dispatch| {
+            dispatch.constants(&self.constants()).threads(self.width, self.end_row - self.first_row, 1);
+        })
+    }
+
+    /// Dispatches a thread a pixel, in dispatches that take a short time each.
+    ///
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn dispatch_in_parts(self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        frame.compute(pass, |dispatch| {
+            for (first_row, end_row) in ranges(self.first_row, self.end_row, DISPATCH_ROWS) {
+                let constants = BandConstants { first_row, end_row, ..self.constants() };
+                dispatch.constants(&constants).threads(self.width, end_row - first_row, 1);
+            }
+        })
+    }
+}
+
+/// `first..end` in ranges of `count`, the last one perhaps shorter.
+fn ranges(first: u32, end: u32, count: u32) -> impl Iterator<Item = (u32, u32)> {
+    (first..end).step_by(count.max(1) as usize).map(move |from| (from, end.min(from.saturating_add(count))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_is_in_one_dispatch_of_one_band() {
+        for (height, rows) in [(1, 1), (768, 768), (4096, 512), (16384, 33), (5, 9)] {
+            let bands = Band::all(16, height, rows);
+            let parts = bands.flat_map(|b| ranges(b.first_row, b.end_row, DISPATCH_ROWS));
+            assert!(parts.flat_map(|(first, end)| first..end).eq(0..height), "{height} in {rows}");
+        }
+    }
+}

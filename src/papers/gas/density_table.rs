@@ -1,0 +1,48 @@
+//! `density-table`: the densities of all volumes on a grid (section "Calculation of the shadow table").
+
+use std::sync::Arc;
+
+use super::context::Context;
+use super::scene_buffers::SceneBuffers;
+use crate::gpu::{Buffer, Error, Frame, Pass};
+use crate::host_block;
+
+host_block! {
+    struct TableConstants {
+        /// Index of the volume.
+        volume: u32,
+    }
+}
+
+pub struct DensityTable {
+    /// Densities: a table a volume, `table_size` entries along each axis, x fastest.
+    pub densities: Arc<Buffer>,
+    pass: Pass,
+    size: u32,
+    volume_count: u32,
+}
+
+impl DensityTable {
+    /// # Errors
+    /// [`Error::Limit`] for tables beyond what the device binds.
+    pub fn new(context: &Context<'_>, scene: &SceneBuffers) -> Result<Self, Error> {
+        let volume_count = context.parameters.volumes.len() as u32;
+        let densities = context.table("density-table", volume_count.into())?;
+        let pass = Pass::compute("density-table", "Shadow table", "gas/density-table.comp")
+            .with("frame", &scene.frame)
+            .with("Volumes", &scene.volumes)
+            .with("Offsets", &scene.offsets)
+            .with("DensityTables", &densities)
+            .constants::<TableConstants>()
+            .build(context.shaders)?;
+        Ok(DensityTable { densities, pass, size: context.parameters.table_size, volume_count })
+    }
+
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        frame.compute(&self.pass, |dispatch| {
+            for volume in 0..self.volume_count {
+                dispatch.constants(&TableConstants { volume }).threads(self.size, self.size, self.size);
+            }
+        })
+    }
+}

@@ -1,0 +1,54 @@
+//! `light-attenuation`: what the gas takes of the light on visible fragments (section "Shadowing of the gas").
+
+use std::sync::Arc;
+
+use super::a_buffer::ABuffer;
+use super::band::{Band, BandConstants};
+use super::context::Context;
+use super::scene_buffers::SceneBuffers;
+use crate::gpu::{Buffer, Error, Frame, Pass};
+
+pub struct LightAttenuation {
+    /// The fraction of each light that the gas takes, 0 to 1: for each fragment, each light's.
+    pub attenuations: Arc<Buffer>,
+    pass: Pass,
+}
+
+impl LightAttenuation {
+    /// By the table where there are `shadow_sums`, else by tracing.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a capacity beyond what the device binds.
+    pub fn new(
+        context: &Context<'_>,
+        scene: &SceneBuffers,
+        lists: &ABuffer,
+        sections: &Arc<Buffer>,
+        shadow_sums: Option<&Arc<Buffer>>,
+    ) -> Result<Self, Error> {
+        let count = u64::from(lists.capacity.fragments) * context.parameters.lights.len() as u64;
+        let attenuations = context.storage::<f32>("light-attenuations", count)?;
+        let (shader, name, buffer) = match shadow_sums {
+            Some(sums) => ("gas/light-attenuation-table.comp", "ShadowTables", sums),
+            None => ("gas/light-attenuation-traced.comp", "Offsets", &scene.offsets),
+        };
+        let pass = Pass::compute("light-attenuation", "Shadowing of the gas", shader)
+            .with("frame", &scene.frame)
+            .with("Volumes", &scene.volumes)
+            .with("Lights", &scene.lights)
+            .with("Heads", &lists.heads)
+            .with("Links", &lists.links)
+            .with("Surfaces", &lists.surfaces)
+            .with("Colors", &lists.colors)
+            .with("Sections", sections)
+            .with("Attenuations", &attenuations)
+            .with(name, buffer)
+            .constants::<BandConstants>()
+            .build(context.shaders)?;
+        Ok(LightAttenuation { attenuations, pass })
+    }
+
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
+        band.dispatch_in_parts(frame, &self.pass)
+    }
+}

@@ -1,0 +1,34 @@
+//! `sort`: each pixel's list by depth, the depth at which its tracing ends, and the slots of the sections to come.
+
+use super::a_buffer::ABuffer;
+use super::band::{Band, BandConstants};
+use super::context::Context;
+use super::scene_buffers::SceneBuffers;
+use crate::gpu::{Error, Frame, Pass};
+
+pub struct Sort {
+    pass: Pass,
+}
+
+impl Sort {
+    /// # Errors
+    /// What Vulkan answers.
+    pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
+        let pass = Pass::compute("sort", "A-buffer", "gas/sort.comp")
+            .with("frame", &scene.frame)
+            .with("Volumes", &scene.volumes)
+            .with("Heads", &lists.heads)
+            .with("Links", &lists.links)
+            .with("Surfaces", &lists.surfaces)
+            .with("Colors", &lists.colors)
+            .with("Counters", &lists.counters)
+            .with("Pixels", &lists.pixels)
+            .constants::<BandConstants>()
+            .build(context.shaders)?;
+        Ok(Sort { pass })
+    }
+
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
+        band.dispatch(frame, &self.pass)
+    }
+}

@@ -1,0 +1,56 @@
+//! `volume`: the gas of every pixel, marched between its fragments (section "Volume rendering").
+
+use std::sync::Arc;
+
+use super::a_buffer::ABuffer;
+use super::band::{Band, BandConstants};
+use super::blocks::SectionBlock;
+use super::context::Context;
+use super::parameters::Variant;
+use super::scene_buffers::SceneBuffers;
+use crate::gpu::{Buffer, Error, Frame, Pass};
+
+pub struct VolumeMarch {
+    /// Sections of gas, [`SectionBlock`]s in the slots that `sort` reserved.
+    pub sections: Arc<Buffer>,
+    pass: Pass,
+}
+
+impl VolumeMarch {
+    /// The gas that `shadow_sums` shadows, those of [`Variant::Table`].
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a capacity beyond what the device binds.
+    pub fn new(
+        context: &Context<'_>,
+        scene: &SceneBuffers,
+        lists: &ABuffer,
+        variant: Variant,
+        shadow_sums: Option<&Arc<Buffer>>,
+    ) -> Result<Self, Error> {
+        let sections = context.storage::<SectionBlock>("sections", lists.capacity.sections.into())?;
+        let shader = match variant {
+            Variant::NoVolume | Variant::None | Variant::Surfaces => "gas/volume-none.comp",
+            Variant::Traced => "gas/volume-traced.comp",
+            Variant::Table => "gas/volume-table.comp",
+        };
+        let mut pass = Pass::compute("volume", "Volume rendering", shader)
+            .with("frame", &scene.frame)
+            .with("Volumes", &scene.volumes)
+            .with("Lights", &scene.lights)
+            .with("Offsets", &scene.offsets)
+            .with("Heads", &lists.heads)
+            .with("Links", &lists.links)
+            .with("Pixels", &lists.pixels)
+            .with("Sections", &sections)
+            .constants::<BandConstants>();
+        if let Some(sums) = shadow_sums {
+            pass = pass.with("ShadowTables", sums);
+        }
+        Ok(VolumeMarch { pass: pass.build(context.shaders)?, sections })
+    }
+
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
+        band.dispatch_in_parts(frame, &self.pass)
+    }
+}
