@@ -6,6 +6,7 @@ mod common;
 mod barriers;
 mod counters;
 mod devices;
+mod first_pass;
 mod fixtures;
 mod indirect;
 mod memory_model;
