@@ -27,7 +27,7 @@ fn orange(device: &Arc<Device>) -> Result<Vec<u8>, Error> {
         .color(&picture, Load::Discard, Blend::Replace)
         .build(&shaders)?;
     let mut recorder = Recorder::new(device)?;
-    let sample = recorder.run(Mode::Stamped, |frame| {
+    let sample = recorder.run(Mode::Timestamped, |frame| {
         frame.graphics(&fill, |draw| {
             draw.constants(&Paint { value: [1.0, 0.5, 0.0, 1.0] }).vertices(3);
         })
