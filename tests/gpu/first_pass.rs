@@ -51,5 +51,8 @@ fn the_first_pass_fills_its_picture() {
 fn the_page_shows_this_code() {
     let page = include_str!("../../docs/first-pass.md");
     let code = include_str!("first_pass.rs").split("// begin\n").nth(1).and_then(|rest| rest.split("// end").next());
-    assert!(page.contains(code.unwrap().trim()), "docs/first-pass.md does not show the code of tests/gpu/first_pass.rs");
+    assert!(
+        page.contains(code.unwrap().trim()),
+        "docs/first-pass.md does not show the code of tests/gpu/first_pass.rs"
+    );
 }
