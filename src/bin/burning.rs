@@ -1,5 +1,5 @@
 //! `burning`: the paper's own benchmark binary.
 
 fn main() -> std::process::ExitCode {
-    fumarole::cli::burning()
+    fumarole::cli::binary::<fumarole::papers::burning::setup::Setup>()
 }

@@ -5,7 +5,6 @@ use std::sync::atomic::Ordering;
 use clap::{Args, Parser};
 
 use super::bench;
-use super::burning::BurningArgs;
 use super::failure::Failure;
 use super::gas::GasArgs;
 use super::lava::LavaArgs;
@@ -72,7 +71,6 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     measure::<GasArgs>(&mut machine, &output, &mut measured)?;
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
-    measure::<BurningArgs>(&mut machine, &output, &mut measured)?;
     measure::<TerrainArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)

@@ -12,10 +12,10 @@ use super::options::{CommonArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::{bench, passes, render, spelling};
-use crate::measure::Variant;
 use crate::measure::experiment::{Context, Experiment};
-use crate::measure::parameter::{Given, Parameter, Shape};
+use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::study::{Declared, Preset};
+use crate::measure::{Error, Variant};
 
 /// Options of all papers that the short help lists.
 const EVERYDAY: [&str; 14] = [
@@ -238,8 +238,7 @@ impl<'a, S: Declared> Typed<'a, S> {
 
     /// What was typed, over the preset's numbers, over the defaults.
     fn resolve(&self) -> Result<S, Failure> {
-        let mut setup = self.preset.as_ref().map_or_else(S::default, |preset| (preset.setup)());
-        *setup.preset_mut() = self.preset.as_ref().map(|preset| preset.name.to_owned());
+        let mut setup = self.preset.as_ref().map_or_else(S::default, Preset::setup);
         read(self.matches, &S::parameters(), &mut setup)?;
         setup.resolve(&given(self.matches))?;
         Ok(setup)
@@ -297,8 +296,10 @@ fn experiment<S: Declared>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result
     outcome::check(&common.output)?;
     let mut options = S::Options::default();
     read(matches, &S::options(), &mut options)?;
+    parameter::check(&S::options(), &options).map_err(Error::from)?;
     let mut context = Context {
         name: experiment.name,
+        preset: typed.preset.clone(),
         setup: typed.resolve()?,
         options,
         given: given(matches),
@@ -320,6 +321,7 @@ fn own_verb<S: Declared>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>)
     destinations.json = matches.get_one::<OsString>("json").map(PathBuf::from);
     let mut context = Context {
         name: verb.name,
+        preset: typed.preset.clone(),
         setup: typed.resolve()?,
         options,
         given: given(matches),

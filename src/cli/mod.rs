@@ -2,7 +2,6 @@
 
 mod all;
 mod bench;
-mod burning;
 mod compare;
 mod declared;
 mod devices;
@@ -27,7 +26,6 @@ use std::process::ExitCode;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use self::burning::BurningArgs;
 use self::failure::Failure;
 use self::gas::GasArgs;
 use self::lava::LavaArgs;
@@ -57,8 +55,6 @@ enum Command {
     Lava(PaperCommand<LavaArgs>),
     /// Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent)
     Gas(PaperCommand<GasArgs>),
-    /// Burning, deforming and melting meshes (Amarasinghe)
-    Burning(PaperCommand<BurningArgs>),
     /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
     Terrain(PaperCommand<TerrainArgs>),
 }
@@ -98,7 +94,6 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Lava(arguments)) => arguments.run(),
         Some(Command::Gas(arguments)) => arguments.run(),
-        Some(Command::Burning(arguments)) => arguments.run(),
         Some(Command::Terrain(arguments)) => arguments.run(),
     })
 }
@@ -124,11 +119,6 @@ pub fn paper_from<S: Declared>(arguments: impl IntoIterator<Item = OsString>) ->
     spelling::learn(&command);
     let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());
     code(declared::run::<S>(&matches))
-}
-
-/// Runs the paper's own binary `burning`.
-pub fn burning() -> ExitCode {
-    end(paper::binary::<BurningArgs>())
 }
 
 /// Runs the paper's own binary `terrain`.

@@ -10,7 +10,7 @@ use super::machine::{Machine, MachineOptions};
 use super::measure::{Schedule, Watch};
 use super::parameter::Given;
 use super::result_table::ResultTable;
-use super::study::Declared;
+use super::study::{Declared, Preset};
 use super::sweep::{Plan, Point, Swept};
 use crate::image::{self, Raster, Rgba8};
 use crate::report::output::{check_writable, write};
@@ -91,6 +91,8 @@ impl MeasureOptions {
 /// An experiment that runs: what a user set up, and where its results go.
 pub struct Context<'a, S: Declared> {
     pub name: &'static str,
+    /// The preset that was named.
+    pub preset: Option<Preset<S>>,
     pub setup: S,
     /// The paper's options of experiments.
     pub options: S::Options,
@@ -129,6 +131,18 @@ impl<S: Declared> Context<'_, S> {
         let options = S::options();
         let unheeded = options.iter().find(|o| self.given.has(o.name) && !experiment.options.contains(&o.name));
         unheeded.map_or(Ok(()), |option| Err(Error::Input(format!("`{}`: this experiment has none", option.name))))
+    }
+
+    /// The parameters that were given, over the numbers of another set-up.
+    ///
+    /// # Errors
+    /// As [`Declared::resolve`].
+    pub fn over(&self, mut setup: S) -> Result<S, Error> {
+        let parameters = S::parameters();
+        let given = parameters.iter().filter(|parameter| self.given.has(parameter.name));
+        given.for_each(|parameter| parameter.copy(&self.setup, &mut setup));
+        setup.resolve(&self.given)?;
+        Ok(setup)
     }
 
     /// Opens the machine and says which it is.

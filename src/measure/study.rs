@@ -125,12 +125,22 @@ pub trait Declared: Study + Clone + Default + 'static {
 }
 
 /// The numbers of one of a paper's figures or tables.
+#[derive(Clone)]
 pub struct Preset<S: Study> {
     pub name: &'static str,
     pub help: &'static str,
     /// The variant that it is made for, where it is one alone.
     pub variant: Option<S::Variant>,
     pub setup: fn() -> S,
+}
+
+impl<S: Declared> Preset<S> {
+    /// Its numbers, under its name.
+    pub fn setup(&self) -> S {
+        let mut setup = (self.setup)();
+        *setup.preset_mut() = Some(self.name.to_owned());
+        setup
+    }
 }
 
 /// Is shown every paper, one after the other.

@@ -3,7 +3,6 @@
 #[cfg(test)]
 mod layout;
 
-pub mod burning;
 pub mod gas;
 pub mod lava;
 pub mod terrain;
@@ -28,4 +27,5 @@ macro_rules! papers {
 
 papers! {
     caustics
+    burning
 }

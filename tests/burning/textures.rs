@@ -6,9 +6,8 @@ use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device};
 use fumarole::image::{Rgba8, srgb};
 use fumarole::measure::Paper;
-use fumarole::papers::burning::experiments::texture::with_levels;
 use fumarole::papers::burning::model::Model;
-use fumarole::papers::burning::{Parameters, Texture, Variant};
+use fumarole::papers::burning::{Parameters, Texture, Variant, with_levels};
 use fumarole::scene::{Mesh, shapes};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 

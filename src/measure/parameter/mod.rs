@@ -206,6 +206,11 @@ impl<S: 'static> Parameter<S> {
         self.access.set(setup, texts)
     }
 
+    /// Gives `to` the value of `from`.
+    pub fn copy(&self, from: &S, to: &mut S) {
+        self.access.copy(from, to);
+    }
+
     fn check(&self, setup: &S) -> Result<(), ParameterError> {
         let each = if self.shape().is_several { "each must be" } else { "must be" };
         let range = format!("{each} {}", self.bounds());
@@ -248,6 +253,7 @@ trait Access<S> {
     fn shape(&self) -> Shape;
     fn parser(&self) -> fn(&[&OsStr]) -> Result<(), String>;
     fn set(&self, setup: &mut S, texts: &[&OsStr]) -> Result<(), String>;
+    fn copy(&self, from: &S, to: &mut S);
     fn text(&self, setup: &S) -> String;
     fn json(&self, setup: &S) -> Json;
     fn lies_in(&self, setup: &S, range: &Range) -> bool;
@@ -264,6 +270,10 @@ impl<S, T: Value> Access<S> for Field<S, T> {
 
     fn set(&self, setup: &mut S, texts: &[&OsStr]) -> Result<(), String> {
         T::parse(texts).map(|value| (self.set)(setup, value))
+    }
+
+    fn copy(&self, from: &S, to: &mut S) {
+        (self.set)(to, (self.get)(from));
     }
 
     fn text(&self, setup: &S) -> String {
@@ -297,6 +307,10 @@ impl<W, S> Access<W> for Inside<W, S> {
 
     fn set(&self, setup: &mut W, texts: &[&OsStr]) -> Result<(), String> {
         self.access.set((self.part_mut)(setup), texts)
+    }
+
+    fn copy(&self, from: &W, to: &mut W) {
+        self.access.copy((self.part)(from), (self.part_mut)(to));
     }
 
     fn text(&self, setup: &W) -> String {

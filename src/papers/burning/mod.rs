@@ -61,7 +61,7 @@ pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
-pub use self::texture::{Level, Texture};
+pub use self::texture::{Level, Texture, with_levels};
 
 /// What a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
@@ -345,7 +345,7 @@ impl Paper for Burning {
         if self.ticks() > 0 && nearest > radius {
             warnings.push(format!(
                 "nothing burns: the heat boundary has a radius of {radius} after {} ticks, and the object begins at \
-                 {nearest}; move --source nearer or burn longer",
+                 {nearest}; move `source` nearer or burn longer",
                 self.ticks()
             ));
         }

@@ -1,12 +1,18 @@
-//! What a user can set, under the dissertation's own words.
+//! The parameters, under the dissertation's own words.
 
+use std::ffi::OsStr;
 use std::sync::Arc;
 
 use glam::Vec3;
+use serde_json::{Value as Json, json};
 
+use super::framing::seen_from;
 use super::texture::Texture;
+use crate::field;
 use crate::measure::ParameterError;
-use crate::measure::components;
+use crate::measure::parameter::{
+    self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one,
+};
 use crate::scene::Camera;
 
 /// The methods, one a chapter, numbered as `burning/constants.glsl` does.
@@ -60,15 +66,10 @@ pub enum Material {
     Wood,
 }
 
-impl Material {
-    pub const ALL: [Material; 2] = [Material::Plain, Material::Wood];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Material::Plain => "plain",
-            Material::Wood => "wood",
-        }
-    }
+impl Choice for Material {
+    const ALL: &'static [Material] = &[Material::Plain, Material::Wood];
+    const NAMES: &'static [(&'static str, &'static str)] =
+        &[("plain", "The albedo alone"), ("wood", "The albedo with the rings of a tree")];
 }
 
 /// The quantity that colours the mesh, numbered as `burning/view.glsl` does.
@@ -86,97 +87,121 @@ pub enum Shading {
     Wire,
 }
 
-impl Shading {
-    pub const ALL: [Shading; 5] = [Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals, Shading::Wire];
+impl Choice for Shading {
+    const ALL: &'static [Shading] = &[Shading::Lit, Shading::Areas, Shading::Blocks, Shading::Normals, Shading::Wire];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("lit", "Lit, charred and glowing: the finished picture"),
+        ("areas", "The areas of the heat boundary"),
+        ("blocks", "The blocks"),
+        ("normals", "Normals as colours"),
+        ("wire", "Lit, with the edges of the drawn triangles"),
+    ];
+}
 
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Shading::Lit => "lit",
-            Shading::Areas => "areas",
-            Shading::Blocks => "blocks",
-            Shading::Normals => "normals",
-            Shading::Wire => "wire",
-        }
+/// The finest level that is drawn: a number, or `auto`, by the camera's distance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct LevelOfDetail(Option<u32>);
+
+impl Value for LevelOfDetail {
+    const SHAPE: Shape = Shape { placeholder: "auto|N", ..u32::SHAPE };
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        let text = one(texts)?;
+        let level = text.parse().map(Some).map_err(|_| format!("{text:?} is neither auto nor a level"));
+        Ok(LevelOfDetail(if text == "auto" { None } else { level? }))
+    }
+
+    fn text(&self) -> String {
+        self.0.map_or_else(|| "auto".to_owned(), |level| level.to_string())
+    }
+
+    fn json(&self) -> Json {
+        json!(self.0)
+    }
+
+    fn lies_in(&self, range: &Range) -> bool {
+        self.0.lies_in(range)
     }
 }
 
 /// Ticks of the simulation in a second.
 pub const TICKS_PER_S: f64 = 60.0;
 
-/// Every number of a configuration. The object is scaled to a diagonal of 1, so lengths are shares of the diagonal.
-/// [`Parameters::validate`] checks the ranges given here.
+/// Every number of a configuration, in the ranges of [`Parameters::declared`]. The object is scaled to a diagonal of 1, which is the
+/// unit of length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
-    /// Subdivisions of a coarse triangle into 4^levels, 0 to 5; without, the variant's own (see [`Parameters::edge`]).
+    /// Subdivisions of a coarse triangle into 4^levels; without, the variant's own (see [`Parameters::edge`]).
     pub levels: Option<u32>,
-    /// `solid` and `melting` subdivide until no edge is longer, above 0 and at most 1.
+    /// `solid` and `melting` subdivide until no edge is longer.
     pub edge: f32,
-    /// Where the fire starts, in the scaled object's space (base centred at the origin), at most 16; without, the lowest
-    /// vertex, and for `melting` the highest.
+    /// Places of ignition in the scaled object's space (base centred at the origin), at most 16; without, the lowest vertex, and
+    /// for `melting` the highest.
     pub sources: Vec<Vec3>,
-    /// psi of the boundary, above 0 and at most 100: the heat index of 3.3.
+    /// psi of the boundary: the heat index of 3.3.
     pub psi: f32,
-    /// Growth of the boundary's radius a second, above 0 and at most 10.
+    /// Growth of the boundary's radius a second.
     pub speed_per_s: f32,
-    /// w, width of an area of the boundary, above 0 and at most 1.
+    /// w, width of an area of the boundary.
     pub width_of_areas: f32,
-    /// L of table 3.1, an integer, 1 to 1,000,000.
+    /// L of table 3.1, ticks.
     pub flammability: u32,
-    /// epsilon of table 3.1, above 0 and below 1.
+    /// epsilon of table 3.1.
     pub epsilon: f32,
-    /// beta of table 3.1, above 0 and below 1.
+    /// beta of table 3.1.
     pub beta: f32,
-    /// rho of table 3.1, above 0 and below 1.
+    /// rho of table 3.1.
     pub rho: f32,
-    /// phi of table 3.1, above 0 and below 1.
+    /// phi of table 3.1.
     pub phi: f32,
-    /// gamma of eq. 4, above 0 and below 1.
+    /// gamma of eq. 4.
     pub gamma: f32,
-    /// x of 3.5.2: a neighbour's share of a block's rotation, above 0 and below 1.
+    /// x of 3.5.2: a neighbour's fraction of a block's rotation.
     pub spread: f32,
-    /// omega of table 6.1, above 0 and below 1.
+    /// omega of table 6.1.
     pub omega: f32,
-    /// chi of table 6.1, 2 to 1000.
+    /// chi of table 6.1.
     pub chi: f32,
-    /// upsilon of table 6.1, above 0 and below 1.
+    /// upsilon of table 6.1.
     pub upsilon: f32,
-    /// Height that nothing melts below, -10 to 1; without, the object's base.
+    /// Height that nothing melts below; without, the object's base.
     pub floor: Option<f32>,
-    /// Share of L at which a vertex of a solid leaves the deforming group (5.5), 0 (never) to below 1.
+    /// Fraction of L at which a vertex of a solid leaves the deforming group (5.5); 0 for never.
     pub retire_at: f32,
-    /// Blocks along x, y and z, each 1 to 256, 1,048,576 in all at most.
+    /// Blocks along x, y and z, 1,048,576 in all at most.
     pub blocks: [u32; 3],
     /// The boundary halts while more vertices than this are active (3.7.1); 0 never halts it.
     pub active_limit: u32,
-    /// Frames that one tick is spread over (3.7.2), 1 to 64.
+    /// Frames that one tick is spread over (3.7.2).
     pub time_division: u32,
     /// Loads what never changes before the first frame (3.7.4), not in every frame.
     pub preload: bool,
     /// Keeps what holds a neighbouring block to the rest (3.5.4).
     pub keep_connected: bool,
-    /// Most fire particles, 0 to 1,000,000.
+    /// Most fire particles.
     pub fire: u32,
-    /// Most smoke particles, 0 to 1,000,000.
+    /// Most smoke particles.
     pub smoke: u32,
-    /// Radius of a particle, above 0 and at most 1.
+    /// Radius of a particle.
     pub particle_radius: f32,
-    /// Finest level that is drawn, 0 to 5; without, by the distance of the camera (4.5).
+    /// Finest level that is drawn; without, by the distance of the camera (4.5).
     pub level_of_detail: Option<u32>,
     pub material: Material,
     /// Covers the object in place of the material; the mesh must have texture coordinates.
     pub texture: Option<Arc<Texture>>,
-    /// Linear RGB, 0 to 1; a factor of the texture.
+    /// Linear RGB; a factor of the texture.
     pub albedo: Vec3,
     pub shading: Shading,
     /// Without, the object fills 80 % of the picture's height.
     pub camera: Option<Camera>,
-    /// Time between two frames in seconds, 0 to 10.
+    /// Time between two frames in seconds.
     pub time_step_s: f64,
-    /// The simulation's frame that frame 0 shows, 0 to 100,000.
+    /// The simulation's frame that frame 0 shows.
     pub first_frame: u32,
     pub seed: u64,
-    /// Size of the picture in pixels, at least 1 x 1.
+    /// Width of the picture in pixels.
     pub width: u32,
+    /// Its height.
     pub height: u32,
 }
 
@@ -224,71 +249,202 @@ impl Default for Parameters {
     }
 }
 
+const BLOCKS: Field<Parameters, Extents<u32, 3>> =
+    Field { get: |p| Extents(p.blocks), set: |p, Extents(blocks)| p.blocks = blocks };
+
+const LEVEL_OF_DETAIL: Field<Parameters, LevelOfDetail> =
+    Field { get: |p| LevelOfDetail(p.level_of_detail), set: |p, level| p.level_of_detail = level.0 };
+
+const CAMERA: Field<Parameters, Option<EyeAndTarget>> = Field {
+    get: |p| p.camera.map(|camera| EyeAndTarget { eye: camera.eye, target: camera.target }),
+    set: |p, place| p.camera = place.map(|place| seen_from(place.eye, place.target)),
+};
+
+const SIZE: Field<Parameters, Size> = Field {
+    get: |p| Size { width: p.width, height: p.height },
+    set: |p, size| (p.width, p.height) = (size.width, size.height),
+};
+
+/// Between zero and one, as most numbers of tables 3.1 and 6.1.
+const FRACTION: Range = Range::above(0.0).below(1.0);
+/// A length of at most a diagonal.
+const LENGTH: Range = Range::above(0.0).to(1.0);
+const LEVELS: Range = Range::from(0.0).to(5.0);
+const PARTICLES: Range = Range::from(0.0).to(1e6);
+
 impl Parameters {
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Parameters>> {
+        let new = Parameter::<Parameters>::new::<f32>;
+        vec![
+            Parameter::new("levels", field!(Parameters.levels))
+                .range(LEVELS)
+                .help("Divide each triangle into 4^N")
+                .section("4.4.1")
+                .default_text("low-poly and fully-subdivided 5, shell 0, solid and melting by the longest edge")
+                .cost(Cost::Buffers),
+            new("edge", field!(Parameters.edge))
+                .range(LENGTH)
+                .unit("diagonals")
+                .help("solid and melting: divided until no edge is longer")
+                .cost(Cost::Buffers),
+            Parameter::new("source", field!(Parameters.sources))
+                .range(Range::from(-1000.0).to(1000.0))
+                .help("Heat source, x,y,z in the scaled object's space")
+                .section("3.3")
+                .default_text("the lowest vertex, melting the highest")
+                .cost(Cost::Buffers)
+                .everyday(),
+            new("psi", field!(Parameters.psi))
+                .range(Range::above(0.0).to(100.0))
+                .help("Heat index of the boundary's squared distance")
+                .section("3.3")
+                .cost(Cost::Buffers),
+            new("speed", field!(Parameters.speed_per_s))
+                .range(Range::above(0.0).to(10.0))
+                .unit("diagonals a second")
+                .help("Growth of the boundary's radius")
+                .section("3.3")
+                .everyday(),
+            new("area-width", field!(Parameters.width_of_areas))
+                .range(LENGTH)
+                .unit("diagonals")
+                .help("Width of an area of the boundary")
+                .section("3.3"),
+            Parameter::new("flammability", field!(Parameters.flammability))
+                .range(Range::from(1.0).to(1e6))
+                .unit("ticks")
+                .help("L, combustion of a vertex")
+                .section("table 3.1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            new("epsilon", field!(Parameters.epsilon)).range(FRACTION).help("Meltability").section("table 3.1"),
+            new("beta", field!(Parameters.beta)).range(FRACTION).help("Displacement scale").section("table 3.1"),
+            new("rho", field!(Parameters.rho)).range(FRACTION).help("Material density").section("table 3.1"),
+            new("phi", field!(Parameters.phi)).range(FRACTION).help("Bond strength").section("table 3.1"),
+            new("gamma", field!(Parameters.gamma)).range(FRACTION).help("Rotation of blocks").section("eq. 4"),
+            new("spread", field!(Parameters.spread))
+                .range(FRACTION)
+                .help("x, a block's share of its neighbours' rotation")
+                .section("3.5.2"),
+            new("omega", field!(Parameters.omega))
+                .range(FRACTION)
+                .unit("mean edges")
+                .help("melting: longest edge")
+                .section("table 6.1"),
+            new("chi", field!(Parameters.chi))
+                .range(Range::from(2.0).to(1000.0))
+                .help("melting: longest over shortest edge")
+                .section("table 6.1"),
+            new("upsilon", field!(Parameters.upsilon))
+                .range(FRACTION)
+                .help("melting: share of a violation that is folded in a tick")
+                .section("table 6.1"),
+            Parameter::new("floor", field!(Parameters.floor))
+                .range(Range::from(-10.0).to(1.0))
+                .unit("diagonals")
+                .help("melting: height that nothing sinks below")
+                .default_text("the object's base"),
+            new("retire-at", field!(Parameters.retire_at))
+                .range(Range::from(0.0).below(1.0))
+                .help("solid: share of L at which a vertex leaves the deforming group")
+                .section("5.5"),
+            Parameter::new("blocks", BLOCKS)
+                .placeholder("XxYxZ")
+                .range(Range::from(1.0).to(256.0))
+                .help("Blocks along x, y and z")
+                .section("3.5.1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("active-limit", field!(Parameters.active_limit))
+                .help("Halt the boundary while more vertices are active; 0 never does")
+                .section("3.7.1"),
+            Parameter::new("time-division", field!(Parameters.time_division))
+                .range(Range::from(1.0).to(64.0))
+                .unit("frames")
+                .help("Spread each tick over so many")
+                .section("3.7.2"),
+            Parameter::new("preload", field!(Parameters.preload))
+                .help("Load what never changes before the first frame, or again in every frame")
+                .section("3.7.4")
+                .cost(Cost::Buffers),
+            Parameter::new("keep-connected", field!(Parameters.keep_connected))
+                .help("Never leave a block that has weight without neighbours, or let pieces come off")
+                .section("3.5.4"),
+            Parameter::new("fire", field!(Parameters.fire))
+                .range(PARTICLES)
+                .unit("particles")
+                .help("Most fire particles")
+                .section("3.6")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("smoke", field!(Parameters.smoke))
+                .range(PARTICLES)
+                .unit("particles")
+                .help("Most smoke particles")
+                .section("3.6")
+                .cost(Cost::Buffers)
+                .everyday(),
+            new("particle-radius", field!(Parameters.particle_radius))
+                .range(LENGTH)
+                .unit("diagonals")
+                .help("Radius of a particle"),
+            Parameter::new("lod", LEVEL_OF_DETAIL)
+                .range(LEVELS)
+                .help("low-poly, solid and melting: finest level that is drawn, or auto, by distance")
+                .section("4.5"),
+            Parameter::new("material", field!(Parameters.material))
+                .help("Material of the surface")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("albedo", field!(Parameters.albedo))
+                .placeholder("R,G,B")
+                .range(Range::from(0.0).to(1.0))
+                .help("Albedo, linear red,green,blue; a factor of a texture")
+                .default_text("0.36,0.17,0.07, with a texture 1,1,1"),
+            Parameter::new("shading", field!(Parameters.shading))
+                .help("The quantity that colours the mesh")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("camera", CAMERA)
+                .unit("diagonals")
+                .help("Camera: eye and target, x,y,z,x,y,z")
+                .default_text("the object fills 80 % of the picture")
+                .everyday(),
+            Parameter::new("size", SIZE)
+                .range(Range::from(1.0))
+                .unit("pixel")
+                .help("Size of the picture")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("seed", field!(Parameters.seed))
+                .help("Seed of the boundary's noise and of the particles")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("time-step", field!(Parameters.time_step_s))
+                .range(Range::from(0.0).to(10.0))
+                .unit("seconds")
+                .help("Simulated time between two frames")
+                .default_text("1/60"),
+            Parameter::new("first-frame", field!(Parameters.first_frame))
+                .range(Range::from(0.0).to(100_000.0))
+                .help("The simulation's frame that frame 0 shows")
+                .cost(Cost::Buffers)
+                .everyday(),
+        ]
+    }
+
     /// Checks every range.
     ///
     /// # Errors
     /// The first parameter outside its range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        let check = |is_good, name, value: &dyn ToString, range: &str| {
-            ParameterError::check(is_good, name, value.to_string(), range)
-        };
-        // Table 3.1: the first is an integer, the rest are real numbers between zero and one.
-        let flammability = self.flammability;
-        check((1..=1_000_000).contains(&flammability), "--flammability", &flammability, "must be 1 to 1000000")?;
-        let shares = [
-            ("--epsilon", self.epsilon),
-            ("--beta", self.beta),
-            ("--rho", self.rho),
-            ("--phi", self.phi),
-            ("--gamma", self.gamma),
-            ("--spread", self.spread),
-            ("--omega", self.omega),
-            ("--upsilon", self.upsilon),
-        ];
-        for (name, value) in shares {
-            check(value > 0.0 && value < 1.0, name, &value, "must be above 0 and below 1")?;
-        }
-        check((2.0..=1000.0).contains(&self.chi), "--chi", &self.chi, "must be 2 to 1000")?;
-        let positive = [
-            ("--psi", self.psi, 100.0),
-            ("--speed", self.speed_per_s, 10.0),
-            ("--area-width", self.width_of_areas, 1.0),
-            ("--edge", self.edge, 1.0),
-            ("--particle-radius", self.particle_radius, 1.0),
-        ];
-        for (name, value, most) in positive {
-            check(value > 0.0 && value <= most, name, &value, &format!("must be above 0 and at most {most}"))?;
-        }
-        let at = self.retire_at;
-        check((0.0..1.0).contains(&at), "--retire-at", &at, "must be 0 to below 1")?;
-        if let Some(floor) = self.floor {
-            check((-10.0..=1.0).contains(&floor), "--floor", &floor, "must be -10 to 1")?;
-        }
-        for (name, level) in [("--levels", self.levels), ("--lod", self.level_of_detail)] {
-            check(level.is_none_or(|l| l <= 5), name, &level.unwrap_or(0), "must be 0 to 5")?;
-        }
+        parameter::check(&Self::declared(), self)?;
         let sources = self.sources.len();
-        check(sources <= 16, "--source", &sources, "there are at most 16 sources")?;
-        for source in &self.sources {
-            let is_good = source.to_array().iter().all(|c| c.abs() <= 1000.0);
-            check(is_good, "--source", &components(*source), "each of x, y and z must be -1000 to 1000")?;
-        }
-        let blocks = self.blocks;
-        let is_good = blocks.iter().all(|b| (1..=256).contains(b)) && blocks.iter().product::<u32>() <= 1 << 20;
-        let text = blocks.map(|b| b.to_string()).join("x");
-        check(is_good, "--blocks", &text, "must be 1 to 256 along x, y and z, and at most 1048576 in all")?;
-        let division = self.time_division;
-        check((1..=64).contains(&division), "--time-division", &division, "must be 1 to 64 frames")?;
-        for (name, count) in [("--fire", self.fire), ("--smoke", self.smoke)] {
-            check(count <= 1_000_000, name, &count, "must be 0 to 1000000 particles")?;
-        }
-        let is_color = self.albedo.to_array().iter().all(|c| (0.0..=1.0).contains(c));
-        check(is_color, "--albedo", &components(self.albedo), "each of red, green and blue must be 0 to 1")?;
-        let step = self.time_step_s;
-        check((0.0..=10.0).contains(&step), "--time-step", &step, "must be 0 to 10 seconds")?;
-        check(self.first_frame <= 100_000, "--first-frame", &self.first_frame, "must be 0 to 100000")?;
-        ParameterError::check_size(self.width, self.height)?;
+        ParameterError::check(sources <= 16, "source", sources, "there are at most 16 sources")?;
+        let blocks = self.blocks.iter().product::<u32>();
+        ParameterError::check(blocks <= 1 << 20, "blocks", Extents(self.blocks).text(), "must be at most 1048576 in all")?;
         self.camera.as_ref().map_or(Ok(()), ParameterError::check_camera)
     }
 

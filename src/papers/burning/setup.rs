@@ -1,4 +1,4 @@
-//! The experiments of the `burning` paper: what a user set up, what a run says of itself, the tables and the picture strips.
+//! The set-up of the `burning` paper: its numbers with a mesh and a texture, its record and its declarations.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -6,30 +6,32 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 use serde_json::{Map, Value, json};
 
+use super::experiments::{self, Options, presets};
+use super::model::with_triangles;
+use super::{BlockCounts, Burning, NEEDS, Parameters, Texture, Variant, texture};
+use crate::field;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{self, Feature, ShaderLibrary};
-use crate::measure::Error;
-use crate::measure::Paper;
-use crate::measure::ParameterError;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
+use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
+use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
-use crate::measure::study::{Identity, Metrics, Study};
-use crate::papers::burning::model::with_triangles;
-use crate::papers::burning::{BlockCounts, Burning, NEEDS, Parameters, Texture, Variant};
+use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use crate::measure::{Error, Paper as _};
 use crate::scene::{Mesh, MeshSource};
 
-/// What a user set up.
+/// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
     pub parameters: Parameters,
-    /// What burns.
+    /// The object that burns.
     pub mesh: MeshSource,
-    /// Factors of the mesh along x, y and z, each above 0 and at most 1000.
+    /// Factors of the mesh along x, y and z.
     pub stretch: Vec3,
-    /// Triangles that the mesh is simplified or subdivided to, 4 to 4,000,000; as it is, without.
+    /// Triangles that the mesh is simplified or subdivided to; as it is, without.
     pub triangles: Option<u32>,
     /// A PNG that covers the mesh by its texture coordinates, in place of the material.
     pub texture: Option<PathBuf>,
@@ -56,14 +58,36 @@ impl Setup {
     /// # Errors
     /// [`Error::Parameter`].
     pub fn check(&self) -> Result<(), Error> {
-        self.parameters.validate()?;
-        let stretch = self.stretch.to_array();
-        let is_good = stretch.iter().all(|&factor| factor > 0.0 && factor <= 1000.0);
-        let text = stretch.map(|factor| factor.to_string()).join(",");
-        ParameterError::check(is_good, "--stretch", text, "each of x, y and z must be above 0 and at most 1000")?;
-        let count = self.triangles.unwrap_or(4);
-        ParameterError::check((4..=4_000_000).contains(&count), "--triangles", count, "must be 4 to 4000000")?;
-        Ok(())
+        parameter::check(&Self::own_parameters(), self)?;
+        Ok(self.parameters.validate()?)
+    }
+
+    /// The parameters beside the numbers.
+    fn own_parameters() -> [Parameter<Self>; 4] {
+        [
+            Parameter::new("mesh", field!(Setup.mesh))
+                .help(
+                    "Object that burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; scaled to a \
+                     diagonal of 1, its base centred at the origin",
+                )
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("stretch", field!(Setup.stretch))
+                .range(Range::above(0.0).to(1000.0))
+                .help("Stretch the mesh along x, y and z")
+                .cost(Cost::Buffers),
+            Parameter::new("triangles", field!(Setup.triangles))
+                .range(Range::from(4.0).to(4e6))
+                .help("Simplify or subdivide the mesh to about so many triangles")
+                .default_text("as it is")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("texture", field!(Setup.texture))
+                .placeholder("FILE.png")
+                .help("PNG that covers the mesh by its texture coordinates, in place of a material; at most 8192 pixels a side")
+                .excludes(&["material"])
+                .cost(Cost::Pipelines),
+        ]
     }
 }
 
@@ -89,12 +113,12 @@ impl Study for Setup {
             None => None,
             Some(path) if mesh.texture_coordinates.is_empty() => {
                 return Err(Error::Input(format!(
-                    "--texture {}: the mesh {} has no texture coordinates; give one that has, or leave the texture out",
+                    "`texture` {}: the mesh {} has no texture coordinates; give one that has, or leave the texture out",
                     path.display(),
                     self.mesh
                 )));
             }
-            Some(path) => Some(Arc::new(super::experiments::texture::load(path)?)),
+            Some(path) => Some(Arc::new(texture::load(path)?)),
         };
         Ok(Scene { mesh, texture })
     }
@@ -109,9 +133,7 @@ impl Study for Setup {
         let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
         let made = Burning::new(shaders, label, variant, &parameters, &scene.mesh);
         made.map_err(|error| match (&error, &self.texture) {
-            (gpu::Error::Limit { object, .. }, Some(path)) if *object == format!("{label}/texture") => {
-                error.set_by(&format!("--texture {}", path.display()))
-            }
+            (gpu::Error::Limit { object, .. }, Some(_)) if *object == format!("{label}/texture") => error.set_by("texture"),
             _ => error,
         })
     }
@@ -126,48 +148,20 @@ impl Study for Setup {
     }
 
     fn config(&self, scene: &Scene, paper: &Burning) -> Map<String, Value> {
-        let p = &self.parameters;
         let model = paper.model();
         let sources: Vec<_> = model.sources.iter().map(|s| s.to_array()).collect();
-        entries([
-            ("mesh", json!(self.mesh.to_string())),
-            ("stretch", json!(self.stretch.to_array())),
+        let mut config = parameter::config(&Self::parameters(), self);
+        config.extend(entries([
             ("triangles", json!(scene.mesh.triangle_count())),
             ("levels", json!(model.levels)),
-            ("edge", json!(p.edge)),
             ("source", json!(sources)),
-            ("psi", json!(p.psi)),
-            ("speed", json!(p.speed_per_s)),
-            ("area_width", json!(p.width_of_areas)),
-            ("flammability", json!(p.flammability)),
-            ("epsilon", json!(p.epsilon)),
-            ("beta", json!(p.beta)),
-            ("rho", json!(p.rho)),
-            ("phi", json!(p.phi)),
-            ("gamma", json!(p.gamma)),
-            ("spread", json!(p.spread)),
-            ("omega", json!(p.omega)),
-            ("chi", json!(p.chi)),
-            ("upsilon", json!(p.upsilon)),
             ("floor", json!(model.floor)),
-            ("retire_at", json!(p.retire_at)),
-            ("blocks", json!(p.blocks)),
-            ("active_limit", json!(p.active_limit)),
-            ("time_division", json!(p.time_division)),
-            ("preload", json!(p.preload)),
-            ("keep_connected", json!(p.keep_connected)),
-            ("fire", json!(p.fire)),
-            ("smoke", json!(p.smoke)),
-            ("particle_radius", json!(p.particle_radius)),
-            ("lod", json!(p.level_of_detail)),
-            ("material", json!(scene.texture.is_none().then(|| p.material.as_str()))),
-            ("texture", json!(self.texture.as_ref().map(|path| path.display().to_string()))),
-            ("albedo", json!(p.albedo.to_array())),
-            ("shading", json!(p.shading.as_str())),
             ("camera", config::camera(paper.camera())),
-            ("time_step", json!(p.time_step_s)),
-            ("first_frame", json!(p.first_frame)),
-        ])
+        ]));
+        if scene.texture.is_some() {
+            config.insert("material".to_owned(), Value::Null);
+        }
+        config
     }
 
     fn summary(&self) -> String {
@@ -187,11 +181,56 @@ impl Study for Setup {
     }
 }
 
-/// What the device has counted by the last frame that was recorded, and the frame rate.
+impl Declared for Setup {
+    const ABOUT: &'static str =
+        "Burning: heat, deformation, consumption and melting of meshes (Amarasinghe), pass by pass";
+    const BENCHED: &'static [Variant] = &[Variant::Shell];
+    const RENDERED: Variant = Variant::Shell;
+
+    type Options = Options;
+
+    fn parameters() -> Vec<Parameter<Self>> {
+        let numbers = Parameters::declared().into_iter();
+        let numbers = numbers.map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
+        Self::own_parameters().into_iter().chain(numbers).collect()
+    }
+
+    fn options() -> Vec<Parameter<Options>> {
+        experiments::options()
+    }
+
+    fn presets() -> Vec<Preset<Self>> {
+        presets::all()
+    }
+
+    fn experiments() -> Vec<Experiment<Self>> {
+        experiments::all()
+    }
+
+    /// The bunny, well alight.
+    fn quick() -> Self {
+        let mut setup = Setup::default();
+        setup.parameters.first_frame = 420;
+        setup
+    }
+
+    fn preset_mut(&mut self) -> &mut Option<String> {
+        &mut self.preset
+    }
+
+    fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        if given.has("texture") && !given.has("albedo") {
+            self.parameters.albedo = Vec3::ONE;
+        }
+        self.check()
+    }
+}
+
+/// The counts of the device by the last frame that was recorded, and the frame rate.
 fn results(machine: &Machine, paper: &Burning, measurement: &Measurement) -> Result<Map<String, Value>, Error> {
     let model = paper.model();
-    let look = super::experiments::course::look(machine, paper)?;
-    let counts = look.counts;
+    let snapshot = experiments::snapshot(machine, paper)?;
+    let counts = snapshot.counts;
     let blocks: Vec<BlockCounts> =
         bytemuck::pod_collect_to_vec(&read_buffer(&machine.device, &paper.buffers().blocks)?);
     let occupied = blocks.iter().filter(|block| block.live > 0).count();
@@ -201,8 +240,8 @@ fn results(machine: &Machine, paper: &Burning, measurement: &Measurement) -> Res
         ("radius", json!(counts.radius)),
         ("vertices", json!(model.rest.len())),
         ("finest_triangles", json!(model.triangles.len())),
-        ("coarse_triangles", json!(look.coarse)),
-        ("refined_coarse_triangles", json!(look.refined)),
+        ("coarse_triangles", json!(snapshot.coarse)),
+        ("refined_coarse_triangles", json!(snapshot.refined)),
         ("occupied_blocks", json!(occupied)),
         ("active_vertices", json!(counts.active_vertices)),
         ("active_triangles", json!(counts.active_triangles)),

@@ -1,5 +1,6 @@
 //! A picture on the object, by the texture coordinates of its corners: the dissertation's objects have textures that it does not name.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use ash::vk;
@@ -7,6 +8,8 @@ use ash::vk;
 use crate::gpu::transfer::{upload, upload_rows};
 use crate::gpu::{Buffer, Error, Image, ImageDesc, ImageView, ShaderLibrary};
 use crate::host_block;
+use crate::image::{Rgba8, read_png, srgb};
+use crate::measure;
 
 /// A picture with its smaller versions, each half as large as the one before it, down to one texel.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,5 +92,115 @@ impl Surface {
                 bytemuck::cast_slice(coordinates),
             )?,
         })
+    }
+}
+
+/// With all its levels a picture of this side fills an image of 16,384 texels a side, which devices of this size of image take; others
+/// name their limit.
+const LARGEST_SIDE: u32 = 8192;
+
+/// Reads a PNG and makes its levels.
+///
+/// # Errors
+/// [`measure::Error::Image`] for a file that is missing, cut short or no PNG; [`measure::Error::Input`] for more than 8,192 pixels a side.
+pub fn load(path: &Path) -> Result<Texture, measure::Error> {
+    let picture = read_png(path)?;
+    let (width, height) = (picture.width(), picture.height());
+    if width.max(height) > LARGEST_SIDE {
+        let path = path.display();
+        return Err(measure::Error::Input(format!(
+            "`texture` {path}: {width} x {height} pixels; scale it to {LARGEST_SIDE} a side at most"
+        )));
+    }
+    Ok(with_levels(&picture))
+}
+
+/// The levels of a picture: each texel the mean, in linear light, of those of the level before that it covers.
+pub fn with_levels(picture: &Rgba8) -> Texture {
+    let linear: Vec<f32> = (0..=255_u8).map(|v| srgb::decode(f64::from(v) / 255.0) as f32).collect();
+    let mut levels =
+        vec![Level { width: picture.width(), height: picture.height(), texels: picture.pixels().to_vec() }];
+    while let Some(last) = levels.last().filter(|l| l.width.max(l.height) > 1) {
+        let next = halved(last, &linear);
+        levels.push(next);
+    }
+    Texture { levels }
+}
+
+/// Half as many texels along each side, rounded down, but one at least; `linear` is the light of each 8-bit value.
+fn halved(from: &Level, linear: &[f32]) -> Level {
+    let (width, height) = ((from.width / 2).max(1), (from.height / 2).max(1));
+    // An odd side's last texel has three to cover.
+    let covered = |at: u32, count: u32, of: u32| {
+        let end = if at + 1 == count { of } else { 2 * at + 2 };
+        2 * at..end
+    };
+    let mut texels = Vec::with_capacity(4 * width as usize * height as usize);
+    for y in 0..height {
+        for x in 0..width {
+            let mut sums = [0.0_f32; 3];
+            let mut count = 0.0;
+            for row in covered(y, height, from.height) {
+                for column in covered(x, width, from.width) {
+                    let first = 4 * (row as usize * from.width as usize + column as usize);
+                    for (sum, &value) in sums.iter_mut().zip(&from.texels[first..first + 3]) {
+                        *sum += linear[usize::from(value)];
+                    }
+                    count += 1.0;
+                }
+            }
+            texels.extend(sums.map(|sum| srgb::encode8(sum / count)));
+            texels.push(255);
+        }
+    }
+    Level { width, height, texels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(width: u32, height: u32, color: impl Fn(u32, u32) -> [u8; 3]) -> Rgba8 {
+        let at = |i: u32| color(i % width, i / width);
+        let pixels = (0..width * height).flat_map(|i| [at(i)[0], at(i)[1], at(i)[2], 255]).collect();
+        Rgba8::new(width, height, pixels).unwrap()
+    }
+
+    #[test]
+    fn levels_halve_down_to_one_texel() {
+        for (width, height, sizes) in [
+            (1, 1, vec![(1, 1)]),
+            (4, 4, vec![(4, 4), (2, 2), (1, 1)]),
+            (5, 2, vec![(5, 2), (2, 1), (1, 1)]),
+            (1, 3, vec![(1, 3), (1, 1)]),
+        ] {
+            let texture = with_levels(&picture(width, height, |_, _| [9, 200, 77]));
+            let found: Vec<_> = texture.levels.iter().map(|l| (l.width, l.height)).collect();
+            assert_eq!(found, sizes);
+            // What is one colour stays so.
+            for level in &texture.levels {
+                assert_eq!(level.texels.len(), 4 * (level.width * level.height) as usize);
+                assert!(level.texels.chunks_exact(4).all(|t| t == [9, 200, 77, 255]));
+            }
+        }
+    }
+
+    #[test]
+    fn means_are_of_light() {
+        let board = with_levels(&picture(2, 2, |x, y| [255 * ((x + y) % 2) as u8; 3]));
+        // Half the light is 188 of 255.
+        assert_eq!(board.levels[1].texels, [188, 188, 188, 255]);
+        // Three columns become one: none is left out.
+        let stripes = with_levels(&picture(3, 1, |x, _| [if x == 2 { 255 } else { 0 }, 0, 0]));
+        assert_eq!(stripes.levels[1].texels[0], srgb::encode8(1.0 / 3.0));
+    }
+
+    #[test]
+    fn a_picture_that_is_too_large_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("wide.png");
+        crate::image::write_png(&path, &picture(8193, 1, |_, _| [0; 3])).unwrap();
+        let error = load(&path).unwrap_err().to_string();
+        assert!(error.contains("8193 x 1") && !error.contains('\n'), "{error}");
     }
 }

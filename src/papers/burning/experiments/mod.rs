@@ -1,9 +1,294 @@
-//! The tables and figures of the `burning` paper, with the paper's own numbers.
+//! The dissertation's tables and figures, with its own numbers.
 
-pub mod course;
+mod contact_sheets;
 pub mod presets;
-pub mod rates;
-pub mod refining;
-pub mod strips;
-pub mod sweeps;
-pub mod texture;
+mod rates;
+mod refining;
+mod sweeps;
+mod timeline;
+
+use self::contact_sheets::{Figure, FigureName};
+use self::rates::{CLAIMS, Claim};
+use self::refining::{Measured, is_half_refined};
+use self::sweeps::Limited;
+pub use self::timeline::snapshot;
+use self::timeline::{Snapshot, follow};
+use super::Variant;
+use super::setup::Setup;
+use crate::field;
+use crate::measure::experiment::Experiment;
+use crate::measure::machine::Machine;
+use crate::measure::parameter::{Choice, Parameter, ParameterError, Range};
+use crate::measure::sweep::{Row, Swept};
+use crate::measure::{Error, experiment};
+
+type Context<'a> = experiment::Context<'a, Setup>;
+
+/// Options of the experiments.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Figures of `sequence`; all of them where there are none.
+    figures: Vec<FigureName>,
+    /// Frames of their contact sheets, rising; each figure's own where there are none.
+    moments: Vec<u32>,
+    /// Triangles of `scaling`.
+    counts: Vec<u32>,
+}
+
+/// The options of the experiments.
+pub fn options() -> Vec<Parameter<Options>> {
+    vec![
+        Parameter::new("figures", field!(Options.figures))
+            .placeholder("F,F,..")
+            .help("Figures of sequence, comma-separated")
+            .default_text("all"),
+        Parameter::new("moments", field!(Options.moments))
+            .placeholder("N,N,..")
+            .range(Range::from(0.0).to(100_000.0))
+            .help("Frames of the contact sheets of sequence, comma-separated and rising")
+            .default_text("each figure's own"),
+        Parameter::new("counts", field!(Options.counts))
+            .placeholder("N,N,..")
+            .help("Triangles of scaling, comma-separated")
+            .default_text("1000 to 1000000, two a decade"),
+    ]
+}
+
+const OWN_OBJECTS: (&str, &str) = ("preset", "this experiment has its own objects");
+const OWN_FRAMES: (&str, &str) = ("first-frame", "this experiment finds its own frames");
+const OWN_STEP: (&str, &str) = ("time-step", "this experiment measures a tick a frame");
+
+/// Every experiment, in the dissertation's order.
+pub fn all() -> Vec<Experiment<Setup>> {
+    let rate = |name, help, run| Experiment {
+        name,
+        help,
+        options: &[],
+        refuses: &[OWN_OBJECTS, OWN_FRAMES, OWN_STEP],
+        run,
+    };
+    vec![
+        rate("3.8", "Section 3.8: frames a second of a shell at its busiest, beside the dissertation's 70", |context| {
+            frame_rate(context, &CLAIMS[0])
+        }),
+        Experiment {
+            name: "4.2",
+            help: "Table 4.2: refining where it burns against subdividing everything, until half is refined",
+            options: &[],
+            refuses: &[
+                OWN_OBJECTS,
+                OWN_FRAMES,
+                OWN_STEP,
+                ("frames", "this experiment measures all until half is refined"),
+                ("time-division", "this experiment measures a tick a frame"),
+                ("triangles", "this experiment has its own counts"),
+            ],
+            run: refined_against_subdivided,
+        },
+        rate("5.5", "Section 5.5: frames a second of a solid of 45,000 triangles, beside 60", |context| {
+            frame_rate(context, &CLAIMS[1])
+        }),
+        rate("6.5", "Section 6.5: frames a second of 40,000 melting triangles, beside 60", |context| {
+            frame_rate(context, &CLAIMS[2])
+        }),
+        Experiment {
+            name: "blocks",
+            help: "Section 3.7.3: blocks from 1 to 27,000",
+            options: &[],
+            refuses: &[OWN_FRAMES, OWN_STEP, ("blocks", "this experiment sweeps them")],
+            run: blocks,
+        },
+        Experiment {
+            name: "limits",
+            help: "Sections 3.7.1, 3.7.2 and 3.7.4: limits of the active vertices, ticks spread over frames, loading ahead",
+            options: &[],
+            refuses: &[
+                OWN_FRAMES,
+                OWN_STEP,
+                ("active-limit", "this experiment sweeps it"),
+                ("time-division", "this experiment sweeps it"),
+                ("preload", "this experiment measures both; leave it and `no-preload` out"),
+            ],
+            run: limits,
+        },
+        Experiment {
+            name: "sequence",
+            help: "The picture strips of figures 3.1 to 6.5",
+            options: &["figures", "moments"],
+            refuses: &[
+                OWN_OBJECTS,
+                ("json", "a sequence is pictures; `3.8` has a record"),
+                ("csv", "a sequence is pictures; `3.8` has rows"),
+            ],
+            run: sequence,
+        },
+        Experiment {
+            name: "scaling",
+            help: "1,000 to 1,000,000 triangles: active triangles a second of each simulation pass",
+            options: &["counts"],
+            refuses: &[OWN_OBJECTS, ("triangles", "this experiment sweeps them; give `counts`")],
+            run: scaling,
+        },
+    ]
+}
+
+/// Ticks between two snapshots of a fire that is followed.
+const STEP: u32 = 10;
+
+/// Follows a fire under a progress bar until it has burnt out or `is_enough` of a snapshot.
+fn watch_fire(
+    context: &Context<'_>,
+    machine: &mut Machine,
+    setup: &Setup,
+    variant: Variant,
+    step: u32,
+    is_enough: impl Fn(&Snapshot) -> bool,
+) -> Result<Vec<Snapshot>, Error> {
+    let mut snapshots = Err(Error::Interrupted);
+    context.console.watch("following the fire", &mut |watch| {
+        snapshots = follow(machine, setup, variant, step, watch, &is_enough);
+    });
+    snapshots
+}
+
+/// Publishes measured rows with their table and plot, and ends as the sweep did.
+fn publish(
+    context: &Context<'_>,
+    machine: &Machine,
+    rows: Vec<Row>,
+    table: String,
+    plots: &[(String, String)],
+    stopped: Option<Error>,
+) -> Result<(), Error> {
+    context.publish_runs(machine, rows.into_iter().map(|row| row.run).collect(), table, plots)?;
+    machine.check_validation()?;
+    stopped.map_or(Ok(()), Err)
+}
+
+/// The plot of an experiment that has one.
+fn plot(svg: String) -> [(String, String); 1] {
+    [(".svg".to_owned(), svg)]
+}
+
+fn frame_rate(context: &mut Context<'_>, claim: &Claim) -> Result<(), Error> {
+    let setup = context.over(claim.preset.setup())?;
+    let mut machine = context.open()?;
+    let snapshots = watch_fire(context, &mut machine, &setup, claim.variant(), STEP, |_| false)?;
+    let Swept { mut rows, stopped } = context.sweep(&mut machine, &[claim.point(&setup, &snapshots)?])?;
+    rows.iter_mut().for_each(|row| claim.note(&mut row.run));
+    let table = rows.iter().map(|row| claim.render(&row.label, &row.run, context.console.style())).collect();
+    let plots = rows.iter().map(|row| Ok((".svg".to_owned(), claim.plot(&row.run)?)));
+    let plots = plots.collect::<Result<Vec<_>, Error>>()?;
+    publish(context, &machine, rows, table, &plots, stopped)
+}
+
+/// Every frame of each box until half of its coarse triangles are refined, once unless more is asked for.
+fn refined_against_subdivided(context: &mut Context<'_>) -> Result<(), Error> {
+    let setups = refining::TABLE.iter().map(|line| context.over(line.setup())).collect::<Result<Vec<_>, _>>()?;
+    let mut machine = context.open()?;
+    let mut measured = Vec::new();
+    let mut stopped = None;
+    context.measure.repeat = context.measure.repeat.or(Some(1));
+    for (line, setup) in refining::TABLE.into_iter().zip(&setups) {
+        let snapshots = watch_fire(context, &mut machine, setup, Variant::LowPoly, 1, is_half_refined)?;
+        context.measure.frames = Some(snapshots.len() as u32);
+        let swept = context.sweep(&mut machine, &line.points(setup))?;
+        measured.push(Measured::new(line, snapshots, swept.rows));
+        stopped = swept.stopped;
+        if stopped.is_some() {
+            break;
+        }
+    }
+    let (passes, curves) = (refining::passes(&measured), refining::curves(&measured));
+    context.save(&context.file("-passes.csv"), passes.csv().as_bytes())?;
+    context.save(&context.file("-curves.csv"), curves.csv().as_bytes())?;
+    let (table, svg) = (refining::render(&measured, context.console.style()), refining::plot(&measured)?);
+    let rows = measured.into_iter().flat_map(Measured::into_rows).collect();
+    publish(context, &machine, rows, table, &plot(svg), stopped)
+}
+
+/// The preset that was named, or that of section 3.8, with what was given over it.
+fn named_or_shell(context: &Context<'_>) -> Result<Setup, Error> {
+    context.over(context.preset.as_ref().unwrap_or(&presets::RESULTS_3_8).setup())
+}
+
+fn blocks(context: &mut Context<'_>) -> Result<(), Error> {
+    let setup = named_or_shell(context)?;
+    let mut machine = context.open()?;
+    let snapshots = watch_fire(context, &mut machine, &setup, Variant::Shell, STEP, |_| false)?;
+    let points = sweeps::block_points(&setup, timeline::busiest_tick(&snapshots)?);
+    let mut swept = context.sweep(&mut machine, &points)?;
+    let table = sweeps::block_table(&mut swept.rows);
+    let svg = table.bars("ms", &["weights ms", "rotation ms", "mapping ms", "flames ms"])?;
+    publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
+}
+
+fn limits(context: &mut Context<'_>) -> Result<(), Error> {
+    let setup = named_or_shell(context)?;
+    let mut machine = context.open()?;
+    let free = watch_fire(context, &mut machine, &setup, Variant::Shell, STEP, |_| false)?;
+    let mut fires = Vec::new();
+    for limit in sweeps::limits(&free) {
+        let limited = sweeps::limited(&setup, limit);
+        let snapshots = match limit {
+            0 => free.clone(),
+            _ => watch_fire(context, &mut machine, &limited, Variant::Shell, STEP, |_| false)?,
+        };
+        fires.push(Limited { limit, snapshots });
+    }
+    let limited = context.sweep(&mut machine, &sweeps::limit_points(&setup, &fires))?;
+    let asked = context.measure.frames;
+    // Whole ticks under every division.
+    context.measure.frames = asked.or(sweeps::DIVISIONS.last().map(|most| 2 * most));
+    let divided = context.sweep(&mut machine, &sweeps::division_points(&setup, &free)?)?;
+    context.measure.frames = asked;
+    let loaded = context.sweep(&mut machine, &sweeps::loading_points(&setup, &free)?)?;
+    let tables = [
+        ("-active.csv", sweeps::limit_table(&fires, &limited.rows)),
+        ("-division.csv", sweeps::division_table(&divided.rows)),
+        ("-loading.csv", sweeps::loading_table(&loaded.rows)),
+    ];
+    for (suffix, table) in &tables {
+        context.save(&context.file(suffix), table.csv().as_bytes())?;
+    }
+    let text = tables.iter().map(|(_, table)| table.render(context.console.style())).collect::<Vec<_>>().join("\n");
+    let rows = limited.rows.into_iter().chain(divided.rows).chain(loaded.rows).collect();
+    let stopped = limited.stopped.or(divided.stopped).or(loaded.stopped);
+    publish(context, &machine, rows, text, &[], stopped)
+}
+
+fn sequence(context: &mut Context<'_>) -> Result<(), Error> {
+    let Options { figures, moments, .. } = &context.options;
+    let is_rising = moments.is_sorted_by(|a, b| a < b);
+    let text = || moments.iter().map(u32::to_string).collect::<Vec<_>>().join(",");
+    ParameterError::check(is_rising, "moments", text(), "the frames must rise")?;
+    let wanted = FigureName::ALL.iter().filter(|name| figures.is_empty() || figures.contains(name));
+    let mut drawn: Vec<Figure> = wanted.map(|name| name.figure()).collect();
+    for figure in &mut drawn {
+        if !moments.is_empty() {
+            figure.frames.clone_from(moments);
+        }
+        for sheet in &mut figure.sheets {
+            sheet.setup = context.over(sheet.setup.clone())?;
+        }
+    }
+    let mut machine = context.open()?;
+    for figure in drawn {
+        let picture = figure.draw(&mut machine)?;
+        context.picture(&format!("-{}.png", figure.name), &picture)?;
+    }
+    Ok(machine.check_validation().map(drop)?)
+}
+
+fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
+    let setup = context.over(sweeps::scaling_setup())?;
+    let counts = if context.options.counts.is_empty() { &sweeps::COUNTS[..] } else { &context.options.counts };
+    let points = sweeps::scaling_points(&setup, counts);
+    points.iter().try_for_each(|point| point.study.check())?;
+    let mut machine = context.open()?;
+    let swept = context.sweep(&mut machine, &points)?;
+    let table = sweeps::scaling_table(&swept.rows);
+    context.save(&context.file("-rates.csv"), table.csv().as_bytes())?;
+    let svg = sweeps::scaling_plot(&swept.rows)?;
+    publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
+}

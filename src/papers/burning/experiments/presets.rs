@@ -1,62 +1,67 @@
-//! The objects and numbers of the dissertation's results.
+//! The objects and numbers of the dissertation's results. Its models are not at hand; the shipped ones are brought to their counts.
 
 use glam::Vec3;
 
 use super::super::setup::Setup;
+use crate::measure::study::Preset;
 use crate::papers::burning::{Material, Parameters, Variant};
 use crate::scene::MeshSource;
 
-/// A configuration of the dissertation, by its section or its object.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Preset {
-    /// Section 3.8: 15,949 triangles, 3,000 fire and 1,800 smoke particles.
-    Results38,
-    /// Section 4.6: the box of 12 triangles, 2,000 and 500 particles.
-    Box,
-    /// A door, as thin a box of 12 triangles, 2,000 and 500 particles.
-    Door,
-    /// Section 5.5: a solid of 45,000 triangles, 2,000 and 500 particles.
-    Solid45k,
-    /// Section 6.5: wax of 40,000 triangles, 2,000 and 500 particles.
-    Melt40k,
+/// Section 3.8.
+pub const RESULTS_3_8: Preset<Setup> = Preset {
+    name: "3.8",
+    help: "Section 3.8: a shell of 15,949 triangles, 3,000 fire and 1,800 smoke particles",
+    variant: Some(Variant::Shell),
+    setup: || Setup { triangles: Some(15_949), ..Setup::default() },
+};
+
+/// Section 4.6.
+pub const BOX: Preset<Setup> = Preset {
+    name: "box",
+    help: "Section 4.6: a box of 12 triangles, for low-poly",
+    variant: Some(Variant::LowPoly),
+    setup: || Setup { mesh: MeshSource::Box, parameters: few_particles(), ..Setup::default() },
+};
+
+const DOOR: Preset<Setup> = Preset {
+    name: "door",
+    help: "A door of 12 triangles, for low-poly",
+    variant: Some(Variant::LowPoly),
+    setup: || Setup { stretch: Vec3::new(1.0, 2.1, 0.08), ..(BOX.setup)() },
+};
+
+/// Section 5.5.
+pub const SOLID_45K: Preset<Setup> = Preset {
+    name: "solid-45k",
+    help: "Section 5.5: a block of 45,000 triangles, for solid",
+    variant: Some(Variant::Solid),
+    setup: || Setup {
+        mesh: MeshSource::Box,
+        stretch: Vec3::new(2.0, 1.0, 1.0),
+        triangles: Some(45_000),
+        // Displacements are fractions of edges, which are short in so fine a mesh: with the defaults it would lose hardly any volume.
+        parameters: Parameters { beta: 0.5, flammability: 120, ..few_particles() },
+        ..Setup::default()
+    },
+};
+
+/// Section 6.5.
+pub const MELT_40K: Preset<Setup> = Preset {
+    name: "melt-40k",
+    help: "Section 6.5: wax of 40,000 triangles, for melting",
+    variant: Some(Variant::Melting),
+    setup: || Setup {
+        triangles: Some(40_000),
+        parameters: Parameters { material: Material::Plain, albedo: Vec3::new(0.8, 0.66, 0.4), ..few_particles() },
+        ..Setup::default()
+    },
+};
+
+/// Every preset, in the dissertation's order.
+pub fn all() -> Vec<Preset<Setup>> {
+    vec![RESULTS_3_8, BOX, DOOR, SOLID_45K, MELT_40K]
 }
 
-impl Preset {
-    pub const ALL: [Preset; 5] = [Preset::Results38, Preset::Box, Preset::Door, Preset::Solid45k, Preset::Melt40k];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Preset::Results38 => "3.8",
-            Preset::Box => "box",
-            Preset::Door => "door",
-            Preset::Solid45k => "solid-45k",
-            Preset::Melt40k => "melt-40k",
-        }
-    }
-
-    /// The method of its chapter.
-    pub fn variant(self) -> Variant {
-        match self {
-            Preset::Results38 => Variant::Shell,
-            Preset::Box | Preset::Door => Variant::LowPoly,
-            Preset::Solid45k => Variant::Solid,
-            Preset::Melt40k => Variant::Melting,
-        }
-    }
-
-    /// Object and numbers. The dissertation's models are not at hand; the shipped ones are brought to their counts.
-    pub fn setup(self) -> Setup {
-        let few_particles = Parameters { fire: 2000, smoke: 500, ..Parameters::default() };
-        let wax = Parameters { material: Material::Plain, albedo: Vec3::new(0.8, 0.66, 0.4), ..few_particles.clone() };
-        // Displacements are shares of edges, which are short in so fine a mesh: with the defaults it would lose hardly any volume.
-        let timber = Parameters { beta: 0.5, flammability: 120, ..few_particles.clone() };
-        let (mesh, stretch, triangles, parameters) = match self {
-            Preset::Results38 => (MeshSource::Bunny, Vec3::ONE, Some(15_949), Parameters::default()),
-            Preset::Box => (MeshSource::Box, Vec3::ONE, None, few_particles),
-            Preset::Door => (MeshSource::Box, Vec3::new(1.0, 2.1, 0.08), None, few_particles),
-            Preset::Solid45k => (MeshSource::Box, Vec3::new(2.0, 1.0, 1.0), Some(45_000), timber),
-            Preset::Melt40k => (MeshSource::Bunny, Vec3::ONE, Some(40_000), wax),
-        };
-        Setup { parameters, mesh, stretch, triangles, preset: Some(self.as_str().to_owned()), ..Setup::default() }
-    }
+fn few_particles() -> Parameters {
+    Parameters { fire: 2000, smoke: 500, ..Parameters::default() }
 }

@@ -1,43 +1,49 @@
 //! The dissertation's frame rates, ours beside them (3.8, 5.5, 6.5), at the frame of a fire with most particles.
 
 use super::super::setup::Setup;
-use super::course::{Look, busiest, frame_before};
-use super::presets::Preset;
+use super::timeline::{Snapshot, busiest_tick, frame_before};
+use super::presets;
 use crate::measure::Error;
+use crate::measure::study::Preset;
 use crate::measure::sweep::Point;
+use crate::papers::burning::Variant;
 use crate::report::plot::{BarChart, BarSeries};
 use crate::report::record::{ExperimentRow, Run, Summary};
 use crate::report::table::{Align, Style, Table, number};
 
 /// A frame rate that the dissertation reports, by a GeForce 9800 GTS.
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Claim {
-    pub section: &'static str,
-    pub preset: Preset,
-    pub frames_per_s: f64,
+    section: &'static str,
+    pub preset: Preset<Setup>,
+    frames_per_s: f64,
 }
 
+/// Sections 3.8, 5.5 and 6.5.
 pub const CLAIMS: [Claim; 3] = [
-    Claim { section: "3.8", preset: Preset::Results38, frames_per_s: 70.0 },
-    Claim { section: "5.5", preset: Preset::Solid45k, frames_per_s: 60.0 },
-    Claim { section: "6.5", preset: Preset::Melt40k, frames_per_s: 60.0 },
+    Claim { section: "3.8", preset: presets::RESULTS_3_8, frames_per_s: 70.0 },
+    Claim { section: "5.5", preset: presets::SOLID_45K, frames_per_s: 60.0 },
+    Claim { section: "6.5", preset: presets::MELT_40K, frames_per_s: 60.0 },
 ];
 
 impl Claim {
+    /// The method of its chapter.
+    pub fn variant(&self) -> Variant {
+        self.preset.variant.unwrap_or(Variant::Shell)
+    }
+
     /// The point to measure: the fire at its busiest.
     ///
     /// # Errors
-    /// [`Error::Input`] for a fire without a look at it.
-    pub fn point(&self, setup: &Setup, looks: &[Look]) -> Result<Point<Setup>, Error> {
-        let tick = busiest(looks).map(|look| look.counts.tick);
-        let tick = tick.ok_or_else(|| Error::Input("no tick of the fire was looked at".to_owned()))?;
+    /// [`Error::Input`] for a fire without a snapshot of it.
+    pub fn point(&self, setup: &Setup, snapshots: &[Snapshot]) -> Result<Point<Setup>, Error> {
+        let tick = busiest_tick(snapshots)?;
         let mut study = setup.clone();
         study.parameters.first_frame = frame_before(&setup.parameters, tick);
         Ok(Point {
             label: format!("tick {tick}"),
             x: f64::from(tick),
             study,
-            variants: vec![self.preset.variant()],
+            variants: vec![self.variant()],
             left_out: Vec::new(),
         })
     }
@@ -65,7 +71,7 @@ impl Claim {
             let section = pass.section.clone().unwrap_or_default();
             table.push(vec![pass.name.clone(), section, pass.calls.to_string(), number(median(&pass.gpu_ms), 2)]);
         }
-        let title = format!("Section {}: {}, {label}", self.section, self.preset.as_str());
+        let title = format!("Section {}: {}, {label}", self.section, self.preset.name);
         let count = |name: &str| run.results.get(name).map(ToString::to_string).unwrap_or_default();
         format!(
             "{}\n{}{} of {} triangles active, {} drawn, {} removed, {} fire and {} smoke particles\n\
@@ -90,7 +96,7 @@ impl Claim {
     /// [`Error::Plot`].
     pub fn plot(&self, run: &Run) -> Result<String, Error> {
         let chart = BarChart {
-            title: format!("{}: where a frame's time goes", self.preset.as_str()),
+            title: format!("{}: where a frame's time goes", self.preset.name),
             y_label: "ms".to_owned(),
             groups: run.passes.iter().map(|p| p.name.clone()).collect(),
             series: vec![BarSeries {

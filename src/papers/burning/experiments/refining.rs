@@ -4,8 +4,8 @@
 use serde_json::json;
 
 use super::super::setup::Setup;
-use super::course::Look;
-use super::presets::Preset;
+use super::timeline::Snapshot;
+use super::presets;
 use crate::measure::Error;
 use crate::measure::Variant as _;
 use crate::measure::compare::{Ratio, ratio_within_process};
@@ -17,7 +17,7 @@ use crate::report::record::ExperimentRow;
 use crate::report::table::{Align, Style, Table, interval, number};
 
 /// A row of the table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Line {
     /// Triangles of the box.
     pub coarse: u32,
@@ -37,12 +37,12 @@ pub const TABLE: [Line; 4] = [
 const LOADS: [&str; 2] = ["without particles", "with particles"];
 
 impl Line {
-    /// The box, drawn at its finest by both methods; `change` goes over its numbers.
-    pub fn setup(&self, change: &dyn Fn(Setup) -> Setup) -> Setup {
-        let mut setup = Preset::Box.setup();
+    /// The box, drawn at its finest by both methods.
+    pub fn setup(&self) -> Setup {
+        let mut setup = presets::BOX.setup();
         setup.triangles = Some(self.coarse);
         setup.parameters.level_of_detail = Some(5);
-        change(setup)
+        setup
     }
 
     /// Without particles and with them, the two methods interleaved.
@@ -65,15 +65,15 @@ impl Line {
 }
 
 /// Whether half of the coarse triangles are refined.
-pub fn is_half_refined(look: &Look) -> bool {
-    2 * look.refined.unwrap_or(0) >= look.coarse
+pub fn is_half_refined(snapshot: &Snapshot) -> bool {
+    2 * snapshot.refined.unwrap_or(0) >= snapshot.coarse
 }
 
 /// One box, measured.
 pub struct Measured {
     line: Line,
-    /// A look at each frame that was measured.
-    looks: Vec<Look>,
+    /// A snapshot of each frame that was measured.
+    snapshots: Vec<Snapshot>,
     rows: Vec<Row>,
 }
 
@@ -108,8 +108,8 @@ fn mean(samples: &[f64]) -> Option<f64> {
 
 impl Measured {
     /// Notes the speed-up of every pair in its record, beside the dissertation's.
-    pub fn new(line: Line, looks: Vec<Look>, rows: Vec<Row>) -> Self {
-        let mut measured = Measured { line, looks, rows };
+    pub fn new(line: Line, snapshots: Vec<Snapshot>, rows: Vec<Row>) -> Self {
+        let mut measured = Measured { line, snapshots, rows };
         for load in LOADS {
             let ratio = measured.pair(load).and_then(|pair| pair.speed_up()).map(|r| r.ratio);
             let row = ExperimentRow {
@@ -163,7 +163,7 @@ pub fn render(measured: &[Measured], style: Style) -> String {
             table.push(vec![
                 one.finest().to_string(),
                 one.line.coarse.to_string(),
-                one.looks.len().to_string(),
+                one.snapshots.len().to_string(),
                 load.to_owned(),
                 number(pair.as_ref().and_then(|p| mean(p.subdivided)), 2),
                 number(pair.as_ref().and_then(|p| mean(p.adaptive)), 2),
@@ -206,9 +206,9 @@ pub fn curves(measured: &[Measured]) -> ResultTable {
     let mut rows = Vec::new();
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
-        for (frame, look) in one.looks.iter().enumerate() {
-            let share = f64::from(look.refined.unwrap_or(0)) / f64::from(look.coarse.max(1));
-            let ratio = pair.of_frame(frame, one.looks.len());
+        for (frame, snapshot) in one.snapshots.iter().enumerate() {
+            let share = f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
+            let ratio = pair.of_frame(frame, one.snapshots.len());
             rows.push(vec![json!(one.finest()), json!(frame), json!(share), json!(ratio), json!(one.line.speed_up)]);
         }
     }
@@ -227,15 +227,15 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
     let mut series = Vec::new();
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
-        let share = |look: &Look| f64::from(look.refined.unwrap_or(0)) / f64::from(look.coarse.max(1));
+        let share = |snapshot: &Snapshot| f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
         let points: Vec<(f64, f64)> = one
-            .looks
+            .snapshots
             .chunk_by(|a, b| a.refined == b.refined)
-            .scan(0, |next, looks| {
-                let frames = *next..*next + looks.len();
+            .scan(0, |next, snapshots| {
+                let frames = *next..*next + snapshots.len();
                 *next = frames.end;
-                let ratios: Vec<f64> = frames.filter_map(|frame| pair.of_frame(frame, one.looks.len())).collect();
-                Some(mean(&ratios).map(|ratio| (share(&looks[0]), ratio)))
+                let ratios: Vec<f64> = frames.filter_map(|frame| pair.of_frame(frame, one.snapshots.len())).collect();
+                Some(mean(&ratios).map(|ratio| (share(&snapshots[0]), ratio)))
             })
             .flatten()
             .collect();
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn half_is_half() {
-        let look = |refined| Look { counts: Default::default(), refined, coarse: 12 };
-        assert!(!is_half_refined(&look(Some(5))) && is_half_refined(&look(Some(6))) && !is_half_refined(&look(None)));
+        let snapshot = |refined| Snapshot { counts: Default::default(), refined, coarse: 12 };
+        assert!(!is_half_refined(&snapshot(Some(5))) && is_half_refined(&snapshot(Some(6))) && !is_half_refined(&snapshot(None)));
     }
 }

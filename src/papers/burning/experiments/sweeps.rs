@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
-use super::course::{Look, busiest, frame_before};
+use super::timeline::{Snapshot, busiest_tick, frame_before};
 use crate::measure::Error;
 use crate::measure::result_table::ResultTable;
 use crate::measure::sweep::{Point, Row};
@@ -96,12 +96,12 @@ pub fn block_table(rows: &mut [Row]) -> ResultTable {
 /// A fire under a limit of active vertices, and how it went.
 pub struct Limited {
     pub limit: u32,
-    pub looks: Vec<Look>,
+    pub snapshots: Vec<Snapshot>,
 }
 
 /// The limits that are tried: none, a half and a quarter of the most vertices that burn at once without.
-pub fn limits(free: &[Look]) -> Vec<u32> {
-    let peak = free.iter().map(|look| look.counts.active_vertices).max().unwrap_or(0);
+pub fn limits(free: &[Snapshot]) -> Vec<u32> {
+    let peak = free.iter().map(|snapshot| snapshot.counts.active_vertices).max().unwrap_or(0);
     vec![0, (peak / 2).max(1), (peak / 4).max(1)]
 }
 
@@ -115,8 +115,8 @@ pub fn limited(setup: &Setup, limit: u32) -> Setup {
 pub fn limit_points(setup: &Setup, fires: &[Limited]) -> Vec<Point<Setup>> {
     let of = |fire: &Limited| {
         let mut study = limited(setup, fire.limit);
-        let fullest = fire.looks.iter().rev().max_by_key(|look| look.counts.active_vertices);
-        study.parameters.first_frame = frame_before(&setup.parameters, fullest.map_or(1, |look| look.counts.tick));
+        let fullest = fire.snapshots.iter().rev().max_by_key(|snapshot| snapshot.counts.active_vertices);
+        study.parameters.first_frame = frame_before(&setup.parameters, fullest.map_or(1, |snapshot| snapshot.counts.tick));
         point(format!("limit {}", fire.limit), f64::from(fire.limit), study)
     };
     fires.iter().map(of).collect()
@@ -125,11 +125,11 @@ pub fn limit_points(setup: &Setup, fires: &[Limited]) -> Vec<Point<Setup>> {
 /// What a limit buys and what it costs (3.7.1).
 pub fn limit_table(fires: &[Limited], rows: &[Row]) -> ResultTable {
     let rows = fires.iter().zip(rows).map(|(fire, row)| {
-        let peak = fire.looks.iter().map(|look| look.counts.active_vertices).max();
+        let peak = fire.snapshots.iter().map(|snapshot| snapshot.counts.active_vertices).max();
         vec![
             json!(fire.limit),
             json!(peak),
-            json!(fire.looks.last().map(|look| look.counts.tick)),
+            json!(fire.snapshots.last().map(|snapshot| snapshot.counts.tick)),
             result(&row.run, "active_triangles"),
             json!(gpu_ms(&row.run, &SIMULATION)),
             json!(row.run.median_frame_ms()),
@@ -148,23 +148,14 @@ pub const DIVISIONS: [u32; 4] = [1, 2, 4, 8];
 /// The busiest tick, spread over 1 to 8 frames.
 ///
 /// # Errors
-/// [`Error::Input`] without a look at the fire.
-pub fn division_points(setup: &Setup, looks: &[Look]) -> Result<Vec<Point<Setup>>, Error> {
-    let tick = busiest_tick(looks)?;
+/// [`Error::Input`] without a snapshot of the fire.
+pub fn division_points(setup: &Setup, snapshots: &[Snapshot]) -> Result<Vec<Point<Setup>>, Error> {
+    let tick = busiest_tick(snapshots)?;
     let of = |division: u32| {
         let study = at_tick(setup, tick, |p| p.time_division = division);
         point(format!("division {division}"), f64::from(division), study)
     };
     Ok(DIVISIONS.map(of).into())
-}
-
-/// The tick of [`busiest`].
-///
-/// # Errors
-/// [`Error::Input`] without a look at the fire.
-pub fn busiest_tick(looks: &[Look]) -> Result<u32, Error> {
-    let look = busiest(looks).ok_or_else(|| Error::Input("no tick of the fire was looked at".to_owned()))?;
-    Ok(look.counts.tick)
 }
 
 /// What time division buys (3.7.2): frames of one tick differ, and the longest is what a player sees.
@@ -190,9 +181,9 @@ pub fn division_table(rows: &[Row]) -> ResultTable {
 /// The busiest tick with everything loaded before, and without.
 ///
 /// # Errors
-/// [`Error::Input`] without a look at the fire.
-pub fn loading_points(setup: &Setup, looks: &[Look]) -> Result<Vec<Point<Setup>>, Error> {
-    let tick = busiest_tick(looks)?;
+/// [`Error::Input`] without a snapshot of the fire.
+pub fn loading_points(setup: &Setup, snapshots: &[Snapshot]) -> Result<Vec<Point<Setup>>, Error> {
+    let tick = busiest_tick(snapshots)?;
     let of = |preload: bool| {
         let study = at_tick(setup, tick, |p| p.preload = preload);
         point(format!("preload {preload}"), f64::from(u8::from(preload)), study)

@@ -74,7 +74,7 @@ impl Model {
         let limit = (largest_bytes / 12).min(1 << 30);
         if count > limit {
             return Err(Error::Limit {
-                object: format!("--levels {levels} of {} triangles", welded.triangles.len()),
+                object: format!("`levels` {levels} of {} triangles", welded.triangles.len()),
                 what: "number of triangles",
                 wanted: count,
                 limit,

@@ -1,4 +1,4 @@
-//! A fire followed from ignition by its simulation passes alone: where an experiment finds the frames that it measures.
+//! A fire followed from ignition by its simulation passes alone: an experiment finds in it the frames that it measures.
 
 use std::sync::atomic::Ordering;
 
@@ -16,16 +16,16 @@ use crate::papers::burning::{Burning, Counts, Parameters, TICKS_PER_S, Variant};
 /// No fire is followed for longer, in ticks.
 const MOST_TICKS: u32 = 20_000;
 
-/// A look at the fire after some tick.
+/// The counts of a fire after some tick.
 #[derive(Debug, Clone, Copy)]
-pub struct Look {
+pub struct Snapshot {
     pub counts: Counts,
     /// Coarse triangles that are refined; absent where none ever are.
     pub refined: Option<u32>,
     pub coarse: u32,
 }
 
-/// Looks at a fire every `step` ticks until it has burnt out or `is_enough` of a look.
+/// Snapshots of a fire every `step` ticks until it has burnt out or `is_enough` of one.
 ///
 /// # Errors
 /// [`Error::Input`] for a fire that does not begin within 20,000 ticks; [`Error::Interrupted`]; what loading and the Vulkan layer
@@ -36,8 +36,8 @@ pub fn follow(
     variant: Variant,
     step: u32,
     watch: &mut Watch<'_>,
-    is_enough: impl Fn(&Look) -> bool,
-) -> Result<Vec<Look>, Error> {
+    is_enough: impl Fn(&Snapshot) -> bool,
+) -> Result<Vec<Snapshot>, Error> {
     let parameters = Parameters { first_frame: 0, ..setup.parameters.clone() };
     let study = Setup { parameters, ..setup.clone() };
     let scene = study.load()?;
@@ -48,13 +48,13 @@ pub fn follow(
     let ticks_to = |radius: f64| radius / f64::from(p.speed_per_s) * TICKS_PER_S;
     if ticks_to(nearest) >= f64::from(MOST_TICKS) {
         return Err(Error::Input(format!(
-            "nothing burns within {MOST_TICKS} ticks: the object begins at {nearest} of the heat boundary's radius; move --source \
-             nearer or raise --speed"
+            "nothing burns within {MOST_TICKS} ticks: the object begins at {nearest} of the heat boundary's radius; move `source` \
+             nearer or raise `speed`"
         )));
     }
     let all_burn = farthest + 2.0 * f64::from(p.width_of_areas);
     let expected = u64::from((ticks_to(all_burn) as u32 + p.flammability).min(MOST_TICKS));
-    let mut looks: Vec<Look> = Vec::new();
+    let mut snapshots: Vec<Snapshot> = Vec::new();
     // Ticks since the last vertex began to burn: after as many as it has levels all is over.
     let mut over = 0;
     loop {
@@ -62,22 +62,22 @@ pub fn follow(
             return Err(Error::Interrupted);
         }
         machine.recorder.run(Mode::Plain, |frame| (0..step).try_for_each(|_| paper.tick(frame)))?;
-        let look = look(machine, &paper)?;
-        looks.push(look);
-        let tick = look.counts.tick;
+        let snapshot = snapshot(machine, &paper)?;
+        snapshots.push(snapshot);
+        let tick = snapshot.counts.tick;
         (watch.progress)(u64::from(tick), expected.max(u64::from(tick)));
-        over += if f64::from(look.counts.radius) > all_burn { step } else { 0 };
-        if is_enough(&look) || over > p.flammability || tick >= MOST_TICKS {
-            return Ok(looks);
+        over += if f64::from(snapshot.counts.radius) > all_burn { step } else { 0 };
+        if is_enough(&snapshot) || over > p.flammability || tick >= MOST_TICKS {
+            return Ok(snapshots);
         }
     }
 }
 
-/// What the device has counted, read back.
+/// The counts of the device, read back.
 ///
 /// # Errors
 /// [`Error::Gpu`].
-pub fn look(machine: &Machine, paper: &Burning) -> Result<Look, Error> {
+pub fn snapshot(machine: &Machine, paper: &Burning) -> Result<Snapshot, Error> {
     /// Status of a triangle that its four children stand for.
     const SPLIT: i32 = -1;
     let model = paper.model();
@@ -90,13 +90,22 @@ pub fn look(machine: &Machine, paper: &Burning) -> Result<Look, Error> {
             Some(roots.filter(|&&status| status == SPLIT).count() as u32)
         }
     };
-    Ok(Look { counts: paper.counts()?, refined, coarse: model.coarse_count() })
+    Ok(Snapshot { counts: paper.counts()?, refined, coarse: model.coarse_count() })
 }
 
-/// The look at most live particles, of several the one at most active triangles, of those the first.
-pub fn busiest(looks: &[Look]) -> Option<&Look> {
-    let load = |look: &Look| (look.counts.fire_particles + look.counts.smoke_particles, look.counts.active_triangles);
-    looks.iter().rev().max_by_key(|look| load(look))
+/// The snapshot of most live particles, of several the one of most active triangles, of those the first.
+pub fn busiest(snapshots: &[Snapshot]) -> Option<&Snapshot> {
+    let load = |snapshot: &Snapshot| (snapshot.counts.fire_particles + snapshot.counts.smoke_particles, snapshot.counts.active_triangles);
+    snapshots.iter().rev().max_by_key(|snapshot| load(snapshot))
+}
+
+/// The tick of [`busiest`].
+///
+/// # Errors
+/// [`Error::Input`] without a snapshot of the fire.
+pub fn busiest_tick(snapshots: &[Snapshot]) -> Result<u32, Error> {
+    let snapshot = busiest(snapshots).ok_or_else(|| Error::Input("no tick of the fire was seen".to_owned()))?;
+    Ok(snapshot.counts.tick)
 }
 
 /// The frame of `parameters` before the one that shows `tick`.
@@ -110,15 +119,15 @@ pub fn frame_before(parameters: &Parameters, tick: u32) -> u32 {
 mod tests {
     use super::*;
 
-    fn at(tick: u32, fire_particles: u32, active_triangles: u32) -> Look {
+    fn at(tick: u32, fire_particles: u32, active_triangles: u32) -> Snapshot {
         let counts = Counts { tick, fire_particles, active_triangles, ..Counts::default() };
-        Look { counts, refined: None, coarse: 0 }
+        Snapshot { counts, refined: None, coarse: 0 }
     }
 
     #[test]
-    fn the_busiest_look_has_most_particles_then_most_active_triangles_then_comes_first() {
-        let looks = [at(1, 3, 9), at(2, 5, 1), at(3, 5, 2), at(4, 5, 2), at(5, 4, 8)];
-        assert_eq!(busiest(&looks).unwrap().counts.tick, 3);
+    fn the_busiest_snapshot_has_most_particles_then_most_active_triangles_then_comes_first() {
+        let snapshots = [at(1, 3, 9), at(2, 5, 1), at(3, 5, 2), at(4, 5, 2), at(5, 4, 8)];
+        assert_eq!(busiest(&snapshots).unwrap().counts.tick, 3);
         assert!(busiest(&[]).is_none());
     }
 
