@@ -2,7 +2,7 @@
 
 // The movement of the base points (6.3.4), which guide what melts; one thread a block. An edge block without a bottom neighbour lets
 // its base point fall, the slower the farther the fire has gone on; others draw it to the lowest base point around them, until it
-// meets a block that does not melt yet. A base point starts at a vertex and then goes its own way: folding does not move it.
+// meets a block that does not melt yet. A base point starts at a vertex and then moves on its own: folding does not move it.
 
 layout(local_size_x = 64) in;
 
@@ -66,7 +66,7 @@ bool is_free_edge(uint block) {
 
 // The block around this one whose base point is the lowest, the first of several; NONE without any.
 uint lowest_around(uint block) {
-    ivec3 middle = ivec3(place_of(block));
+    ivec3 middle = ivec3(coordinates_of(block));
     ivec3 size = ivec3(constants.blocks);
     uint lowest = NONE;
     float height = 0.0;

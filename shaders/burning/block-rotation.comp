@@ -1,6 +1,6 @@
 #version 450
 
-// Eq. 4 and 5 and the algorithm after figure 3.6: a block turns by gamma rho pi / (N M) for each vertex that unbalanced it, and by its
+// Eq. 4 and 5 and the algorithm after figure 3.6: a block rotates by gamma rho pi / (N M) for each vertex that unbalanced it, and by its
 // neighbours' own change, -x times at the sides and +x times above and below. Printed, eq. 5 calls M epsilon. One thread a block
 // gathers; the total angle is clamped, for a free block (two or more sides without neighbours) less.
 
@@ -39,7 +39,7 @@ float weight_of(uint block) {
     return live * flammability / (flammability + float(blocks[block].combustion));
 }
 
-// What melts turns outside the combustion-ready boundary and above the ignition alone: there is weight to support (6.4).
+// Melting blocks rotate outside the combustion-ready boundary and above the ignition alone: there is weight to support (6.4).
 bool is_rigid(uint block) {
     return constants.variant == MELTING
         && (blocks[block].heated > 0 || midpoint_of(block).y <= constants.highest_source_y);
@@ -54,8 +54,8 @@ vec3 own_change(uint block) {
     for (uint direction = 0u; direction < 6u; direction++) {
         neighbours += has_weight(neighbour_of(block, direction)) ? 1 : 0;
     }
-    float share = max(weight_of(block), 1.0) * float(max(neighbours, 1));
-    return constants.gamma * constants.rho * PI / share * vec3(signs);
+    float count = max(weight_of(block), 1.0) * float(max(neighbours, 1));
+    return constants.gamma * constants.rho * PI / count * vec3(signs);
 }
 
 void main() {

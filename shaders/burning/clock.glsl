@@ -1,4 +1,4 @@
-// What the device counts by itself: nothing of it travels (3.7.4).
+// Counters that the device keeps by itself: none of them is transferred (3.7.4).
 
 struct Counts {
     uint tick;

@@ -9,7 +9,7 @@
 
 layout(set = 0, binding = 45) uniform texture2D mesh_depth;
 
-layout(location = 0) in vec2 place_in_square;
+layout(location = 0) in vec2 square_coordinates;
 layout(location = 1) in float eye_depth; // distance along the view, diagonals
 layout(location = 2) in float age_fraction; // of its life
 layout(location = 3) in float own_random; // 0 to 1
@@ -66,7 +66,7 @@ void main() {
     }
     float softness = clamp(before_mesh / billboards.particle_radius, 0.0, 1.0);
     vec4 covered = fire_flag > 0.5
-        ? fire(place_in_square, age_fraction, own_random)
-        : smoke(place_in_square, age_fraction, own_random);
+        ? fire(square_coordinates, age_fraction, own_random)
+        : smoke(square_coordinates, age_fraction, own_random);
     shaded = softness * covered;
 }

@@ -11,7 +11,7 @@ layout(set = 0, binding = 43, std430) readonly buffer Particles {
     Particle particles[]; // fire, then smoke
 };
 
-layout(location = 0) out vec2 place_in_square; // -1 to 1
+layout(location = 0) out vec2 square_coordinates; // -1 to 1
 layout(location = 1) out float eye_depth; // distance along the view, diagonals
 layout(location = 2) out float age_fraction; // of its life
 layout(location = 3) out float own_random; // 0 to 1
@@ -35,11 +35,11 @@ void main() {
     age_fraction = clamp(p.age_ticks / max(p.life_ticks, 1.0), 0.0, 1.0);
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
     vec2 size = billboards.particle_radius * half_size(is_fire, age_fraction, p.random.y);
-    vec3 place = p.position + corner.x * size.x * billboards.right + corner.y * size.y * billboards.up;
-    place_in_square = corner;
+    vec3 position = p.position + corner.x * size.x * billboards.right + corner.y * size.y * billboards.up;
+    square_coordinates = corner;
     own_random = p.random.x;
     fire_flag = is_fire ? 1.0 : 0.0;
-    gl_Position = view.view_projection * vec4(place, 1.0);
+    gl_Position = view.view_projection * vec4(position, 1.0);
     eye_depth = gl_Position.w;
     if (p.life_ticks <= 0.0) {
         gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // nothing of it lies in the picture

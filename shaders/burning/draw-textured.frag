@@ -1,7 +1,7 @@
 #version 450
 
 // A surface that a picture covers, repeated beyond its edges. The picture's levels stand below one another in one image and are filtered
-// here, for devices filter with 8 bits or more: between the four texels around a place, and between the two levels whose texels come
+// here, for devices filter with 8 bits or more: between the four texels around a coordinate, and between the two levels whose texels come
 // nearest to a pixel's size.
 
 #extension GL_EXT_samplerless_texture_functions : require
@@ -29,10 +29,10 @@ vec3 texel(uint level, int column, int row) {
     return texelFetch(texels, ivec2(column, row + int(texture_levels[level].first_row)), 0).rgb;
 }
 
-vec3 filtered(uint level, vec2 place) {
+vec3 filtered(uint level, vec2 coordinate) {
     int width = int(texture_levels[level].width);
     int height = int(texture_levels[level].height);
-    vec2 at = fract(place) * vec2(float(width), float(height)) - 0.5;
+    vec2 at = fract(coordinate) * vec2(float(width), float(height)) - 0.5;
     vec2 t = fract(at);
     int left = (int(floor(at.x)) + width) % width;
     int top = (int(floor(at.y)) + height) % height;
@@ -44,15 +44,15 @@ vec3 filtered(uint level, vec2 place) {
 }
 
 void main() {
-    vec2 place = vec2(texture_coordinate.x, 1.0 - texture_coordinate.y);
+    vec2 coordinate = vec2(texture_coordinate.x, 1.0 - texture_coordinate.y);
     vec2 size = vec2(uvec2(texture_levels[0].width, texture_levels[0].height));
-    vec2 right = dFdx(place) * size;
-    vec2 down = dFdy(place) * size;
+    vec2 right = dFdx(coordinate) * size;
+    vec2 down = dFdy(coordinate) * size;
     float coarsest = float(texture_levels[0].level_count - 1u);
     float wanted = 0.5 * log2(max(max(dot(right, right), dot(down, down)), 1.0));
     float level = min(wanted, coarsest);
     uint finer = uint(level);
     uint coarser = min(finer + 1u, texture_levels[0].level_count - 1u);
-    vec3 color_of_texture = mix(filtered(finer, place), filtered(coarser, place), level - float(finer));
+    vec3 color_of_texture = mix(filtered(finer, coordinate), filtered(coarser, coordinate), level - float(finer));
     shaded = lit(color_of_texture);
 }

@@ -8,5 +8,5 @@
 layout(location = 0) out vec4 shaded;
 
 void main() {
-    shaded = lit(vec3(wood(rest_place)));
+    shaded = lit(vec3(wood(rest_position)));
 }

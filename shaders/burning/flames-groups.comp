@@ -1,9 +1,9 @@
 #version 450
 
-// The flame groups of a tick (3.6): one workgroup adds up the weights of the blocks and shares the pools out. A block's weight counts
+// The flame groups of a tick (3.6): one workgroup adds up the weights of the blocks and divides the pools. A block's weight counts
 // while it has live vertices in the combustion-ready area; consumed or burnt out it weighs nothing, and its particles go to the others.
 // As many particles burn as the weight warrants: all of them once a quarter of the object's vertices lie in such blocks (ours; the
-// dissertation says that the number follows the vertices, and that not all particles are drawn at all times).
+// dissertation states that the number follows the vertices, and that not all particles are drawn at all times).
 
 layout(local_size_x = 256) in;
 
@@ -29,9 +29,9 @@ layout(set = 0, binding = 41, std430) buffer Listed {
     uint listed[]; // ready vertices of the block in the list so far
 };
 
-const float SHARE_FOR_ALL = 0.25;
+const float FRACTION_FOR_ALL = 0.25;
 
-// The particle at which a block begins before which lies `before` of the weight `total`, of `count` particles.
+// First particle of a block that has before it `before` of the weight `total`, of `count` particles.
 uint first_of(uint count, uint before, uint total) {
     return uint(float(count) * (float(before) / float(max(total, 1u))));
 }
@@ -62,9 +62,9 @@ void main() {
             groups[block].weight = weight;
         }
     }
-    float share = min(1.0, float(weight_before) / (SHARE_FOR_ALL * float(constants.vertex_count)));
-    uint fire = uint(float(constants.fire_pool) * share);
-    uint smoke = uint(float(constants.smoke_pool) * share);
+    float fraction = min(1.0, float(weight_before) / (FRACTION_FOR_ALL * float(constants.vertex_count)));
+    uint fire = uint(float(constants.fire_pool) * fraction);
+    uint smoke = uint(float(constants.smoke_pool) * fraction);
     for (uint block = thread; block <= block_count; block += GROUP) {
         uint before = groups[block].first_fire;
         groups[block].first_fire = first_of(fire, before, weight_before);

@@ -1,6 +1,6 @@
 #version 450
 
-// A tick of the particles (3.6). Each rises, flickers and ends; its place in the pool says which group the next one in it is born to. A
+// A tick of the particles (3.6). Each rises, flickers and ends; its index in the pool gives the group that the next one in it is born to. A
 // flame whose block has left the combustion-ready area moves: it is born anew in the neighbour with most live vertices that is ready,
 // and goes out without one. Smoke is in the air already and stays there. A hash of seed, tick and particle decides what is random.
 
@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
-#include "burning/turn.glsl"
+#include "burning/rotation.glsl"
 #include "burning/flames.glsl"
 #include "burning/billboards.glsl"
 #include "burning/blocks.glsl"
@@ -43,7 +43,7 @@ layout(set = 0, binding = 43, std430) buffer Particles {
 };
 
 const float TICK_S = 1.0 / 60.0;
-// A free place in the pool is taken in one of so many ticks, so that a group does not pulse.
+// A free index of the pool is taken in one of so many ticks, so that a group does not pulse.
 const uint BIRTH_TICKS = 8u;
 // Lives in ticks, at least and beyond; diagonals a second; diagonals. All ours.
 const vec2 FIRE_LIFE = vec2(22.0, 26.0);
@@ -111,11 +111,11 @@ Particle born(uint block, uint particle, bool is_fire) {
     uint vertex = vertex_of(block, particle);
     vec3 random = unit(hash(uvec3(particle, clock.tick, constants.seed)));
     vec3 more = unit(hash(uvec3(clock.tick, constants.seed, particle)));
-    vec3 place = turned_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    vec3 position = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
     float radius = billboards.particle_radius;
-    place += radius * vec3(more.x - 0.5, 0.2 + (is_fire ? 0.0 : SMOKE_ABOVE / radius), more.y - 0.5);
+    position += radius * vec3(more.x - 0.5, 0.2 + (is_fire ? 0.0 : SMOKE_ABOVE / radius), more.y - 0.5);
     vec2 life = is_fire ? FIRE_LIFE : SMOKE_LIFE;
-    return Particle(place, 0.0, floor(life.x + life.y * random.x), float(block), random.yz);
+    return Particle(position, 0.0, floor(life.x + life.y * random.x), float(block), random.yz);
 }
 
 vec3 velocity(Particle p, bool is_fire) {
@@ -138,9 +138,9 @@ void main() {
     if (particle < fire_pool + constants.smoke_pool) {
         bool is_fire = particle < fire_pool;
         Particle p = particles[particle];
-        uint place_in_pool = is_fire ? particle : particle - fire_pool;
+        uint pool_index = is_fire ? particle : particle - fire_pool;
         Group end = groups[constants.block_count];
-        bool is_wanted = place_in_pool < (is_fire ? end.first_fire : end.first_smoke);
+        bool is_wanted = pool_index < (is_fire ? end.first_fire : end.first_smoke);
         uint birth_block = NONE;
         if (p.life_ticks > 0.0) {
             p.position += velocity(p, is_fire) * TICK_S;
@@ -154,10 +154,10 @@ void main() {
             if (has_moved) {
                 birth_block = next_block(home);
             } else if (has_ended && is_wanted) {
-                birth_block = group_of(place_in_pool, is_fire);
+                birth_block = group_of(pool_index, is_fire);
             }
         } else if (is_wanted && hash(uvec3(constants.seed, particle, clock.tick)).y % BIRTH_TICKS == 0u) {
-            birth_block = group_of(place_in_pool, is_fire);
+            birth_block = group_of(pool_index, is_fire);
         }
         if (birth_block != NONE) {
             p = born(birth_block, particle, is_fire);

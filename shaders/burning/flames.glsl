@@ -1,13 +1,12 @@
-// Flame groups (3.6): one a block. Of the pools of fire and smoke particles, which are maxima, a group gets its share by the block's
-// live vertices, while the block is in the combustion-ready area.
+// Flame groups (3.6): one a block. Of the pools of fire and smoke particles, which are maxima, a group gets a number in proportion to
+// the block's live vertices, while the block is in the combustion-ready area.
 
-// What is said of every block, and of one more beyond the last: its first fire and smoke particle, its first entry in the list of
-// ready vertices, its weight.
+// The group of a block; one more beyond the last ends them.
 struct Group {
-    uint first_fire;
-    uint first_smoke;
-    uint first_ready;
-    uint weight;
+    uint first_fire; // particle
+    uint first_smoke; // particle
+    uint first_ready; // entry in the list of ready vertices
+    uint weight; // live vertices, 0 outside the combustion-ready area
 };
 
 struct Particle {

@@ -63,10 +63,10 @@ layout(push_constant, std430) uniform Slice {
     uint count;
 } slice;
 
-// What the base points around the vertex's place at rest have moved, in between by the blocks' middles. A step alone would leave those
+// Displacement of the base points around the vertex's position at rest, interpolated between the blocks' middles. A step alone would leave those
 // behind that become flow-true later than their base point, and blocks that move as a whole would tear the surface.
-vec3 guided(vec3 place) {
-    vec3 at = (place - constants.grid_origin) / constants.block_size - 0.5;
+vec3 guided(vec3 position) {
+    vec3 at = (position - constants.grid_origin) / constants.block_size - 0.5;
     ivec3 low = ivec3(floor(at));
     vec3 t = at - vec3(low);
     ivec3 size = ivec3(constants.blocks);
@@ -88,7 +88,7 @@ vec3 guided(vec3 place) {
     return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
-// What part of its way to the guides a vertex takes in a tick: 1 - omega in the time in which the boundary crosses an area. What flows
+// Fraction of its distance to the guides that a vertex covers in a tick: 1 - omega in the time in which the boundary crosses an area. What flows
 // so does not outrun the heat; faster, the triangles between it and what does not flow yet would be drawn out into sheets, which are
 // more surface higher up than there was before.
 float following() {
@@ -104,16 +104,16 @@ float shortest() {
 }
 
 // Ticks for which the same end of a tie gives way.
-const uint TURN_TICKS = 8u;
+const uint PERIOD_TICKS = 8u;
 
-// Whether `vertex` is the source of its edge to `other`: the upper one, nearer heights than the shortest edge being a tie. The
-// dissertation breaks ties at random; here the indices take turns. Within a turn edges are restored one after the other from one end
-// of the surface to the other; with turns of a tick each end undoes what the other has done, and the edges do not come to rest in range.
+// True for the source of the edge from `vertex` to `other`: the upper one, nearer heights than the shortest edge being a tie. The
+// dissertation breaks ties at random; here the indices alternate. Within a period edges are restored one after the other from one end
+// of the surface to the other; with periods of a tick each end undoes what the other has done, and the edges do not come to rest in range.
 bool is_source(uint vertex, float y, uint other, float other_y) {
     if (abs(y - other_y) > shortest()) {
         return y > other_y;
     }
-    return (vertex > other) == (clock.tick / TURN_TICKS % 2u == 0u);
+    return (vertex > other) == (clock.tick / PERIOD_TICKS % 2u == 0u);
 }
 
 // The step of the source s of an edge out of range; `fixed_points` of the triangle's corners do not flow. Upward motion would make no
@@ -121,16 +121,16 @@ bool is_source(uint vertex, float y, uint other, float other_y) {
 vec3 folded(vec3 s, vec3 d, uint fixed_points) {
     vec3 edge = s - d;
     float edge_length = length(edge);
-    float share = constants.upsilon / float(fixed_points + 1u);
+    float fraction = constants.upsilon / float(fixed_points + 1u);
     if (edge_length > longest()) {
         float horizontal = length(edge.xz);
         if (horizontal <= 0.0) {
             return vec3(0.0);
         }
         float left = sqrt(max(0.0, longest() * longest() - edge.y * edge.y));
-        return -min(share, 1.0 - left / horizontal) * vec3(edge.x, 0.0, edge.z);
+        return -min(fraction, 1.0 - left / horizontal) * vec3(edge.x, 0.0, edge.z);
     }
-    return min(share, shortest() / edge_length - 1.0) * edge;
+    return min(fraction, shortest() / edge_length - 1.0) * edge;
 }
 
 float violation(vec3 edge) {
@@ -195,9 +195,9 @@ void main() {
     vec3 flow = flows[vertex].xyz;
     vec3 follow = following() * (guided(rest[vertex].position) - flow);
     flows[vertex] = vec4(flow + follow, 0.0);
-    vec3 place = before.position + follow + folding(vertex, before.position);
+    vec3 position = before.position + follow + folding(vertex, before.position);
     bool is_burning = label == DEFORMED && before.left > 0.0;
-    place.y -= is_burning ? constants.fall_per_tick : 0.0; // gravity
-    place.y = max(place.y, constants.floor_y);
-    new_state[vertex] = VertexState(place, is_burning ? before.left - 1.0 : before.left);
+    position.y -= is_burning ? constants.fall_per_tick : 0.0; // gravity
+    position.y = max(position.y, constants.floor_y);
+    new_state[vertex] = VertexState(position, is_burning ? before.left - 1.0 : before.left);
 }

@@ -2,9 +2,9 @@
 
 // Internal deformation of a solid (5.3.3, 5.3.4): after the displacement of 3.4, each triangle draws its vertex inwards, to the point
 // P_in beneath its centroid, as deep as the side BA is long. The printed angles lose the quadrant; this is their vector form, and no
-// step goes beyond half the way. 5.5: a vertex that has burnt far enough leaves the group that deforms.
+// step goes beyond half the distance. 5.5: a vertex that has burnt far enough leaves the group that deforms.
 //
-// Nothing printed ends the way inwards: with a great beta L surfaces would pass each other, and the solid turn inside out. Ours ends at a
+// Nothing printed ends the motion inwards: with a great beta L surfaces would pass each other, and the solid turn inside out. Ours ends at a
 // char's depth, three quarters of the solid's volume over its surface (a quarter of a ball's radius): what lies deeper stays enclosed.
 
 layout(local_size_x = 64) in;
@@ -50,7 +50,7 @@ layout(push_constant, std430) uniform Slice {
     uint count;
 } slice;
 
-// Where the displaced corner `d` of triangle ABC is drawn to; B is the corner, C and A follow it in the triangle's order.
+// The position that the displaced corner `d` of triangle ABC is drawn to; B is the corner, C and A follow it in the triangle's order.
 vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
     vec3 normal = cross(c - b, a - b);
     float double_area = length(normal);
@@ -59,15 +59,15 @@ vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
     }
     float depth = length(a - b);
     vec3 inner = (a + b + c) / 3.0 - constants.outward * depth / double_area * normal;
-    float way = length(inner - d);
-    return way > 0.0 ? d + min(l * depth, 0.5 * way) / way * (inner - d) : d;
+    float distance_to_inner = length(inner - d);
+    return distance_to_inner > 0.0 ? d + min(l * depth, 0.5 * distance_to_inner) / distance_to_inner * (inner - d) : d;
 }
 
-// The place, no farther than the char's depth from where the vertex was at rest, which sinks with it.
-vec3 within_char(vec3 place, vec3 at_rest, float left) {
+// The position, no farther than the char's depth from that at rest, which sinks with it.
+vec3 within_char(vec3 position, vec3 at_rest, float left) {
     vec3 from = at_rest - vec3(0.0, constants.fall_per_tick * (constants.flammability - left), 0.0);
-    float way = distance(place, from);
-    return way > constants.char_depth ? from + constants.char_depth / way * (place - from) : place;
+    float depth = distance(position, from);
+    return depth > constants.char_depth ? from + constants.char_depth / depth * (position - from) : position;
 }
 
 void main() {
@@ -81,7 +81,7 @@ void main() {
         return;
     }
     vec3 b = before.position;
-    float share_left = before.left / constants.flammability;
+    float left_fraction = before.left / constants.flammability;
     vec3 sum = vec3(0.0);
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
@@ -92,8 +92,8 @@ void main() {
         uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
         vec3 a = old_state[vertex_a].position;
         vec3 c = old_state[vertex_c].position;
-        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, share_left);
-        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, share_left);
+        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, left_fraction);
+        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, left_fraction);
         sum += contracted(a, b, c, cevians_meet(a, b, c, l, m), l) - b;
     }
     vec3 moved = b + sum / float(max(to - from, 1u));

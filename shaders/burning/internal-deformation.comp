@@ -53,7 +53,7 @@ void main() {
         return;
     }
     vec3 b = before.position;
-    float share_left = before.left / constants.flammability;
+    float left_fraction = before.left / constants.flammability;
     vec3 sum = vec3(0.0);
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
@@ -64,8 +64,8 @@ void main() {
         uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
         vec3 a = old_state[vertex_a].position;
         vec3 c = old_state[vertex_c].position;
-        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, share_left);
-        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, share_left);
+        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, left_fraction);
+        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, left_fraction);
         sum += cevians_meet(a, b, c, l, m) - b;
     }
     vec3 moved = b + sum / float(max(to - from, 1u));

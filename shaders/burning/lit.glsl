@@ -3,8 +3,8 @@
 #include "burning/constants.glsl"
 #include "burning/view.glsl"
 
-layout(location = 0) in vec3 place;
-layout(location = 1) in vec3 rest_place;
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 rest_position;
 layout(location = 2) in vec4 normal; // unit vector, how charred
 layout(location = 3) in vec4 color; // charred albedo, glow
 
@@ -16,13 +16,13 @@ vec4 lit(vec3 pattern) {
     if (view.shading == NORMALS) {
         return vec4(0.5 + 0.5 * n, 1.0);
     }
-    vec3 to_eye = view.eye - place;
+    vec3 to_eye = view.eye - position;
     if (dot(n, to_eye) < 0.0) {
         n = -n;
     }
     vec3 albedo = color.rgb;
     if (view.shading == LIT) {
-        // `color` mixes the plain albedo with that of char; this puts the pattern's in its place.
+        // `color` mixes the plain albedo with that of char; this replaces it by the pattern's.
         albedo += (1.0 - normal.w) * constants.albedo * (pattern - 1.0);
     }
     float light = view.ambient + (1.0 - view.ambient) * max(dot(n, view.to_light), 0.0);

@@ -1,5 +1,5 @@
-// Sections 4.4.1 and 4.5: what is drawn of a node of the refinement pattern. Drawn are the active nodes, and at the level of detail the inactive
-// ones in place of all below them. An edge whose midpoint exists on its other side is drawn with it, so that no crack opens: one, two or
+// Sections 4.4.1 and 4.5: the triangles that are drawn of a node of the refinement pattern. Drawn are the active nodes, and at the level of detail the inactive
+// ones for all below them. An edge whose midpoint exists on its other side is drawn with it, so that no crack opens: one, two or
 // three such edges split a node into two, three or four triangles.
 //
 // "If number of children of T with higher burn level than T is >= 2 and SetLevel >= 5 then hide T": since only triangles of the finest level burn,
@@ -41,7 +41,7 @@ struct Leaf {
     uint triangles; // to be drawn, 0 to 4
 };
 
-// Whether a node above the finest level is gone. The counts of gone children lie four bits a level in one word: a
+// True for a node above the finest level that is gone. The counts of gone children lie four bits a level in one integer: a
 // count is full when the digit of its level is 3.
 bool is_gone(uint first, uint below) {
     uint counts = 0u;
@@ -79,15 +79,15 @@ uint used_nodes(uint run) {
     return used;
 }
 
-// What is drawn of a node that is in use, counted over all coarse triangles.
+// The leaf of a node that is in use, counted over all coarse triangles.
 Leaf leaf_of(uint node) {
     uint nodes = nodes_above(constants.levels + 1u);
     Leaf leaf = Leaf(node / nodes, 0u, 0u, uvec3(0u), 0u);
     int status = statuses[node];
     // Level k begins at (4^k - 1) / 3.
-    uint place = node % nodes;
-    leaf.level = uint(findMSB(3u * place + 1u)) / 2u;
-    leaf.index = place - nodes_above(leaf.level);
+    uint own = node % nodes;
+    leaf.level = uint(findMSB(3u * own + 1u)) / 2u;
+    leaf.index = own - nodes_above(leaf.level);
     if (leaf.level > leaves.level_of_detail || (leaf.level < leaves.level_of_detail && status == INACTIVE)) {
         return leaf;
     }

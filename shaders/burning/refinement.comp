@@ -2,7 +2,7 @@
 
 // Sections 4.4.2 and 4.4.3: which triangles of the refinement pattern are in use. The first dispatch finds the coarse triangles that are
 // eligible, by their sets of barycentric points; then one dispatch a level, from the finest parents up to the coarse triangles, splits nodes.
-// What a dispatch reads of the level below is finished, and several threads only ever write the same value, so that no order
+// The level below is finished when a dispatch reads it, and several threads only ever write the same value, so that no order
 // matters; nothing is ever taken back.
 //
 // Readings. A parent is "processed" while one of its children is in use and the others are not yet; since its children are all put in use by
@@ -22,7 +22,7 @@ layout(set = 0, binding = 2, std430) readonly buffer Triangles {
 };
 
 layout(set = 0, binding = 36, std430) readonly buffer BarycentricPoints {
-    uint barycentric_points[]; // places in a coarse triangle's part of `triangles`
+    uint barycentric_points[]; // indices in a coarse triangle's section of `triangles`
 };
 
 layout(set = 0, binding = 11, std430) readonly buffer Labels {

@@ -31,8 +31,8 @@ layout(set = 0, binding = 21, std430) readonly buffer Colors {
     vec4 colors[]; // linear RGB, glow
 };
 
-layout(location = 0) out vec3 place;
-layout(location = 1) out vec3 rest_place;
+layout(location = 0) out vec3 position;
+layout(location = 1) out vec3 rest_position;
 layout(location = 2) out vec4 normal;
 layout(location = 3) out vec4 color;
 
@@ -52,8 +52,8 @@ vec3 block_color(uint block) {
 
 void see(uint corner) {
     uint vertex = welds[corner];
-    place = mapped[vertex].position;
-    rest_place = rest[vertex].position;
+    position = mapped[vertex].position;
+    rest_position = rest[vertex].position;
     normal = normals[corner];
     color = colors[corner];
     if (view.shading == AREAS) {
@@ -61,5 +61,5 @@ void see(uint corner) {
     } else if (view.shading == BLOCKS) {
         color = vec4(block_color(cells[vertex]), 0.0);
     }
-    gl_Position = view.view_projection * vec4(place, 1.0);
+    gl_Position = view.view_projection * vec4(position, 1.0);
 }

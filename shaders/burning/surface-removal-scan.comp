@@ -1,6 +1,6 @@
 #version 450
 
-// Second phase: one workgroup turns the counts into the place of each workgroup's first triangle, and writes what the draw reads.
+// Second phase: one workgroup makes of the counts the index of each workgroup's first triangle, and writes what the draw reads.
 
 layout(local_size_x = 256) in;
 
@@ -13,7 +13,7 @@ layout(set = 0, binding = 18, std430) buffer Clock {
 };
 
 layout(set = 0, binding = 23, std430) buffer Arguments {
-    uint arguments[]; // indices, instances, first index, offset of vertices, first instance
+    uint arguments[]; // indices, instances, first index, vertex offset, first instance
 };
 
 layout(set = 0, binding = 29, std430) buffer GroupSums {
@@ -33,9 +33,9 @@ void main() {
         if (group < groups.count) {
             value = group_sums[group];
         }
-        uint place = before + sum_before(thread, value);
+        uint first = before + sum_before(thread, value);
         if (group < groups.count) {
-            group_sums[group] = place;
+            group_sums[group] = first;
         }
         before += sums[GROUP - 1u];
         barrier();

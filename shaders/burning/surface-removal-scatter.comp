@@ -1,6 +1,6 @@
 #version 450
 
-// Third phase: each drawn triangle's corners to its place in the stream, in their old order.
+// Third phase: each drawn triangle's corners to their offset in the stream, in their old order.
 
 layout(local_size_x = 256) in;
 
@@ -29,11 +29,11 @@ void main() {
     if (triangle < constants.triangle_count) {
         is_drawn = 1u - removed[triangle];
     }
-    uint place = sum_before(gl_LocalInvocationID.x, is_drawn);
+    uint index = sum_before(gl_LocalInvocationID.x, is_drawn);
     if (is_drawn == 1u) {
-        place += group_sums[gl_WorkGroupID.x];
+        index += group_sums[gl_WorkGroupID.x];
         for (uint corner = 0u; corner < 3u; corner++) {
-            stream[3u * place + corner] = corners[3u * triangle + corner];
+            stream[3u * index + corner] = corners[3u * triangle + corner];
         }
     }
 }

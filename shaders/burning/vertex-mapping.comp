@@ -1,11 +1,11 @@
 #version 450
 
-// Each vertex turned with its block about the block's midpoint, just before it is drawn (3.5.3); the simulated position stays.
+// Each vertex rotated with its block about the block's midpoint, just before it is drawn (3.5.3); the simulated position stays.
 
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
-#include "burning/turn.glsl"
+#include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
@@ -31,6 +31,6 @@ void main() {
     }
     VertexState now = new_state[vertex];
     uint block = cells[vertex];
-    vec3 place = turned_with_block(now.position, block, new_rotations[block].xyz);
-    mapped[vertex] = MappedVertex(place, now.left / constants.flammability);
+    vec3 position = rotated_with_block(now.position, block, new_rotations[block].xyz);
+    mapped[vertex] = MappedVertex(position, now.left / constants.flammability);
 }

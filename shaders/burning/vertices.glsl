@@ -11,7 +11,7 @@ struct VertexState {
 };
 
 struct MappedVertex {
-    vec3 position; // turned with its block
+    vec3 position; // rotated with its block
     float left_fraction; // L / L0
 };
 

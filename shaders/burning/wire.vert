@@ -22,7 +22,7 @@ layout(set = 0, binding = 22, std430) readonly buffer Stream {
     uint stream[];
 };
 
-const float LIFT = 0.004; // of the way to the eye
+const float LIFT = 0.004; // of the distance to the eye
 
 void main() {
     uint number = uint(gl_VertexIndex);
@@ -33,6 +33,6 @@ void main() {
     }
     uint edge = (number % 6u) / 2u;
     uint corner = stream[3u * triangle + (edge + number % 2u) % 3u];
-    vec3 place = mapped[welds[corner]].position;
-    gl_Position = view.view_projection * vec4(mix(place, view.eye, LIFT), 1.0);
+    vec3 position = mapped[welds[corner]].position;
+    gl_Position = view.view_projection * vec4(mix(position, view.eye, LIFT), 1.0);
 }

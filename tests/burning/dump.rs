@@ -1,4 +1,4 @@
-//! What the device holds as the oracle has it.
+//! The device's buffers as the oracle has them.
 
 use std::iter::repeat;
 

@@ -1,4 +1,4 @@
-//! A fire on the device, and what it left in its buffers.
+//! A fire on the device, and its buffers.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub struct Fire {
     device: Arc<Device>,
 }
 
-/// What the simulation left, as bits.
+/// The simulation's buffers, as bits.
 #[derive(PartialEq)]
 pub struct State {
     pub vertices: Vec<VertexState>,

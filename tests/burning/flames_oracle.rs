@@ -12,7 +12,7 @@ use crate::twin::Twin;
 fn particles(fire: &Fire) -> Vec<Particle> {
     let device: Vec<DeviceParticle> = fire.read(&fire.paper.flames().unwrap().particles);
     let particle = |p: &DeviceParticle| Particle {
-        place: p.position.as_dvec3(),
+        position: p.position.as_dvec3(),
         age: p.age_ticks as u32,
         life: p.life_ticks as u32,
         block: p.block as usize,
@@ -86,7 +86,12 @@ fn every_particle_is_where_the_oracle_has_it() {
                 }
                 counts[usize::from(number >= parameters.fire as usize)] += 1;
                 assert_eq!((ours.age, ours.block), (theirs.age, theirs.block), "{at}");
-                assert!(ours.place.distance(theirs.place) < 1e-4, "{at} is at {}, not {}", theirs.place, ours.place);
+                assert!(
+                    ours.position.distance(theirs.position) < 1e-4,
+                    "{at} is at {}, not {}",
+                    theirs.position,
+                    ours.position
+                );
                 assert!((0..2).all(|k| (ours.own[k] - theirs.own[k]).abs() < 1e-6), "{at}");
             }
             let counted = fire.paper.counts().unwrap();

@@ -1,4 +1,4 @@
-//! What holds in every fire, whatever the numbers.
+//! Laws of every fire, whatever the numbers.
 
 use fumarole::measure::Paper;
 use fumarole::papers::burning::{BlockCounts, Parameters, Variant};
@@ -130,7 +130,7 @@ fn without_a_need_for_it_nothing_consumed_stays() {
     });
 }
 
-/// Whether some face neighbour of a block of the 4 x 4 x 4 has weight and no other neighbour with weight (3.5.4).
+/// True when some face neighbour of a block of the 4 x 4 x 4 has weight and no other neighbour with weight (3.5.4).
 fn is_needed(blocks: &[BlockCounts], block: u32) -> bool {
     let neighbours = |block: u32| {
         let [x, y, z] = [block % 4, block / 4 % 4, block / 16];

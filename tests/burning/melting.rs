@@ -1,4 +1,4 @@
-//! What melts (chapter 6): it runs down, keeps its edges in range and comes to rest.
+//! Melting objects (chapter 6): wax runs down, keeps its edges in range and comes to rest.
 
 use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::shapes;

@@ -16,9 +16,9 @@ use crate::dump;
 use crate::fire::Fire;
 use crate::twin::Twin;
 
-/// Within it of a threshold in lengths rounding may decide either way.
+/// Distance from a threshold, in lengths, within which rounding may decide either way.
 const CLOSE: f64 = 1e-5;
-/// What numbers of the device may differ by.
+/// Largest difference of the device's numbers.
 const EXACT: f64 = 1e-4;
 /// The steps that are compared.
 const STEPS: [u32; 3] = [1, 50, 200];
@@ -120,7 +120,7 @@ impl Comparison<'_> {
         self.same_points(&state.guides, &after.guides, "guides");
         self.same_points(&state.flows, &after.flows, "flows");
 
-        let margins = tick.place(&mut state);
+        let margins = tick.locate(&mut state);
         self.settle(&mut state.cells, &after.cells, &margins, "blocks of vertices");
         let margins = tick.weigh(before, &mut state);
         if tick.variant != Variant::Solid {

@@ -126,7 +126,7 @@ fn edges(t: &[u32; 3]) -> [(u32, u32); 3] {
     [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
 }
 
-/// How many triangles have each directed edge.
+/// Number of triangles of each directed edge.
 fn directed(triangles: &[[u32; 3]]) -> BTreeMap<(u32, u32), u32> {
     let mut found = BTreeMap::new();
     for edge in triangles.iter().flat_map(edges) {

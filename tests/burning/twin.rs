@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use crate::fire::Fire;
 
-/// What the oracle burns.
+/// The model that the oracle burns.
 pub struct Twin {
     variant: Variant,
     pub model: Model,

@@ -1,4 +1,4 @@
-//! The buffers of the paper: what never changes, what the ticks change, and what a frame makes of it.
+//! The buffers of the paper: the object, which never changes, its state, which the ticks change, and the mesh that a frame makes of it.
 
 use std::sync::Arc;
 
@@ -92,14 +92,16 @@ host_block! {
         pub combustion: i32,
         /// Vertices inside the combustion-ready boundary.
         pub heated: i32,
+        /// Last tick with active vertices.
         pub last_active_tick: i32,
     }
 }
 
 host_block! {
-    /// What the device counts by itself (`burning/clock.glsl`).
+    /// Counters that the device keeps by itself (`burning/clock.glsl`).
     #[derive(Default)]
     pub struct Counts {
+        /// Ticks since the fire was lit.
         pub tick: u32,
         /// Ticks in which the boundary grew.
         pub growth_ticks: u32,
@@ -113,9 +115,13 @@ host_block! {
         pub live_vertices: u32,
         /// Live vertices of the combustion-ready area.
         pub ready_vertices: u32,
+        /// Finest triangles that have left the stream.
         pub removed_triangles: u32,
+        /// Triangles in the stream.
         pub drawn_triangles: u32,
+        /// Fire particles that are there.
         pub fire_particles: u32,
+        /// Smoke particles that are there.
         pub smoke_particles: u32,
     }
 }
@@ -161,12 +167,12 @@ pub struct Buffers {
     pub cells: Arc<Buffer>,
     /// [`BlockCounts`] of each block.
     pub blocks: Arc<Buffer>,
-    /// vec4\[blocks\] twice, which take turns as the states do: pitch, yaw, roll in radians.
+    /// vec4\[blocks\] twice, ping-pong as the states are: pitch, yaw, roll in radians.
     pub rotations: [Arc<Buffer>; 2],
-    /// vec4\[blocks\] twice, which take turns as the states do: displacement of the base point since the start, whether it is
+    /// vec4\[blocks\] twice, ping-pong as the states are: displacement of the base point since the start, 1 while it is
     /// active (6.3.4).
     pub base_displacements: [Arc<Buffer>; 2],
-    /// vec4\[N\]: how far a vertex has followed the base points; of one element where nothing melts.
+    /// vec4\[N\]: displacement by which a vertex has followed the base points; of one element where nothing melts.
     pub flows: Arc<Buffer>,
     /// uint\[N\]: 1 where the vertex exists.
     pub alive: Arc<Buffer>,
@@ -175,7 +181,7 @@ pub struct Buffers {
 
     /// vec4\[N\]: position with the block's rotation, L / L0.
     pub mapped: Arc<Buffer>,
-    /// vec4\[C\]: normal, how charred.
+    /// vec4\[C\]: normal, charred fraction.
     pub normals: Arc<Buffer>,
     /// vec4\[C\]: linear RGB, glow.
     pub colors: Arc<Buffer>,
@@ -184,7 +190,7 @@ pub struct Buffers {
     /// `VkDrawIndexedIndirectCommand`.
     pub arguments: Arc<Buffer>,
 
-    /// What a restart copies: the contents of the buffers that a tick needs from the last one.
+    /// Each buffer that a tick needs from the last one, with its copy at the start.
     start: Vec<(Arc<Buffer>, Arc<Buffer>)>,
 }
 
@@ -279,7 +285,7 @@ impl Buffers {
         Ok(buffers)
     }
 
-    /// The object, its blocks and the constants: what the simulation reads and no pass writes.
+    /// The object, its blocks and the constants: the simulation reads them and no pass writes them.
     pub fn unchanging(&self) -> [&Arc<Buffer>; 11] {
         [
             &self.constants,
@@ -296,7 +302,7 @@ impl Buffers {
         ]
     }
 
-    /// Lets a restart bring back what `buffer`, which a tick needs from the last one, holds at the start.
+    /// Lets a restart bring back the contents of `buffer`, which a tick needs from the last one, at the start.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
@@ -308,7 +314,7 @@ impl Buffers {
         Ok(())
     }
 
-    /// Makes what the buffers hold now the start.
+    /// Makes the contents of the buffers the start.
     ///
     /// # Errors
     /// What the Vulkan layer answers.
@@ -327,7 +333,7 @@ impl Buffers {
     }
 }
 
-/// Which vertices exist before the fire: all, but of an object that is refined only those of its coarse triangles.
+/// 1 for each vertex that exists before the fire: all, but of an object that is refined only those of its coarse triangles.
 fn alive_at_rest(variant: Variant, model: &Model) -> Vec<u32> {
     let mut alive = vec![u32::from(!variant.refines()); model.rest.len()];
     for corner in model.lattice.nodes[0].as_flattened() {
@@ -380,6 +386,6 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
     }
 }
 
-/// A block turns by 2 degrees at most (3.5.2: very minute), by 15 where two or more of its sides are free.
+/// A block rotates by 2 degrees at most (3.5.2: very minute), by 15 where two or more of its sides are free.
 const GREATEST_ROTATION_RAD: f32 = 2.0 * std::f32::consts::PI / 180.0;
 const GREATEST_FREE_ROTATION_RAD: f32 = 15.0 * std::f32::consts::PI / 180.0;

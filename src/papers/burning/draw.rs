@@ -36,7 +36,9 @@ const FAR: Load = Load::Clear([1.0, 0.0, 0.0, 0.0]);
 /// The pass with its targets.
 pub struct Draw {
     pass: Pass,
+    /// The user's camera, or one that frames the object.
     pub camera: Camera,
+    /// The uniform block of `burning/view.glsl`.
     pub view: Arc<Buffer>,
     /// D32.
     pub depth: Arc<ImageView>,

@@ -28,9 +28,11 @@ host_block! {
 }
 
 host_block! {
-    /// What a tick knows of a block's group (`burning/flames.glsl`).
+    /// The group of a block in a tick (`burning/flames.glsl`).
     pub struct Group {
+        /// In the pool of fire particles.
         pub first_fire: u32,
+        /// In the pool of smoke particles.
         pub first_smoke: u32,
         /// In the list of ready vertices.
         pub first_ready: u32,
@@ -44,6 +46,7 @@ host_block! {
     pub struct Particle {
         /// Diagonals.
         pub position: Vec3,
+        /// Ticks since it was born.
         pub age_ticks: f32,
         /// Its whole life, 0 when it is not there.
         pub life_ticks: f32,
@@ -138,7 +141,7 @@ impl Flames {
     }
 }
 
-/// The picture's axes in space, and how its depth is turned into a distance.
+/// The picture's axes in space, and the conversion of its depth to a distance.
 fn billboards(parameters: &Parameters, camera: &Camera) -> BillboardsBlock {
     let view = camera.view();
     let projection = camera.projection(parameters.aspect());

@@ -1,5 +1,5 @@
-//! Section 3.7.4: what never changes lies on the device from the start. Without that it travels there in every frame, which shows
-//! what the optimisation saves.
+//! `loading` (3.7.4): buffers that never change lie on the device from the start. Without that they are copied there in every frame,
+//! which shows the gain of the optimisation.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ pub struct Loading {
 }
 
 impl Loading {
-    /// Keeps on the host what is now in the buffers that never change.
+    /// Keeps on the host the contents of the buffers that never change.
     ///
     /// # Errors
     /// What the Vulkan layer answers.

@@ -63,7 +63,7 @@ pub use self::framing::seen_from;
 pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
 pub use self::texture::{Level, Texture, with_levels};
 
-/// What a device must have for this paper, beyond the baseline of the Vulkan layer.
+/// Features that a device needs for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
 
 /// Slices that one frame records at most, more than the longest time step has: those of frames that are left out before a late
@@ -259,11 +259,12 @@ impl Burning {
         self.flames.as_ref()
     }
 
+    /// The camera of the picture.
     pub fn camera(&self) -> &Camera {
         &self.draw.camera
     }
 
-    /// What the device has counted up to the last frame.
+    /// The counts of the device up to the last frame.
     ///
     /// # Errors
     /// What the Vulkan layer answers.

@@ -22,7 +22,7 @@ pub enum Variant {
     Shell,
     /// Chapter 4: few triangles, refined where they burn.
     LowPoly,
-    /// What chapter 4 is compared with: every triangle subdivided before the fire.
+    /// Chapter 4's baseline: every triangle subdivided before the fire.
     FullySubdivided,
     /// Chapter 5: burns inward.
     Solid,
@@ -46,18 +46,18 @@ impl crate::measure::Variant for Variant {
 }
 
 impl Variant {
-    /// Whether the triangles are refined where they are about to burn: 4, and the larger triangles of 5 and 6.
+    /// True where the triangles are refined as they are about to burn: 4, and the larger triangles of 5 and 6.
     pub fn refines(self) -> bool {
         matches!(self, Variant::LowPoly | Variant::Solid | Variant::Melting)
     }
 
-    /// Whether consumed triangles leave the drawn stream (3.5.4); a solid's and a melting object's stay.
+    /// True where consumed triangles leave the drawn stream (3.5.4); a solid's and a melting object's stay.
     pub fn removes(self) -> bool {
         matches!(self, Variant::Shell | Variant::LowPoly | Variant::FullySubdivided)
     }
 }
 
-/// What the surface is made of, to the eye.
+/// The material of the surface, to the eye.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Material {
     /// The albedo alone.
@@ -186,11 +186,13 @@ pub struct Parameters {
     pub particle_radius: f32,
     /// Finest level that is drawn; without, by the distance of the camera (4.5).
     pub level_of_detail: Option<u32>,
+    /// The surface's pattern.
     pub material: Material,
     /// Covers the object in place of the material; the mesh must have texture coordinates.
     pub texture: Option<Arc<Texture>>,
     /// Linear RGB; a factor of the texture.
     pub albedo: Vec3,
+    /// The quantity that colours the mesh.
     pub shading: Shading,
     /// Without, the object fills 80 % of the picture's height.
     pub camera: Option<Camera>,
@@ -198,6 +200,7 @@ pub struct Parameters {
     pub time_step_s: f64,
     /// The simulation's frame that frame 0 shows.
     pub first_frame: u32,
+    /// Seed of the boundary's noise and of the particles.
     pub seed: u64,
     /// Width of the picture in pixels.
     pub width: u32,
@@ -449,7 +452,7 @@ impl Parameters {
     }
 
     /// Slices of ticks that are due after frame `number`, counted from the start of the simulation: one a tick without
-    /// [`Parameters::time_division`], which makes each frame's share of a tick that much smaller.
+    /// [`Parameters::time_division`], which makes each frame's part of a tick that much smaller.
     pub fn slices_due(&self, number: u32) -> u64 {
         let frames = f64::from(self.first_frame) + f64::from(number) + 1.0;
         // A step of a 60th, as typed, is a little short or long of a tick; no frame may miss its own for that.

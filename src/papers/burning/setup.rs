@@ -26,6 +26,7 @@ use crate::scene::{Mesh, MeshSource};
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
+    /// Every number.
     pub parameters: Parameters,
     /// The object that burns.
     pub mesh: MeshSource,
@@ -35,6 +36,7 @@ pub struct Setup {
     pub triangles: Option<u32>,
     /// A PNG that covers the mesh by its texture coordinates, in place of the material.
     pub texture: Option<PathBuf>,
+    /// The preset that it was made of.
     pub preset: Option<String>,
 }
 
@@ -48,7 +50,9 @@ impl Default for Setup {
 
 /// A setup with its mesh loaded and brought to its count.
 pub struct Scene {
+    /// Stretched, with the triangles that were asked for.
     pub mesh: Mesh,
+    /// With its levels.
     pub texture: Option<Arc<Texture>>,
 }
 

@@ -21,7 +21,9 @@ pub struct Texture {
 /// One size of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
+    /// Texels.
     pub width: u32,
+    /// Texels.
     pub height: u32,
     /// 8-bit sRGB and an alpha that is not looked at, the top row first.
     pub texels: Vec<u8>,
@@ -177,7 +179,7 @@ mod tests {
             let texture = with_levels(&picture(width, height, |_, _| [9, 200, 77]));
             let found: Vec<_> = texture.levels.iter().map(|l| (l.width, l.height)).collect();
             assert_eq!(found, sizes);
-            // What is one colour stays so.
+            // One colour stays so.
             for level in &texture.levels {
                 assert_eq!(level.texels.len(), 4 * (level.width * level.height) as usize);
                 assert!(level.texels.chunks_exact(4).all(|t| t == [9, 200, 77, 255]));

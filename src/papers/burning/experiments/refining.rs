@@ -33,7 +33,7 @@ pub const TABLE: [Line; 4] = [
     Line { coarse: 48, speed_up: 1.25 },
 ];
 
-/// What is measured of each box.
+/// The loads that each box is measured under.
 const LOADS: [&str; 2] = ["without particles", "with particles"];
 
 impl Line {
@@ -64,7 +64,7 @@ impl Line {
     }
 }
 
-/// Whether half of the coarse triangles are refined.
+/// True once half of the coarse triangles are refined.
 pub fn is_half_refined(snapshot: &Snapshot) -> bool {
     2 * snapshot.refined.unwrap_or(0) >= snapshot.coarse
 }
@@ -201,25 +201,25 @@ pub fn passes(measured: &[Measured]) -> ResultTable {
     }
 }
 
-/// The ratio of every frame without particles over the share of coarse triangles that are refined.
+/// The ratio of every frame without particles over the fraction of coarse triangles that are refined.
 pub fn curves(measured: &[Measured]) -> ResultTable {
     let mut rows = Vec::new();
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
         for (frame, snapshot) in one.snapshots.iter().enumerate() {
-            let share = f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
+            let fraction = f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
             let ratio = pair.of_frame(frame, one.snapshots.len());
-            rows.push(vec![json!(one.finest()), json!(frame), json!(share), json!(ratio), json!(one.line.speed_up)]);
+            rows.push(vec![json!(one.finest()), json!(frame), json!(fraction), json!(ratio), json!(one.line.speed_up)]);
         }
     }
     ResultTable {
-        title: "Table 4.2: speed-up by the share of coarse triangles that are refined",
+        title: "Table 4.2: speed-up by the fraction of coarse triangles that are refined",
         columns: &["triangles", "frame", "refined share", "speed-up", "dissertation"],
         rows,
     }
 }
 
-/// [`curves`] as lines: for each share the mean over its frames, the dissertation's as dashes.
+/// [`curves`] as lines: for each fraction the mean over its frames, the dissertation's as dashes.
 ///
 /// # Errors
 /// [`Error::Plot`].
@@ -227,7 +227,7 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
     let mut series = Vec::new();
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
-        let share = |snapshot: &Snapshot| f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
+        let fraction = |snapshot: &Snapshot| f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
         let points: Vec<(f64, f64)> = one
             .snapshots
             .chunk_by(|a, b| a.refined == b.refined)
@@ -235,7 +235,7 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
                 let frames = *next..*next + snapshots.len();
                 *next = frames.end;
                 let ratios: Vec<f64> = frames.filter_map(|frame| pair.of_frame(frame, one.snapshots.len())).collect();
-                Some(mean(&ratios).map(|ratio| (share(&snapshots[0]), ratio)))
+                Some(mean(&ratios).map(|ratio| (fraction(&snapshots[0]), ratio)))
             })
             .flatten()
             .collect();
@@ -247,7 +247,7 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
     }
     let chart = LineChart {
         title: "Refined against subdivided".to_owned(),
-        x_label: "share of the coarse triangles that are refined".to_owned(),
+        x_label: "fraction of the coarse triangles that are refined".to_owned(),
         y_label: "speed-up".to_owned(),
         x_scale: Scale::Linear,
         y_scale: Scale::Linear,

@@ -1,4 +1,4 @@
-//! What the optimisations of 3.7 buy, and how the simulation's cost follows the active triangles.
+//! The gain of the optimisations of 3.7, and the simulation's cost over the active triangles.
 
 use serde_json::{Value, json};
 
@@ -93,7 +93,7 @@ pub fn block_table(rows: &mut [Row]) -> ResultTable {
     }
 }
 
-/// A fire under a limit of active vertices, and how it went.
+/// A fire under a limit of active vertices, and its snapshots.
 pub struct Limited {
     pub limit: u32,
     pub snapshots: Vec<Snapshot>,
@@ -122,7 +122,7 @@ pub fn limit_points(setup: &Setup, fires: &[Limited]) -> Vec<Point<Setup>> {
     fires.iter().map(of).collect()
 }
 
-/// What a limit buys and what it costs (3.7.1).
+/// Gain and cost of each limit (3.7.1).
 pub fn limit_table(fires: &[Limited], rows: &[Row]) -> ResultTable {
     let rows = fires.iter().zip(rows).map(|(fire, row)| {
         let peak = fire.snapshots.iter().map(|snapshot| snapshot.counts.active_vertices).max();
@@ -158,7 +158,7 @@ pub fn division_points(setup: &Setup, snapshots: &[Snapshot]) -> Result<Vec<Poin
     Ok(DIVISIONS.map(of).into())
 }
 
-/// What time division buys (3.7.2): frames of one tick differ, and the longest is what a player sees.
+/// Gain of time division (3.7.2): frames of one tick differ, and the player sees the longest.
 pub fn division_table(rows: &[Row]) -> ResultTable {
     let rows = rows.iter().map(|row| {
         let summary = row.run.frame_ms.as_ref();
@@ -191,7 +191,7 @@ pub fn loading_points(setup: &Setup, snapshots: &[Snapshot]) -> Result<Vec<Point
     Ok([true, false].map(of).into())
 }
 
-/// What loading ahead buys (3.7.4).
+/// Gain of loading ahead (3.7.4).
 pub fn loading_table(rows: &[Row]) -> ResultTable {
     let rows = rows.iter().map(|row| {
         let loaded = if row.x > 0.0 { "before" } else { "in every frame" };

@@ -7,6 +7,7 @@ use crate::scene::Bounds;
 /// A grid of blocks over the object at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
+    /// Blocks along x, y and z.
     pub counts: [u32; 3],
     /// Its lowest corner.
     pub origin: Vec3,
@@ -14,7 +15,7 @@ pub struct Grid {
     pub cell_size: Vec3,
 }
 
-/// The box is enlarged by it, a share of the diagonal, so that no vertex at rest lies on its sides.
+/// The box is enlarged by it, a fraction of the diagonal, so that no vertex at rest lies on its sides.
 const MARGIN: f32 = 1e-4;
 
 impl Grid {
@@ -25,14 +26,15 @@ impl Grid {
         Grid { counts, origin, cell_size: extent / UVec3::from(counts).as_vec3() }
     }
 
+    /// Blocks in all.
     pub fn cell_count(&self) -> u32 {
         self.counts.iter().product()
     }
 
-    /// The block of a place; the nearest one for a place outside.
-    pub fn cell(&self, place: Vec3) -> u32 {
+    /// The block of a position; the nearest one for a position outside.
+    pub fn cell(&self, position: Vec3) -> u32 {
         let counts = UVec3::from(self.counts);
-        let at = ((place - self.origin) / self.cell_size).floor();
+        let at = ((position - self.origin) / self.cell_size).floor();
         let at = at.clamp(Vec3::ZERO, (counts - 1).as_vec3()).as_uvec3();
         (at.z * counts.y + at.y) * counts.x + at.x
     }

@@ -1,18 +1,18 @@
-//! The irregular heat boundary of 3.3: how far each point of the object at rest is from the sources, to the boundary.
+//! The irregular heat boundary of 3.3: the radius at which it reaches each point of the object at rest.
 //!
 //! R² = psi d² (1 + a (sin(pi Theta / delta) + sin pi Theta) / 2), the least over the sources. Printed, the sines stand beside the
 //! squared distance without a scale and delta is the growth of a frame; with fixed a and delta the boundary looks alike at any size of
-//! object and any frame rate. Theta is a smooth noise of the place and not of the time, so that a point once inside stays inside.
+//! object and any frame rate. Theta is a smooth noise of the position and not of the time, so that a point once inside stays inside.
 
 use std::f64::consts::PI;
 
 use glam::{DVec3, IVec3, Vec3};
 
-/// a: how far the irregularity reaches.
+/// a: reach of the irregularity.
 const IRREGULARITY: f64 = 0.3;
-/// delta, in place of the paper's growth of the radius a frame.
+/// delta, in position of the paper's growth of the radius a frame.
 const DELTA: f64 = 0.25;
-/// Wavelength of Theta, a share of the diagonal.
+/// Wavelength of Theta, a fraction of the diagonal.
 const WAVELENGTH: f64 = 1.0 / 8.0;
 
 /// R of a point of the object at rest, diagonals.
@@ -24,10 +24,10 @@ pub fn distance(rest: Vec3, sources: &[Vec3], psi: f32, seed: u32) -> f64 {
     (f64::from(psi) * nearest * (1.0 + IRREGULARITY * ripple)).sqrt()
 }
 
-/// Smooth noise in [0, 1): random values at whole places, blended by quintics.
-fn noise(place: DVec3, seed: u32) -> f64 {
-    let cell = place.floor();
-    let t = place - cell;
+/// Smooth noise in [0, 1): random values at whole positions, blended by quintics.
+fn noise(position: DVec3, seed: u32) -> f64 {
+    let cell = position.floor();
+    let t = position - cell;
     let fade = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let cell = cell.as_ivec3();
     let blend = |a: f64, b: f64, t: f64| a + (b - a) * t;
@@ -37,9 +37,9 @@ fn noise(place: DVec3, seed: u32) -> f64 {
     blend(along_y(0), along_y(1), fade.z)
 }
 
-/// A multiple of 2^-32 in [0, 1) for each whole place.
-fn corner(place: IVec3, seed: u32) -> f64 {
-    let [x, y, z] = place.to_array().map(|c| c as u32);
+/// A multiple of 2^-32 in [0, 1) for each whole position.
+fn corner(position: IVec3, seed: u32) -> f64 {
+    let [x, y, z] = position.to_array().map(|c| c as u32);
     f64::from(scramble(x ^ scramble(y ^ scramble(z ^ scramble(seed))))) / 4_294_967_296.0
 }
 

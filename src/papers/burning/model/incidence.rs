@@ -1,8 +1,8 @@
-//! Which triangles a vertex belongs to: the lists that its thread gathers from.
+//! The triangles that each vertex belongs to: the lists that its thread gathers from.
 
 /// One list a vertex, one after the other.
 pub struct Incidence {
-    /// Where each vertex's list begins, and the end of the last.
+    /// First entry of each vertex's list, and the end of the last.
     pub offsets: Vec<u32>,
     /// Triangle times 4 plus corner, ascending within each list.
     pub entries: Vec<u32>,

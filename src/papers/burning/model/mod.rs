@@ -1,4 +1,4 @@
-//! What of the object is prepared on the host and uploaded once (3.7.4).
+//! The object, prepared on the host and uploaded once (3.7.4).
 
 mod blocks;
 mod boundary;
@@ -21,9 +21,11 @@ pub use self::incidence::Incidence;
 pub use self::lattice::Lattice;
 pub use self::weld::Welded;
 
-/// A vertex is a simulated one, welded; a draw vertex one of the mesh as loaded.
+/// The object at rest. A vertex is a simulated one, welded; a draw vertex one of the mesh as loaded.
 pub struct Model {
+    /// Subdivisions of each coarse triangle.
     pub levels: u32,
+    /// All nodes of all levels.
     pub lattice: Lattice,
     /// Every vertex at rest.
     pub rest: Vec<RestVertex>,
@@ -35,6 +37,7 @@ pub struct Model {
     pub corner_incidence: Incidence,
     /// Of the object at rest.
     pub bounds: Bounds,
+    /// The blocks of 3.5.1.
     pub grid: Grid,
     /// The block of each vertex at rest.
     pub rest_cells: Vec<u32>,
@@ -42,26 +45,29 @@ pub struct Model {
     pub base_points: Vec<u32>,
     /// Mean length of the finest triangles' edges at rest.
     pub mean_edge: f32,
+    /// Places of ignition.
     pub sources: Vec<Vec3>,
+    /// Height that nothing melts below.
     pub floor: f32,
     /// 1 where the triangles wind so that their normals point out of the enclosed volume, or else -1.
     pub outward: f32,
-    /// How far a vertex of a solid comes from where it was at rest: [`CHAR_SHARE`] of its volume over its surface, a quarter of a
+    /// Farthest that a vertex of a solid comes from its position at rest: [`CHAR_FRACTION`] of its volume over its surface, a quarter of a
     /// ball's radius.
     pub char_depth: f32,
-    /// Whether each edge of the mesh has two triangles, which run along it in opposite ways.
+    /// Each edge of the mesh has two triangles, which run along it in opposite directions.
     pub is_closed: bool,
     /// Triangles of the mesh that were left out because two of their corners coincide.
     pub degenerate: u32,
 }
 
+/// Stands for no vertex in a list of vertices.
 pub const NO_VERTEX: u32 = u32::MAX;
 
-/// With more than this, crumpled sides of a box that burns one after the other were seen to pass each other.
-pub const CHAR_SHARE: f64 = 0.75;
+/// Fraction of volume over surface: with more, crumpled sides of a box that burns one after the other were seen to pass each other.
+pub const CHAR_FRACTION: f64 = 0.75;
 
 impl Model {
-    /// Prepares a mesh for a variant. `largest_bytes` is what the device binds at most.
+    /// Prepares a mesh for a variant. `largest_bytes` is the device's longest storage buffer.
     ///
     /// # Errors
     /// [`Error::Limit`] for more triangles than that holds.
@@ -105,7 +111,7 @@ impl Model {
             base_points: base_points(&grid, positions, &rest_cells),
             mean_edge: mean_edge(positions, &triangles),
             outward: if volume < 0.0 { -1.0 } else { 1.0 },
-            char_depth: (CHAR_SHARE * volume.abs() / surface(positions, &triangles)) as f32,
+            char_depth: (CHAR_FRACTION * volume.abs() / surface(positions, &triangles)) as f32,
             floor: parameters.floor.unwrap_or(bounds.min.y),
             bounds,
             grid,
@@ -133,6 +139,7 @@ impl Model {
         self.triangles.len() as u32
     }
 
+    /// Blocks of the grid.
     pub fn block_count(&self) -> u32 {
         self.grid.cell_count()
     }
@@ -150,9 +157,9 @@ fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
         Variant::Shell => 0,
         Variant::LowPoly | Variant::FullySubdivided => 5,
         Variant::Solid | Variant::Melting => {
-            let place = |corner: u32| welded.positions[corner as usize];
+            let position = |corner: u32| welded.positions[corner as usize];
             let lengths = welded.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-            let longest = lengths.map(|(a, b)| place(a).distance(place(b))).fold(0.0, f32::max);
+            let longest = lengths.map(|(a, b)| position(a).distance(position(b))).fold(0.0, f32::max);
             (0..5).find(|&level| longest / (1 << level) as f32 <= edge).unwrap_or(5)
         }
     }
@@ -165,21 +172,21 @@ fn ignition(positions: &[Vec3], variant: Variant) -> Vec3 {
 }
 
 fn mean_edge(positions: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
-    let place = |vertex: u32| positions[vertex as usize].as_dvec3();
+    let position = |vertex: u32| positions[vertex as usize].as_dvec3();
     let around =
-        |&[a, b, c]: &[u32; 3]| place(a).distance(place(b)) + place(b).distance(place(c)) + place(c).distance(place(a));
+        |&[a, b, c]: &[u32; 3]| position(a).distance(position(b)) + position(b).distance(position(c)) + position(c).distance(position(a));
     (triangles.iter().map(around).sum::<f64>() / (3.0 * triangles.len().max(1) as f64)) as f32
 }
 
 /// Signed: by the tetrahedra that the triangles make with the origin.
 fn enclosed_volume(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
-    let place = |vertex: u32| positions[vertex as usize].as_dvec3();
-    triangles.iter().map(|&[a, b, c]| place(a).dot(place(b).cross(place(c))) / 6.0).sum()
+    let position = |vertex: u32| positions[vertex as usize].as_dvec3();
+    triangles.iter().map(|&[a, b, c]| position(a).dot(position(b).cross(position(c))) / 6.0).sum()
 }
 
 fn surface(positions: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
-    let place = |vertex: u32| positions[vertex as usize].as_dvec3();
-    let area = |&[a, b, c]: &[u32; 3]| (place(b) - place(a)).cross(place(c) - place(a)).length() / 2.0;
+    let position = |vertex: u32| positions[vertex as usize].as_dvec3();
+    let area = |&[a, b, c]: &[u32; 3]| (position(b) - position(a)).cross(position(c) - position(a)).length() / 2.0;
     triangles.iter().map(area).sum::<f64>().max(f64::MIN_POSITIVE)
 }
 

@@ -1,7 +1,7 @@
 //! The refinement pattern of a coarse triangle (section 4.4.1): a full tree of nodes, four children each.
 //!
 //! The node (a, b, c) has the children (a, mab, mca), (mab, b, mbc), (mca, mbc, c) and (mab, mbc, mca). Nodes are numbered level by
-//! level, inside a level by the digits of the way from the root. Everything else is arithmetic on these numbers, here and in
+//! level, inside a level by the digits of the path from the root. Everything else is arithmetic on these numbers, here and in
 //! `shaders/burning/tree.glsl`.
 
 use std::collections::BTreeMap;
@@ -24,24 +24,24 @@ pub const fn nodes_of(levels: u32) -> u32 {
     nodes_above(levels + 1)
 }
 
-/// Where corner `corner` (0 to 2) of the node stands in the corners of its coarse triangle's finest triangles. Child c
+/// Index of corner `corner` (0 to 2) of the node in the corners of its coarse triangle's finest triangles. Child c
 /// keeps its parent's corner c.
 pub const fn corner_at(levels: u32, level: u32, index: u32, corner: u32) -> u32 {
     let below = levels - level;
     3 * (index * triangles_of(below) + corner * nodes_above(below)) + corner
 }
 
-/// The places, as of [`corner_at`], of the barycentric points of a pattern of `levels` levels, each point once: the vertices of
+/// The indices, as of [`corner_at`], of the barycentric points of a pattern of `levels` levels, each point once: the vertices of
 /// level 3, or of the finest level where that is coarser.
 pub fn barycentric_points(levels: u32) -> Vec<u32> {
     let level = levels.min(BARYCENTRIC_LEVEL);
-    let mut places = BTreeMap::new();
+    let mut indices = BTreeMap::new();
     for index in 0..triangles_of(level) {
         for (corner, point) in (0..3).zip(corners_of(level, index)) {
-            places.entry(point).or_insert_with(|| corner_at(levels, level, index, corner));
+            indices.entry(point).or_insert_with(|| corner_at(levels, level, index, corner));
         }
     }
-    places.into_values().collect()
+    indices.into_values().collect()
 }
 
 /// The corners of a node of `level`, in steps of that level's edge along two sides of the coarse triangle.

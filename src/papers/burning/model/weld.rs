@@ -44,11 +44,11 @@ impl Welded {
         let mut vertices: HashMap<[u32; 3], u32> = HashMap::new();
         for (at, position) in mesh.positions.iter().enumerate().filter(|&(at, _)| is_used[at]) {
             number[at] = welded.positions.len() as u32;
-            // -0 and +0 are one place.
-            let place = ((position.as_dvec3() - base) * scale).as_vec3() + Vec3::ZERO;
+            // -0 and +0 are one position.
+            let scaled = ((position.as_dvec3() - base) * scale).as_vec3() + Vec3::ZERO;
             let next = vertices.len() as u32;
-            welded.welds.push(*vertices.entry(place.to_array().map(f32::to_bits)).or_insert(next));
-            welded.positions.push(place);
+            welded.welds.push(*vertices.entry(scaled.to_array().map(f32::to_bits)).or_insert(next));
+            welded.positions.push(scaled);
             welded.texture_coordinates.extend(mesh.texture_coordinates.get(at).map(|t| t.to_array()));
         }
         welded.vertex_count = vertices.len() as u32;
@@ -64,11 +64,11 @@ impl Welded {
         welded
     }
 
-    /// Whether each edge has two triangles, which run along it in opposite ways.
+    /// True for a mesh each edge of which has two triangles, which run along it in opposite directions.
     pub fn is_closed(&self) -> bool {
         let vertices = |triangle: &[u32; 3]| triangle.map(|corner| self.welds[corner as usize]);
         let sides = || self.triangles.iter().map(vertices).flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
-        let mut ways = HashSet::new();
-        sides().all(|way| ways.insert(way)) && sides().all(|[from, to]| ways.contains(&[to, from]))
+        let mut directed = HashSet::new();
+        sides().all(|side| directed.insert(side)) && sides().all(|[from, to]| directed.contains(&[to, from]))
     }
 }

@@ -1,11 +1,11 @@
-//! Section 3.5 with 5.4 and 6.4: blocks, their weights and rotations, and how the rotations reach the vertices.
+//! Section 3.5 with 5.4 and 6.4: blocks, their weights and rotations, and the vertices that they rotate.
 
 use glam::{DMat3, DVec3};
 
 use super::boundary::area;
 use super::{State, Tick, Variant};
 
-/// How much wider the grid is than the mesh on each side, in diagonals.
+/// Margin of the grid around the mesh on each side, in diagonals.
 const MARGIN: f64 = 1e-4;
 /// Degrees: bounds of a block's rotation, and of one with two or more free sides.
 const BOUND: f64 = 2.0;
@@ -21,7 +21,7 @@ pub struct Grid {
     pub counts: [usize; 3],
 }
 
-/// What a block holds.
+/// The counts of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Block {
     /// Vertices with flammability left: the weight.
@@ -34,7 +34,7 @@ pub struct Block {
     pub burning: u32,
 }
 
-/// A way to a face neighbour: axis and direction.
+/// Direction of a face neighbour: axis and sign.
 const FACES: [(usize, isize); 6] = [(0, -1), (0, 1), (1, -1), (1, 1), (2, -1), (2, 1)];
 
 impl Grid {
@@ -53,7 +53,7 @@ impl Grid {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    fn place(&self, cell: usize) -> [usize; 3] {
+    fn coordinates(&self, cell: usize) -> [usize; 3] {
         let [x, y, _] = self.counts;
         [cell % x, cell / x % y, cell / x / y]
     }
@@ -64,7 +64,7 @@ impl Grid {
         self.number([0, 1, 2].map(|k| at[k].clamp(0.0, self.counts[k] as f64 - 0.5) as usize))
     }
 
-    /// How far a point is from the nearest wall between two blocks.
+    /// Distance of a point from the nearest wall between two blocks.
     pub fn margin(&self, point: DVec3) -> f64 {
         let walls = |k: usize| (1..self.counts[k]).map(move |i| (k, i as f64));
         let away = |(k, i): (usize, f64)| (self.low[k] + i * self.size[k] - point[k]).abs();
@@ -72,17 +72,17 @@ impl Grid {
     }
 
     pub fn midpoint(&self, cell: usize) -> DVec3 {
-        let at = DVec3::from_array(self.place(cell).map(|i| i as f64 + 0.5));
+        let at = DVec3::from_array(self.coordinates(cell).map(|i| i as f64 + 0.5));
         self.low + at * self.size
     }
 
     /// The block so many steps along each axis, unless it is outside.
     pub fn beside(&self, cell: usize, steps: [isize; 3]) -> Option<usize> {
-        let mut place = self.place(cell);
+        let mut at = self.coordinates(cell);
         for k in 0..3 {
-            place[k] = place[k].checked_add_signed(steps[k]).filter(|i| *i < self.counts[k])?;
+            at[k] = at[k].checked_add_signed(steps[k]).filter(|i| *i < self.counts[k])?;
         }
-        Some(self.number(place))
+        Some(self.number(at))
     }
 
     /// Face neighbours with the axis on which they lie; `None` is outside of the grid.
@@ -99,7 +99,7 @@ impl Grid {
         self.neighbours(cell).into_iter().filter_map(|(_, n)| n.filter(|n| blocks[*n].live > 0)).collect()
     }
 
-    /// How many of the four sides (x and z) have no block with weight.
+    /// Number of the four sides (x and z) without a block with weight.
     pub fn free_sides(&self, cell: usize, blocks: &[Block]) -> usize {
         let sides = self.neighbours(cell).into_iter().filter(|(axis, _)| *axis != 1);
         sides.filter(|(_, n)| n.is_none_or(|n| blocks[n].live == 0)).count()
@@ -108,14 +108,14 @@ impl Grid {
 
 impl Tick<'_> {
     /// The block that each vertex is in now. Answers for each vertex how far it is from the next one.
-    pub fn place(&self, state: &mut State) -> Vec<f64> {
+    pub fn locate(&self, state: &mut State) -> Vec<f64> {
         let grid = &self.model.grid;
         state.cells = state.positions.iter().map(|p| grid.cell(*p)).collect();
         state.positions.iter().map(|p| grid.margin(*p)).collect()
     }
 
-    /// Pass `block-weights` once every vertex is placed; `before` is the state of the last tick. Answers for each block how
-    /// close the signs of its events are to turning, in lengths.
+    /// Pass `block-weights` once every vertex is located; `before` is the state of the last tick. Answers for each block how
+    /// close the signs of its events are to changing, in lengths.
     pub fn weigh(&self, before: &State, state: &mut State) -> Vec<f64> {
         let grid = &self.model.grid;
         let mut margins = vec![f64::INFINITY; grid.cells()];
@@ -149,8 +149,8 @@ impl Tick<'_> {
         margins
     }
 
-    /// Section 6.4: what melts turns only outside of the combustion-ready boundary and above the ignition.
-    fn can_turn(&self, state: &State, cell: usize) -> bool {
+    /// Section 6.4: melting blocks rotate only outside of the combustion-ready boundary and above the ignition.
+    fn can_rotate(&self, state: &State, cell: usize) -> bool {
         if self.variant != Variant::Melting {
             return true;
         }
@@ -171,17 +171,17 @@ impl Tick<'_> {
             })
             .collect();
         for cell in 0..grid.cells() {
-            if state.blocks[cell].live == 0 || !self.can_turn(state, cell) {
+            if state.blocks[cell].live == 0 || !self.can_rotate(state, cell) {
                 continue;
             }
             let taken = grid.neighbours(cell).into_iter().filter_map(|(axis, neighbour)| {
-                let share = if axis == 1 { self.constants.spread } else { -self.constants.spread };
-                neighbour.map(|n| share * own[n])
+                let fraction = if axis == 1 { self.constants.spread } else { -self.constants.spread };
+                neighbour.map(|n| fraction * own[n])
             });
             let change = own[cell] + taken.sum::<DVec3>();
             let bound = if grid.free_sides(cell, &state.blocks) >= 2 { FREE_BOUND } else { BOUND }.to_radians();
-            let turned = state.rotations[cell] + change;
-            state.rotations[cell] = turned.clamp(DVec3::splat(-bound), DVec3::splat(bound));
+            let rotated = state.rotations[cell] + change;
+            state.rotations[cell] = rotated.clamp(DVec3::splat(-bound), DVec3::splat(bound));
         }
     }
 
@@ -194,13 +194,13 @@ impl Tick<'_> {
         live / (1.0 + f64::from(block.burning) / f64::from(self.constants.flammability))
     }
 
-    /// Pass `vertex-mapping` (section 3.5.3): each vertex turned with its block about the block's middle.
+    /// Pass `vertex-mapping` (section 3.5.3): each vertex rotated with its block about the block's middle.
     pub fn map(&self, state: &mut State) {
         for v in 0..state.positions.len() {
             let cell = state.cells[v];
             let (middle, [pitch, yaw, roll]) = (self.model.grid.midpoint(cell), state.rotations[cell].to_array());
-            let turn = DMat3::from_rotation_z(roll) * DMat3::from_rotation_y(yaw) * DMat3::from_rotation_x(pitch);
-            state.mapped[v] = middle + turn * (state.positions[v] - middle);
+            let rotation = DMat3::from_rotation_z(roll) * DMat3::from_rotation_y(yaw) * DMat3::from_rotation_x(pitch);
+            state.mapped[v] = middle + rotation * (state.positions[v] - middle);
         }
     }
 }
@@ -218,8 +218,8 @@ mod tests {
             assert!((grid.margin(grid.midpoint(cell)) - grid.size.min_element() / 2.0).abs() < 1e-12);
             for (axis, neighbour) in grid.neighbours(cell) {
                 let Some(neighbour) = neighbour else { continue };
-                let way = grid.midpoint(neighbour) - grid.midpoint(cell);
-                assert!((way.length() - grid.size[axis]).abs() < 1e-12 && way[axis].abs() > 0.0);
+                let step = grid.midpoint(neighbour) - grid.midpoint(cell);
+                assert!((step.length() - grid.size[axis]).abs() < 1e-12 && step[axis].abs() > 0.0);
             }
         }
         assert_eq!(grid.cell(DVec3::splat(-9.0)), 0);
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_that_leaves_turns_its_block_away_and_the_neighbours_along() {
+    fn a_vertex_that_leaves_rotates_its_block_away_and_the_neighbours_along() {
         let scene = Scene::sphere(Variant::Shell);
         let tick = scene.tick();
         let mut state = State::at_rest(&tick);
@@ -238,7 +238,7 @@ mod tests {
         state.left[v] = 0;
         state.labels[v] = area::DEFORMED;
         state.positions[v] = grid.midpoint(home) + grid.size * DVec3::new(0.2, 0.2, -0.2);
-        tick.place(&mut state);
+        tick.locate(&mut state);
         tick.weigh(&before, &mut state);
         assert_eq!(state.blocks[home].signs, [1, 1, 1]);
         let total: u32 = state.blocks.iter().map(|b| b.live).sum();
@@ -250,8 +250,8 @@ mod tests {
         assert!(own.distance(DVec3::splat(expected)) < 1e-12, "{own} {expected}");
         for (axis, neighbour) in grid.neighbours(home) {
             if let Some(cell) = neighbour.filter(|c| state.blocks[*c].live > 0) {
-                let share = if axis == 1 { 0.5 } else { -0.5 };
-                assert!(state.rotations[cell].distance(share * own) < 1e-12);
+                let fraction = if axis == 1 { 0.5 } else { -0.5 };
+                assert!(state.rotations[cell].distance(fraction * own) < 1e-12);
             }
         }
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::{State, Tick, Variant};
 
-/// How far the sines carry the boundary in and out, as a share.
+/// Fraction by which the sines carry the boundary in and out.
 const AMPLITUDE: f64 = 0.3;
 /// The delta that divides the angle, in place of the frame-dependent increment of the radius.
 const DELTA: f64 = 0.25;
@@ -41,7 +41,7 @@ pub fn limits(radius: f64, width: f64) -> [f64; 4] {
     [radius + 2.0 * width, radius, radius - width, radius - 2.0 * width]
 }
 
-/// How many of the limits enclose the point: its area.
+/// Area of a point: the number of limits that enclose it.
 pub fn area_of(reach: f64, radius: f64, width: f64) -> u32 {
     limits(radius, width).into_iter().filter(|limit| reach <= *limit).count() as u32
 }

@@ -10,7 +10,7 @@ pub const GRAVITY: f64 = 9.81;
 /// No corner passes the middle of an edge.
 const HALF: f64 = 0.5;
 
-/// Where the cevians cross: from C to the point at the share `l` of B A, and from A to that at `m` of B C.
+/// Intersection of the cevians from C to the point at the fraction `l` of B A, and from A to that at `m` of B C.
 pub fn cevians([a, b, c]: [DVec3; 3], l: f64, m: f64) -> DVec3 {
     (l * (1.0 - m) * a + (1.0 - l) * (1.0 - m) * b + m * (1.0 - l) * c) / (1.0 - l * m)
 }
@@ -20,38 +20,38 @@ pub fn cevians([a, b, c]: [DVec3; 3], l: f64, m: f64) -> DVec3 {
 pub fn printed([a, b, c]: [DVec3; 3], l: f64, m: f64) -> DVec3 {
     let [p1, p2] = [l * a + (1.0 - l) * b, m * c + (1.0 - m) * b];
     // The printed fraction of the coordinate s, with the coordinate t beside it.
-    let fraction = |s: usize, t: usize| {
+    let printed = |s: usize, t: usize| {
         let above = p1[s] * p2[s] * (a[t] - c[t])
             + p1[s] * a[s] * (c[t] - p2[t])
             + c[s] * p2[s] * (p1[t] - a[t])
             + a[s] * c[s] * (p2[t] - p1[t]);
         above / ((a[s] - p2[s]) * (c[t] - p1[t]) - (c[s] - p1[s]) * (a[t] - p2[t]))
     };
-    DVec3::new(fraction(0, 1), fraction(1, 0), fraction(2, 1))
+    DVec3::new(printed(0, 1), printed(1, 0), printed(2, 1))
 }
 
-/// Displacement(lambda) as a share of the edge: beta rho (L / L0) d_mean / d, weaker by phi with both ends heated.
-pub fn share(weakening: f64, bond: f64, mean_edge: f64, length: f64) -> f64 {
+/// Displacement(lambda) as a fraction of the edge: beta rho (L / L0) d_mean / d, weaker by phi with both ends heated.
+pub fn fraction(weakening: f64, bond: f64, mean_edge: f64, length: f64) -> f64 {
     if length > 0.0 { HALF.min(bond * weakening * mean_edge / length) } else { 0.0 }
 }
 
 impl Tick<'_> {
-    /// The shares l and m of corner `k` of a triangle.
-    pub(super) fn shares(&self, state: &State, triangle: usize, k: usize) -> [f64; 2] {
+    /// The fractions l and m of corner `k` of a triangle.
+    pub(super) fn fractions(&self, state: &State, triangle: usize, k: usize) -> [f64; 2] {
         let vertices = self.model.triangles[triangle].vertices;
         let b = vertices[k];
         let weakening = self.constants.beta * self.constants.rho * f64::from(state.left[b])
             / f64::from(self.constants.flammability);
         [vertices[(k + 2) % 3], vertices[(k + 1) % 3]].map(|end| {
             let bond = if state.labels[end] >= area::INITIAL { self.constants.phi } else { 1.0 };
-            share(weakening, bond, self.model.mean_edge, state.positions[end].distance(state.positions[b]))
+            fraction(weakening, bond, self.model.mean_edge, state.positions[end].distance(state.positions[b]))
         })
     }
 
     /// A, B and C with B the corner `k`.
     pub(super) fn corners(&self, state: &State, triangle: usize, k: usize) -> [DVec3; 3] {
         let vertices = self.model.triangles[triangle].vertices;
-        [2, 0, 1].map(|turn| state.positions[vertices[(k + turn) % 3]])
+        [2, 0, 1].map(|step| state.positions[vertices[(k + step) % 3]])
     }
 
     /// Gravity of one tick: epsilon g dt^2.
@@ -74,7 +74,7 @@ impl Tick<'_> {
             let triangles = &self.model.incidence[v];
             let target = |&[t, k]: &[usize; 2]| {
                 let corners = self.corners(&before, t, k);
-                let [l, m] = self.shares(&before, t, k);
+                let [l, m] = self.fractions(&before, t, k);
                 let moved = cevians(corners, l, m);
                 if self.variant == Variant::Solid { self.contract(moved, corners, l) } else { moved }
             };
@@ -136,10 +136,10 @@ mod tests {
     }
 
     #[test]
-    fn a_share_is_a_length_in_proportion_to_what_burns() {
-        assert!((share(0.025, 1.0, 0.1, 0.1) - 0.025).abs() < 1e-15);
-        assert!((share(0.025, 0.5, 0.1, 0.2) - 0.00625).abs() < 1e-15);
-        assert_eq!(share(0.9, 1.0, 0.1, 0.01), 0.5);
-        assert_eq!(share(0.9, 1.0, 0.1, 0.0), 0.0);
+    fn a_fraction_is_a_length_in_proportion_to_what_burns() {
+        assert!((fraction(0.025, 1.0, 0.1, 0.1) - 0.025).abs() < 1e-15);
+        assert!((fraction(0.025, 0.5, 0.1, 0.2) - 0.00625).abs() < 1e-15);
+        assert_eq!(fraction(0.9, 1.0, 0.1, 0.01), 0.5);
+        assert_eq!(fraction(0.9, 1.0, 0.1, 0.0), 0.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Section 3.6: groups of fire and smoke particles by block. How many there are and where they go follow from the dissertation and are
+//! Section 3.6: groups of fire and smoke particles by block. Their number and where they go follow from the dissertation and are
 //! exact; lives, speeds and the hash that decides what is random are not in it, and are those of `shaders/burning/flames.comp`.
 
 use std::f64::consts::TAU;
@@ -8,9 +8,9 @@ use glam::DVec3;
 use super::boundary::{RATE, area};
 use super::{State, Tick};
 
-/// Share of the object's vertices in burning blocks that makes whole pools burn.
-const SHARE_FOR_ALL: u64 = 4;
-/// A free place is taken in one of so many ticks.
+/// The object's vertices over those in burning blocks that make whole pools burn.
+const FRACTION_FOR_ALL: u64 = 4;
+/// A free index is taken in one of so many ticks.
 const BIRTH_TICKS: u32 = 8;
 
 /// Fire or smoke.
@@ -39,12 +39,12 @@ pub struct Pools {
     pub seed: u32,
 }
 
-/// What belongs to a block.
+/// The particles and vertices of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Group {
     /// Its first fire and its first smoke particle in their pools.
     pub firsts: [u32; 2],
-    /// How many combustion-ready vertices the blocks before it have.
+    /// Combustion-ready vertices of the blocks before it.
     pub first_ready: u32,
     /// Live vertices while some are combustion-ready.
     pub weight: u32,
@@ -53,30 +53,32 @@ pub struct Group {
 /// A number with how far the quotient that it is the whole part of lies from the next whole number.
 pub type Whole = (u32, f64);
 
+/// A particle of fire or smoke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particle {
-    pub place: DVec3,
+    pub position: DVec3,
     /// In ticks.
     pub age: u32,
     /// In ticks; 0 of one that is not there.
     pub life: u32,
+    /// The block that it was born in.
     pub block: usize,
     /// Two numbers of its own, 0 to 1.
     pub own: [f64; 2],
 }
 
-/// What a tick did to a particle.
+/// The effect of a tick on a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
     Absent,
     Stays,
-    /// A free place in the pool is taken.
+    /// A free index of the pool is taken.
     Lit,
     /// Its life is over and the next one of its group begins.
     Follows,
     /// Its block is consumed, and it burns on in a neighbour.
     Moves,
-    /// Its life is over and its place is no longer wanted, or its block is consumed and no neighbour burns.
+    /// Its life is over and its index is no longer wanted, or its block is consumed and no neighbour burns.
     Ends,
 }
 
@@ -110,16 +112,16 @@ impl Tick<'_> {
         if block.ready > 0 { block.live } else { 0 }
     }
 
-    /// How many fire and smoke particles are wanted: the more, the more vertices lie in burning blocks.
+    /// Fire and smoke particles that are wanted: the more, the more vertices lie in burning blocks.
     pub fn wanted(&self, state: &State, pools: &Pools) -> [Whole; 2] {
         let burning: u64 = (0..state.blocks.len()).map(|b| u64::from(Self::flame_weight(state, b))).sum();
         pools.sizes.map(|size| {
-            let (all, share) = (self.model.rest.len() as u64, SHARE_FOR_ALL * burning * u64::from(size));
-            if share >= u64::from(size) * all { (size, f64::INFINITY) } else { whole(share, all) }
+            let (all, part) = (self.model.rest.len() as u64, FRACTION_FOR_ALL * burning * u64::from(size));
+            if part >= u64::from(size) * all { (size, f64::INFINITY) } else { whole(part, all) }
         })
     }
 
-    /// The groups of all blocks, which share the `wanted` particles by weight, and their end; each with the margin of its firsts.
+    /// The groups of all blocks, which divide the `wanted` particles by weight, and their end; each with the margin of its firsts.
     pub fn groups(&self, state: &State, wanted: [u32; 2]) -> Vec<(Group, [f64; 2])> {
         let weights: Vec<u32> = (0..state.blocks.len()).map(|b| Self::flame_weight(state, b)).collect();
         let total = weights.iter().sum::<u32>();
@@ -144,9 +146,9 @@ impl Tick<'_> {
         let of_fire = pools.sizes[0] as usize;
         let one = |(number, particle): (usize, &Particle)| {
             let pool = usize::from(number >= of_fire);
-            let place = (number - pool * of_fire) as u32;
+            let index = (number - pool * of_fire) as u32;
             let home = (0..state.blocks.len())
-                .find(|b| (groups[*b].firsts[pool]..groups[b + 1].firsts[pool]).contains(&place));
+                .find(|b| (groups[*b].firsts[pool]..groups[b + 1].firsts[pool]).contains(&index));
             let (next, fate) = self.fate(state, pools, number as u32, pool, particle, home);
             match fate {
                 Fate::Lit | Fate::Follows | Fate::Moves => {
@@ -159,7 +161,7 @@ impl Tick<'_> {
         before.iter().enumerate().map(one).collect()
     }
 
-    /// What happens to a particle whose place in its pool belongs to the group `home`; of one that is to be born its block alone
+    /// The fate of a particle whose index in its pool belongs to the group `home`; of one that is to be born its block alone
     /// counts.
     fn fate(
         &self,
@@ -177,8 +179,8 @@ impl Tick<'_> {
                 None => (*particle, Fate::Absent),
             };
         }
-        let place = particle.place + self.speed(state.tick, particle, [FIRE, SMOKE][pool]) / RATE;
-        let moved = Particle { place, age: particle.age + 1, ..*particle };
+        let position = particle.position + self.speed(state.tick, particle, [FIRE, SMOKE][pool]) / RATE;
+        let moved = Particle { position, age: particle.age + 1, ..*particle };
         // Smoke is in the air already; fire needs what burns.
         if pool == 0 && state.blocks[particle.block].ready == 0 {
             // Left, right, back, front, below, above; the first of several with as many vertices.
@@ -200,7 +202,7 @@ impl Tick<'_> {
 
     /// Diagonals a second: up, and to and fro.
     fn speed(&self, tick: u32, particle: &Particle, kind: Kind) -> DVec3 {
-        let (p, time) = (particle.place, f64::from(tick) / RATE);
+        let (p, time) = (particle.position, f64::from(tick) / RATE);
         let phase = TAU * particle.own[0];
         let sway_x = (31.0 * p.y - 7.0 * time + phase).sin() + 0.5 * (73.0 * p.x + 11.0 * time).sin();
         let sway_z = (27.0 * p.y - 6.0 * time + 1.7 * phase).cos() + 0.5 * (67.0 * p.z - 13.0 * time).cos();
@@ -216,7 +218,7 @@ impl Tick<'_> {
         let [x, z, _] = pcg3d([state.tick, pools.seed, number]).map(unit);
         let beside = DVec3::new((x - 0.5) * pools.radius, 0.2 * pools.radius + kind.above, (z - 0.5) * pools.radius);
         Particle {
-            place: state.mapped[vertex] + beside,
+            position: state.mapped[vertex] + beside,
             age: 0,
             life: (kind.life[0] + kind.life[1] * of_life) as u32,
             block,
@@ -234,7 +236,7 @@ mod tests {
     const POOLS: Pools = Pools { sizes: [100, 50], radius: 0.02, seed: 1 };
 
     #[test]
-    fn particles_are_shared_out_by_weight_and_none_is_lost() {
+    fn particles_are_divided_by_weight_and_none_is_lost() {
         let scene = Scene::sphere(Variant::Shell);
         let tick = scene.tick();
         let mut state = State::at_rest(&tick);
@@ -246,8 +248,8 @@ mod tests {
         // 40 of 642 vertices: a quarter would want all.
         assert_eq!(tick.wanted(&state, &POOLS).map(|w| w.0), [24, 12]);
         let groups: Vec<Group> = tick.groups(&state, [24, 12]).iter().map(|g| g.0).collect();
-        let shares = |b: usize| [0, 1].map(|pool| groups[b + 1].firsts[pool] - groups[b].firsts[pool]);
-        assert_eq!([shares(3), shares(5), shares(6)], [[18, 9], [6, 3], [0, 0]]);
+        let counts = |b: usize| [0, 1].map(|pool| groups[b + 1].firsts[pool] - groups[b].firsts[pool]);
+        assert_eq!([counts(3), counts(5), counts(6)], [[18, 9], [6, 3], [0, 0]]);
         assert_eq!(groups.last().unwrap(), &Group { firsts: [24, 12], first_ready: 5, weight: 0 });
     }
 
@@ -261,7 +263,7 @@ mod tests {
         state.blocks.fill(Block::default());
         state.blocks[left] = Block { live: 3, ready: 1, ..Block::default() };
         state.blocks[right] = Block { live: 9, ready: 1, ..Block::default() };
-        let flame = Particle { place: DVec3::Y, age: 3, life: 30, block: home, own: [0.5; 2] };
+        let flame = Particle { position: DVec3::Y, age: 3, life: 30, block: home, own: [0.5; 2] };
         let (moved, fate) = tick.fate(&state, &POOLS, 7, 0, &flame, None);
         assert_eq!((moved.block, fate), (right, Fate::Moves));
         assert_eq!(tick.fate(&state, &POOLS, 107, 1, &flame, None).1, Fate::Stays);
@@ -270,7 +272,7 @@ mod tests {
         state.blocks[left].ready = 0;
         let (gone, fate) = tick.fate(&state, &POOLS, 7, 0, &flame, Some(left));
         assert_eq!((gone.life, fate), (0, Fate::Ends));
-        // A life that is over begins anew where its place in the pool belongs.
+        // A life that is over begins anew where its index in the pool belongs.
         state.blocks[home].ready = 1;
         let old = Particle { age: 29, ..flame };
         assert_eq!(tick.fate(&state, &POOLS, 7, 0, &old, Some(left)).1, Fate::Follows);

@@ -6,52 +6,54 @@ use super::boundary::{RATE, area};
 use super::displacement::GRAVITY;
 use super::{State, Tick};
 
-/// How much lower a base point must be to draw another, in diagonals (ours): next to the same height is the same.
+/// Least height by which a lower base point draws another, in diagonals (ours): next to the same height is the same.
 const LEVEL: f64 = 1e-4;
 
 /// Ticks for which the same end of an edge between equal heights gives way (ours; at random in the text).
-const TURN: u32 = 8;
+const PERIOD: u32 = 8;
 
 /// One edge of a triangle that a flow-true vertex is the source, the upper end, of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
+    /// The upper end.
     pub source: DVec3,
+    /// The lower end.
     pub destination: DVec3,
     /// Corners of the triangle that do not flow.
     pub fixed: usize,
 }
 
-/// What folding does with an edge.
+/// The effect of folding on an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fold {
     /// Of the source; `None` when the edge's length is in range.
     pub step: Option<DVec3>,
-    /// How far the length is from the nearer end of the range.
+    /// Distance of the length from the nearer end of the range.
     pub margin: f64,
 }
 
 /// Section 6.3.3 on one edge: an edge longer than `longest` (omega Dist) pulls its source in x and z, one shorter than
 /// `shortest` (omega Dist / chi) pushes it away; no step leads past the end of the range.
 pub fn fold(edge: &Edge, longest: f64, shortest: f64, velocity: f64) -> Fold {
-    let way = edge.source - edge.destination;
-    let length = way.length();
+    let along = edge.source - edge.destination;
+    let length = along.length();
     let margin = (length - longest).abs().min((length - shortest).abs());
     let speed = velocity / (edge.fixed + 1) as f64;
     let step = if length > longest {
-        let level = way.with_y(0.0);
-        // Drawn in by a share t the edge has the length sqrt(h^2 + (1 - t)^2 q^2).
-        let wanted = (longest * longest - way.y * way.y).max(0.0).sqrt();
+        let level = along.with_y(0.0);
+        // Drawn in by a fraction t the edge has the length sqrt(h^2 + (1 - t)^2 q^2).
+        let wanted = (longest * longest - along.y * along.y).max(0.0).sqrt();
         let exact = 1.0 - wanted / level.length().max(f64::MIN_POSITIVE);
         Some(-level * speed.min(exact))
     } else if length < shortest && length > 0.0 {
-        Some(way * speed.min(shortest / length - 1.0))
+        Some(along * speed.min(shortest / length - 1.0))
     } else {
         None
     };
     Fold { step, margin }
 }
 
-/// A step or place with how far it is from being decided otherwise, in lengths.
+/// A step or position with its distance from being decided otherwise, in lengths.
 pub type Decided = (DVec3, f64);
 
 impl Tick<'_> {
@@ -59,7 +61,7 @@ impl Tick<'_> {
         state.labels[v] >= area::READY && state.alive[v]
     }
 
-    /// Share of its way to the guides that a vertex takes in a tick: 1 - omega of it in the time in which the boundary crosses an
+    /// Fraction of its distance to the guides that a vertex covers in a tick: 1 - omega of it in the time in which the boundary crosses an
     /// area (ours; the text lets vertices "follow").
     fn following(&self) -> f64 {
         (1.0 - self.constants.omega) * (self.constants.speed / RATE / self.constants.width).min(1.0)
@@ -71,7 +73,7 @@ impl Tick<'_> {
         [longest, longest / self.constants.chi]
     }
 
-    /// Where the guide of a block that has vertices at rest is now.
+    /// Position of the guide of a block that has vertices at rest.
     fn guide(&self, state: &State, cell: usize) -> Option<DVec3> {
         self.model.base_points[cell].map(|v| self.model.rest[v] + state.guides[cell])
     }
@@ -80,7 +82,7 @@ impl Tick<'_> {
         self.model.base_points[cell].is_some_and(|v| state.labels[v] >= area::READY)
     }
 
-    /// Section 6.3.4: what every guide has moved since rest, after this tick, and how far it was from being stopped or not.
+    /// Section 6.3.4: displacement of every guide since rest, after this tick, with its distance from being stopped or not.
     pub fn guided(&self, before: &State) -> Vec<Decided> {
         (0..self.model.grid.cells())
             .map(|cell| match self.guide(before, cell).filter(|_| self.is_guiding(before, cell)) {
@@ -134,7 +136,7 @@ impl Tick<'_> {
         (if is_stopped { DVec3::ZERO } else { towards - p }, margin)
     }
 
-    /// What the guides around a vertex's rest position have moved, blended between the middles of their blocks.
+    /// Displacement of the guides around a vertex's rest position, blended between the middles of their blocks.
     fn guidance(&self, guides: &[Decided], v: usize) -> Decided {
         let grid = &self.model.grid;
         let own = self.model.rest_cells[v];
@@ -153,13 +155,13 @@ impl Tick<'_> {
         (sum / weights, margin)
     }
 
-    /// Whether `v` is the upper end of an edge to `other`: of about equal heights the higher number for [`TURN`] ticks, then the
+    /// True when `v` is the upper end of an edge to `other`: of about equal heights the higher number for [`PERIOD`] ticks, then the
     /// lower one for as many. With the margin of that.
     fn is_source(&self, before: &State, v: usize, other: usize) -> (bool, f64) {
         let [_, tie] = self.range();
         let above = before.positions[v].y - before.positions[other].y;
         let is_upper =
-            if above.abs() <= tie { (v > other) == (before.tick / TURN).is_multiple_of(2) } else { above > 0.0 };
+            if above.abs() <= tie { (v > other) == (before.tick / PERIOD).is_multiple_of(2) } else { above > 0.0 };
         (is_upper, (above.abs() - tie).abs())
     }
 
@@ -174,18 +176,18 @@ impl Tick<'_> {
             let vertices = self.model.triangles[*t].vertices;
             let fixed = vertices.iter().filter(|v| before.labels[**v] < area::READY).count();
             for other in [vertices[(k + 1) % 3], vertices[(k + 2) % 3]] {
-                let place = before.positions[other];
-                let above = place.y - p.y;
+                let position = before.positions[other];
+                let above = position.y - p.y;
                 let holds = before.labels[other] < area::DEFORMED || (before.left[other] > 0 && above > shortest);
                 if holds {
-                    holders.push(place);
+                    holders.push(position);
                 }
                 let (is_source, close) = self.is_source(before, v, other);
                 margin = margin.min(close);
                 if !is_source {
                     continue;
                 }
-                let edge = Edge { source: p, destination: place, fixed };
+                let edge = Edge { source: p, destination: position, fixed };
                 let folded = fold(&edge, longest, shortest, self.constants.upsilon);
                 margin = margin.min(folded.margin);
                 if let Some(step) = folded.step {
@@ -225,9 +227,9 @@ impl Tick<'_> {
     }
 }
 
-/// How far an edge is out of range: too long seen from above, or too short.
-fn violation(way: DVec3, longest: f64, shortest: f64) -> f64 {
-    (way.with_y(0.0).length() - longest).max(0.0) + (shortest - way.length()).max(0.0)
+/// Excess of an edge over its range: too long seen from above, or too short.
+fn violation(edge: DVec3, longest: f64, shortest: f64) -> f64 {
+    (edge.with_y(0.0).length() - longest).max(0.0) + (shortest - edge.length()).max(0.0)
 }
 
 #[cfg(test)]
@@ -298,9 +300,9 @@ mod tests {
                 }
             }
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
-                let way = state.positions[a] - state.positions[b];
-                let is_too_short = way.length() < LONGEST / constants.chi - 1e-9;
-                assert!(way.with_y(0.0).length() <= LONGEST + 1e-9 && !is_too_short, "{i}: {way}");
+                let edge = state.positions[a] - state.positions[b];
+                let is_too_short = edge.length() < LONGEST / constants.chi - 1e-9;
+                assert!(edge.with_y(0.0).length() <= LONGEST + 1e-9 && !is_too_short, "{i}: {edge}");
             }
         }
     }

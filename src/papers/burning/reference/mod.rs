@@ -1,4 +1,4 @@
-//! The oracle of `burning`: chapters 3 to 6 in `f64`, written from the text. It shares nothing with the shaders, nor with the
+//! The oracle of `burning`: chapters 3 to 6 in `f64`, written from the text. It has nothing in common with the shaders, nor with the
 //! tables that they read.
 //!
 //! [`Tick::step`] advances a [`State`] by 1/60 s, pass by pass. Where rounding may decide otherwise than here, passes answer
@@ -36,7 +36,7 @@ pub struct Constants {
     pub rho: f64,
     pub phi: f64,
     pub gamma: f64,
-    /// What of a block's own rotation its neighbours take over.
+    /// Fraction of a block's own rotation that its neighbours take over.
     pub spread: f64,
     pub omega: f64,
     pub chi: f64,
@@ -54,7 +54,7 @@ pub struct Constants {
     /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
     pub active_limit: u32,
     pub keep_connected: bool,
-    /// Share of the flammability below which a vertex of a solid leaves the deforming group (section 5.5).
+    /// Fraction of the flammability below which a vertex of a solid leaves the deforming group (section 5.5).
     pub retire_at: f64,
 }
 
@@ -99,7 +99,7 @@ pub struct State {
     pub left: Vec<u32>,
     /// Areas of the heat boundary.
     pub labels: Vec<u32>,
-    /// Whether refinement has made the vertex.
+    /// True for each vertex that refinement has made.
     pub alive: Vec<bool>,
     /// Of the refinement pattern's nodes.
     pub statuses: Vec<i32>,
@@ -107,9 +107,9 @@ pub struct State {
     pub blocks: Vec<Block>,
     /// Pitch, yaw and roll of each block, in radians.
     pub rotations: Vec<DVec3>,
-    /// What the base point of each block has moved as a guide since rest.
+    /// Displacement of the base point of each block as a guide since rest.
     pub guides: Vec<DVec3>,
-    /// How far each vertex has followed the guides.
+    /// Displacement by which each vertex has followed the guides.
     pub flows: Vec<DVec3>,
     pub mapped: Vec<DVec3>,
     /// Of the finest triangles.
@@ -156,7 +156,7 @@ impl State {
     }
 }
 
-/// What a tick needs besides the state.
+/// The inputs of a tick besides the state.
 #[derive(Clone, Copy)]
 pub struct Tick<'a> {
     pub variant: Variant,
@@ -165,7 +165,7 @@ pub struct Tick<'a> {
 }
 
 impl Tick<'_> {
-    /// Displaced and counted down: deformed, with something left; of a solid more than the share at which it retires (5.5).
+    /// Displaced and counted down: deformed, with something left; of a solid more than the fraction at which it retires (5.5).
     pub fn is_active(&self, state: &State, v: usize) -> bool {
         let retired = if self.variant == Variant::Solid { self.constants.retire_at } else { 0.0 };
         let is_left = f64::from(state.left[v]) > retired * f64::from(self.constants.flammability);
@@ -178,7 +178,7 @@ impl Tick<'_> {
         self.heat(&mut state);
         self.refine(&mut state);
         self.deform(&mut state);
-        self.place(&mut state);
+        self.locate(&mut state);
         self.weigh(before, &mut state);
         self.rotate(&mut state);
         self.map(&mut state);

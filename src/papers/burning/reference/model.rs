@@ -1,5 +1,5 @@
-//! What the simulation knows of a mesh, made the plain way from positions and triangles: welding, the lattice of section
-//! 4.4.1, incidence. It shares nothing with the tables that the device gets, so that it checks them too.
+//! A mesh as the simulation knows it, made plainly from positions and triangles: welding, the lattice of section
+//! 4.4.1, incidence. It has nothing in common with the tables that the device gets, so that it checks them too.
 
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ pub struct Node {
 /// A mesh at rest: the diagonal of its bounding box is 1, its middle stands on the origin.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// How often each triangle of the mesh is cut into four.
+    /// Times that each triangle of the mesh is cut into four.
     pub levels: u32,
     /// Triangles of the mesh without those that have two equal corners.
     pub coarse: usize,
@@ -232,8 +232,8 @@ mod tests {
     fn other_numbers_are_the_same_model() {
         let (positions, triangles) = sphere(1);
         let model = Model::new(&positions, &triangles, 1, [3, 3, 3]);
-        let turned = |n: usize| (0..n).map(|i| (i + 5) % n).collect::<Vec<_>>();
-        let (vertices, corners) = (turned(model.rest.len()), turned(model.welds.len()));
+        let rotated = |n: usize| (0..n).map(|i| (i + 5) % n).collect::<Vec<_>>();
+        let (vertices, corners) = (rotated(model.rest.len()), rotated(model.welds.len()));
         let other = model.renumbered(&vertices, &corners);
         assert!((other.mean_edge - model.mean_edge).abs() < 1e-14);
         for (v, &number) in vertices.iter().enumerate() {

@@ -17,7 +17,7 @@ pub mod status {
 /// The order of the barycentric point set of section 4.4.2: 45 points.
 const POINT_LEVEL: u32 = 3;
 
-/// Which nodes are cut into four.
+/// The nodes that are cut into four.
 pub struct Pattern<'a> {
     model: &'a Model,
     /// Nodes on each edge, by the edge's sorted vertices.
@@ -76,7 +76,7 @@ impl<'a> Pattern<'a> {
         let corner = self.parts(node).2 % 4;
         // The middle child has no edge on its parent's.
         if corner < 3 {
-            let [before, after] = [2, 1].map(|turn| model.nodes[parent].vertices[(corner + turn) % 3]);
+            let [before, after] = [2, 1].map(|step| model.nodes[parent].vertices[(corner + step) % 3]);
             for end in [before, after] {
                 let whole = sorted(model.nodes[parent].vertices[corner], end);
                 for other in self.on_edge[&whole].clone() {
@@ -86,7 +86,7 @@ impl<'a> Pattern<'a> {
         }
     }
 
-    /// Whether a node is drawn as a whole or with a transition, not by its children.
+    /// True for a node that is drawn as a whole or with a transition, not by its children.
     pub fn is_leaf(&self, node: usize) -> bool {
         !self.is_split[node] && self.parent(node).is_none_or(|p| self.is_split[p])
     }
@@ -104,7 +104,7 @@ impl<'a> Pattern<'a> {
         (0..self.model.nodes.len()).map(status).collect()
     }
 
-    /// Which vertices exist: corners of the mesh, and midpoints of what is cut.
+    /// True for each vertex that exists: corners of the mesh, and midpoints of nodes that are cut.
     pub fn alive(&self) -> Vec<bool> {
         let mut alive = vec![false; self.model.rest.len()];
         for (n, node) in self.model.nodes.iter().enumerate() {
@@ -135,7 +135,7 @@ impl<'a> Pattern<'a> {
         (0..self.model.nodes.len()).filter(is_drawn).map(cut).collect()
     }
 
-    /// Section 4.5: whether a node counts as consumed; above the last level that is when two or more children do.
+    /// Section 4.5: true for a node that counts as consumed, above the last level when two or more children do.
     pub fn is_consumed(&self, node: usize, is_finest_consumed: &impl Fn(usize) -> bool) -> bool {
         let Some(children) = self.children(node) else {
             let (root, _, index) = self.parts(node);
@@ -176,7 +176,7 @@ fn transition(corners: [usize; 3], midpoints: [Option<usize>; 3]) -> Vec<[usize;
 }
 
 impl Tick<'_> {
-    /// Section 4.4.2: whether a vertex or a point of the barycentric set of a coarse triangle is inside the virtual boundary.
+    /// Section 4.4.2: true when a vertex or a point of the barycentric set of a coarse triangle is inside the virtual boundary.
     pub fn is_eligible(&self, state: &State, coarse: usize) -> bool {
         let level = self.model.levels.min(POINT_LEVEL);
         let first = coarse * self.model.nodes_each() + Model::level_start(level);

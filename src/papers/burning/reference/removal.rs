@@ -1,14 +1,14 @@
-//! Section 3.5.4: which triangles leave the drawn stream.
+//! Section 3.5.4: the triangles that leave the drawn stream.
 
 use super::{State, Tick, Variant};
 
 impl Tick<'_> {
-    /// Whether all three corners have nothing left.
+    /// True for a triangle with nothing left at its three corners.
     pub fn is_consumed(&self, state: &State, triangle: usize) -> bool {
         self.model.triangles[triangle].vertices.iter().all(|v| state.left[*v] == 0)
     }
 
-    /// Whether a neighbour with weight would be left alone without this block.
+    /// True for a block without which a neighbour with weight would be left alone.
     pub fn is_needed(&self, state: &State, cell: usize) -> bool {
         let grid = &self.model.grid;
         let others = |n: usize| grid.weighty(n, &state.blocks).into_iter().filter(|other| *other != cell).count();

@@ -5,26 +5,26 @@ use glam::DVec3;
 use super::Tick;
 
 impl Tick<'_> {
-    /// The displaced corner `moved` drawn on towards the point inward of its triangle, by `share` of the side B A.
-    pub(super) fn contract(&self, moved: DVec3, [a, b, c]: [DVec3; 3], share: f64) -> DVec3 {
+    /// The displaced corner `moved` drawn on towards the point inward of its triangle, by `fraction` of the side B A.
+    pub(super) fn contract(&self, moved: DVec3, [a, b, c]: [DVec3; 3], fraction: f64) -> DVec3 {
         let side = a.distance(b);
         // A, B, C run against the winding: C is the corner after B.
         let normal = (c - b).cross(a - b).normalize_or_zero() * self.model.outward;
         let inward = (a + b + c) / 3.0 - side * normal;
-        let way = inward - moved;
-        moved + way.normalize_or_zero() * (share * side).min(way.length() / 2.0)
+        let towards = inward - moved;
+        moved + towards.normalize_or_zero() * (fraction * side).min(towards.length() / 2.0)
     }
 
-    /// A place that a vertex with `left` of its flammability moved to, no farther from where it was at rest and sank from than three
+    /// The position that a vertex with `left` of its flammability moved to, no farther from its position at rest, which sinks with it, than three
     /// quarters of the solid's volume over its surface.
-    pub(super) fn charred(&self, vertex: usize, place: DVec3, left: u32) -> DVec3 {
+    pub(super) fn charred(&self, vertex: usize, position: DVec3, left: u32) -> DVec3 {
         let sunk = f64::from(self.constants.flammability - left) * self.fall();
         let from = self.model.rest[vertex] - DVec3::Y * sunk;
-        from + (place - from).clamp_length_max(self.model.char_depth)
+        from + (position - from).clamp_length_max(self.model.char_depth)
     }
 }
 
-/// Of the triangles.
+/// Area of the triangles.
 pub fn area(positions: &[DVec3], triangles: impl IntoIterator<Item = [usize; 3]>) -> f64 {
     let of = |[a, b, c]: [usize; 3]| (positions[b] - positions[a]).cross(positions[c] - positions[a]).length() / 2.0;
     triangles.into_iter().map(of).sum()

@@ -1,9 +1,9 @@
-// A place turned with its block about the block's midpoint (3.5.3).
+// A position rotated with its block about the block's midpoint (3.5.3).
 
 #include "burning/grid.glsl"
 
 // By pitch about x, then yaw about y, then roll about z.
-vec3 turned(vec3 v, vec3 angles) {
+vec3 rotated(vec3 v, vec3 angles) {
     vec3 s = sin(angles);
     vec3 c = cos(angles);
     vec3 p = vec3(v.x, c.x * v.y - s.x * v.z, s.x * v.y + c.x * v.z);
@@ -11,10 +11,10 @@ vec3 turned(vec3 v, vec3 angles) {
     return vec3(c.z * q.x - s.z * q.y, s.z * q.x + c.z * q.y, q.z);
 }
 
-vec3 turned_with_block(vec3 place, uint block, vec3 angles) {
+vec3 rotated_with_block(vec3 position, uint block, vec3 angles) {
     if (angles == vec3(0.0)) {
-        return place;
+        return position;
     }
     vec3 midpoint = midpoint_of(block);
-    return midpoint + turned(place - midpoint, angles);
+    return midpoint + rotated(position - midpoint, angles);
 }
