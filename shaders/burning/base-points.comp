@@ -1,8 +1,9 @@
 #version 450
 
-// The movement of the base points (6.3.4), which guide what melts; one thread a block. An edge block without a bottom neighbour lets
-// its base point fall, the slower the farther the fire has gone on; others draw it to the lowest base point around them, until it
-// meets a block that does not melt yet. A base point starts at a vertex and then moves on its own: folding does not move it.
+// The movement of the base points (6.3.4), which guide what melts; one thread a block. An edge block without a bottom
+// neighbour lets its base point fall, the slower the farther the fire has gone on; others draw it to the lowest base
+// point around them, until it meets a block that does not melt yet. A base point starts at a vertex and then moves on
+// its own: folding does not move it.
 
 layout(local_size_x = 64) in;
 
@@ -40,8 +41,8 @@ layout(set = 0, binding = 51, std430) buffer NewBases {
     BaseDisplacement new_bases[];
 };
 
-// So much lower must the lowest base point be to draw another, in diagonals: on the floor all are equal but for rounding, which is not
-// to choose where the flow goes nor to keep it from coming to rest.
+// So much lower must the lowest base point be to draw another, in diagonals: on the floor all are equal but for
+// rounding, which is not to choose where the flow goes nor to keep it from coming to rest.
 const float LEVEL = 1e-4;
 
 bool has_base(uint block) {

@@ -1,8 +1,9 @@
 #version 450
 
-// Eq. 4 and 5 and the algorithm after figure 3.6: a block rotates by gamma rho pi / (N M) for each vertex that unbalanced it, and by its
-// neighbours' own change, -x times at the sides and +x times above and below. Printed, eq. 5 calls M epsilon. One thread a block
-// gathers; the total angle is clamped, for a free block (two or more sides without neighbours) less.
+// Eq. 4 and 5 and the algorithm after figure 3.6: a block rotates by gamma rho pi / (N M) for each vertex that
+// unbalanced it, and by its neighbours' own change, -x times at the sides and +x times above and below. Printed, eq. 5
+// calls M epsilon. One thread a block gathers; the total angle is clamped, for a free block (two or more sides without
+// neighbours) less.
 
 layout(local_size_x = 64) in;
 
@@ -39,7 +40,8 @@ float weight_of(uint block) {
     return live * flammability / (flammability + float(blocks[block].combustion));
 }
 
-// Melting blocks rotate outside the combustion-ready boundary and above the ignition alone: there is weight to support (6.4).
+// Melting blocks rotate outside the combustion-ready boundary and above the ignition alone: there is weight to support
+// (6.4).
 bool is_rigid(uint block) {
     return constants.variant == MELTING
         && (blocks[block].heated > 0 || midpoint_of(block).y <= constants.highest_source_y);

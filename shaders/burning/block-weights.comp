@@ -1,8 +1,8 @@
 #version 450
 
-// The weight of a block is the number of its live vertices (3.5.1). A vertex that is consumed or goes to another block unbalances the
-// block that it was in; the direction follows from its position about the block's midpoint (3.5.2). Integer sums, so that the order of
-// threads cannot matter.
+// The weight of a block is the number of its live vertices (3.5.1). A vertex that is consumed or goes to another block
+// unbalances the block that it was in; the direction follows from its position about the block's midpoint (3.5.2).
+// Integer sums, so that the order of threads cannot matter.
 
 layout(local_size_x = 64) in;
 

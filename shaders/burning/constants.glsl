@@ -1,5 +1,5 @@
-// Every number of the run, uploaded once (3.7.4), and the enumerations that all passes share. The unit of length is the object's
-// diagonal.
+// Every number of the run, uploaded once (3.7.4), and the enumerations that all passes share. The unit of length is the
+// object's diagonal.
 
 layout(set = 0, binding = 0, std140) uniform Constants {
     uvec3 blocks; // along x, y, z

@@ -1,7 +1,8 @@
 #version 450
 
-// Fire adds light, smoke covers what lies behind: colours are premultiplied, and the alpha of fire is 0. Both are tested against the
-// mesh's depth here and fade out where they come near it, so that no square shows where it cuts the surface.
+// Fire adds light, smoke covers what lies behind: colours are premultiplied, and the alpha of fire is 0. Both are
+// tested against the mesh's depth here and fade out where they come near it, so that no square shows where it cuts the
+// surface.
 
 #extension GL_EXT_samplerless_texture_functions : require
 

@@ -17,7 +17,8 @@ layout(location = 2) out float age_fraction; // of its life
 layout(location = 3) out float own_random; // 0 to 1
 layout(location = 4) out float fire_flag; // 1, or 0 for smoke
 
-// Of the square, times the particle's radius, the most that it comes to. A flame is tall, swells at once and tapers; smoke spreads.
+// Of the square, times the particle's radius, the most that it comes to. A flame is tall, swells at once and tapers;
+// smoke spreads.
 vec2 half_size(bool is_fire, float age, float random) {
     if (is_fire) {
         float height = smoothstep(0.0, 0.15, age) * (1.0 - 0.5 * age) * (0.75 + 0.25 * random);

@@ -1,8 +1,8 @@
 #version 450
 
-// A surface that a picture covers, repeated beyond its edges. The picture's levels stand below one another in one image and are filtered
-// here, for devices filter with 8 bits or more: between the four texels around a coordinate, and between the two levels whose texels come
-// nearest to a pixel's size.
+// A surface that a picture covers, repeated beyond its edges. The picture's levels stand below one another in one image
+// and are filtered here, for devices filter with 8 bits or more: between the four texels around a coordinate, and
+// between the two levels whose texels come nearest to a pixel's size.
 
 #extension GL_EXT_samplerless_texture_functions : require
 

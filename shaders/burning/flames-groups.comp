@@ -1,9 +1,10 @@
 #version 450
 
-// The flame groups of a tick (3.6): one workgroup adds up the weights of the blocks and divides the pools. A block's weight counts
-// while it has live vertices in the combustion-ready area; consumed or burnt out it weighs nothing, and its particles go to the others.
-// As many particles burn as the weight warrants: all of them once a quarter of the object's vertices lie in such blocks (ours; the
-// dissertation states that the number follows the vertices, and that not all particles are drawn at all times).
+// The flame groups of a tick (3.6): one workgroup adds up the weights of the blocks and divides the pools. A block's
+// weight counts while it has live vertices in the combustion-ready area; consumed or burnt out it weighs nothing, and
+// its particles go to the others. As many particles burn as the weight warrants: all of them once a quarter of the
+// object's vertices lie in such blocks (ours; the dissertation states that the number follows the vertices, and that
+// not all particles are drawn at all times).
 
 layout(local_size_x = 256) in;
 

@@ -1,7 +1,7 @@
 #version 450
 
-// Lists the vertices that flames can rise from, block by block. Their order within a block varies from run to run; what is made of the
-// list does not depend on it.
+// Lists the vertices that flames can rise from, block by block. Their order within a block varies from run to run; what
+// is made of the list does not depend on it.
 
 layout(local_size_x = 64) in;
 

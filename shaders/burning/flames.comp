@@ -1,8 +1,9 @@
 #version 450
 
-// A tick of the particles (3.6). Each rises, flickers and ends; its index in the pool gives the group that the next one in it is born to. A
-// flame whose block has left the combustion-ready area moves: it is born anew in the neighbour with most live vertices that is ready,
-// and goes out without one. Smoke is in the air already and stays there. A hash of seed, tick and particle decides what is random.
+// A tick of the particles (3.6). Each rises, flickers and ends; its index in the pool gives the group that the next one
+// in it is born to. A flame whose block has left the combustion-ready area moves: it is born anew in the neighbour with
+// most live vertices that is ready, and goes out without one. Smoke is in the air already and stays there. A hash of
+// seed, tick and particle decides what is random.
 
 layout(local_size_x = 64) in;
 

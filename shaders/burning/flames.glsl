@@ -1,5 +1,5 @@
-// Flame groups (3.6): one a block. Of the pools of fire and smoke particles, which are maxima, a group gets a number in proportion to
-// the block's live vertices, while the block is in the combustion-ready area.
+// Flame groups (3.6): one a block. Of the pools of fire and smoke particles, which are maxima, a group gets a number in
+// proportion to the block's live vertices, while the block is in the combustion-ready area.
 
 // The group of a block; one more beyond the last ends them.
 struct Group {

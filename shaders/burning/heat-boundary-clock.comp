@@ -1,7 +1,7 @@
 #version 450
 
-// The clock of the tick. The radius follows from a whole number of ticks, so that it does not drift; the boundary halts while more
-// vertices are active than the limit allows (3.7.1).
+// The clock of the tick. The radius follows from a whole number of ticks, so that it does not drift; the boundary halts
+// while more vertices are active than the limit allows (3.7.1).
 
 layout(local_size_x = 1) in;
 

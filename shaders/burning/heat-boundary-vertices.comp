@@ -1,6 +1,7 @@
 #version 450
 
-// The areas of the heat boundary (3.3; with the virtual one of 4.3). R knows the irregularity already: inside is R <= r + offset.
+// The areas of the heat boundary (3.3; with the virtual one of 4.3). R knows the irregularity already: inside is R <= r
+// + offset.
 
 layout(local_size_x = 64) in;
 

@@ -1,7 +1,7 @@
 #version 450
 
-// Internal deformation of what melts (6.3): flow-true vertices follow the base points, and the fractional folding keeps the edges
-// around them in range; the others are fixed points. Appendix C's code does otherwise and yields to the text.
+// Internal deformation of what melts (6.3): flow-true vertices follow the base points, and the fractional folding keeps
+// the edges around them in range; the others are fixed points. Appendix C's code does otherwise and yields to the text.
 
 layout(local_size_x = 64) in;
 
@@ -63,8 +63,9 @@ layout(push_constant, std430) uniform Slice {
     uint count;
 } slice;
 
-// Displacement of the base points around the vertex's position at rest, interpolated between the blocks' middles. A step alone would leave those
-// behind that become flow-true later than their base point, and blocks that move as a whole would tear the surface.
+// Displacement of the base points around the vertex's position at rest, interpolated between the blocks' middles. A
+// step alone would leave those behind that become flow-true later than their base point, and blocks that move as a
+// whole would tear the surface.
 vec3 guided(vec3 position) {
     vec3 at = (position - constants.grid_origin) / constants.block_size - 0.5;
     ivec3 low = ivec3(floor(at));
@@ -88,9 +89,9 @@ vec3 guided(vec3 position) {
     return weights > 0.0 ? sum / weights : vec3(0.0);
 }
 
-// Fraction of its distance to the guides that a vertex covers in a tick: 1 - omega in the time in which the boundary crosses an area. What flows
-// so does not outrun the heat; faster, the triangles between it and what does not flow yet would be drawn out into sheets, which are
-// more surface higher up than there was before.
+// Fraction of its distance to the guides that a vertex covers in a tick: 1 - omega in the time in which the boundary
+// crosses an area. What flows so does not outrun the heat; faster, the triangles between it and what does not flow yet
+// would be drawn out into sheets, which are more surface higher up than there was before.
 float following() {
     return (1.0 - constants.omega) * min(1.0, constants.growth_per_tick / constants.area_width);
 }
@@ -106,9 +107,10 @@ float shortest() {
 // Ticks for which the same end of a tie gives way.
 const uint PERIOD_TICKS = 8u;
 
-// True for the source of the edge from `vertex` to `other`: the upper one, nearer heights than the shortest edge being a tie. The
-// dissertation breaks ties at random; here the indices alternate. Within a period edges are restored one after the other from one end
-// of the surface to the other; with periods of a tick each end undoes what the other has done, and the edges do not come to rest in range.
+// True for the source of the edge from `vertex` to `other`: the upper one, nearer heights than the shortest edge being
+// a tie. The dissertation breaks ties at random; here the indices alternate. Within a period edges are restored one
+// after the other from one end of the surface to the other; with periods of a tick each end undoes what the other has
+// done, and the edges do not come to rest in range.
 bool is_source(uint vertex, float y, uint other, float other_y) {
     if (abs(y - other_y) > shortest()) {
         return y > other_y;
@@ -116,8 +118,9 @@ bool is_source(uint vertex, float y, uint other, float other_y) {
     return (vertex > other) == (clock.tick / PERIOD_TICKS % 2u == 0u);
 }
 
-// The step of the source s of an edge out of range; `fixed_points` of the triangle's corners do not flow. Upward motion would make no
-// sense, so an edge too long is shortened along x and z alone. No step goes beyond the limit that the edge violates.
+// The step of the source s of an edge out of range; `fixed_points` of the triangle's corners do not flow. Upward motion
+// would make no sense, so an edge too long is shortened along x and z alone. No step goes beyond the limit that the
+// edge violates.
 vec3 folded(vec3 s, vec3 d, uint fixed_points) {
     vec3 edge = s - d;
     float edge_length = length(edge);
@@ -137,9 +140,9 @@ float violation(vec3 edge) {
     return max(0.0, length(edge.xz) - longest()) + max(0.0, shortest() - length(edge));
 }
 
-// Fractional folding (6.3.3): the mean of the steps that the edges out of range ask for. It is not taken where it would tear the vertex
-// from those that hold it: what is not deformed yet, and what still burns above it. Without, the surface is pulled out from under
-// the solid rest.
+// Fractional folding (6.3.3): the mean of the steps that the edges out of range ask for. It is not taken where it would
+// tear the vertex from those that hold it: what is not deformed yet, and what still burns above it. Without, the
+// surface is pulled out from under the solid rest.
 vec3 folding(uint vertex, vec3 s) {
     vec3 sum = vec3(0.0);
     float violating = 0.0;

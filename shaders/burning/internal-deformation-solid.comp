@@ -1,11 +1,13 @@
 #version 450
 
-// Internal deformation of a solid (5.3.3, 5.3.4): after the displacement of 3.4, each triangle draws its vertex inwards, to the point
-// P_in beneath its centroid, as deep as the side BA is long. The printed angles lose the quadrant; this is their vector form, and no
-// step goes beyond half the distance. 5.5: a vertex that has burnt far enough leaves the group that deforms.
+// Internal deformation of a solid (5.3.3, 5.3.4): after the displacement of 3.4, each triangle draws its vertex
+// inwards, to the point P_in beneath its centroid, as deep as the side BA is long. The printed angles lose the
+// quadrant; this is their vector form, and no step goes beyond half the distance. 5.5: a vertex that has burnt far
+// enough leaves the group that deforms.
 //
-// Nothing printed ends the motion inwards: with a great beta L surfaces would pass each other, and the solid turn inside out. Ours ends at a
-// char's depth, three quarters of the solid's volume over its surface (a quarter of a ball's radius): what lies deeper stays enclosed.
+// Nothing printed ends the motion inwards: with a great beta L surfaces would pass each other, and the solid turn
+// inside out. Ours ends at a char's depth, three quarters of the solid's volume over its surface (a quarter of a ball's
+// radius): what lies deeper stays enclosed.
 
 layout(local_size_x = 64) in;
 
@@ -50,7 +52,8 @@ layout(push_constant, std430) uniform Slice {
     uint count;
 } slice;
 
-// The position that the displaced corner `d` of triangle ABC is drawn to; B is the corner, C and A follow it in the triangle's order.
+// The position that the displaced corner `d` of triangle ABC is drawn to; B is the corner, C and A follow it in the
+// triangle's order.
 vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
     vec3 normal = cross(c - b, a - b);
     float double_area = length(normal);

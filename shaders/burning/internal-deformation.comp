@@ -1,7 +1,8 @@
 #version 450
 
-// Internal deformation (3.4) of `shell`, `low-poly` and `fully-subdivided`: one thread a vertex reads the last tick's positions through
-// its incidence list and takes the mean of what its triangles ask for, so that the order of threads cannot matter.
+// Internal deformation (3.4) of `shell`, `low-poly` and `fully-subdivided`: one thread a vertex reads the last tick's
+// positions through its incidence list and takes the mean of what its triangles ask for, so that the order of threads
+// cannot matter.
 
 layout(local_size_x = 64) in;
 

@@ -1,7 +1,8 @@
 #version 450
 
-// Normals of the mapped mesh (appendix B: summed over triangles), weighted by area, gathered by draw vertex; and the colour of its
-// charring: the albedo fades from the initial boundary to the deformed area, and what has just reached combustion glows.
+// Normals of the mapped mesh (appendix B: summed over triangles), weighted by area, gathered by draw vertex; and the
+// colour of its charring: the albedo fades from the initial boundary to the deformed area, and what has just reached
+// combustion glows.
 
 layout(local_size_x = 64) in;
 

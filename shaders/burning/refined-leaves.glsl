@@ -1,10 +1,10 @@
-// Sections 4.4.1 and 4.5: the triangles that are drawn of a node of the refinement pattern. Drawn are the active nodes, and at the level of detail the inactive
-// ones for all below them. An edge whose midpoint exists on its other side is drawn with it, so that no crack opens: one, two or
-// three such edges split a node into two, three or four triangles.
+// Sections 4.4.1 and 4.5: the triangles that are drawn of a node of the refinement pattern. Drawn are the active nodes,
+// and at the level of detail the inactive ones for all below them. An edge whose midpoint exists on its other side is
+// drawn with it, so that no crack opens: one, two or three such edges split a node into two, three or four triangles.
 //
-// "If number of children of T with higher burn level than T is >= 2 and SetLevel >= 5 then hide T": since only triangles of the finest level burn,
-// what is printed would hide nothing else. A coarser one is hidden when two or more of its four children are gone, and a child that is coarser is
-// gone by the same rule.
+// "If number of children of T with higher burn level than T is >= 2 and SetLevel >= 5 then hide T": since only
+// triangles of the finest level burn, what is printed would hide nothing else. A coarser one is hidden when two or more
+// of its four children are gone, and a child that is coarser is gone by the same rule.
 
 #include "burning/constants.glsl"
 #include "burning/tree.glsl"
@@ -41,8 +41,8 @@ struct Leaf {
     uint triangles; // to be drawn, 0 to 4
 };
 
-// True for a node above the finest level that is gone. The counts of gone children lie four bits a level in one integer: a
-// count is full when the digit of its level is 3.
+// True for a node above the finest level that is gone. The counts of gone children lie four bits a level in one
+// integer: a count is full when the digit of its level is 3.
 bool is_gone(uint first, uint below) {
     uint counts = 0u;
     for (uint finest = 0u; finest < power_of_four(below); finest++) {

@@ -18,7 +18,8 @@ layout(set = 0, binding = 22, std430) buffer Stream {
     uint stream[];
 };
 
-// A point of the node, from the corner that its pattern is rotated to: 0 to 2 its corners, 3 to 5 the midpoints of the edges after them.
+// A point of the node, from the corner that its pattern is rotated to: 0 to 2 its corners, 3 to 5 the midpoints of the
+// edges after them.
 uint point(Leaf leaf, uint rotation, uint number) {
     uint at = corner_at(leaf.coarse, leaf.level, leaf.index, (rotation + number) % 3u);
     if (number >= 3u) {

@@ -1,15 +1,16 @@
 #version 450
 
-// Sections 4.4.2 and 4.4.3: which triangles of the refinement pattern are in use. The first dispatch finds the coarse triangles that are
-// eligible, by their sets of barycentric points; then one dispatch a level, from the finest parents up to the coarse triangles, splits nodes.
-// The level below is finished when a dispatch reads it, and several threads only ever write the same value, so that no order
-// matters; nothing is ever taken back.
+// Sections 4.4.2 and 4.4.3: which triangles of the refinement pattern are in use. The first dispatch finds the coarse
+// triangles that are eligible, by their sets of barycentric points; then one dispatch a level, from the finest parents
+// up to the coarse triangles, splits nodes. The level below is finished when a dispatch reads it, and several threads
+// only ever write the same value, so that no order matters; nothing is ever taken back.
 //
-// Readings. A parent is "processed" while one of its children is in use and the others are not yet; since its children are all put in use by
-// the thread that finds the first of them, it goes from active to inactive at once (printed, it waits for children that are all active at the
-// same time, which never happens once one of them is split itself). Beyond the text, leaves differ by one level at
-// most, across coarse edges too: a node is split when a quarter point of its edges exists. And a triangle that has begun to burn is in use even
-// where the irregular boundary passes between all of the 45 points.
+// Readings. A parent is "processed" while one of its children is in use and the others are not yet; since its children
+// are all put in use by the thread that finds the first of them, it goes from active to inactive at once (printed, it
+// waits for children that are all active at the same time, which never happens once one of them is split itself).
+// Beyond the text, leaves differ by one level at most, across coarse edges too: a node is split when a quarter point of
+// its edges exists. And a triangle that has begun to burn is in use even where the irregular boundary passes between
+// all of the 45 points.
 
 layout(local_size_x = 256) in;
 

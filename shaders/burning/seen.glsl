@@ -1,4 +1,5 @@
-// A vertex of the mesh from the buffers that the simulation wrote: no vertex buffer, the stream of drawn triangles is the index buffer.
+// A vertex of the mesh from the buffers that the simulation wrote: no vertex buffer, the stream of drawn triangles is
+// the index buffer.
 
 #include "burning/view.glsl"
 #include "burning/vertices.glsl"

@@ -1,7 +1,7 @@
 #version 450
 
-// A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless its block is needed:
-// some neighbour with weight has no other neighbour with weight, and would come off.
+// A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless its
+// block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
 
 layout(local_size_x = 64) in;
 

@@ -1,6 +1,7 @@
 #version 450
 
-// Second phase: one workgroup makes of the counts the index of each workgroup's first triangle, and writes what the draw reads.
+// Second phase: one workgroup makes of the counts the index of each workgroup's first triangle, and writes what the
+// draw reads.
 
 layout(local_size_x = 256) in;
 

@@ -1,7 +1,8 @@
-// The refinement pattern of a coarse triangle: a full tree whose node (a, b, c) has the children (a, mab, mca), (mab, b, mbc), (mca, mbc, c)
-// and (mab, mbc, mca), numbered level by level, inside a level by the digits of the path from the root. Table 4.1's attributes are
-// arithmetic on these numbers: a node's parent is index / 4 of the level above, its siblings have the same, its children are 4 index + 0..3.
-// The last level, constants.levels, has the finest triangles.
+// The refinement pattern of a coarse triangle: a full tree whose node (a, b, c) has the children (a, mab, mca), (mab,
+// b, mbc), (mca, mbc, c) and (mab, mbc, mca), numbered level by level, inside a level by the digits of the path from
+// the root. Table 4.1's attributes are arithmetic on these numbers: a node's parent is index / 4 of the level above,
+// its siblings have the same, its children are 4 index + 0..3. The last level, constants.levels, has the finest
+// triangles.
 
 uint power_of_four(uint exponent) {
     return 1u << (2u * exponent);
@@ -22,8 +23,8 @@ uint finest_at(uint coarse, uint level, uint index) {
     return coarse * power_of_four(constants.levels) + index * power_of_four(constants.levels - level);
 }
 
-// Index of a node's corner in the lists of the finest triangles' corners: child c keeps its parent's corner c, so that corner belongs to the
-// descendant whose further digits are all c.
+// Index of a node's corner in the lists of the finest triangles' corners: child c keeps its parent's corner c, so that
+// corner belongs to the descendant whose further digits are all c.
 uint corner_at(uint coarse, uint level, uint index, uint corner) {
     return 3u * (finest_at(coarse, level, index) + corner * nodes_above(constants.levels - level)) + corner;
 }

@@ -1,6 +1,7 @@
 #version 450
 
-// Each vertex rotated with its block about the block's midpoint, just before it is drawn (3.5.3); the simulated position stays.
+// Each vertex rotated with its block about the block's midpoint, just before it is drawn (3.5.3); the simulated
+// position stays.
 
 layout(local_size_x = 64) in;
 

@@ -1,5 +1,5 @@
-// The rings of a tree around a vertical axis beside the object, as a factor of the albedo: ours, the dissertation's objects have
-// textures that it does not name.
+// The rings of a tree around a vertical axis beside the object, as a factor of the albedo: ours, the dissertation's
+// objects have textures that it does not name.
 
 float wood_hash(ivec3 at) {
     uint h = uint(at.x) * 0x8da6b343u ^ uint(at.y) * 0xd8163841u ^ uint(at.z) * 0xcb1ab31fu;

@@ -51,8 +51,8 @@ fn burn_by(device: &Arc<Device>, mesh: &Mesh, variant: Variant) -> Fire {
 #[test]
 fn bad_geometry_burns_without_nan() {
     gpu_test(|device| {
-        // Two corners in one place, three in a line, a triangle twice and once turned over, an edge with three triangles, and a
-        // piece by itself.
+        // Two corners in one place, three in a line, a triangle twice and once turned over, an edge with three
+        // triangles, and a piece by itself.
         let positions = [
             [0.0, 0.0, 0.0],
             [1.0, 0.0, 0.0],

@@ -94,8 +94,8 @@ impl Fire {
         stream[..arguments[0] as usize / 3].iter().map(|t| t.map(|corner| welds[corner as usize])).collect()
     }
 
-    /// The level of the leaf that each finest triangle lies in. The leaves part every coarse triangle: above a leaf all is split, below it
-    /// nothing is in use.
+    /// The level of the leaf that each finest triangle lies in. The leaves part every coarse triangle: above a leaf all
+    /// is split, below it nothing is in use.
     fn leaf_levels(&self) -> Vec<u32> {
         let levels = self.model().levels;
         let statuses = self.statuses();
@@ -144,7 +144,8 @@ fn borders(triangles: &[[u32; 3]]) -> Vec<(u32, u32)> {
     found.keys().copied().filter(|&(a, b)| !found.contains_key(&(b, a))).collect()
 }
 
-/// The levels of leaves on both sides of an edge differ by one at most; so they do wherever several triangles meet in an edge.
+/// The levels of leaves on both sides of an edge differ by one at most; so they do wherever several triangles meet in
+/// an edge.
 fn check_neighbours(model: &Model, leaf_levels: &[u32]) {
     let mut ranges: BTreeMap<(u32, u32), (u32, u32)> = BTreeMap::new();
     for (triangle, &level) in model.triangles.iter().zip(leaf_levels) {
@@ -228,7 +229,8 @@ fn without_holes_every_edge_has_two_triangles_at_every_level_of_detail() {
     });
 }
 
-/// The nodes of `level` that are hidden: two or more of their four children are, and of the finest those that were removed.
+/// The nodes of `level` that are hidden: two or more of their four children are, and of the finest those that were
+/// removed.
 fn hidden(removed: &[u32], levels: u32, level: u32) -> Vec<bool> {
     (level..levels).fold(removed.iter().map(|&r| r == 1).collect(), |hidden: Vec<bool>, _| {
         hidden.chunks_exact(4).map(|children| children.iter().filter(|&&h| h).count() >= 2).collect()
@@ -348,8 +350,9 @@ fn the_fire_is_that_of_the_fully_subdivided_object() {
     });
 }
 
-/// Section 4.4.2: "if this point is in the middle of one of the coarse triangles, the triangle will not be eligible for subdivision until
-/// the virtual heat boundary hits one of its vertices. To avoid such issues" there are the barycentric points.
+/// Section 4.4.2: "if this point is in the middle of one of the coarse triangles, the triangle will not be eligible for
+/// subdivision until the virtual heat boundary hits one of its vertices. To avoid such issues" there are the
+/// barycentric points.
 #[test]
 fn a_fire_in_the_middle_of_a_coarse_triangle_refines_it() {
     gpu_test(|device| {

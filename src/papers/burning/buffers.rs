@@ -1,4 +1,5 @@
-//! The buffers of the paper: the object, which never changes, its state, which the ticks change, and the mesh that a frame makes of it.
+//! The buffers of the paper: the object, which never changes, its state, which the ticks change, and the mesh that a
+//! frame makes of it.
 
 use std::sync::Arc;
 
@@ -333,7 +334,8 @@ impl Buffers {
     }
 }
 
-/// 1 for each vertex that exists before the fire: all, but of an object that is refined only those of its coarse triangles.
+/// 1 for each vertex that exists before the fire: all, but of an object that is refined only those of its coarse
+/// triangles.
 fn alive_at_rest(variant: Variant, model: &Model) -> Vec<u32> {
     let mut alive = vec![u32::from(!variant.refines()); model.rest.len()];
     for corner in model.lattice.nodes[0].as_flattened() {

@@ -21,8 +21,8 @@ pub fn camera(parameters: &Parameters, model: &Model) -> Camera {
     parameters.camera.unwrap_or_else(|| framing(&model.lattice.positions, &model.bounds, parameters.aspect()))
 }
 
-/// A camera from in front and above at the distance from which `positions`, of a diagonal of 1 and with those `bounds`, fill the
-/// picture.
+/// A camera from in front and above at the distance from which `positions`, of a diagonal of 1 and with those `bounds`,
+/// fill the picture.
 fn framing(positions: &[Vec3], bounds: &Bounds, aspect: f32) -> Camera {
     let target = bounds.center();
     let at = |distance: f32| seen_from(target + TO_EYE.normalize() * distance, target);

@@ -1,5 +1,5 @@
-//! `loading` (3.7.4): buffers that never change lie on the device from the start. Without that they are copied there in every frame,
-//! which shows the gain of the optimisation.
+//! `loading` (3.7.4): buffers that never change lie on the device from the start. Without that they are copied there in
+//! every frame, which shows the gain of the optimisation.
 
 use std::sync::Arc;
 

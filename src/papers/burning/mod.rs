@@ -8,8 +8,8 @@
 //!     └─► vertex-mapping ─► surface-removal ─► normals ─► draw ─► draw-fire
 //! ```
 //!
-//! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the state lives on
-//! the device, and a frame sends it constants at most (3.7.4).
+//! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the
+//! state lives on the device, and a frame sends it constants at most (3.7.4).
 
 mod block_rotation;
 mod block_weights;
@@ -66,8 +66,8 @@ pub use self::texture::{Level, Texture, with_levels};
 /// Features that a device needs for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
 
-/// Slices that one frame records at most, more than the longest time step has: those of frames that are left out before a late
-/// picture would not fit into memory at once.
+/// Slices that one frame records at most, more than the longest time step has: those of frames that are left out before
+/// a late picture would not fit into memory at once.
 const MOST_SLICES: u64 = 1024;
 
 /// The paper under one variant: its buffers, and its passes in the order in which they are recorded.
@@ -283,8 +283,8 @@ impl Paper for Burning {
         Ok(())
     }
 
-    /// Frame `number` shows the object after all ticks that are due by its end. A frame with several ticks maps, compacts and
-    /// shades after the last; one without draws the last one's again.
+    /// Frame `number` shows the object after all ticks that are due by its end. A frame with several ticks maps,
+    /// compacts and shades after the last; one without draws the last one's again.
     ///
     /// # Errors
     /// What the Vulkan layer answers; [`Error::Pass`] for a frame before the last without a restart between them.
@@ -336,8 +336,8 @@ impl Paper for Burning {
         }
         if self.variant == Variant::Solid && !self.model.is_closed {
             warnings.push(
-                "the mesh is not closed: how deep a solid chars follows from the volume that it encloses; close it, or burn it \
-                 as `shell`"
+                "the mesh is not closed: how deep a solid chars follows from the volume that it encloses; close it, or \
+                 burn it as `shell`"
                     .to_owned(),
             );
         }

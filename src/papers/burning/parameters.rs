@@ -127,16 +127,16 @@ impl Value for LevelOfDetail {
 /// Ticks of the simulation in a second.
 pub const TICKS_PER_S: f64 = 60.0;
 
-/// Every number of a configuration, in the ranges of [`Parameters::declared`]. The object is scaled to a diagonal of 1, which is the
-/// unit of length.
+/// Every number of a configuration, in the ranges of [`Parameters::declared`]. The object is scaled to a diagonal of 1,
+/// which is the unit of length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     /// Subdivisions of a coarse triangle into 4^levels; without, the variant's own (see [`Parameters::edge`]).
     pub levels: Option<u32>,
     /// `solid` and `melting` subdivide until no edge is longer.
     pub edge: f32,
-    /// Places of ignition in the scaled object's space (base centred at the origin), at most 16; without, the lowest vertex, and
-    /// for `melting` the highest.
+    /// Places of ignition in the scaled object's space (base centred at the origin), at most 16; without, the lowest
+    /// vertex, and for `melting` the highest.
     pub sources: Vec<Vec3>,
     /// psi of the boundary: the heat index of 3.3.
     pub psi: f32,
@@ -447,7 +447,12 @@ impl Parameters {
         let sources = self.sources.len();
         ParameterError::check(sources <= 16, "source", sources, "there are at most 16 sources")?;
         let blocks = self.blocks.iter().product::<u32>();
-        ParameterError::check(blocks <= 1 << 20, "blocks", Extents(self.blocks).text(), "must be at most 1048576 in all")?;
+        ParameterError::check(
+            blocks <= 1 << 20,
+            "blocks",
+            Extents(self.blocks).text(),
+            "must be at most 1048576 in all",
+        )?;
         self.camera.as_ref().map_or(Ok(()), ParameterError::check_camera)
     }
 

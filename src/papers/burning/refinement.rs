@@ -1,4 +1,5 @@
-//! `refinement` (4.4): the triangles of the refinement pattern that are in use, and the level of detail that they are drawn at (4.5).
+//! `refinement` (4.4): the triangles of the refinement pattern that are in use, and the level of detail that they are
+//! drawn at (4.5).
 
 use std::sync::Arc;
 
@@ -104,7 +105,8 @@ impl Refinement {
 const FULL_DETAIL: f32 = 2.5;
 
 /// The finest level that an object of `levels` levels is drawn at from `distance` diagonals away: one less from
-/// [`FULL_DETAIL`] on and for each doubling. Nearer is finer; the text's "directly proportional to the distance" is the other way round.
+/// [`FULL_DETAIL`] on and for each doubling. Nearer is finer; the text's "directly proportional to the distance" is the
+/// other way round.
 pub fn level_of_detail(levels: u32, distance: f32) -> u32 {
     let left_out = (distance / FULL_DETAIL).log2().ceil().max(0.0);
     levels.saturating_sub(left_out as u32)

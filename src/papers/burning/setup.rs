@@ -71,8 +71,8 @@ impl Setup {
         [
             Parameter::new("mesh", field!(Setup.mesh))
                 .help(
-                    "Object that burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; scaled to a \
-                     diagonal of 1, its base centred at the origin",
+                    "Object that burns: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; scaled \
+                     to a diagonal of 1, its base centred at the origin",
                 )
                 .cost(Cost::Buffers)
                 .everyday(),
@@ -88,7 +88,10 @@ impl Setup {
                 .everyday(),
             Parameter::new("texture", field!(Setup.texture))
                 .placeholder("FILE.png")
-                .help("PNG that covers the mesh by its texture coordinates, in place of a material; at most 8192 pixels a side")
+                .help(
+                    "PNG that covers the mesh by its texture coordinates, in place of a material; at most 8192 \
+                     pixels a side",
+                )
                 .excludes(&["material"])
                 .cost(Cost::Pipelines),
         ]
@@ -137,7 +140,9 @@ impl Study for Setup {
         let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
         let made = Burning::new(shaders, label, variant, &parameters, &scene.mesh);
         made.map_err(|error| match (&error, &self.texture) {
-            (gpu::Error::Limit { object, .. }, Some(_)) if *object == format!("{label}/texture") => error.set_by("texture"),
+            (gpu::Error::Limit { object, .. }, Some(_)) if *object == format!("{label}/texture") => {
+                error.set_by("texture")
+            }
             _ => error,
         })
     }

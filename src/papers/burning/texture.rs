@@ -1,4 +1,5 @@
-//! A picture on the object, by the texture coordinates of its corners: the dissertation's objects have textures that it does not name.
+//! A picture on the object, by the texture coordinates of its corners: the dissertation's objects have textures that it
+//! does not name.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -97,14 +98,15 @@ impl Surface {
     }
 }
 
-/// With all its levels a picture of this side fills an image of 16,384 texels a side, which devices of this size of image take; others
-/// name their limit.
+/// With all its levels a picture of this side fills an image of 16,384 texels a side, which devices of this size of
+/// image take; others name their limit.
 const LARGEST_SIDE: u32 = 8192;
 
 /// Reads a PNG and makes its levels.
 ///
 /// # Errors
-/// [`measure::Error::Image`] for a file that is missing, cut short or no PNG; [`measure::Error::Input`] for more than 8,192 pixels a side.
+/// [`measure::Error::Image`] for a file that is missing, cut short or no PNG; [`measure::Error::Input`] for more than
+/// 8,192 pixels a side.
 pub fn load(path: &Path) -> Result<Texture, measure::Error> {
     let picture = read_png(path)?;
     let (width, height) = (picture.width(), picture.height());

@@ -60,17 +60,14 @@ const OWN_STEP: (&str, &str) = ("time-step", "this experiment measures a tick a 
 
 /// Every experiment, in the dissertation's order.
 pub fn all() -> Vec<Experiment<Setup>> {
-    let rate = |name, help, run| Experiment {
-        name,
-        help,
-        options: &[],
-        refuses: &[OWN_OBJECTS, OWN_FRAMES, OWN_STEP],
-        run,
-    };
+    let rate =
+        |name, help, run| Experiment { name, help, options: &[], refuses: &[OWN_OBJECTS, OWN_FRAMES, OWN_STEP], run };
     vec![
-        rate("3.8", "Section 3.8: frames a second of a shell at its busiest, beside the dissertation's 70", |context| {
-            frame_rate(context, &CLAIMS[0])
-        }),
+        rate(
+            "3.8",
+            "Section 3.8: frames a second of a shell at its busiest, beside the dissertation's 70",
+            |context| frame_rate(context, &CLAIMS[0]),
+        ),
         Experiment {
             name: "4.2",
             help: "Table 4.2: refining where it burns against subdividing everything, until half is refined",
@@ -100,7 +97,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         },
         Experiment {
             name: "limits",
-            help: "Sections 3.7.1, 3.7.2 and 3.7.4: limits of the active vertices, ticks spread over frames, loading ahead",
+            help: "Sections 3.7.1 and 3.7.2: limits of the active vertices, and ticks spread over frames",
             options: &[],
             refuses: &[
                 OWN_FRAMES,
@@ -113,7 +110,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         },
         Experiment {
             name: "sequence",
-            help: "The picture strips of figures 3.1 to 6.5",
+            help: "The contact sheets of figures 3.1 to 6.5",
             options: &["figures", "moments"],
             refuses: &[
                 OWN_OBJECTS,

@@ -1,4 +1,5 @@
-//! The objects and numbers of the dissertation's results. Its models are not at hand; the shipped ones are brought to their counts.
+//! The objects and numbers of the dissertation's results. Its models are not at hand; the shipped ones are brought to
+//! their counts.
 
 use glam::Vec3;
 
@@ -39,7 +40,8 @@ pub const SOLID_45K: Preset<Setup> = Preset {
         mesh: MeshSource::Box,
         stretch: Vec3::new(2.0, 1.0, 1.0),
         triangles: Some(45_000),
-        // Displacements are fractions of edges, which are short in so fine a mesh: with the defaults it would lose hardly any volume.
+        // Displacements are fractions of edges, which are short in so fine a mesh: with the defaults it would lose
+        // hardly any volume.
         parameters: Parameters { beta: 0.5, flammability: 120, ..few_particles() },
         ..Setup::default()
     },

@@ -1,8 +1,8 @@
 //! The dissertation's frame rates, ours beside them (3.8, 5.5, 6.5), at the frame of a fire with most particles.
 
 use super::super::setup::Setup;
-use super::timeline::{Snapshot, busiest_tick, frame_before};
 use super::presets;
+use super::timeline::{Snapshot, busiest_tick, frame_before};
 use crate::measure::Error;
 use crate::measure::study::Preset;
 use crate::measure::sweep::Point;

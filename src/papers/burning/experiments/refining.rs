@@ -4,8 +4,8 @@
 use serde_json::json;
 
 use super::super::setup::Setup;
-use super::timeline::Snapshot;
 use super::presets;
+use super::timeline::Snapshot;
 use crate::measure::Error;
 use crate::measure::Variant as _;
 use crate::measure::compare::{Ratio, ratio_within_process};
@@ -84,8 +84,8 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Time of the subdivided object over that of the refined one. Sums over every tenth frame are its samples: each spans the
-    /// whole fire.
+    /// Time of the subdivided object over that of the refined one. Sums over every tenth frame are its samples: each
+    /// spans the whole fire.
     fn speed_up(&self) -> Option<Ratio> {
         let sums = |samples: &[f64]| -> Vec<f64> {
             let parts = samples.len().clamp(1, 10);
@@ -227,7 +227,8 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
     let mut series = Vec::new();
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
-        let fraction = |snapshot: &Snapshot| f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
+        let fraction =
+            |snapshot: &Snapshot| f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
         let points: Vec<(f64, f64)> = one
             .snapshots
             .chunk_by(|a, b| a.refined == b.refined)
@@ -276,6 +277,10 @@ mod tests {
     #[test]
     fn half_is_half() {
         let snapshot = |refined| Snapshot { counts: Default::default(), refined, coarse: 12 };
-        assert!(!is_half_refined(&snapshot(Some(5))) && is_half_refined(&snapshot(Some(6))) && !is_half_refined(&snapshot(None)));
+        assert!(
+            !is_half_refined(&snapshot(Some(5)))
+                && is_half_refined(&snapshot(Some(6)))
+                && !is_half_refined(&snapshot(None))
+        );
     }
 }

@@ -116,7 +116,8 @@ pub fn limit_points(setup: &Setup, fires: &[Limited]) -> Vec<Point<Setup>> {
     let of = |fire: &Limited| {
         let mut study = limited(setup, fire.limit);
         let fullest = fire.snapshots.iter().rev().max_by_key(|snapshot| snapshot.counts.active_vertices);
-        study.parameters.first_frame = frame_before(&setup.parameters, fullest.map_or(1, |snapshot| snapshot.counts.tick));
+        study.parameters.first_frame =
+            frame_before(&setup.parameters, fullest.map_or(1, |snapshot| snapshot.counts.tick));
         point(format!("limit {}", fire.limit), f64::from(fire.limit), study)
     };
     fires.iter().map(of).collect()

@@ -28,8 +28,8 @@ pub struct Snapshot {
 /// Snapshots of a fire every `step` ticks until it has burnt out or `is_enough` of one.
 ///
 /// # Errors
-/// [`Error::Input`] for a fire that does not begin within 20,000 ticks; [`Error::Interrupted`]; what loading and the Vulkan layer
-/// answer.
+/// [`Error::Input`] for a fire that does not begin within 20,000 ticks; [`Error::Interrupted`]; what loading and the
+/// Vulkan layer answer.
 pub fn follow(
     machine: &mut Machine,
     setup: &Setup,
@@ -48,8 +48,8 @@ pub fn follow(
     let ticks_to = |radius: f64| radius / f64::from(p.speed_per_s) * TICKS_PER_S;
     if ticks_to(nearest) >= f64::from(MOST_TICKS) {
         return Err(Error::Input(format!(
-            "nothing burns within {MOST_TICKS} ticks: the object begins at {nearest} of the heat boundary's radius; move `source` \
-             nearer or raise `speed`"
+            "nothing burns within {MOST_TICKS} ticks: the object begins at {nearest} of the heat boundary's radius; move \
+             `source` nearer or raise `speed`"
         )));
     }
     let all_burn = farthest + 2.0 * f64::from(p.width_of_areas);
@@ -95,7 +95,9 @@ pub fn snapshot(machine: &Machine, paper: &Burning) -> Result<Snapshot, Error> {
 
 /// The snapshot of most live particles, of several the one of most active triangles, of those the first.
 pub fn busiest(snapshots: &[Snapshot]) -> Option<&Snapshot> {
-    let load = |snapshot: &Snapshot| (snapshot.counts.fire_particles + snapshot.counts.smoke_particles, snapshot.counts.active_triangles);
+    let load = |snapshot: &Snapshot| {
+        (snapshot.counts.fire_particles + snapshot.counts.smoke_particles, snapshot.counts.active_triangles)
+    };
     snapshots.iter().rev().max_by_key(|snapshot| load(snapshot))
 }
 

@@ -1,8 +1,9 @@
 //! The irregular heat boundary of 3.3: the radius at which it reaches each point of the object at rest.
 //!
-//! R² = psi d² (1 + a (sin(pi Theta / delta) + sin pi Theta) / 2), the least over the sources. Printed, the sines stand beside the
-//! squared distance without a scale and delta is the growth of a frame; with fixed a and delta the boundary looks alike at any size of
-//! object and any frame rate. Theta is a smooth noise of the position and not of the time, so that a point once inside stays inside.
+//! R² = psi d² (1 + a (sin(pi Theta / delta) + sin pi Theta) / 2), the least over the sources. Printed, the sines stand
+//! beside the squared distance without a scale and delta is the growth of a frame; with fixed a and delta the boundary
+//! looks alike at any size of object and any frame rate. Theta is a smooth noise of the position and not of the time,
+//! so that a point once inside stays inside.
 
 use std::f64::consts::PI;
 

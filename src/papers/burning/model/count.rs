@@ -7,9 +7,9 @@ use meshopt::SimplifyOptions;
 
 use crate::scene::Mesh;
 
-/// Simplifies `mesh` to about `wanted` triangles where it has more, and splits its longest edges where it has fewer; the split
-/// mesh has at most one triangle too many an edge that more than two share. A simplified mesh may keep more than wanted: it never
-/// closes holes nor joins parts.
+/// Simplifies `mesh` to about `wanted` triangles where it has more, and splits its longest edges where it has fewer;
+/// the split mesh has at most one triangle too many an edge that more than two share. A simplified mesh may keep more
+/// than wanted: it never closes holes nor joins parts.
 pub fn with_triangles(mesh: &Mesh, wanted: usize) -> Mesh {
     if mesh.triangle_count() < wanted {
         return Splitting::new(mesh).until(wanted);

@@ -14,8 +14,8 @@ pub struct Lattice {
     pub welds: Vec<u32>,
     /// As many as draw vertices, or empty.
     pub texture_coordinates: Vec<[f32; 2]>,
-    /// Draw vertices of the nodes, by level: child `i` of node `n` of level k is node `4 n + i` of level k + 1. The last
-    /// level are the finest triangles.
+    /// Draw vertices of the nodes, by level: child `i` of node `n` of level k is node `4 n + i` of level k + 1. The
+    /// last level are the finest triangles.
     pub nodes: Vec<Vec<[u32; 3]>>,
 }
 

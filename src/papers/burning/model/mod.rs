@@ -51,8 +51,8 @@ pub struct Model {
     pub floor: f32,
     /// 1 where the triangles wind so that their normals point out of the enclosed volume, or else -1.
     pub outward: f32,
-    /// Farthest that a vertex of a solid comes from its position at rest: [`CHAR_FRACTION`] of its volume over its surface, a quarter of a
-    /// ball's radius.
+    /// Farthest that a vertex of a solid comes from its position at rest: [`CHAR_FRACTION`] of its volume over its
+    /// surface, a quarter of a ball's radius.
     pub char_depth: f32,
     /// Each edge of the mesh has two triangles, which run along it in opposite directions.
     pub is_closed: bool,
@@ -63,7 +63,8 @@ pub struct Model {
 /// Stands for no vertex in a list of vertices.
 pub const NO_VERTEX: u32 = u32::MAX;
 
-/// Fraction of volume over surface: with more, crumpled sides of a box that burns one after the other were seen to pass each other.
+/// Fraction of volume over surface: with more, crumpled sides of a box that burns one after the other were seen to pass
+/// each other.
 pub const CHAR_FRACTION: f64 = 0.75;
 
 impl Model {
@@ -150,8 +151,8 @@ impl Model {
     }
 }
 
-/// Low-poly models divide to five levels (4.4), shells are dense enough, and solids and melting objects divide until no edge
-/// at rest is longer than `edge`.
+/// Low-poly models divide to five levels (4.4), shells are dense enough, and solids and melting objects divide until no
+/// edge at rest is longer than `edge`.
 fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
     match variant {
         Variant::Shell => 0,
@@ -173,8 +174,9 @@ fn ignition(positions: &[Vec3], variant: Variant) -> Vec3 {
 
 fn mean_edge(positions: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
     let position = |vertex: u32| positions[vertex as usize].as_dvec3();
-    let around =
-        |&[a, b, c]: &[u32; 3]| position(a).distance(position(b)) + position(b).distance(position(c)) + position(c).distance(position(a));
+    let around = |&[a, b, c]: &[u32; 3]| {
+        position(a).distance(position(b)) + position(b).distance(position(c)) + position(c).distance(position(a))
+    };
     (triangles.iter().map(around).sum::<f64>() / (3.0 * triangles.len().max(1) as f64)) as f32
 }
 

@@ -1,8 +1,8 @@
 //! The refinement pattern of a coarse triangle (section 4.4.1): a full tree of nodes, four children each.
 //!
-//! The node (a, b, c) has the children (a, mab, mca), (mab, b, mbc), (mca, mbc, c) and (mab, mbc, mca). Nodes are numbered level by
-//! level, inside a level by the digits of the path from the root. Everything else is arithmetic on these numbers, here and in
-//! `shaders/burning/tree.glsl`.
+//! The node (a, b, c) has the children (a, mab, mca), (mab, b, mbc), (mca, mbc, c) and (mab, mbc, mca). Nodes are
+//! numbered level by level, inside a level by the digits of the path from the root. Everything else is arithmetic on
+//! these numbers, here and in `shaders/burning/tree.glsl`.
 
 use std::collections::BTreeMap;
 
@@ -31,8 +31,8 @@ pub const fn corner_at(levels: u32, level: u32, index: u32, corner: u32) -> u32 
     3 * (index * triangles_of(below) + corner * nodes_above(below)) + corner
 }
 
-/// The indices, as of [`corner_at`], of the barycentric points of a pattern of `levels` levels, each point once: the vertices of
-/// level 3, or of the finest level where that is coarser.
+/// The indices, as of [`corner_at`], of the barycentric points of a pattern of `levels` levels, each point once: the
+/// vertices of level 3, or of the finest level where that is coarser.
 pub fn barycentric_points(levels: u32) -> Vec<u32> {
     let level = levels.min(BARYCENTRIC_LEVEL);
     let mut indices = BTreeMap::new();

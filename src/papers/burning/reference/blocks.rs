@@ -114,8 +114,8 @@ impl Tick<'_> {
         state.positions.iter().map(|p| grid.margin(*p)).collect()
     }
 
-    /// Pass `block-weights` once every vertex is located; `before` is the state of the last tick. Answers for each block how
-    /// close the signs of its events are to changing, in lengths.
+    /// Pass `block-weights` once every vertex is located; `before` is the state of the last tick. Answers for each
+    /// block how close the signs of its events are to changing, in lengths.
     pub fn weigh(&self, before: &State, state: &mut State) -> Vec<f64> {
         let grid = &self.model.grid;
         let mut margins = vec![f64::INFINITY; grid.cells()];

@@ -24,8 +24,8 @@ pub mod area {
     pub const DEFORMED: u32 = 4;
 }
 
-/// The radius R at which the boundary reaches a point at a distance from the source: R^2 = psi d^2 (1 + a (sin(pi Theta /
-/// delta) + sin(pi Theta)) / 2). `theta` lies in [0, 2).
+/// The radius R at which the boundary reaches a point at a distance from the source: R^2 = psi d^2 (1 + a (sin(pi Theta
+/// / delta) + sin(pi Theta)) / 2). `theta` lies in [0, 2).
 pub fn reach(distance: f64, psi: f64, theta: f64) -> f64 {
     let waves = (PI * theta / DELTA).sin() + (PI * theta).sin();
     (psi * distance * distance * (1.0 + AMPLITUDE * waves / 2.0)).sqrt()

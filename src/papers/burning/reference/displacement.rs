@@ -15,8 +15,8 @@ pub fn cevians([a, b, c]: [DVec3; 3], l: f64, m: f64) -> DVec3 {
     (l * (1.0 - m) * a + (1.0 - l) * (1.0 - m) * b + m * (1.0 - l) * c) / (1.0 - l * m)
 }
 
-/// X, Y and Z as they are printed with P1 and P2 exchanged; undefined for a triangle that is edge-on in x y or in y z, and
-/// for l = m = 0 (no numbers there, or infinite ones).
+/// X, Y and Z as they are printed with P1 and P2 exchanged; undefined for a triangle that is edge-on in x y or in y z,
+/// and for l = m = 0 (no numbers there, or infinite ones).
 pub fn printed([a, b, c]: [DVec3; 3], l: f64, m: f64) -> DVec3 {
     let [p1, p2] = [l * a + (1.0 - l) * b, m * c + (1.0 - m) * b];
     // The printed fraction of the coordinate s, with the coordinate t beside it.
@@ -59,8 +59,8 @@ impl Tick<'_> {
         self.constants.epsilon * GRAVITY / (RATE * RATE)
     }
 
-    /// Pass `internal-deformation`. Answers for each vertex by how much its closest decision was made, in lengths: where that
-    /// is next to nothing, rounding decides.
+    /// Pass `internal-deformation`. Answers for each vertex by how much its closest decision was made, in lengths:
+    /// where that is next to nothing, rounding decides.
     pub fn deform(&self, state: &mut State) -> Vec<f64> {
         if self.variant == Variant::Melting {
             let guides = self.guided(state);

@@ -1,5 +1,6 @@
-//! Section 3.6: groups of fire and smoke particles by block. Their number and where they go follow from the dissertation and are
-//! exact; lives, speeds and the hash that decides what is random are not in it, and are those of `shaders/burning/flames.comp`.
+//! Section 3.6: groups of fire and smoke particles by block. Their number and where they go follow from the
+//! dissertation and are exact; lives, speeds and the hash that decides what is random are not in it, and are those of
+//! `shaders/burning/flames.comp`.
 
 use std::f64::consts::TAU;
 
@@ -121,7 +122,8 @@ impl Tick<'_> {
         })
     }
 
-    /// The groups of all blocks, which divide the `wanted` particles by weight, and their end; each with the margin of its firsts.
+    /// The groups of all blocks, which divide the `wanted` particles by weight, and their end; each with the margin of
+    /// its firsts.
     pub fn groups(&self, state: &State, wanted: [u32; 2]) -> Vec<(Group, [f64; 2])> {
         let weights: Vec<u32> = (0..state.blocks.len()).map(|b| Self::flame_weight(state, b)).collect();
         let total = weights.iter().sum::<u32>();
@@ -137,7 +139,8 @@ impl Tick<'_> {
         groups
     }
 
-    /// Pass `flames` of the tick that made `state`, whose vertices are mapped: every particle with what has become of it.
+    /// Pass `flames` of the tick that made `state`, whose vertices are mapped: every particle with what has become of
+    /// it.
     pub fn burn(&self, state: &State, pools: &Pools, groups: &[Group], before: &[Particle]) -> Vec<(Particle, Fate)> {
         let mut ready = vec![Vec::new(); state.blocks.len()];
         for v in (0..state.labels.len()).filter(|v| state.labels[*v] == area::READY && state.is_live(*v)) {
@@ -161,8 +164,8 @@ impl Tick<'_> {
         before.iter().enumerate().map(one).collect()
     }
 
-    /// The fate of a particle whose index in its pool belongs to the group `home`; of one that is to be born its block alone
-    /// counts.
+    /// The fate of a particle whose index in its pool belongs to the group `home`; of one that is to be born its block
+    /// alone counts.
     fn fate(
         &self,
         state: &State,

@@ -61,8 +61,8 @@ impl Tick<'_> {
         state.labels[v] >= area::READY && state.alive[v]
     }
 
-    /// Fraction of its distance to the guides that a vertex covers in a tick: 1 - omega of it in the time in which the boundary crosses an
-    /// area (ours; the text lets vertices "follow").
+    /// Fraction of its distance to the guides that a vertex covers in a tick: 1 - omega of it in the time in which the
+    /// boundary crosses an area (ours; the text lets vertices "follow").
     fn following(&self) -> f64 {
         (1.0 - self.constants.omega) * (self.constants.speed / RATE / self.constants.width).min(1.0)
     }
@@ -82,7 +82,8 @@ impl Tick<'_> {
         self.model.base_points[cell].is_some_and(|v| state.labels[v] >= area::READY)
     }
 
-    /// Section 6.3.4: displacement of every guide since rest, after this tick, with its distance from being stopped or not.
+    /// Section 6.3.4: displacement of every guide since rest, after this tick, with its distance from being stopped or
+    /// not.
     pub fn guided(&self, before: &State) -> Vec<Decided> {
         (0..self.model.grid.cells())
             .map(|cell| match self.guide(before, cell).filter(|_| self.is_guiding(before, cell)) {
@@ -155,8 +156,8 @@ impl Tick<'_> {
         (sum / weights, margin)
     }
 
-    /// True when `v` is the upper end of an edge to `other`: of about equal heights the higher number for [`PERIOD`] ticks, then the
-    /// lower one for as many. With the margin of that.
+    /// True when `v` is the upper end of an edge to `other`: of about equal heights the higher number for [`PERIOD`]
+    /// ticks, then the lower one for as many. With the margin of that.
     fn is_source(&self, before: &State, v: usize, other: usize) -> (bool, f64) {
         let [_, tie] = self.range();
         let above = before.positions[v].y - before.positions[other].y;
@@ -165,8 +166,8 @@ impl Tick<'_> {
         (is_upper, (above.abs() - tie).abs())
     }
 
-    /// Section 6.3.3: the mean of the steps over all edges that start at `v` and are out of range, unless what holds the vertex
-    /// would be left farther behind by it.
+    /// Section 6.3.3: the mean of the steps over all edges that start at `v` and are out of range, unless what holds
+    /// the vertex would be left farther behind by it.
     pub fn folding(&self, before: &State, v: usize) -> Decided {
         let [longest, shortest] = self.range();
         let p = before.positions[v];
@@ -205,8 +206,8 @@ impl Tick<'_> {
         (if then <= now { step } else { DVec3::ZERO }, margin)
     }
 
-    /// `internal-deformation` of chapter 6 once the guides have moved: every flow-true vertex follows and folds. Answers as
-    /// [`Tick::deform`].
+    /// `internal-deformation` of chapter 6 once the guides have moved: every flow-true vertex follows and folds.
+    /// Answers as [`Tick::deform`].
     pub fn follow(&self, state: &mut State, guides: &[Decided]) -> Vec<f64> {
         let before = state.clone();
         state.guides = guides.iter().map(|g| g.0).collect();

@@ -1,8 +1,8 @@
-//! The oracle of `burning`: chapters 3 to 6 in `f64`, written from the text. It has nothing in common with the shaders, nor with the
-//! tables that they read.
+//! The oracle of `burning`: chapters 3 to 6 in `f64`, written from the text. It has nothing in common with the shaders,
+//! nor with the tables that they read.
 //!
-//! [`Tick::step`] advances a [`State`] by 1/60 s, pass by pass. Where rounding may decide otherwise than here, passes answer
-//! how close their decisions were.
+//! [`Tick::step`] advances a [`State`] by 1/60 s, pass by pass. Where rounding may decide otherwise than here, passes
+//! answer how close their decisions were.
 
 mod blocks;
 pub mod boundary;
@@ -165,7 +165,8 @@ pub struct Tick<'a> {
 }
 
 impl Tick<'_> {
-    /// Displaced and counted down: deformed, with something left; of a solid more than the fraction at which it retires (5.5).
+    /// Displaced and counted down: deformed, with something left; of a solid more than the fraction at which it retires
+    /// (5.5).
     pub fn is_active(&self, state: &State, v: usize) -> bool {
         let retired = if self.variant == Variant::Solid { self.constants.retire_at } else { 0.0 };
         let is_left = f64::from(state.left[v]) > retired * f64::from(self.constants.flammability);

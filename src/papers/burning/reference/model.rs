@@ -59,7 +59,8 @@ pub fn scaled(positions: &[DVec3]) -> Vec<DVec3> {
 }
 
 impl Model {
-    /// `positions` are scaled; coincident ones become one simulated vertex. Vertices are numbered as triangles meet them.
+    /// `positions` are scaled; coincident ones become one simulated vertex. Vertices are numbered as triangles meet
+    /// them.
     pub fn new(positions: &[DVec3], triangles: &[[usize; 3]], levels: u32, blocks: [usize; 3]) -> Self {
         let mut vertex_at = HashMap::new();
         let mut corner_of = HashMap::new();

@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::{State, Tick};
 
 impl Tick<'_> {
-    /// Pass `normals`: unit normals by area over the triangles that are left (all if none is). A vertex that refinement has not
-    /// made is not shaded.
+    /// Pass `normals`: unit normals by area over the triangles that are left (all if none is). A vertex that refinement
+    /// has not made is not shaded.
     pub fn shade(&self, state: &mut State) {
         let radius = self.radius(state.growth_ticks);
         for (c, &v) in self.model.welds.iter().enumerate() {

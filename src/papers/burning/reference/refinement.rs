@@ -1,5 +1,5 @@
-//! Chapter 4: the adaptive refinement pattern as a recursion from the finest triangles up, its statuses, and the triangles
-//! that are drawn.
+//! Chapter 4: the adaptive refinement pattern as a recursion from the finest triangles up, its statuses, and the
+//! triangles that are drawn.
 
 use std::collections::HashMap;
 
@@ -63,8 +63,8 @@ impl<'a> Pattern<'a> {
         self.children(node).map(|children| self.model.nodes[children[3]].vertices)
     }
 
-    /// Cuts a node and all that must be cut for it: its parent, and every triangle on an edge that the cut would halve for the
-    /// second time, across the edges of coarse triangles too.
+    /// Cuts a node and all that must be cut for it: its parent, and every triangle on an edge that the cut would halve
+    /// for the second time, across the edges of coarse triangles too.
     pub fn split(&mut self, node: usize) {
         if self.is_split[node] {
             return;
@@ -118,8 +118,8 @@ impl<'a> Pattern<'a> {
         alive
     }
 
-    /// The triangles that draw the mesh with no node below level `finest`, by node: a leaf with neighbours finer by one level
-    /// is cut where they halve its edges (the 1-, 2- and 3-split transitions).
+    /// The triangles that draw the mesh with no node below level `finest`, by node: a leaf with neighbours finer by one
+    /// level is cut where they halve its edges (the 1-, 2- and 3-split transitions).
     pub fn drawn(&self, finest: u32) -> Vec<(usize, Vec<[usize; 3]>)> {
         let halved = self.alive();
         let is_drawn = |n: &usize| match self.level(*n) {
@@ -176,7 +176,8 @@ fn transition(corners: [usize; 3], midpoints: [Option<usize>; 3]) -> Vec<[usize;
 }
 
 impl Tick<'_> {
-    /// Section 4.4.2: true when a vertex or a point of the barycentric set of a coarse triangle is inside the virtual boundary.
+    /// Section 4.4.2: true when a vertex or a point of the barycentric set of a coarse triangle is inside the virtual
+    /// boundary.
     pub fn is_eligible(&self, state: &State, coarse: usize) -> bool {
         let level = self.model.levels.min(POINT_LEVEL);
         let first = coarse * self.model.nodes_each() + Model::level_start(level);
@@ -184,9 +185,9 @@ impl Tick<'_> {
         points.iter().flat_map(|n| n.vertices).any(|v| state.labels[v] >= area::VIRTUAL)
     }
 
-    /// Pass `refinement`: triangles of the last level inside the virtual boundary become active with their siblings, and so on
-    /// up (4.4.3), in eligible coarse triangles. Far from the source the boundary may reach a vertex before any point of the
-    /// barycentric set is in the virtual area; what is in the initial area is refined in any case.
+    /// Pass `refinement`: triangles of the last level inside the virtual boundary become active with their siblings,
+    /// and so on up (4.4.3), in eligible coarse triangles. Far from the source the boundary may reach a vertex before
+    /// any point of the barycentric set is in the virtual area; what is in the initial area is refined in any case.
     pub fn refine(&self, state: &mut State) {
         if !self.variant.refines() || self.model.levels == 0 {
             return;

@@ -15,8 +15,8 @@ impl Tick<'_> {
         moved + towards.normalize_or_zero() * (fraction * side).min(towards.length() / 2.0)
     }
 
-    /// The position that a vertex with `left` of its flammability moved to, no farther from its position at rest, which sinks with it, than three
-    /// quarters of the solid's volume over its surface.
+    /// The position that a vertex with `left` of its flammability moved to, no farther from its position at rest, which
+    /// sinks with it, than three quarters of the solid's volume over its surface.
     pub(super) fn charred(&self, vertex: usize, position: DVec3, left: u32) -> DVec3 {
         let sunk = f64::from(self.constants.flammability - left) * self.fall();
         let from = self.model.rest[vertex] - DVec3::Y * sunk;
