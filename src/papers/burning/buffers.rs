@@ -210,6 +210,10 @@ impl Buffers {
         let device = shaders.device();
         let name = |what: &str| format!("{label}/{what}");
         let uploaded = |what: &str, bytes: &[u8]| upload(device, &name(what), STORAGE, bytes);
+        let list = |what: &str, list: &[u32]| uploaded(what, bytemuck::cast_slice(list));
+        let pair = |what: &str, bytes: &[u8]| -> Result<[Arc<Buffer>; 2], Error> {
+            Ok([uploaded(&format!("{what}-a"), bytes)?, uploaded(&format!("{what}-b"), bytes)?])
+        };
         let empty = |what: &str, bytes: usize, usage| {
             Buffer::new(device, BufferDesc::new(name(what), bytes as u64).usage(STORAGE | usage))
         };
@@ -228,43 +232,29 @@ impl Buffers {
         for (&cell, _) in model.rest_cells.iter().zip(&alive).filter(|&(_, &alive)| alive == 1) {
             counts[cell as usize].live += 1;
         }
-        let block = constants(variant, parameters, model);
+        let (uniform, block) = (vk::BufferUsageFlags::UNIFORM_BUFFER, constants(variant, parameters, model));
         let mut buffers = Buffers {
-            constants: upload(
-                device,
-                &name("constants"),
-                vk::BufferUsageFlags::UNIFORM_BUFFER,
-                bytemuck::bytes_of(&block),
-            )?,
+            constants: upload(device, &name("constants"), uniform, bytemuck::bytes_of(&block))?,
             rest: uploaded("rest", bytemuck::cast_slice(&model.rest))?,
-            triangles: uploaded("triangles", bytemuck::cast_slice(&model.triangles))?,
-            incidence_offsets: uploaded("incidence-offsets", bytemuck::cast_slice(&model.incidence.offsets))?,
-            incidence: uploaded("incidence", bytemuck::cast_slice(&model.incidence.entries))?,
-            corners: uploaded("corners", bytemuck::cast_slice(model.lattice.finest()))?,
-            welds: uploaded("welds", bytemuck::cast_slice(&model.lattice.welds))?,
-            corner_incidence_offsets: uploaded(
-                "corner-incidence-offsets",
-                bytemuck::cast_slice(&model.corner_incidence.offsets),
-            )?,
-            corner_incidence: uploaded("corner-incidence", bytemuck::cast_slice(&model.corner_incidence.entries))?,
-            base_points: uploaded("base-points", bytemuck::cast_slice(&model.base_points))?,
-            rest_cells: uploaded("rest-cells", bytemuck::cast_slice(&model.rest_cells))?,
-            states: [
-                uploaded("state-a", bytemuck::cast_slice(&before))?,
-                uploaded("state-b", bytemuck::cast_slice(&before))?,
-            ],
+            triangles: list("triangles", model.triangles.as_flattened())?,
+            incidence_offsets: list("incidence-offsets", &model.incidence.offsets)?,
+            incidence: list("incidence", &model.incidence.entries)?,
+            corners: list("corners", model.lattice.finest().as_flattened())?,
+            welds: list("welds", &model.lattice.welds)?,
+            corner_incidence_offsets: list("corner-incidence-offsets", &model.corner_incidence.offsets)?,
+            corner_incidence: list("corner-incidence", &model.corner_incidence.entries)?,
+            base_points: list("base-points", &model.base_points)?,
+            rest_cells: list("rest-cells", &model.rest_cells)?,
+            states: pair("state", bytemuck::cast_slice(&before))?,
             labels: zeros("labels", 4 * vertices)?,
             triangle_labels: zeros("triangle-labels", 4 * triangles)?,
             removed: zeros("removed", 4 * triangles)?,
-            cells: uploaded("cells", bytemuck::cast_slice(&model.rest_cells))?,
+            cells: list("cells", &model.rest_cells)?,
             blocks: uploaded("blocks", bytemuck::cast_slice(&counts))?,
-            rotations: [zeros("rotations-a", 16 * blocks)?, zeros("rotations-b", 16 * blocks)?],
-            base_displacements: [
-                zeros("base-displacements-a", 16 * blocks)?,
-                zeros("base-displacements-b", 16 * blocks)?,
-            ],
+            rotations: pair("rotations", &vec![0; 16 * blocks])?,
+            base_displacements: pair("base-displacements", &vec![0; 16 * blocks])?,
             flows: zeros("flows", 16 * if variant == Variant::Melting { vertices } else { 1 })?,
-            alive: uploaded("alive", bytemuck::cast_slice(&alive))?,
+            alive: list("alive", &alive)?,
             clock: zeros("clock", size_of::<Counts>())?,
             mapped: empty("mapped", 16 * vertices, plain)?,
             normals: empty("normals", 16 * corners, plain)?,
@@ -273,13 +263,10 @@ impl Buffers {
             arguments: empty("arguments", 20, vk::BufferUsageFlags::INDIRECT_BUFFER)?,
             start: Vec::new(),
         };
-        let [state_a, state_b] = buffers.states.each_ref().map(Arc::clone);
-        let [rotations_a, rotations_b] = buffers.rotations.each_ref().map(Arc::clone);
-        let kept = [&buffers.labels, &buffers.triangle_labels, &buffers.removed, &buffers.cells, &buffers.blocks];
-        let [bases_a, bases_b] = &buffers.base_displacements;
-        let more = [bases_a, bases_b, &buffers.flows, &buffers.alive, &buffers.clock];
-        let mut kept: Vec<Arc<Buffer>> = kept.into_iter().chain(more).map(Arc::clone).collect();
-        kept.extend([state_a, state_b, rotations_a, rotations_b]);
+        let Buffers { labels, triangle_labels, removed, cells, blocks, flows, alive, clock, .. } = &buffers;
+        let kept = [labels, triangle_labels, removed, cells, blocks, flows, alive, clock].into_iter();
+        let pairs = [&buffers.states, &buffers.rotations, &buffers.base_displacements];
+        let kept: Vec<_> = kept.chain(pairs.into_iter().flatten()).cloned().collect();
         for buffer in kept {
             buffers.keep(shaders, &buffer)?;
         }

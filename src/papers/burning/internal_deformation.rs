@@ -64,22 +64,22 @@ impl InternalDeformation {
                 .with("Flows", &buffers.flows);
             swapped.push(new_bases);
         }
-        let vertices = ping_pong::build(shaders, vertices, &swapped)?;
-        let (vertex_count, block_count) = (model.vertex_count(), model.block_count());
-        if variant != Variant::Melting {
-            return Ok(InternalDeformation { base_points: None, vertices, vertex_count, block_count, time_division });
+        let mut vertices = ping_pong::build(shaders, vertices, &swapped)?;
+        let mut base_points = None;
+        if variant == Variant::Melting {
+            let guide = step("base-points")
+                .with("Rest", &buffers.rest)
+                .with("BasePoints", &buffers.base_points)
+                .with("Blocks", &buffers.blocks)
+                .with("Clock", &buffers.clock);
+            let [even, odd] =
+                ping_pong::build(shaders, guide, &[old("OldBases", &buffers.base_displacements), new_bases])?;
+            let [even_vertices, odd_vertices] = vertices;
+            let [[even, even_vertices], [odd, odd_vertices]] =
+                [[even, even_vertices], [odd, odd_vertices]].map(Pass::steps);
+            (base_points, vertices) = (Some([even, odd]), [even_vertices, odd_vertices]);
         }
-        let base_points = step("base-points")
-            .with("Rest", &buffers.rest)
-            .with("BasePoints", &buffers.base_points)
-            .with("Blocks", &buffers.blocks)
-            .with("Clock", &buffers.clock);
-        let bases = [old("OldBases", &buffers.base_displacements), new_bases];
-        let [even, odd] = ping_pong::build(shaders, base_points, &bases)?;
-        let [even_vertices, odd_vertices] = vertices;
-        let [even, even_vertices] = Pass::steps([even, even_vertices]);
-        let [odd, odd_vertices] = Pass::steps([odd, odd_vertices]);
-        let (base_points, vertices) = (Some([even, odd]), [even_vertices, odd_vertices]);
+        let (vertex_count, block_count) = (model.vertex_count(), model.block_count());
         Ok(InternalDeformation { base_points, vertices, vertex_count, block_count, time_division })
     }
 

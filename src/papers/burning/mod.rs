@@ -115,25 +115,18 @@ impl Burning {
         let largest_bytes = u64::from(device.physical().limits.max_storage_buffer_range);
         let model = Model::new(mesh, variant, parameters, largest_bytes)?;
         let mut buffers = Buffers::new(shaders, label, variant, parameters, &model)?;
-        let refinement = if variant.refines() && model.levels > 0 {
-            Some(Refinement::new(shaders, label, parameters, &mut buffers, &model)?)
-        } else {
-            None
-        };
+        let is_refined = variant.refines() && model.levels > 0;
+        let refinement =
+            is_refined.then(|| Refinement::new(shaders, label, parameters, &mut buffers, &model)).transpose()?;
         let draw = Draw::new(shaders, label, parameters, &buffers, &model)?;
-        let draw_wire = match parameters.shading {
-            Shading::Wire => Some(DrawWire::new(shaders, &buffers, &draw, &model)?),
-            _ => None,
-        };
+        let has_wire = parameters.shading == Shading::Wire;
+        let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
         let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &draw)?;
-        let draw_fire = match &flames {
-            Some(flames) => Some(DrawFire::new(shaders, &buffers, &draw, flames)?),
-            None => None,
-        };
+        let draw_fire = flames.as_ref().map(|flames| DrawFire::new(shaders, &buffers, &draw, flames)).transpose()?;
         let mut burning = Burning {
             device: device.clone(),
             variant,
-            loading: if parameters.preload { None } else { Some(Loading::new(device, &buffers)?) },
+            loading: (!parameters.preload).then(|| Loading::new(device, &buffers)).transpose()?,
             heat_boundary: heat_boundary(shaders, &buffers, &model)?,
             internal_deformation: InternalDeformation::new(
                 shaders,

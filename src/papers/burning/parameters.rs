@@ -275,164 +275,119 @@ const LENGTH: Range = Range::above(0.0).to(1.0);
 const LEVELS: Range = Range::from(0.0).to(5.0);
 const PARTICLES: Range = Range::from(0.0).to(1e6);
 
+const ACTIVE_LIMIT: &str = "Halt the boundary while more vertices are active; 0 never does";
+const PRELOAD: &str = "Load what never changes before the first frame, or again in every frame";
+const KEEP_CONNECTED: &str = "Never leave a block that has weight without neighbours, or let pieces come off";
+
+/// A field of [`Parameters`].
+macro_rules! p {
+    ($field:ident) => {
+        field!(Parameters.$field)
+    };
+}
+
+/// A row of the table below.
+fn row<T: Value>(
+    name: &'static str,
+    field: Field<Parameters, T>,
+    range: Range,
+    help: &'static str,
+    section: &'static str,
+) -> Parameter<Parameters> {
+    Parameter::new(name, field).range(range).help(help).section(section)
+}
+
 impl Parameters {
     /// Every number that a user can set, once.
     pub fn declared() -> Vec<Parameter<Parameters>> {
-        let new = Parameter::<Parameters>::new::<f32>;
+        use Range as R;
+        let any = Range::ANY;
         vec![
-            Parameter::new("levels", field!(Parameters.levels))
-                .range(LEVELS)
-                .help("Divide each triangle into 4^N")
-                .section("4.4.1")
+            row("levels", p!(levels), LEVELS, "Divide each triangle into 4^N", "4.4.1")
                 .default_text("low-poly and fully-subdivided 5, shell 0, solid and melting by the longest edge")
                 .cost(Cost::Buffers),
-            new("edge", field!(Parameters.edge))
-                .range(LENGTH)
+            row("edge", p!(edge), LENGTH, "solid and melting: divided until no edge is longer", "")
                 .unit("diagonals")
-                .help("solid and melting: divided until no edge is longer")
                 .cost(Cost::Buffers),
-            Parameter::new("source", field!(Parameters.sources))
-                .range(Range::from(-1000.0).to(1000.0))
-                .help("Heat source, x,y,z in the scaled object's space")
-                .section("3.3")
+            row("source", p!(sources), R::from(-1e3).to(1e3), "Heat source in the scaled object's space", "3.3")
                 .default_text("the lowest vertex, melting the highest")
                 .cost(Cost::Buffers)
                 .everyday(),
-            new("psi", field!(Parameters.psi))
-                .range(Range::above(0.0).to(100.0))
-                .help("Heat index of the boundary's squared distance")
-                .section("3.3")
+            row("psi", p!(psi), R::above(0.0).to(100.0), "Heat index of the squared distance", "3.3")
                 .cost(Cost::Buffers),
-            new("speed", field!(Parameters.speed_per_s))
-                .range(Range::above(0.0).to(10.0))
+            row("speed", p!(speed_per_s), R::above(0.0).to(10.0), "Growth of the boundary's radius", "3.3")
                 .unit("diagonals a second")
-                .help("Growth of the boundary's radius")
-                .section("3.3")
                 .everyday(),
-            new("area-width", field!(Parameters.width_of_areas))
-                .range(LENGTH)
-                .unit("diagonals")
-                .help("Width of an area of the boundary")
-                .section("3.3"),
-            Parameter::new("flammability", field!(Parameters.flammability))
-                .range(Range::from(1.0).to(1e6))
-                .unit("ticks")
-                .help("L, combustion of a vertex")
-                .section("table 3.1")
+            row("area-width", p!(width_of_areas), LENGTH, "Width of an area of the boundary", "3.3").unit("diagonals"),
+            row("flammability", p!(flammability), R::from(1.0).to(1e6), "L of a vertex", "table 3.1")
+                .unit("ticks of combustion")
                 .cost(Cost::Buffers)
                 .everyday(),
-            new("epsilon", field!(Parameters.epsilon)).range(FRACTION).help("Meltability").section("table 3.1"),
-            new("beta", field!(Parameters.beta)).range(FRACTION).help("Displacement scale").section("table 3.1"),
-            new("rho", field!(Parameters.rho)).range(FRACTION).help("Material density").section("table 3.1"),
-            new("phi", field!(Parameters.phi)).range(FRACTION).help("Bond strength").section("table 3.1"),
-            new("gamma", field!(Parameters.gamma)).range(FRACTION).help("Rotation of blocks").section("eq. 4"),
-            new("spread", field!(Parameters.spread))
-                .range(FRACTION)
-                .help("x, a block's share of its neighbours' rotation")
-                .section("3.5.2"),
-            new("omega", field!(Parameters.omega))
-                .range(FRACTION)
-                .unit("mean edges")
-                .help("melting: longest edge")
-                .section("table 6.1"),
-            new("chi", field!(Parameters.chi))
-                .range(Range::from(2.0).to(1000.0))
-                .help("melting: longest over shortest edge")
-                .section("table 6.1"),
-            new("upsilon", field!(Parameters.upsilon))
-                .range(FRACTION)
-                .help("melting: share of a violation that is folded in a tick")
-                .section("table 6.1"),
-            Parameter::new("floor", field!(Parameters.floor))
-                .range(Range::from(-10.0).to(1.0))
+            row("epsilon", p!(epsilon), FRACTION, "Meltability", "table 3.1"),
+            row("beta", p!(beta), FRACTION, "Displacement scale", "table 3.1"),
+            row("rho", p!(rho), FRACTION, "Material density", "table 3.1"),
+            row("phi", p!(phi), FRACTION, "Bond strength", "table 3.1"),
+            row("gamma", p!(gamma), FRACTION, "Rotation of blocks", "eq. 4"),
+            row("spread", p!(spread), FRACTION, "x, a block's share of its neighbours' rotation", "3.5.2"),
+            row("omega", p!(omega), FRACTION, "melting: longest edge", "table 6.1").unit("mean edges"),
+            row("chi", p!(chi), R::from(2.0).to(1e3), "melting: longest over shortest edge", "table 6.1"),
+            row("upsilon", p!(upsilon), FRACTION, "melting: share of a violation folded in a tick", "table 6.1"),
+            row("floor", p!(floor), R::from(-10.0).to(1.0), "melting: height that nothing sinks below", "")
                 .unit("diagonals")
-                .help("melting: height that nothing sinks below")
                 .default_text("the object's base"),
-            new("retire-at", field!(Parameters.retire_at))
-                .range(Range::from(0.0).below(1.0))
-                .help("solid: share of L at which a vertex leaves the deforming group")
-                .section("5.5"),
-            Parameter::new("blocks", BLOCKS)
+            row(
+                "retire-at",
+                p!(retire_at),
+                R::from(0.0).below(1.0),
+                "solid: share of L at which a vertex retires",
+                "5.5",
+            ),
+            row("blocks", BLOCKS, R::from(1.0).to(256.0), "Blocks along x, y and z", "3.5.1")
                 .placeholder("XxYxZ")
-                .range(Range::from(1.0).to(256.0))
-                .help("Blocks along x, y and z")
-                .section("3.5.1")
                 .cost(Cost::Buffers)
                 .everyday(),
-            Parameter::new("active-limit", field!(Parameters.active_limit))
-                .help("Halt the boundary while more vertices are active; 0 never does")
-                .section("3.7.1"),
-            Parameter::new("time-division", field!(Parameters.time_division))
-                .range(Range::from(1.0).to(64.0))
-                .unit("frames")
-                .help("Spread each tick over so many")
-                .section("3.7.2"),
-            Parameter::new("preload", field!(Parameters.preload))
-                .help("Load what never changes before the first frame, or again in every frame")
-                .section("3.7.4")
-                .cost(Cost::Buffers),
-            Parameter::new("keep-connected", field!(Parameters.keep_connected))
-                .help("Never leave a block that has weight without neighbours, or let pieces come off")
-                .section("3.5.4"),
-            Parameter::new("fire", field!(Parameters.fire))
-                .range(PARTICLES)
+            row("active-limit", p!(active_limit), any, ACTIVE_LIMIT, "3.7.1"),
+            row("time-division", p!(time_division), R::from(1.0).to(64.0), "Spread each tick over so many", "3.7.2")
+                .unit("frames"),
+            row("preload", p!(preload), any, PRELOAD, "3.7.4").cost(Cost::Buffers),
+            row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
+            row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6")
                 .unit("particles")
-                .help("Most fire particles")
-                .section("3.6")
                 .cost(Cost::Buffers)
                 .everyday(),
-            Parameter::new("smoke", field!(Parameters.smoke))
-                .range(PARTICLES)
+            row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6")
                 .unit("particles")
-                .help("Most smoke particles")
-                .section("3.6")
                 .cost(Cost::Buffers)
                 .everyday(),
-            new("particle-radius", field!(Parameters.particle_radius))
-                .range(LENGTH)
-                .unit("diagonals")
-                .help("Radius of a particle"),
-            Parameter::new("lod", LEVEL_OF_DETAIL)
-                .range(LEVELS)
-                .help("low-poly, solid and melting: finest level that is drawn, or auto, by distance")
-                .section("4.5"),
-            Parameter::new("material", field!(Parameters.material))
-                .help("Material of the surface")
-                .cost(Cost::Pipelines)
-                .everyday(),
-            Parameter::new("albedo", field!(Parameters.albedo))
+            row("particle-radius", p!(particle_radius), LENGTH, "Radius of a particle", "").unit("diagonals"),
+            row(
+                "lod",
+                LEVEL_OF_DETAIL,
+                LEVELS,
+                "Finest level that is drawn of a refined object; auto is by distance",
+                "4.5",
+            ),
+            row("material", p!(material), any, "Material of the surface", "").cost(Cost::Pipelines).everyday(),
+            row("albedo", p!(albedo), R::from(0.0).to(1.0), "Linear red,green,blue; a factor of a texture", "")
                 .placeholder("R,G,B")
-                .range(Range::from(0.0).to(1.0))
-                .help("Albedo, linear red,green,blue; a factor of a texture")
                 .default_text("0.36,0.17,0.07, with a texture 1,1,1"),
-            Parameter::new("shading", field!(Parameters.shading))
-                .help("The quantity that colours the mesh")
-                .cost(Cost::Pipelines)
-                .everyday(),
-            Parameter::new("camera", CAMERA)
+            row("shading", p!(shading), any, "The quantity that colours the mesh", "").cost(Cost::Pipelines).everyday(),
+            row("camera", CAMERA, any, "Camera: eye and target, x,y,z,x,y,z", "")
                 .unit("diagonals")
-                .help("Camera: eye and target, x,y,z,x,y,z")
                 .default_text("the object fills 80 % of the picture")
                 .everyday(),
-            Parameter::new("size", SIZE)
-                .range(Range::from(1.0))
+            row("size", SIZE, R::from(1.0), "Size of the picture", "")
                 .unit("pixel")
-                .help("Size of the picture")
                 .cost(Cost::Buffers)
                 .everyday()
                 .unrecorded(),
-            Parameter::new("seed", field!(Parameters.seed))
-                .help("Seed of the boundary's noise and of the particles")
+            row("seed", p!(seed), any, "Seed of the boundary's noise and of the particles", "")
                 .cost(Cost::Buffers)
                 .unrecorded(),
-            Parameter::new("time-step", field!(Parameters.time_step_s))
-                .range(Range::from(0.0).to(10.0))
+            row("time-step", p!(time_step_s), R::from(0.0).to(10.0), "Simulated time between two frames", "")
                 .unit("seconds")
-                .help("Simulated time between two frames")
                 .default_text("1/60"),
-            Parameter::new("first-frame", field!(Parameters.first_frame))
-                .range(Range::from(0.0).to(100_000.0))
-                .help("The simulation's frame that frame 0 shows")
+            row("first-frame", p!(first_frame), R::from(0.0).to(1e5), "Frame of the simulation that frame 0 shows", "")
                 .cost(Cost::Buffers)
                 .everyday(),
         ]
@@ -447,12 +402,8 @@ impl Parameters {
         let sources = self.sources.len();
         ParameterError::check(sources <= 16, "source", sources, "there are at most 16 sources")?;
         let blocks = self.blocks.iter().product::<u32>();
-        ParameterError::check(
-            blocks <= 1 << 20,
-            "blocks",
-            Extents(self.blocks).text(),
-            "must be at most 1048576 in all",
-        )?;
+        let text = Extents(self.blocks).text();
+        ParameterError::check(blocks <= 1 << 20, "blocks", text, "must be at most 1048576 in all")?;
         self.camera.as_ref().map_or(Ok(()), ParameterError::check_camera)
     }
 
