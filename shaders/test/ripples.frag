@@ -1,11 +1,8 @@
 #version 450
-
 // Section 2: the height of each column as grey.
-
 layout(set = 0, binding = 0, std430) readonly buffer Heights {
     float heights[];
 };
-
 layout(location = 0) out vec4 color;
 
 void main() {

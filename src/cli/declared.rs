@@ -18,10 +18,8 @@ use crate::measure::study::{Declared, Preset};
 use crate::measure::{Error, Variant};
 
 /// Options of all papers that the short help lists.
-const EVERYDAY: [&str; 14] = [
-    "variant", "preset", "name", "list", "counts", "frame", "dump", "device", "validate", "frames", "repeat", "json",
-    "image", "quiet",
-];
+const EVERYDAY: [&str; 12] =
+    ["variant", "preset", "name", "list", "counts", "frame", "dump", "device", "frames", "json", "image", "quiet"];
 
 /// The command of a paper with all its verbs.
 pub fn command<S: Declared>() -> Command {

@@ -4,32 +4,30 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use ash::vk;
-use fumarole::gpu::{self, Blend, Buffer, Error as GpuError, Feature, Frame, Image, ImageDesc, ImageView, Load, Pass};
-use fumarole::gpu::{BufferDesc, Mode, ShaderLibrary};
-use fumarole::measure::bench::build;
+use fumarole::gpu::{
+    self, Blend, Buffer, BufferDesc, Frame, Image, ImageDesc, ImageView, Load, Mode, Pass, ShaderLibrary,
+};
 use fumarole::measure::experiment::{Context, Experiment};
-use fumarole::measure::parameter::{self, Cost, Parameter, Range, Size};
-use fumarole::measure::result_table::ResultTable;
+use fumarole::measure::parameter::{self, Parameter, Range};
 use fumarole::measure::study::{Declared, Identity, Study};
-use fumarole::measure::{Error, Paper, Target, Variant};
+use fumarole::measure::{Error, Paper, Target, Variant, bench, result_table::ResultTable};
 use fumarole::{field, host_block};
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
-/// Numbers of the paper.
+const COLUMNS: u32 = 64;
+
 #[derive(Clone)]
 pub struct Setup {
     preset: Option<String>,
-    size: Size,
     wavelength_px: f32,
 }
 
 impl Default for Setup {
     fn default() -> Self {
-        Setup { preset: None, size: Size { width: 64, height: 16 }, wavelength_px: 16.0 }
+        Setup { preset: None, wavelength_px: 16.0 }
     }
 }
 
-/// The one method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sine;
 
@@ -44,15 +42,13 @@ impl Variant for Sine {
 host_block! {
     /// `test/ripples.comp`
     pub struct Wave {
-        pub column_count: u32,
         pub wavelength_px: f32,
         pub phase_turns: f32,
     }
 }
 
-/// Resources and passes.
 pub struct Ripples {
-    setup: Setup,
+    wavelength_px: f32,
     heights: Arc<Buffer>,
     picture: Arc<ImageView>,
     propagate: Pass,
@@ -60,11 +56,10 @@ pub struct Ripples {
 }
 
 impl Paper for Ripples {
-    fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), GpuError> {
-        let column_count = self.setup.size.width;
-        let wave = Wave { column_count, wavelength_px: self.setup.wavelength_px, phase_turns: number as f32 / 8.0 };
+    fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), gpu::Error> {
+        let wave = Wave { wavelength_px: self.wavelength_px, phase_turns: number as f32 / 8.0 };
         frame.compute(&self.propagate, |dispatch| {
-            dispatch.constants(&wave).threads(column_count, 1, 1);
+            dispatch.constants(&wave).threads(COLUMNS, 1, 1);
         })?;
         frame.graphics(&self.shade, |draw| {
             draw.vertices(3);
@@ -76,14 +71,12 @@ impl Paper for Ripples {
     }
 
     fn targets(&self) -> Vec<Target> {
-        vec![Target::table("heights", &self.heights, self.setup.size.width)]
+        vec![Target::table("heights", &self.heights, COLUMNS)]
     }
 }
 
 impl Study for Setup {
     const PAPER: &'static str = "ripples";
-    const NEEDS: &'static [Feature] = &[];
-
     type Variant = Sine;
     type Scene = ();
     type Paper = Ripples;
@@ -93,28 +86,25 @@ impl Study for Setup {
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, _: &(), _: Sine) -> Result<Ripples, gpu::Error> {
-        let (device, Size { width, height }) = (shaders.device(), self.size);
-        let name = |name: &str| format!("{label}/{name}");
-        let bytes = u64::from(width) * 4;
-        let heights =
-            Buffer::new(device, BufferDesc::new(name("heights"), bytes).usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
-        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
-        let desc = ImageDesc::new_2d(name("picture"), vk::Format::R8G8B8A8_UNORM, width, height).usage(usage);
-        let picture = Image::new(device, desc)?.view()?;
+        let device = shaders.device();
+        let desc = BufferDesc::new(format!("{label}/heights"), u64::from(COLUMNS) * 4);
+        let heights = Buffer::new(device, desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
+        let desc = ImageDesc::new_2d(format!("{label}/picture"), vk::Format::R8G8B8A8_UNORM, COLUMNS, 16);
+        let picture = Image::new(device, desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
         let propagate = Pass::compute("propagate", "eq. 1", "test/ripples.comp").with("Heights", &heights);
         let shade = Pass::graphics("shade", "2", "common/fullscreen.vert", "test/ripples.frag")
             .with("Heights", &heights)
             .color(&picture, Load::Discard, Blend::Replace);
         let (propagate, shade) = (propagate.constants::<Wave>().build(shaders)?, shade.build(shaders)?);
-        Ok(Ripples { setup: self.clone(), heights, picture, propagate, shade })
+        Ok(Ripples { wavelength_px: self.wavelength_px, heights, picture, propagate, shade })
     }
 
-    fn config(&self, _: &(), _: &Ripples) -> serde_json::Map<String, serde_json::Value> {
+    fn config(&self, _: &(), _: &Ripples) -> Map<String, Value> {
         parameter::config(&Self::parameters(), self)
     }
 
     fn identity(&self) -> Identity {
-        Identity { preset: self.preset.clone(), width: self.size.width, height: self.size.height, seed: 1 }
+        Identity { preset: self.preset.clone(), width: COLUMNS, height: 16, seed: 1 }
     }
 }
 
@@ -123,18 +113,8 @@ impl Declared for Setup {
     type Options = ();
 
     fn parameters() -> Vec<Parameter<Self>> {
-        vec![
-            Parameter::new("size", field!(Setup.size))
-                .range(Range::from(1.0))
-                .unit("pixel")
-                .cost(Cost::Buffers)
-                .unrecorded(),
-            Parameter::new("wavelength", field!(Setup.wavelength_px))
-                .range(Range::from(2.0).to(1e4))
-                .unit("pixels")
-                .help("Length of a wave, L")
-                .section("eq. 1"),
-        ]
+        let wavelength = Parameter::new("wavelength", field!(Setup.wavelength_px)).range(Range::from(2.0).to(1e4));
+        vec![wavelength.unit("pixels").help("Length of a wave, L").section("eq. 1")]
     }
 
     fn experiments() -> Vec<Experiment<Self>> {
@@ -154,14 +134,13 @@ pub fn height(column: u32, wavelength_px: f64, phase_turns: f64) -> f64 {
 
 fn table_1(context: &mut Context<'_, Setup>) -> Result<(), Error> {
     let mut machine = context.open()?;
-    let setup = context.setup.clone();
-    let mut built = build(&machine, &setup, &(), Sine)?;
+    let mut paper = bench::build(&machine, &context.setup, &(), Sine)?.paper;
     let mut rows = Vec::new();
     for number in 0..4 {
-        machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, number))?;
-        let bytes = gpu::transfer::read_buffer(&machine.device, &built.paper.heights)?;
-        let ours: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
-        let truth = |column| height(column, f64::from(setup.wavelength_px), f64::from(number) / 8.0);
+        machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?;
+        let ours: Vec<f32> =
+            bytemuck::pod_collect_to_vec(&gpu::transfer::read_buffer(&machine.device, &paper.heights)?);
+        let truth = |column| height(column, f64::from(paper.wavelength_px), f64::from(number) / 8.0);
         let worst = (0..).zip(&ours).map(|(column, &ours)| (f64::from(ours) - truth(column)).abs()).fold(0.0, f64::max);
         rows.push(vec![json!(number), json!(worst)]);
     }

@@ -199,8 +199,7 @@ impl Parameters {
                 .unit("texel a side")
                 .help("Position, caustics and slice maps")
                 .section("4.2.2")
-                .cost(Cost::Buffers)
-                .everyday(),
+                .cost(Cost::Buffers),
             Parameter::new("water-triangles", field!(Parameters.water_triangles))
                 .range(Range::from(2.0).to(20e6))
                 .help("Triangles of the water's mesh, rounded to whole cells")
@@ -263,7 +262,6 @@ impl Parameters {
             Parameter::new("seed", field!(Parameters.seed))
                 .help("Seed of the waves' directions and phases")
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
             Parameter::new("time-step", field!(Parameters.time_step_s))
                 .range(Range::from(0.0))

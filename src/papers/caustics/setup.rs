@@ -259,7 +259,6 @@ impl Declared for Setup {
                 .section("eq. 4-9")
                 .default_text("0,-1,0")
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
             Parameter::new("point-light", field!(Setup.point_lights))
                 .help("Place of a point light above the water, metres")
