@@ -9,6 +9,7 @@ use super::options::{CommonArgs, MeasureArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, VariantOf, VariantWord, benched, chosen, variant_words};
 use super::processes;
+use super::spelling;
 use super::watch::watched;
 use crate::measure::bench::{Bench, Loaded, build, load};
 use crate::measure::machine::Machine;
@@ -56,15 +57,16 @@ pub fn publish<S: Study>(
         output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
-    let (record, traces) = measure(&resolve()?, variants, common)?;
-    outcome::publish(output, &record, &traces)
+    let (record, traces, failed) = measure(&resolve()?, variants, common)?;
+    outcome::publish(output, &record, &traces)?;
+    failed.map_or(Ok(()), Err)
 }
 
 fn measure<S: Study>(
     study: &S,
     variants: &[S::Variant],
     common: &CommonArgs,
-) -> Result<(Record, Vec<TraceRun>), Failure> {
+) -> Result<(Record, Vec<TraceRun>, Option<Failure>), Failure> {
     let CommonArgs { machine, measure, output } = common;
     let schedule = measure.schedule(FRAMES, REPEAT);
     let loaded = load(study)?;
@@ -77,11 +79,24 @@ fn measure<S: Study>(
     let bench = Bench { study, loaded: &loaded, variants, schedule, limits: limits.as_ref() };
     let measured = watched(output.quiet, S::PAPER, |watch| bench.measure(&mut machine, watch))?;
     let (mut runs, traces): (Vec<Run>, Vec<TraceRun>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
-    if let (Some(path), Some(&variant), Some(run)) = (&output.image, variants.first(), runs.first_mut()) {
-        run.image = Some(write_picture(&mut machine, study, &loaded, variant, schedule.frames - 1, path)?);
-        outcome::wrote(output, path);
+    for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
+        *warning = spelling::options(warning);
     }
-    Ok((Record::new(machine.environment(), std::env::args().collect(), runs), traces))
+    // A picture that fails throws no measurement away.
+    let mut failed = None;
+    if let (Some(path), Some(&variant), Some(run)) = (&output.image, variants.first(), runs.first_mut()) {
+        match write_picture(&mut machine, study, &loaded, variant, schedule.frames - 1, path) {
+            Ok(image) => {
+                run.image = Some(image);
+                outcome::wrote(output, path);
+            }
+            Err(failure) => {
+                run.warnings.push(format!("without a picture: {failure}"));
+                failed = Some(failure);
+            }
+        }
+    }
+    Ok((Record::new(machine.environment(), std::env::args().collect(), runs), traces, failed))
 }
 
 /// Renders a frame after the measurement and writes it.

@@ -75,26 +75,24 @@ pub fn check_picture(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes record, rows and trace where the options say, and prints the table.
+/// Writes record, rows and trace where the options say, and prints the table. Each is written even when another cannot
+/// be.
+///
+/// # Errors
+/// The first that failed.
 pub fn publish(output: &OutputArgs, record: &Record, traces: &[TraceRun]) -> Result<(), Failure> {
-    // The files are written even when nothing can be printed.
     let printed = if output.json_to_stdout() {
-        print(&text(record)?)
+        text(record).and_then(|text| print(&text))
     } else if !output.quiet {
         print(&console::record(record, style()))
     } else {
         Ok(())
     };
-    if let Some(path) = output.json.as_deref().filter(|_| !output.json_to_stdout()) {
-        save(output, path, text(record)?.as_bytes())?;
-    }
-    if let Some(path) = &output.csv {
-        save(output, path, csv::to_string(record).as_bytes())?;
-    }
-    if let Some(path) = &output.trace {
-        save(output, path, trace::to_string(traces).as_bytes())?;
-    }
-    printed
+    let json = output.json.as_deref().filter(|_| !output.json_to_stdout());
+    let saved = json.map_or(Ok(()), |path| save(output, path, text(record)?.as_bytes()));
+    let rows = output.csv.as_deref().map_or(Ok(()), |path| save(output, path, csv::to_string(record).as_bytes()));
+    let traced = output.trace.as_deref().map_or(Ok(()), |path| save(output, path, trace::to_string(traces).as_bytes()));
+    printed.and(saved).and(rows).and(traced)
 }
 
 /// A document as JSON text.

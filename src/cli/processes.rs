@@ -1,8 +1,11 @@
 //! `--processes K`: the same command in fresh processes, their records joined.
 
 use std::ffi::OsString;
-use std::process::{Command, Output, Stdio};
-use std::sync::atomic::Ordering;
+use std::io::{self, Read};
+use std::process::{Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use super::failure::Failure;
 use super::watch::{interrupted, progress_bar};
@@ -12,6 +15,9 @@ use crate::report::{Record, json};
 const OURS: [(&str, bool); 4] = [("--processes", true), ("--process", true), ("--csv", true), ("--quiet", false)];
 /// Options that only the first process gets: it writes what all of them would write alike.
 const OF_THE_FIRST: [(&str, bool); 2] = [("--trace", true), ("--image", true)];
+
+/// Time that a process has to end by itself.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Runs this command `count` times and joins the records, each with its process's number. Ctrl-C reaches the process
 /// that runs as well, and keeps what is finished.
@@ -32,18 +38,18 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
         }
         let removed = if process == 0 { OURS.to_vec() } else { [&OURS[..], &OF_THE_FIRST[..]].concat() };
         let file = tempfile::NamedTempFile::new().map_err(|e| failed(e.to_string()))?;
-        let output = Command::new(&program)
+        let mut command = Command::new(&program);
+        command
             .args(without(&removed, given.iter().cloned()))
             .args(["--process", &process.to_string(), "--quiet", "--json"])
             .arg(file.path())
-            .stdin(Stdio::null())
-            .output()
-            .map_err(|e| failed(e.to_string()))?;
-        if !output.status.success() {
+            .stdin(Stdio::null());
+        let ended = finish(&mut command, interrupted).map_err(|e| failed(e.to_string()))?;
+        if !ended.status.success() {
             if joined.is_some() && interrupted.load(Ordering::Relaxed) {
                 break;
             }
-            return Err(failure(process, &output));
+            return Err(failure(process, &ended));
         }
         let record = json::read(file.path())?;
         match &mut joined {
@@ -56,12 +62,43 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
     joined.ok_or_else(|| failed("none was asked for".into()))
 }
 
+/// How a process ended, and what it said on standard error.
+struct Ended {
+    status: ExitStatus,
+    errors: String,
+}
+
+/// Runs a process to its end. After an interruption it has [`PATIENCE`] to end by itself, as it does when the terminal has
+/// told it too; then it is ended, so that none outlives us.
+fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> {
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
+    let pipe = child.stderr.take();
+    let errors = thread::spawn(move || {
+        let mut bytes = Vec::new();
+        // What cannot be read is not said.
+        let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
+        String::from_utf8_lossy(&bytes).into_owned()
+    });
+    let mut deadline = None;
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if interrupted.load(Ordering::Relaxed)
+            && Instant::now() > *deadline.get_or_insert_with(|| Instant::now() + PATIENCE)
+        {
+            child.kill()?;
+        }
+        thread::sleep(Duration::from_millis(20));
+    };
+    Ok(Ended { status, errors: errors.join().unwrap_or_default() })
+}
+
 /// A process's own message and exit code as ours.
-fn failure(process: u32, output: &Output) -> Failure {
-    let errors = String::from_utf8_lossy(&output.stderr);
-    let message = errors.lines().find_map(|line| line.strip_prefix("error: "));
-    let message = message.map_or_else(|| format!("process {process} ended with {}", output.status), str::to_owned);
-    match output.status.code() {
+fn failure(process: u32, ended: &Ended) -> Failure {
+    let message = ended.errors.lines().find_map(|line| line.strip_prefix("error: "));
+    let message = message.map_or_else(|| format!("process {process} ended with {}", ended.status), str::to_owned);
+    match ended.status.code() {
         Some(2) => Failure::Input(message),
         Some(3) => Failure::NoDevice(message),
         _ => Failure::Running(message),

@@ -10,7 +10,7 @@ use crate::measure::measure::Watch;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// The flag that Ctrl-C sets; the second Ctrl-C ends the program at once.
+/// The flag that Ctrl-C sets, as do the signals TERM and HUP; a second one ends the program at once.
 pub fn interrupted() -> &'static AtomicBool {
     static HANDLER: std::sync::Once = std::sync::Once::new();
     HANDLER.call_once(|| {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::program::{ONCE, Program, caustics, entries, file, folder, fumarole};
+use super::program::{ONCE, Program, assert_schema, caustics, entries, file, folder, fumarole, read_json};
 
 /// Would measure for hours, were its destination not checked first.
 fn long(folder: &Path) -> Program {
@@ -90,4 +90,19 @@ fn a_run_replaces_older_files_and_makes_folders() {
     assert!(fs::read_to_string(out.path().join("a.json")).unwrap().starts_with("{\n"));
     assert_eq!(entries(out.path()), ["a.json", "deep"]);
     assert_eq!(entries(&out.path().join("deep/er")), ["a.csv"]);
+}
+
+#[test]
+fn a_picture_that_cannot_be_written_throws_no_measurement_away() {
+    let out = folder();
+    std::os::unix::fs::symlink("/dev/full", out.path().join("full.png")).unwrap();
+    let program = caustics("bench --json a.json --csv a.csv --image full.png").args(ONCE).inside(out.path()).tiny();
+    let ended = program.run();
+    assert_eq!(ended.status.code(), Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("full.png"), "{}", ended.stderr);
+    let record = read_json(&out.path().join("a.json"));
+    assert_schema(&record);
+    let run = &record["runs"][0];
+    assert!(run["image"].is_null() && run["warnings"].to_string().contains("without a picture"), "{run}");
+    assert!(out.path().join("a.csv").is_file());
 }
