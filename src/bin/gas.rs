@@ -1,5 +1,5 @@
 //! `gas`: the paper's own benchmark binary.
 
 fn main() -> std::process::ExitCode {
-    fumarole::cli::gas()
+    fumarole::cli::binary::<fumarole::papers::gas::setup::Setup>()
 }

@@ -6,7 +6,6 @@ use clap::{Args, Parser};
 
 use super::bench;
 use super::failure::Failure;
-use super::gas::GasArgs;
 use super::lava::LavaArgs;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
@@ -69,7 +68,6 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     outcome::say_device(&output, &machine);
     let mut measured = Measured::default();
     measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
-    measure::<GasArgs>(&mut machine, &output, &mut measured)?;
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     measure::<TerrainArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);

@@ -4,21 +4,18 @@
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-use serde_json::json;
-
 use super::failure::Failure;
 use super::options::{CommonArgs, OutputArgs};
 use super::outcome;
 use super::watch::watched;
 use crate::image::{self, Raster, Rgba8, write_png};
 use crate::measure::machine::Machine;
-use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study;
 use crate::measure::sweep::{Plan, Point, Swept};
 use crate::report::output::check_writable;
 use crate::report::record::Run;
 use crate::report::{Record, csv};
+use clap::{Args, ValueEnum};
 
 /// Which experiment is wanted.
 #[derive(Debug, Clone, Args)]
@@ -168,18 +165,6 @@ impl Publication<'_> {
             self.save(&self.file(suffix), svg.as_bytes())?;
         }
         self.print(if self.output.json_to_stdout() { text } else { table })
-    }
-
-    /// A table without times: JSON and CSV as files, and the table or the JSON on standard output.
-    pub fn facts(&self, machine: &Machine, facts: &ResultTable) -> Result<(), Failure> {
-        let document = json!({
-            "experiment": self.name, "environment": machine.environment(),
-            "command": std::env::args().collect::<Vec<_>>(), "table": facts.json(),
-        });
-        let text = outcome::text(&document)?;
-        self.save(&self.json_file(), text.as_bytes())?;
-        self.save(&self.csv_file(), facts.csv().as_bytes())?;
-        self.print(if self.output.json_to_stdout() { text } else { facts.render(outcome::style()) })
     }
 
     fn json_file(&self) -> PathBuf {

@@ -7,7 +7,6 @@ mod declared;
 mod devices;
 mod experiment;
 mod failure;
-mod gas;
 mod lava;
 mod options;
 mod outcome;
@@ -27,7 +26,6 @@ use std::process::ExitCode;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
-use self::gas::GasArgs;
 use self::lava::LavaArgs;
 pub use self::page::options_table;
 use self::paper::PaperCommand;
@@ -53,8 +51,6 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Lava: particles to density to isosurface to splats (Unnthorsson)
     Lava(PaperCommand<LavaArgs>),
-    /// Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent)
-    Gas(PaperCommand<GasArgs>),
     /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
     Terrain(PaperCommand<TerrainArgs>),
 }
@@ -93,7 +89,6 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Lava(arguments)) => arguments.run(),
-        Some(Command::Gas(arguments)) => arguments.run(),
         Some(Command::Terrain(arguments)) => arguments.run(),
     })
 }
@@ -101,11 +96,6 @@ pub fn umbrella() -> ExitCode {
 /// Runs the paper's own binary `lava`.
 pub fn lava() -> ExitCode {
     end(paper::binary::<LavaArgs>())
-}
-
-/// Runs the paper's own binary `gas`.
-pub fn gas() -> ExitCode {
-    end(paper::binary::<GasArgs>())
 }
 
 /// Runs a paper's own binary.

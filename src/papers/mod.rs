@@ -3,7 +3,6 @@
 #[cfg(test)]
 mod layout;
 
-pub mod gas;
 pub mod lava;
 pub mod terrain;
 
@@ -26,6 +25,7 @@ macro_rules! papers {
 }
 
 papers! {
+    gas
     caustics
     burning
 }

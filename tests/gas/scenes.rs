@@ -90,18 +90,18 @@ fn bad_numbers_are_named() {
         parameters
     };
     let cases = [
-        (Parameters { table_size: 0, ..default() }, "--table"),
-        (Parameters { table_size: 4096, ..default() }, "--table"),
-        (Parameters { steps: 0, ..default() }, "--steps"),
-        (Parameters { early_end: f32::NAN, ..default() }, "--early-end"),
-        (Parameters { shadow_threshold: -1.0, ..default() }, "--shadow-threshold"),
-        (Parameters { lights: Vec::new(), ..default() }, "--light"),
-        (with_volume(|v| v.texture.opaque = -1.0), "--opaque"),
-        (with_volume(|v| v.texture.opaque = f32::NAN), "--opaque"),
-        (with_volume(|v| v.tau_per_m = f32::NAN), "--tau"),
-        (with_volume(|v| v.falloff = 2.0), "--falloff"),
-        (with_volume(|v| v.phase[0].weight = 3.0), "--phase"),
-        (with_volume(|v| v.half_extent_m.x = 0.0), "--volume"),
+        (Parameters { table_size: 0, ..default() }, "table"),
+        (Parameters { table_size: 4096, ..default() }, "table"),
+        (Parameters { steps: 0, ..default() }, "steps"),
+        (Parameters { early_end: f32::NAN, ..default() }, "early-end"),
+        (Parameters { shadow_threshold: -1.0, ..default() }, "shadow-threshold"),
+        (Parameters { lights: Vec::new(), ..default() }, "light"),
+        (with_volume(|v| v.texture.opaque = -1.0), "opaque"),
+        (with_volume(|v| v.texture.opaque = f32::NAN), "opaque"),
+        (with_volume(|v| v.tau_per_m = f32::NAN), "tau"),
+        (with_volume(|v| v.falloff = 2.0), "falloff"),
+        (with_volume(|v| v.phase[0].weight = 3.0), "phase"),
+        (with_volume(|v| v.half_extent_m.x = 0.0), "volume"),
     ];
     for (parameters, name) in cases {
         assert_eq!(parameters.validate().unwrap_err().name, name);

@@ -174,7 +174,7 @@ fn bands_shrink_until_their_lists_fit() {
                 Err(error) => break error,
             }
         };
-        assert!(matches!(error, Error::Limit { .. }) && error.to_string().contains("--list-bytes"), "{error}");
+        assert!(matches!(error, Error::Limit { .. }) && error.to_string().contains("list-bytes"), "{error}");
     });
 }
 

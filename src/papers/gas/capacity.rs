@@ -24,8 +24,8 @@ pub struct Capacity {
 #[derive(Debug, Clone, Copy)]
 pub struct BufferLimit {
     bytes: u64,
-    /// What a user changes where one row is too much: the option to lower, perhaps one to raise.
-    option: &'static str,
+    /// What a user changes where one row is too much: the parameter to lower, perhaps one to raise.
+    parameters: &'static str,
 }
 
 impl BufferLimit {
@@ -36,8 +36,8 @@ impl BufferLimit {
         let heap_bytes = heaps.iter().map(|heap| heap.size).max().unwrap_or(0);
         let bytes = u64::from(physical.limits.max_storage_buffer_range).min(heap_bytes / HEAP_DIVISOR);
         match parameters.list_bytes {
-            Some(allowed) if allowed < bytes => BufferLimit { bytes: allowed, option: "--size; or raise --list-bytes" },
-            _ => BufferLimit { bytes, option: "--size" },
+            Some(allowed) if allowed < bytes => BufferLimit { bytes: allowed, parameters: "size`; or raise `list-bytes" },
+            _ => BufferLimit { bytes, parameters: "size" },
         }
     }
 
@@ -82,7 +82,7 @@ impl Capacity {
                 if self.rows == 1 {
                     let object = format!("list of the {name} of a row of pixels");
                     let error = Error::Limit { object, what: "count", wanted: wanted.into(), limit: most.into() };
-                    return Err(error.set_by(limit.option));
+                    return Err(error.set_by(limit.parameters));
                 }
                 // Rows differ: not quite as many as would fit if they were all alike.
                 let fraction = f64::from(most) / f64::from(wanted);
@@ -102,7 +102,7 @@ mod tests {
         Parameters { width, height, ..Parameters::default() }
     }
 
-    const LAVAPIPE: BufferLimit = BufferLimit { bytes: 128 << 20, option: "--size" };
+    const LAVAPIPE: BufferLimit = BufferLimit { bytes: 128 << 20, parameters: "size" };
 
     #[test]
     fn a_large_picture_is_done_in_bands_whose_lists_fit() {
@@ -120,7 +120,7 @@ mod tests {
     /// Lists grow as far as a buffer goes, then the bands shrink, down to one row and no further.
     #[test]
     fn lists_grow_and_bands_shrink() {
-        let most = BufferLimit { bytes: 16_000, option: "--list-bytes" };
+        let most = BufferLimit { bytes: 16_000, parameters: "list-bytes" };
         let capacity = Capacity { rows: 40, fragments: 100, sections: 50 };
         assert_eq!(capacity.grown(capacity, most).unwrap(), None);
         let demand = Capacity { fragments: 160, ..capacity };
@@ -131,6 +131,6 @@ mod tests {
         assert_eq!(capacity.grown(demand, most).unwrap(), Some(Capacity { rows: 3, fragments: 1000, sections: 500 }));
         let row = Capacity { rows: 1, ..capacity };
         let error = row.grown(demand, most).unwrap_err().to_string();
-        assert!(error.contains("fragments") && error.contains("--list-bytes") && error.contains("3000"), "{error}");
+        assert!(error.contains("fragments") && error.contains("list-bytes") && error.contains("3000"), "{error}");
     }
 }

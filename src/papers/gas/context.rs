@@ -37,7 +37,7 @@ impl Context<'_> {
     /// [`Error::Limit`] for more than the device binds.
     pub fn table(&self, name: &str, count: u64) -> Result<Arc<Buffer>, Error> {
         let entries = u64::from(self.parameters.table_size).pow(3);
-        self.storage::<f32>(name, entries * count).map_err(|error| error.set_by("--table"))
+        self.storage::<f32>(name, entries * count).map_err(|error| error.set_by("table"))
     }
 
     /// An image of the picture's size.
@@ -46,6 +46,6 @@ impl Context<'_> {
     /// [`Error::Limit`] for a size that the device does not allow.
     pub fn image(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Arc<ImageView>, Error> {
         let desc = ImageDesc::new_2d(self.name(name), format, self.parameters.width, self.parameters.height);
-        Image::new(self.shaders.device(), desc.usage(usage)).map_err(|error| error.set_by("--size"))?.view()
+        Image::new(self.shaders.device(), desc.usage(usage)).map_err(|error| error.set_by("size"))?.view()
     }
 }

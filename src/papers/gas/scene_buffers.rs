@@ -35,7 +35,7 @@ impl SceneBuffers {
         let (device, parameters) = (context.shaders.device(), context.parameters);
         // Scenes are small: what is beyond a limit is a mesh of the user's.
         let storage = |what: &str, bytes: &[u8]| {
-            upload(device, &context.name(what), STORAGE, bytes).map_err(|error| error.set_by("--object"))
+            upload(device, &context.name(what), STORAGE, bytes).map_err(|error| error.set_by("object"))
         };
         let mut volumes: Vec<VolumeBlock> =
             parameters.volumes.iter().map(|v| VolumeBlock::of_volume(v, parameters.steps)).collect();

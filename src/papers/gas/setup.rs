@@ -1,32 +1,46 @@
-//! The experiments of the `gas` paper: what a user set up, what a run says of itself, the tables and the figures.
+//! What a user set up of the `gas` paper, and what a run says of itself.
 
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 
+use super::experiments::{self, Options};
+use super::parameters::volumes::{self, Place};
+use super::parameters::{default_volume, validate_object};
+use crate::field;
 use crate::gpu::{self, Feature, ShaderLibrary};
-use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
+use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
+use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
-use crate::measure::study::{Identity, Metrics, Study};
-use crate::papers::gas::model::Object;
-use crate::papers::gas::parameters::validate_object;
+use crate::measure::study::{self, Declared, Identity, Metrics, Study};
+use crate::measure::Error;
+use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant};
-use crate::scene::MeshSource;
+use crate::scene::{Light, MeshSource};
 
-/// What a user set up.
+/// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
     pub parameters: Parameters,
-    /// Whose surfaces there are.
+    /// The scene whose surfaces there are.
     pub scene: Preset,
     /// Polygon meshes that stand in the scene beside its own surfaces, at their own size.
     pub objects: Vec<MeshSource>,
     pub preset: Option<String>,
+    /// Volumes beside the scene's.
+    places: Vec<Place>,
+    /// The numbers for all volumes, in the [templates](volumes::templates).
+    gases: Vec<model::Volume>,
+    /// Directions of parallel light and places of point lights; the scene's where there are neither.
+    parallel_lights: Vec<Vec3>,
+    point_lights: Vec<Vec3>,
+    /// Names of the numbers for all volumes that some volume must have.
+    given: Given,
 }
 
 impl Setup {
@@ -35,7 +49,78 @@ impl Setup {
         let mut parameters = scene.scene().parameters;
         parameters.first_frame = scene.bench_frame();
         parameters.frame_step = 0;
-        Setup { parameters, scene, objects: Vec::new(), preset: Some(scene.as_str().to_owned()) }
+        Setup {
+            parameters,
+            scene,
+            objects: Vec::new(),
+            preset: Some(scene.as_str().to_owned()),
+            places: Vec::new(),
+            gases: volumes::templates(),
+            parallel_lights: Vec::new(),
+            point_lights: Vec::new(),
+            given: Given::default(),
+        }
+    }
+
+    /// The same values over the numbers of other figures' scenes.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for one that none of the scenes heeds.
+    pub fn in_scenes(&self, scenes: &[Preset]) -> Result<Vec<Setup>, Error> {
+        let in_scene = |&scene: &Preset| {
+            let mut setup = Setup::of(scene);
+            let given = Self::parameters().into_iter().filter(|p| self.given.has(p.name));
+            given.for_each(|parameter| parameter.copy(self, &mut setup));
+            setup.apply(&self.given);
+            setup
+        };
+        let setups: Vec<Setup> = scenes.iter().map(in_scene).collect();
+        volumes::check_heeded(&self.given, &setups.iter().flat_map(|s| s.parameters.volumes.clone()).collect())?;
+        Ok(setups)
+    }
+
+    /// The same under the name of its scene.
+    pub fn named(&self) -> Self {
+        Setup { preset: Some(self.scene.as_str().to_owned()), ..self.clone() }
+    }
+
+    /// The same with a constant density in all volumes.
+    pub fn with_constant_density(&self) -> Self {
+        let mut setup = Setup { given: Given::default(), ..self.clone() };
+        for volume in &mut setup.parameters.volumes {
+            volume.texture.function = model::DensityFunction::Constant;
+        }
+        setup
+    }
+
+    /// Adds the volumes and sets their numbers and the lights.
+    fn apply(&mut self, given: &Given) {
+        let all = &mut self.parameters.volumes;
+        let first = all.first().copied().unwrap_or_else(default_volume);
+        all.extend(self.places.iter().map(|&Place { shape, center, half_extent_m }| model::Volume {
+            shape,
+            center,
+            half_extent_m,
+            ..first
+        }));
+        volumes::declared().iter().filter(|p| given.has(p.name)).for_each(|p| p.copy(&self.gases, all));
+        // As bright at the origin as the scenes' own light, wherever it stands.
+        let parallel =
+            self.parallel_lights.iter().map(|&direction| Light::Parallel { direction, intensity: Vec3::ONE });
+        let points = self.point_lights.iter().map(|&position| {
+            let intensity = Vec3::splat(position.length_squared().max(1e-3));
+            Light::Point { position, intensity }
+        });
+        let lights: Vec<Light> = parallel.chain(points).collect();
+        if !lights.is_empty() {
+            self.parameters.lights = lights;
+        }
+    }
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Setup { preset: None, ..Setup::of(Preset::Fig8) }
     }
 }
 
@@ -54,6 +139,7 @@ impl Study for Setup {
 
     /// Checks the parameters, models the scene's surfaces and loads the user's.
     fn load(&self) -> Result<Scene, Error> {
+        volumes::check_heeded(&self.given, &self.parameters.volumes)?;
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
@@ -92,24 +178,16 @@ impl Study for Setup {
                 })
             })
             .collect();
-        let objects: Vec<String> = self.objects.iter().map(ToString::to_string).collect();
-        entries([
+        let mut config = parameter::config(&Self::parameters(), self);
+        config.extend(entries([
             ("scene", json!(self.scene.as_str())),
-            ("object", json!(objects)),
             ("triangles", json!(triangles)),
             ("volumes", json!(volumes)),
             ("lights", json!(p.lights.iter().map(config::light).collect::<Vec<_>>())),
-            ("ambient", json!(p.ambient.to_array())),
             ("background", json!(p.background.to_array())),
-            ("steps", json!(p.steps)),
-            ("table", json!(p.table_size)),
-            ("pixel_size", json!(p.pixel_size)),
-            ("shadow_threshold", json!(p.shadow_threshold)),
-            ("early_end", json!(p.early_end)),
-            ("first_frame", json!(p.first_frame)),
-            ("frame_step", json!(p.frame_step)),
             ("camera", config::camera(&p.camera)),
-        ])
+        ]));
+        config
     }
 
     fn summary(&self) -> String {
@@ -138,5 +216,99 @@ impl Study for Setup {
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }
         Ok(metrics)
+    }
+}
+
+impl Declared for Setup {
+    const ABOUT: &'static str =
+        "Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent), pass by pass";
+    // Tracing shadows from every sample takes many times as long.
+    const BENCHED: &'static [Variant] = &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Table];
+    const RENDERED: Variant = Variant::Table;
+    const EXPERIMENT_FRAMES: (u32, u32) = (1, 5);
+
+    type Options = Options;
+
+    fn parameters() -> Vec<Parameter<Self>> {
+        let objects = [
+            Parameter::new("object", field!(Setup.objects))
+                .help("Polygon mesh in the scene: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("volume", field!(Setup.places))
+                .group("Gases")
+                .help(
+                    "One more volume beside the scene's: box, sphere, cylinder or frustum, its centre and half extents in \
+                     metres (0.0001 to 1000000), and of a frustum the radii at the bottom and at the top as fractions of \
+                     the half extents, 0 to 1; filled as the scene's first volume, or with turbulence; up to 8 volumes",
+                )
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+        ];
+        let lights = [
+            Parameter::new("light", field!(Setup.parallel_lights))
+                .help("Direction of light from infinity; takes the place of the scene's lights")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("point-light", field!(Setup.point_lights))
+                .unit("metres")
+                .help("Position of a point light; takes the place of the scene's lights")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+        ];
+        let gases = volumes::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.gases, |s| &mut s.gases));
+        let numbers =
+            Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
+        objects.into_iter().chain(gases).chain(numbers).chain(lights).collect()
+    }
+
+    fn options() -> Vec<Parameter<Options>> {
+        experiments::options()
+    }
+
+    fn presets() -> Vec<study::Preset<Self>> {
+        let preset = |name, help, setup| study::Preset { name, help, variant: None, setup };
+        vec![
+            preset("fig-3", "Figure 3: a gallery with a gaseous sculpture", || Setup::of(Preset::Fig3)),
+            preset("fig-4", "Figure 4: surface-defined fog over a chess board", || Setup::of(Preset::Fig4)),
+            preset("fig-5", "Figure 5: the gallery, for the shadow table", || Setup::of(Preset::Fig5)),
+            preset("fig-6", "Figure 6: steam from a glass, glasses in front of, around and behind it", || {
+                Setup::of(Preset::Fig6)
+            }),
+            preset("fig-7", "Figure 7: volume fog that rolls over a chess board", || Setup::of(Preset::Fig7)),
+            preset("fig-8", "Figure 8: steam and one glass, the default", || Setup::of(Preset::Fig8)),
+            preset("solid", "A solid (hypertexture) volume", || Setup::of(Preset::Solid)),
+        ]
+    }
+
+    fn experiments() -> Vec<Experiment<Self>> {
+        experiments::all()
+    }
+
+    /// Figure 8 at half its size.
+    fn quick() -> Self {
+        let mut setup = Setup::default();
+        (setup.parameters.width, setup.parameters.height) = (180, 125);
+        setup
+    }
+
+    fn preset_mut(&mut self) -> &mut Option<String> {
+        &mut self.preset
+    }
+
+    fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        self.given = given.clone();
+        self.apply(given);
+        Ok(())
+    }
+
+    /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.
+    fn rendered(&self, _: Option<Variant>) -> Variant {
+        match self.scene.variant() {
+            Variant::NoVolume if !self.places.is_empty() => Variant::Table,
+            variant => variant,
+        }
     }
 }

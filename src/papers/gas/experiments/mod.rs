@@ -1,3 +1,155 @@
 //! The tables and figures of the `gas` paper, with the paper's own numbers.
 
-pub mod tables;
+mod tables;
+mod trade;
+
+use serde_json::json;
+
+use self::tables::{TABLE_1, TABLE_2};
+use self::trade::Trade;
+use super::Variant;
+use super::scenes::Preset;
+use super::setup::Setup;
+use crate::field;
+use crate::image::contact_sheet::{below_each_other, side_by_side};
+use crate::measure::bench::{build, load};
+use crate::measure::experiment::{self, Experiment};
+use crate::measure::parameter::Parameter;
+use crate::measure::result_table::ResultTable;
+use crate::measure::study::Study;
+use crate::measure::sweep::{Point, Row};
+use crate::measure::{Error, picture};
+
+type Context<'a> = experiment::Context<'a, Setup>;
+
+/// Options of the experiments.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Table sizes or steps of a sweep.
+    counts: Vec<u32>,
+}
+
+/// The options of the experiments.
+pub fn options() -> Vec<Parameter<Options>> {
+    vec![
+        Parameter::new("counts", field!(Options.counts))
+            .placeholder("N,N,..")
+            .help("Table sizes or steps of a sweep, comma-separated")
+            .default_text("16,32,64,96,128, or 10,20,40,80,160"),
+    ]
+}
+
+const OWN_SCENES: (&str, &str) = ("preset", "this experiment has its own scenes");
+
+/// Every experiment, the paper's tables first.
+pub fn all() -> Vec<Experiment<Setup>> {
+    vec![
+        Experiment {
+            name: "1",
+            help: "Table 1: times of figures 3 to 7, with and without the volume",
+            options: &[],
+            refuses: &[OWN_SCENES],
+            run: |context| TABLE_1.run(context),
+        },
+        Experiment {
+            name: "2",
+            help: "Table 2: times of figure 8 by shadowing",
+            options: &[],
+            refuses: &[OWN_SCENES],
+            run: |context| TABLE_2.run(context),
+        },
+        Experiment {
+            name: "table-size",
+            help: "Shadow table of 16 to 128 entries a side: cost against the difference from tracing",
+            options: &["counts"],
+            refuses: &[("table", "this experiment sweeps it; give `counts`")],
+            run: |context| Trade::TableSize.run(context),
+        },
+        Experiment {
+            name: "steps",
+            help: "Steps along a volume: cost against the difference from the most",
+            options: &["counts"],
+            refuses: &[("steps", "this experiment sweeps them; give `counts`")],
+            run: |context| Trade::Steps.run(context),
+        },
+        Experiment {
+            name: "noise",
+            help: "The fraction of the volume's time that turbulence takes",
+            options: &[],
+            refuses: &[("density", "this experiment compares two")],
+            run: noise,
+        },
+        Experiment {
+            name: "sequence",
+            help: "The picture strips of figures 6 and 7",
+            options: &[],
+            refuses: &[
+                OWN_SCENES,
+                ("first-frame", "the strips have the paper's frames"),
+                ("json", "a strip is pictures; `1` has a record"),
+                ("csv", "a strip is pictures; `1` has rows"),
+            ],
+            run: sequence,
+        },
+    ]
+}
+
+/// A point of one variant.
+fn point(label: &str, x: f64, study: Setup, variant: Variant) -> Point<Setup> {
+    Point { label: label.to_owned(), x, study, variants: vec![variant], left_out: Vec::new() }
+}
+
+/// GPU time of passes of a row, their medians summed, milliseconds.
+fn gpu_ms(row: &Row, names: &[&str]) -> f64 {
+    let passes = row.run.passes.iter().filter(|pass| names.contains(&pass.name.as_str()));
+    passes.filter_map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).sum()
+}
+
+/// The volume's time with the scene's density function, and with a constant in its place: what is left is turbulence.
+fn noise(context: &mut Context<'_>) -> Result<(), Error> {
+    let turbulent = context.setup.named();
+    let constant = turbulent.with_constant_density();
+    let points =
+        [("turbulent", turbulent), ("constant", constant)].map(|(label, setup)| point(label, 0.0, setup, Variant::None));
+    points.iter().try_for_each(|point| load(&point.study).map(drop))?;
+    let mut machine = context.open()?;
+    let swept = context.sweep(&mut machine, &points)?;
+    let volume_ms = |label: &str| {
+        let row = swept.rows.iter().find(|row| row.label == label)?;
+        row.run.passes.iter().find(|p| p.name == "volume")?.gpu_ms.as_ref().map(|s| s.median)
+    };
+    let (turbulent, constant) = (volume_ms("turbulent"), volume_ms("constant"));
+    let fraction = turbulent.zip(constant).map(|(t, c)| (t - c) / t);
+    let table = ResultTable {
+        title: "The share of turbulence in the volume's time",
+        columns: &["turbulent ms", "constant ms", "share", "paper"],
+        rows: vec![vec![json!(turbulent), json!(constant), json!(fraction), json!(0.65)]],
+    };
+    context.publish_table(&machine, &table)?;
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok(()), Err)
+}
+
+/// Pictures in a row of a contact sheet: of the six of figure 6 and the nine of figure 7.
+const PICTURES_A_ROW: usize = 3;
+
+fn sequence(context: &mut Context<'_>) -> Result<(), Error> {
+    let setups = context.setup.in_scenes(&[Preset::Fig6, Preset::Fig7])?;
+    let mut machine = context.open()?;
+    for mut setup in setups {
+        let scene = setup.scene;
+        let surfaces = setup.load()?;
+        let mut pictures = Vec::new();
+        for frame in scene.frames() {
+            setup.parameters.first_frame = frame;
+            let mut built = build(&machine, &setup, &surfaces, scene.variant())?;
+            let drawn = picture::render(&mut machine, &mut built.paper, 0)?;
+            context.picture(&format!("-{}-{frame:04}.png", scene.as_str()), &drawn)?;
+            pictures.push(drawn);
+        }
+        let rows = pictures.chunks(PICTURES_A_ROW).map(side_by_side).collect::<Result<Vec<_>, _>>()?;
+        context.picture(&format!("-{}.png", scene.as_str()), &below_each_other(&rows)?)?;
+    }
+    machine.check_validation()?;
+    Ok(())
+}

@@ -1,0 +1,291 @@
+//! What a user can set, under the paper's own words.
+
+pub mod volumes;
+
+use glam::Vec3;
+
+use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
+use crate::field;
+use crate::measure::parameter::{self, Cost, EyeAndTarget, Field, Parameter, Range, Size};
+use crate::measure::{ParameterError, components};
+use crate::scene::{Camera, Light};
+
+/// The ways of shadowing by the gas (section "Shadowing of the gas", figure 8).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Variant {
+    /// The same scene without its volumes.
+    NoVolume,
+    /// Nothing is shadowed.
+    None,
+    /// The gas shadows surfaces, by tracing, and not itself.
+    Surfaces,
+    /// The gas shadows surfaces and itself, by tracing.
+    Traced,
+    /// The gas shadows surfaces and itself, by the shadow table.
+    Table,
+}
+
+impl crate::measure::Variant for Variant {
+    const ALL: &'static [Variant] =
+        &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table];
+
+    fn as_str(self) -> &'static str {
+        match self {
+            Variant::NoVolume => "no-volume",
+            Variant::None => "none",
+            Variant::Surfaces => "surfaces",
+            Variant::Traced => "traced",
+            Variant::Table => "table",
+        }
+    }
+}
+
+/// Most volumes and lights of a scene: the shaders keep one value for each in registers.
+pub const MAX_VOLUMES: usize = 8;
+pub const MAX_LIGHTS: usize = 4;
+
+/// Every number of a configuration but the surfaces, in the ranges of [`Parameters::declared`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameters {
+    /// 0 to 8.
+    pub volumes: Vec<Volume>,
+    /// 1 to 4.
+    pub lights: Vec<Light>,
+    /// Light from all around, which also stands for higher orders of scattering in gases of high albedo; linear RGB, 0 to 64.
+    pub ambient: Vec3,
+    /// Linear RGB, 0 to 64.
+    pub background: Vec3,
+    /// Its near and far plane are the paper's hither and yon.
+    pub camera: Camera,
+    /// Increments along the longest side of a volume, 1 to 100,000.
+    pub steps: u32,
+    /// Entries of the density and shadow tables along each axis, 2 to 512.
+    pub table_size: u32,
+    /// Octaves of turbulence go on while the scale exceeds it; 0.0001 to 1 texture units.
+    pub pixel_size: f32,
+    /// Density below which no shadow of the gas on itself is computed, at least 0.
+    pub shadow_threshold: f32,
+    /// Transparency below which the tracing of a pixel ends, 0 (never) to 1.
+    pub early_end: f32,
+    /// The scene's frame that frame 0 shows.
+    pub first_frame: u32,
+    /// Frames of the scene from one frame to the next; 0 holds the first.
+    pub frame_step: u32,
+    pub seed: u64,
+    /// Footprints by a geometry stage, where the device has one; else by the vertex stage.
+    pub geometry_stage: bool,
+    /// Most bytes of a buffer of the lists, at least 4096: the picture is done in bands of rows whose lists fit. Without, or
+    /// where it binds less, what the device binds.
+    pub list_bytes: Option<u64>,
+    /// Size of the picture in pixels.
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Default for Parameters {
+    /// A box of turbulence of side 2 m around the origin.
+    fn default() -> Self {
+        Parameters {
+            volumes: vec![default_volume()],
+            lights: vec![default_light()],
+            ambient: Vec3::splat(0.1),
+            background: Vec3::ZERO,
+            camera: Camera {
+                eye: Vec3::new(0.0, 1.0, 6.0),
+                target: Vec3::ZERO,
+                up: Vec3::Y,
+                vertical_fov_rad: 0.6,
+                near_m: 0.1,
+                far_m: 100.0,
+            },
+            steps: 40,
+            table_size: 64,
+            pixel_size: 1.0 / 16.0,
+            shadow_threshold: 0.0,
+            early_end: 0.01,
+            first_frame: 0,
+            frame_step: 1,
+            seed: 1,
+            geometry_stage: true,
+            list_bytes: None,
+            width: 360,
+            height: 250,
+        }
+    }
+}
+
+/// The light of all scenes that say nothing else: at (3, 6, 3) m, with irradiance 1 at the origin.
+pub fn default_light() -> Light {
+    let position = Vec3::new(3.0, 6.0, 3.0);
+    Light::Point { position, intensity: Vec3::splat(position.length_squared()) }
+}
+
+/// The phase function of all gases that say nothing else.
+pub const DEFAULT_PHASE: [HenyeyGreenstein; 2] =
+    [HenyeyGreenstein { weight: 0.8, g: 0.5 }, HenyeyGreenstein { weight: 0.2, g: -0.3 }];
+
+/// A box of side 2 m with tau 4 / 2 m and albedo 0.3.
+pub fn default_volume() -> Volume {
+    Volume {
+        shape: Shape::Box,
+        center: Vec3::ZERO,
+        half_extent_m: Vec3::ONE,
+        falloff: 0.0,
+        is_solid: false,
+        texture: SolidTexture {
+            function: DensityFunction::Turbulence,
+            opaque: 1.0,
+            power: 1.0,
+            scale_per_m: 1.0,
+            offset: Vec3::ZERO,
+        },
+        tau_per_m: 2.0,
+        albedo: Vec3::splat(0.3),
+        phase: DEFAULT_PHASE,
+    }
+}
+
+fn is_color(color: Vec3, most: f32) -> bool {
+    color.to_array().iter().all(|c| (0.0..=most).contains(c))
+}
+
+impl Parameters {
+    /// The scene's frame that `number` shows.
+    pub fn scene_frame(&self, number: u32) -> u32 {
+        self.first_frame.saturating_add(self.frame_step.saturating_mul(number))
+    }
+
+    /// Mixes the seed into the 32 bits that the lattice's hash takes.
+    pub fn noise_seed(&self) -> u32 {
+        (self.seed ^ (self.seed >> 32)) as u32
+    }
+
+    /// Every number that a user can set, once; those of the gases are in [`volumes::declared`].
+    pub fn declared() -> Vec<Parameter<Parameters>> {
+        vec![
+            Parameter::new("steps", field!(Parameters.steps))
+                .range(Range::from(1.0).to(100_000.0))
+                .help("Steps along a volume's longest side")
+                .section("Volume rendering")
+                .default_text("the scene's, 40")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("table", field!(Parameters.table_size))
+                .range(Range::from(2.0).to(512.0))
+                .help("Entries of the density and shadow tables along each axis")
+                .section("Calculation of the shadow table")
+                .default_text("the scene's, 64")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("pixel-size", field!(Parameters.pixel_size))
+                .range(Range::from(1e-4).to(1.0))
+                .help("Octaves of turbulence go on while their scale exceeds it")
+                .default_text("the scene's"),
+            Parameter::new("shadow-threshold", field!(Parameters.shadow_threshold))
+                .range(Range::from(0.0))
+                .help("Density below which no shadow of the gas on itself is computed")
+                .section("Shadowing of the gas")
+                .default_text("the scene's"),
+            Parameter::new("early-end", field!(Parameters.early_end))
+                .range(Range::from(0.0).to(1.0))
+                .help("Transparency below which a pixel's tracing ends; 0 for never"),
+            Parameter::new("ambient", field!(Parameters.ambient))
+                .placeholder("R,G,B")
+                .range(Range::from(0.0).to(64.0))
+                .help("Ambient light, linear red, green, blue")
+                .default_text("the scene's"),
+            Parameter::new("first-frame", field!(Parameters.first_frame))
+                .help("The scene's frame that frame 0 shows")
+                .default_text("one in which there is gas")
+                .everyday(),
+            Parameter::new("frame-step", field!(Parameters.frame_step))
+                .help("Frames of the scene from one frame to the next; 0 holds the first"),
+            Parameter::new("geometry-stage", field!(Parameters.geometry_stage))
+                .help("The triangles' footprints by a geometry stage, or in the vertex stage")
+                .cost(Cost::Pipelines)
+                .unrecorded(),
+            Parameter::new("list-bytes", field!(Parameters.list_bytes))
+                .range(Range::from(4096.0))
+                .help(
+                    "Most bytes of a buffer of the A-buffer's lists: the picture is done in bands of rows whose lists fit",
+                )
+                .default_text("what the device binds")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("camera", CAMERA)
+                .help("Camera: eye and target, x,y,z,x,y,z in metres")
+                .default_text("the scene's")
+                .everyday()
+                .unrecorded(),
+            Parameter::new("size", SIZE)
+                .range(Range::from(1.0))
+                .unit("pixel")
+                .help("Size of the picture")
+                .default_text("the figure's")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("seed", field!(Parameters.seed))
+                .help("Seed of noise and jitter")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+        ]
+    }
+
+    /// Checks every range, and what several numbers must be together.
+    ///
+    /// # Errors
+    /// The first parameter outside its range.
+    pub fn validate(&self) -> Result<(), ParameterError> {
+        parameter::check(&Self::declared(), self)?;
+        let volumes = self.volumes.len();
+        ParameterError::check(volumes <= MAX_VOLUMES, "volume", volumes, "a scene has at most 8 volumes")?;
+        let lights = self.lights.len();
+        ParameterError::check((1..=MAX_LIGHTS).contains(&lights), "light", lights, "a scene has 1 to 4 lights")?;
+        volumes::check(&self.volumes)?;
+        self.lights.iter().try_for_each(validate_light)?;
+        let background = self.background;
+        ParameterError::check(is_color(background, 64.0), "background", components(background), "must be 0 to 64")?;
+        let last = u64::from(self.first_frame) + u64::from(self.frame_step) * 1000;
+        let range = "is too late; a scene has 16000000 frames";
+        ParameterError::check(last <= 16_000_000, "first-frame", self.first_frame, range)?;
+        ParameterError::check_camera(&self.camera)
+    }
+}
+
+const SIZE: Field<Parameters, Size> = Field {
+    get: |p| Size { width: p.width, height: p.height },
+    set: |p, size| (p.width, p.height) = (size.width, size.height),
+};
+
+const CAMERA: Field<Parameters, EyeAndTarget> = Field {
+    get: |p| EyeAndTarget { eye: p.camera.eye, target: p.camera.target },
+    set: |p, place| (p.camera.eye, p.camera.target) = (place.eye, place.target),
+};
+
+/// Checks the numbers of a surface.
+///
+/// # Errors
+/// The first outside its range.
+pub fn validate_object(object: &Object) -> Result<(), ParameterError> {
+    ParameterError::check((0.0..=1.0).contains(&object.opacity), "opacity", object.opacity, "must be 0 to 1")?;
+    ParameterError::check(is_color(object.color, 1.0), "color", components(object.color), "must be 0 to 1")?;
+    let gas = object.gas.map(|texture| Volume { texture, ..default_volume() });
+    volumes::check(&gas.into_iter().collect())
+}
+
+fn validate_light(light: &Light) -> Result<(), ParameterError> {
+    let range = "must have an intensity of 0 to 1000000";
+    match *light {
+        Light::Parallel { direction, intensity } => {
+            let is_good = direction.is_finite() && direction.normalize_or_zero() != Vec3::ZERO;
+            ParameterError::check(is_good, "light", components(direction), "must be a direction")?;
+            ParameterError::check(is_color(intensity, 1e6), "light", components(intensity), range)
+        }
+        Light::Point { position, intensity } => {
+            ParameterError::check(position.is_finite(), "point-light", components(position), "must be a place")?;
+            ParameterError::check(is_color(intensity, 1e6), "point-light", components(intensity), range)
+        }
+    }
+}
