@@ -1,5 +1,6 @@
-// The fragment structure's "light attenuation values for each light": the share of the light that the gas takes, 1 - exp(-tau sum),
-// for each visible fragment. Surfaces cast no shadows; a surface that turns away from a light has no use for the value.
+// The fragment structure's "light attenuation values for each light": the fraction of the light that the gas takes, 1 -
+// exp(-tau sum), for each visible fragment. Surfaces cast no shadows; a surface that faces away from a light has no use
+// for the value.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -18,14 +19,14 @@ layout(set = 0, binding = 14, std430) buffer Attenuations {
 };
 
 void main() {
-    uvec2 place = pixel_of(gl_GlobalInvocationID.xy);
-    if (!is_in_band(place)) {
+    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(pixel)) {
         return;
     }
-    vec3 ray = ray_direction(vec2(place) + 0.5);
+    vec3 ray = ray_direction(vec2(pixel) + 0.5);
     uint covered = 0u;
     bool is_shown_through = false; // by the fragment before, which it intersects
-    uint f = fragment_at(heads[list_of(place)]);
+    uint f = fragment_at(heads[list_of(pixel)]);
     while (f != NONE) {
         Link link = links[f];
         link.next = fragment_at(link.next);
@@ -44,7 +45,8 @@ void main() {
             is_shown_through = false;
             if (link.next != NONE) {
                 Link next = links[link.next];
-                is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u && fraction_behind(link, next) > 0.0;
+                is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u
+                    && fraction_behind(link, next) > 0.0;
             }
         }
         if (opacity_of(colors[f]) >= 1.0) {

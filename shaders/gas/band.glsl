@@ -1,5 +1,5 @@
-// The picture is done in bands of rows, whose lists the device's buffers hold; most pictures are one band. A slow pass is
-// dispatched in parts of a band, so that no watchdog ends it.
+// The picture is done in bands of rows, whose lists the device's buffers hold; most pictures are one band. A slow pass
+// is dispatched in parts of a band, so that no watchdog ends it.
 
 layout(push_constant, std430) uniform Band {
     uint list_row; // the first row of the band

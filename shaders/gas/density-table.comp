@@ -1,7 +1,7 @@
 #version 450
 
-// Section "Calculation of the shadow table": "a table of the same dimensions containing functional values is first computed". Entries lie
-// on the box around the volume, the first and the last of an axis on its faces.
+// Section "Calculation of the shadow table": "a table of the same dimensions containing functional values is first
+// computed". Entries lie on the box around the volume, the first and the last of an axis on its faces.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,5 +1,5 @@
-// The density functions of the section on modelling and animating the gases. Each moves the point through the solid texture's
-// space, along a helix as the frames go on, and makes a density of the turbulence there.
+// The density functions of the section on modelling and animating the gases. Each moves the point through the solid
+// texture's space, along a helix as the frames go on, and makes a density of the turbulence there.
 
 #include "gas/noise.glsl"
 
@@ -17,7 +17,8 @@ const uint FOG = 3u;
 const uint STEAM = 4u;
 const uint HYPERTEXTURE = 5u;
 
-// theta = (frame_num mod SWIRL_FRAMES) SWIRL with SWIRL = 2 pi / SWIRL_FRAMES: the text prints a product for the remainder.
+// theta = (frame_num mod SWIRL_FRAMES) SWIRL with SWIRL = 2 pi / SWIRL_FRAMES: the text prints a product for the
+// remainder.
 vec2 swirl(uint v) {
     float frames = volumes[v].swirl_frames;
     if (frames <= 0.0) {
@@ -34,15 +35,17 @@ float interpolated_offset(float at) {
     return mix(offsets[first], offsets[(first + 1u) & (OFFSET_SIZE - 1u)], at - low);
 }
 
-// The density function of a gas, wherever its solid ends. Each takes noise or turbulence up to three times, one after the other, at
-// points that follow from what it took before; all share one place in the code where it is taken, or a compiler that inlines
-// makes dozens of copies.
+// The density function of a gas, wherever its solid ends. Each takes noise or turbulence up to three times, one after
+// the other, at points that follow from what it took before; all share one place in the code where it is taken, or a
+// compiler that inlines makes dozens of copies.
 //
-// - clouds: the text's transparency is 1 - pow(sin + 1, power) / 2, which leaves 0..1 for any power but 1;
-//   1 - pow((sin + 1) / 2, power) is equal to it there.
+// - clouds: the text's transparency is 1 - pow(sin + 1, power) / 2, which leaves 0..1 for any power but 1; 1 - pow((sin
+//   + 1) / 2, power) is equal to it there.
 // - fog (chess_fog): of the text's `direction.y = pnt.x + cyl.y` we read pnt.y, or the fog would not vary with height;
-//   frame / FULL_FOG is taken in floats; and as the section says, no fog is before the front, and behind it the fog thickens.
-// - steam (figure 6): it rises, so that its point in the texture falls, swirls about the vertical, and thins with its height.
+//   frame / FULL_FOG is taken in floats; and as the section says, no fog is before the front, and behind it the fog
+//   thickens.
+// - steam (figure 6): it rises, so that its point in the texture falls, swirls about the vertical, and thins with its
+//   height.
 // - hypertexture (reference 17): a soft sphere whose surface the turbulence moves.
 float gas_density(uint v, vec3 world) {
     uint kind = volumes[v].density_function;
@@ -97,8 +100,9 @@ float gas_density(uint v, vec3 world) {
     return density;
 }
 
-// Density inside the solid, faded towards its boundary so that the boundary cannot be seen. Of a hypertexture solid it is the
-// extinction that makes opacity = 1 - (1 - density)^(c step), so that gas and solid share one march: -ln(1 - density).
+// Density inside the solid, faded towards its boundary so that the boundary cannot be seen. Of a hypertexture solid it
+// is the extinction that makes opacity = 1 - (1 - density)^(c step), so that gas and solid share one march: -ln(1 -
+// density).
 float volume_density(uint v, vec3 world) {
     float inside = inwardness(v, world);
     if (inside < -1.0e-4) {

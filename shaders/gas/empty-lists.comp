@@ -1,6 +1,7 @@
 #version 450
 
-// Every pixel's list is empty, and so are the counts; the most that any band of any frame has counted is kept for the host.
+// Every pixel's list is empty, and so are the counts; the most that any band of any frame has counted is kept for the
+// host.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,6 +1,7 @@
-// The pixels that a triangle may touch: it is cut at the hither plane and projected, and the box of the pixels around it is
-// drawn, so that no pixel is missed however thin the triangle. A box instead of the triangle enlarged by half a pixel: its
-// corners are whole pixels, and no sliver can turn inside out; pixels beside the triangle leave the fragment stage at once.
+// The pixels that a triangle may touch: it is cut at the hither plane and projected, and the box of the pixels around
+// it is drawn, so that no pixel is missed however thin the triangle. A box instead of the triangle enlarged by half a
+// pixel: its corners are whole pixels, and no sliver can turn inside out; pixels beside the triangle leave the fragment
+// stage at once.
 
 #include "gas/frame.glsl"
 #include "gas/band.glsl"
@@ -25,8 +26,8 @@ vec2 to_pixel(vec3 p) {
 
 // Always from the end that is seen, so that two triangles cut their common edge at one point.
 vec3 cut(vec3 seen, vec3 hidden) {
-    float share = (frame.hither_m - seen.z) / (hidden.z - seen.z);
-    return vec3(mix(seen.xy, hidden.xy, share), frame.hither_m);
+    float fraction = (frame.hither_m - seen.z) / (hidden.z - seen.z);
+    return vec3(mix(seen.xy, hidden.xy, fraction), frame.hither_m);
 }
 
 Footprint footprint_of(uint triangle) {
@@ -73,15 +74,15 @@ Footprint footprint_of(uint triangle) {
     }
     low = max(floor(low), vec2(0.0, band.first_row));
     high = min(ceil(high), vec2(frame.size.x, band.end_row));
-    bool turned_away = false;
+    bool faces_away = false;
     if (objects[object].is_two_sided == 0u) {
         vec2 a = polygon[1] - polygon[0];
         vec2 b = polygon[2] - polygon[0];
         vec2 c = last - polygon[0];
         // Rows go down: counter-clockwise triangles have negative areas.
-        turned_away = a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x >= 0.0;
+        faces_away = a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x >= 0.0;
     }
-    if (low.x >= high.x || low.y >= high.y || turned_away) {
+    if (low.x >= high.x || low.y >= high.y || faces_away) {
         return seen;
     }
     seen.corners = count;

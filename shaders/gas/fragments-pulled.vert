@@ -1,6 +1,7 @@
 #version 450
 
-// As fragments.geom, for devices without geometry stages: six vertices a triangle, each of which makes the whole footprint.
+// As fragments.geom, for devices without geometry stages: six vertices a triangle, each of which makes the whole
+// footprint.
 
 #include "gas/footprint.glsl"
 

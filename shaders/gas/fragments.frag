@@ -1,10 +1,11 @@
 #version 450
 
-// Section "Combining A-buffer and volume rendering techniques" and reference 2 (Carpenter): what a triangle leaves in a pixel. Coverage is the
-// area of the triangle inside the pixel, cut exactly; the mask has a bit for each of 4 x 8 sub-pixels whose middle lies inside. Both
-// come from the triangle's edges, not from the rasteriser's samples. A sliver that misses every middle takes the nearest sub-pixel at the
-// opacity of its coverage. Depths are those of the corners of the piece inside the pixel; the text's light attenuations are a buffer
-// of their own, filled for visible fragments by light-attenuation.
+// Section "Combining A-buffer and volume rendering techniques" and reference 2 (Carpenter): what a triangle leaves in a
+// pixel. Coverage is the area of the triangle inside the pixel, cut exactly; the mask has a bit for each of 4 x 8
+// sub-pixels whose centre lies inside. Both come from the triangle's edges, not from the rasteriser's samples. A sliver
+// that misses every centre takes the nearest sub-pixel at the opacity of its coverage. Depths are those of the corners
+// of the piece inside the pixel; the text's light attenuations are a buffer of their own, filled for visible fragments
+// by light-attenuation.
 
 #include "gas/frame.glsl"
 #include "gas/band.glsl"
@@ -52,12 +53,12 @@ vec2 corner_of(uint index) {
     return index == 2u ? corners_cd.xy : corners_cd.zw;
 }
 
-// Twice the area of edge and point, positive on the left of from -> to. It is computed in one direction for both triangles of an
-// edge, so that a point is inside exactly one of them.
+// Twice the area of edge and point, positive on the left of from -> to. It is computed in one direction for both
+// triangles of an edge, so that a point is inside exactly one of them.
 float side_of(vec2 low, vec2 high, vec2 point) {
     vec2 edge = high - low;
-    vec2 way = point - low;
-    return edge.x * way.y - edge.y * way.x;
+    vec2 offset = point - low;
+    return edge.x * offset.y - edge.y * offset.x;
 }
 
 // Mean of y between 0 and 1 along a straight line from y0 to y1.
@@ -90,13 +91,13 @@ float area_under(vec2 from, vec2 to) {
     return (x0 - x1) * mean_within(from.y + (x0 - from.x) * slope, from.y + (x1 - from.x) * slope);
 }
 
-// The part of an edge that lies inside the pixel, as shares of the edge; empty (x > y) where none does.
-vec2 part_inside(vec2 from, vec2 to) {
-    vec2 way = to - from;
-    vec2 part = vec2(0.0, 1.0);
+// The segment of an edge that lies inside the pixel, as fractions of the edge; empty (x > y) where none does.
+vec2 segment_inside(vec2 from, vec2 to) {
+    vec2 edge = to - from;
+    vec2 segment = vec2(0.0, 1.0);
     for (uint axis = 0u; axis < 2u; axis++) {
         float start = axis == 0u ? from.x : from.y;
-        float along = axis == 0u ? way.x : way.y;
+        float along = axis == 0u ? edge.x : edge.y;
         if (abs(along) < 1.0e-12) {
             if (start < 0.0 || start > 1.0) {
                 return vec2(1.0, 0.0);
@@ -104,13 +105,14 @@ vec2 part_inside(vec2 from, vec2 to) {
         } else {
             float a = -start / along;
             float b = (1.0 - start) / along;
-            part = vec2(max(part.x, min(a, b)), min(part.y, max(a, b)));
+            segment = vec2(max(segment.x, min(a, b)), min(segment.y, max(a, b)));
         }
     }
-    return part;
+    return segment;
 }
 
-// Depth under a place of the picture: where its ray meets the triangle's plane, but no nearer or farther than its corners.
+// Depth under a place of the picture: where its ray meets the triangle's plane, but no nearer or farther than its
+// corners.
 float depth_at(vec2 pixel, vec3 normal, float height, vec2 range) {
     float slope = dot(normal, ray_direction(pixel));
     float depth = abs(slope) > 1.0e-12 ? height / slope : range.x;
@@ -121,14 +123,14 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 origin = vec2(pixel);
     uint count = identity.y;
-    float turn = 0.0;
+    float signed_area = 0.0;
     for (uint i = 1u; i + 1u < count; i++) {
         vec2 a = corner_of(i) - corner_of(0u);
         vec2 b = corner_of(i + 1u) - corner_of(0u);
-        turn += a.x * b.y - a.y * b.x;
+        signed_area += a.x * b.y - a.y * b.x;
     }
 
-    // Mask, and whether the pixel's corners are inside.
+    // Mask, and the distances of the pixel's corners from the nearest edge.
     uint mask = FULL;
     vec4 corners_inside = vec4(1.0);
     for (uint i = 0u; i < count; i++) {
@@ -137,7 +139,7 @@ void main() {
         bool forwards = a.x < b.x || (a.x == b.x && a.y < b.y);
         vec2 low = forwards ? a : b;
         vec2 high = forwards ? b : a;
-        float inwards = forwards == (turn >= 0.0) ? 1.0 : -1.0;
+        float inwards = forwards == (signed_area >= 0.0) ? 1.0 : -1.0;
         vec4 sides = inwards * vec4(side_of(low, high, vec2(0.0, 0.0)), side_of(low, high, vec2(1.0, 0.0)),
             side_of(low, high, vec2(0.0, 1.0)), side_of(low, high, vec2(1.0, 1.0)));
         if (max(max(sides.x, sides.y), max(sides.z, sides.w)) < 0.0) {
@@ -172,19 +174,21 @@ void main() {
     range = max(range, vec2(frame.hither_m));
     float height = dot(facing, p0 - eye);
 
-    // The piece inside the pixel: its corners are those of the pixel that are inside, and the ends of the edges' parts in it.
+    // The piece inside the pixel: its corners are those of the pixel that are inside, and the ends of the edges'
+    // segments in it.
     float near = 1.0e30;
     float far = 0.0;
-    vec2 middle = vec2(0.0);
+    vec2 center = vec2(0.0);
     float corner_count = 0.0;
     for (uint i = 0u; i < 4u; i++) {
-        float inside = i < 2u ? (i == 0u ? corners_inside.x : corners_inside.y) : (i == 2u ? corners_inside.z : corners_inside.w);
+        float inside = i < 2u ? (i == 0u ? corners_inside.x : corners_inside.y)
+            : (i == 2u ? corners_inside.z : corners_inside.w);
         if (inside >= 0.0) {
-            vec2 place = vec2(float(i & 1u), float(i >> 1u));
-            float depth = depth_at(origin + place, facing, height, range);
+            vec2 position = vec2(float(i & 1u), float(i >> 1u));
+            float depth = depth_at(origin + position, facing, height, range);
             near = min(near, depth);
             far = max(far, depth);
-            middle += place;
+            center += position;
             corner_count += 1.0;
         }
     }
@@ -195,36 +199,36 @@ void main() {
             vec2 a = corner_of(i) - origin;
             vec2 b = corner_of(i + 1u == count ? 0u : i + 1u) - origin;
             area += area_under(a, b);
-            vec2 part = part_inside(a, b);
-            if (part.x <= part.y) {
+            vec2 segment = segment_inside(a, b);
+            if (segment.x <= segment.y) {
                 for (uint end = 0u; end < 2u; end++) {
-                    vec2 place = clamp(mix(a, b, end == 0u ? part.x : part.y), vec2(0.0), vec2(1.0));
-                    float depth = depth_at(origin + place, facing, height, range);
+                    vec2 position = clamp(mix(a, b, end == 0u ? segment.x : segment.y), vec2(0.0), vec2(1.0));
+                    float depth = depth_at(origin + position, facing, height, range);
                     near = min(near, depth);
                     far = max(far, depth);
-                    middle += place;
+                    center += position;
                     corner_count += 1.0;
                 }
             }
         }
-        coverage = clamp(turn >= 0.0 ? area : -area, 0.0, 1.0);
+        coverage = clamp(signed_area >= 0.0 ? area : -area, 0.0, 1.0);
         if (coverage <= 0.0 || corner_count == 0.0) {
             return;
         }
     }
-    middle /= corner_count;
+    center /= corner_count;
     if (near > frame.yon_m) {
         return;
     }
 
-    // The point that is shaded, as shares of the corners.
-    vec2 at = origin + middle;
+    // The point that is shaded, and its barycentric weights.
+    vec2 at = origin + center;
     vec3 point = eye + ray_direction(at) * depth_at(at, facing, height, range);
     float twice_area = dot(facing, facing);
-    float share_1 = clamp(dot(cross(point - p0, p2 - p0), facing) / max(twice_area, 1.0e-30), 0.0, 1.0);
-    float share_2 = clamp(dot(cross(p1 - p0, point - p0), facing) / max(twice_area, 1.0e-30), 0.0, 1.0 - share_1);
-    vec3 normal = vertices[corner.x].normal * (1.0 - share_1 - share_2) + vertices[corner.y].normal * share_1
-        + vertices[corner.z].normal * share_2;
+    float weight_1 = clamp(dot(cross(point - p0, p2 - p0), facing) / max(twice_area, 1.0e-30), 0.0, 1.0);
+    float weight_2 = clamp(dot(cross(p1 - p0, point - p0), facing) / max(twice_area, 1.0e-30), 0.0, 1.0 - weight_1);
+    vec3 normal = vertices[corner.x].normal * (1.0 - weight_1 - weight_2) + vertices[corner.y].normal * weight_1
+        + vertices[corner.z].normal * weight_2;
     if (dot(normal, normal) < 1.0e-12) {
         normal = facing;
     }
@@ -244,7 +248,7 @@ void main() {
     if (mask == 0u) {
         // Never opaque: it does not cover the sub-pixel whole, so that no tracing may end at it.
         opacity *= min(coverage * 32.0, 0.99);
-        uvec2 nearest = min(uvec2(middle * vec2(4.0, 8.0)), uvec2(3u, 7u));
+        uvec2 nearest = min(uvec2(center * vec2(4.0, 8.0)), uvec2(3u, 7u));
         mask = 1u << (nearest.y * 4u + nearest.x);
     }
 

@@ -1,6 +1,7 @@
 #version 450
 
-// Section "Combining A-buffer and volume rendering techniques": conservative footprints of the triangles, for exact coverage.
+// Section "Combining A-buffer and volume rendering techniques": conservative footprints of the triangles, for exact
+// coverage.
 
 #include "gas/footprint.glsl"
 

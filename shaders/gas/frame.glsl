@@ -1,5 +1,5 @@
-// What every pass knows of one frame. Depth is measured along the view direction, in metres; a ray's direction has depth 1, so
-// that eye + depth * ray is the point.
+// What every pass knows of one frame. Depth is measured along the view direction, in metres; a ray's direction has
+// depth 1, so that eye + depth * ray is the point.
 
 layout(set = 0, binding = 0, std140) uniform Frame {
     vec3 eye; // m

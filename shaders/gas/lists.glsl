@@ -72,8 +72,8 @@ vec3 unpack_normal(uint packed_normal) {
     return normalize(vec3(xy, z));
 }
 
-// Carpenter's estimate where the depth ranges of neighbouring fragments of two objects overlap: the fraction of the front one's area
-// in which it is behind the other. 0 without an overlap.
+// Carpenter's estimate where the depth ranges of neighbouring fragments of two objects overlap: the fraction of the
+// front one's area in which it is behind the other. 0 without an overlap.
 float fraction_behind(Link front, Link back) {
     float thickness = (front.far_m - front.near_m) + (back.far_m - back.near_m);
     if (back.near_m >= front.far_m || thickness <= 0.0) {

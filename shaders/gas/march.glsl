@@ -1,15 +1,16 @@
-// Section "Volume rendering". The viewer's ray goes through the volumes of a pixel up to the depth that `sort` found, cut at every
-// fragment and at every entry and exit of a volume (figure 1). Each section is marched in increments of the step, the last one scaled,
-// with a sample at a random place in each (Monte Carlo), and becomes a fragment with a full mask in its place of the pixel's list.
+// Section "Volume rendering". The viewer's ray goes through the volumes of a pixel up to the depth that `sort` found,
+// cut at every fragment and at every entry and exit of a volume (figure 1). Each section is marched in increments of
+// the step, the last one scaled, with a sample at a random point of each (Monte Carlo), and becomes a fragment with a
+// full mask at its depth in the pixel's list.
 //
-// - An increment adds T_before albedo (1 - exp(-tau rho dt)) sum(I_i phase), premultiplied. The text's sum adds I rho dt: tau is
-//   missing there, and this is its exact integral for constant density.
+// - An increment adds T_before albedo (1 - exp(-tau rho dt)) sum(I_i phase), premultiplied. The text's sum adds I rho
+//   dt: tau is missing there, and this is its exact integral for constant density.
 // - Volumes that overlap are marched once, with their extinctions and emissions added.
-// - The text's loops shade inside `if self_shadowing`, their indentation is lost: gas is shaded with and without shadows, once, after
-//   all lights. Phase functions integrate to 1, and light is in units in which a white surface that faces an irradiance of 1
-//   shows 1, not 1 / pi: hence the phase's factor of pi.
-// - Solid (hypertexture) volumes: opacity is 1 - (1 - density)^(c step); the normal is from the density at the previous point, at this
-//   one, and in two directions orthogonal to the ray.
+// - The text's loops shade inside `if self_shadowing`, their indentation is lost: gas is shaded with and without
+//   shadows, once, after all lights. Phase functions integrate to 1, and light is in units in which a white surface
+//   that faces an irradiance of 1 shows 1, not 1 / pi: hence the phase's factor of pi.
+// - Solid (hypertexture) volumes: opacity is 1 - (1 - density)^(c step); the normal is from the density at the previous
+//   point, at this one, and in two directions orthogonal to the ray.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -32,12 +33,13 @@ layout(set = 0, binding = 13, std430) buffer Sections {
 const float PI = 3.14159265;
 const float SOLID_OPACITY = 0.99; // of which no more is marched
 
-float random(uint pixel, uint number) {
-    uint h = scramble(pixel * 0x9e3779b9u ^ scramble(number ^ scramble(frame.noise_seed + uint(frame.number))));
+float random(uint pixel_index, uint number) {
+    uint h = scramble(pixel_index * 0x9e3779b9u ^ scramble(number ^ scramble(frame.noise_seed + uint(frame.number))));
     return float(h >> 8u) / 16777216.0;
 }
 
-// Henyey and Greenstein; the angle is between the light's way and the way to the eye, so that g > 0 scatters forwards.
+// Henyey and Greenstein; the angle is between the light's direction and that to the eye, so that g > 0 scatters
+// forwards.
 float scattered(float g, float cosine) {
     float under = max(1.0 + g * g - 2.0 * g * cosine, 1.0e-6);
     return (1.0 - g * g) / (4.0 * PI * under * sqrt(under));
@@ -58,7 +60,7 @@ struct Gas {
 };
 
 // One section of a pixel; the samples before it are counted so that every increment has its own random number.
-Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
+Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
     float scale = length(ray);
     vec3 direction = ray / scale;
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -71,7 +73,7 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
     bool has_solid = false;
     for (uint v = 0u; v < frame.volume_count; v++) {
         previous[v] = 0.0;
-        is_in[v] = spans[v].x <= middle && middle <= spans[v].y;
+        is_in[v] = segments[v].x <= middle && middle <= segments[v].y;
         if (is_in[v]) {
             step_m = min(step_m, volumes[v].step_m);
             has_solid = has_solid || volumes[v].is_solid != 0u;
@@ -89,7 +91,7 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
     float from = 0.0;
     while (from < length_m) {
         float increment = min(step_m, length_m - from);
-        float at_m = is_entry ? 0.0 : from + increment * random(pixel, first_number + increments);
+        float at_m = is_entry ? 0.0 : from + increment * random(pixel_index, first_number + increments);
         vec3 point = entry + direction * at_m;
         float densities[MAX_VOLUMES];
         float asides[MAX_VOLUMES];
@@ -127,7 +129,7 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
                 vec3 light = irradiance(l, to_light.distance_m) * exp(-depth);
                 for (uint v = 0u; v < frame.volume_count; v++) {
                     if (densities[v] > 0.0) {
-                        float share = PI * phase(v, dot(to_light.direction, direction));
+                        float response = PI * phase(v, dot(to_light.direction, direction));
                         if (volumes[v].is_solid != 0u) {
                             float apart = 0.25 * volumes[v].step_m;
                             float along = (densities[v] - previous[v]) / max(at_m - previous_m, 1.0e-3 * step_m);
@@ -135,9 +137,9 @@ Gas march(uint pixel, vec3 ray, vec2 spans[MAX_VOLUMES], vec2 extent, float befo
                             float above = (aboves[v] - densities[v]) / apart;
                             vec3 rise = direction * along + side * aside + up * above;
                             vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -direction;
-                            share = max(dot(normal, to_light.direction), 0.0);
+                            response = max(dot(normal, to_light.direction), 0.0);
                         }
-                        emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * light * share;
+                        emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * light * response;
                     }
                 }
             }
@@ -176,24 +178,24 @@ void set_next(uint list, uint node, uint next) {
 }
 
 void main() {
-    uvec2 place = pixel_of(gl_GlobalInvocationID.xy);
-    if (!is_in_band(place)) {
+    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(pixel)) {
         return;
     }
-    uint pixel = place.y * frame.size.x + place.x;
-    uint list = list_of(place);
-    Pixel mine = pixels[list];
-    if (mine.section_count == 0u) {
+    uint pixel_index = pixel.y * frame.size.x + pixel.x;
+    uint list = list_of(pixel);
+    Pixel reserved = pixels[list];
+    if (reserved.section_count == 0u) {
         return;
     }
-    vec3 ray = ray_direction(vec2(place) + 0.5);
-    float end = mine.end_m;
-    vec2 spans[MAX_VOLUMES];
+    vec3 ray = ray_direction(vec2(pixel) + 0.5);
+    float end = reserved.end_m;
+    vec2 segments[MAX_VOLUMES];
     float depth = 1.0e30;
     for (uint v = 0u; v < frame.volume_count; v++) {
-        spans[v] = meet(volume_span(v, frame.eye, ray), vec2(frame.hither_m, end));
-        if (spans[v].x < spans[v].y) {
-            depth = min(depth, spans[v].x);
+        segments[v] = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
+        if (segments[v].x < segments[v].y) {
+            depth = min(depth, segments[v].x);
         }
     }
     uint previous = NONE; // fragment or section, of the list's start
@@ -202,7 +204,7 @@ void main() {
     uint evaluations = 0u;
     uint number = 0u;
     float transparency = 1.0;
-    while (depth < end && used < mine.section_count) {
+    while (depth < end && used < reserved.section_count) {
         float next = end;
         while (fragment != NONE) {
             Link link = links[fragment];
@@ -217,13 +219,13 @@ void main() {
         bool has_gas = false;
         bool has_more = false;
         for (uint v = 0u; v < frame.volume_count; v++) {
-            if (spans[v].x < spans[v].y && spans[v].y > depth) {
+            if (segments[v].x < segments[v].y && segments[v].y > depth) {
                 has_more = true;
-                if (spans[v].x > depth) {
-                    next = min(next, spans[v].x);
+                if (segments[v].x > depth) {
+                    next = min(next, segments[v].x);
                 } else {
                     has_gas = true;
-                    next = min(next, spans[v].y);
+                    next = min(next, segments[v].y);
                 }
             }
         }
@@ -231,11 +233,11 @@ void main() {
             break;
         }
         if (has_gas) {
-            Gas gas = march(pixel, ray, spans, vec2(depth, next), transparency, number);
+            Gas gas = march(pixel_index, ray, segments, vec2(depth, next), transparency, number);
             number += gas.increments;
             evaluations += gas.evaluations;
             transparency *= gas.transparency;
-            uint slot = mine.first_section + used;
+            uint slot = reserved.first_section + used;
             sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
             set_next(list, previous, slot | SECTION);
             previous = slot | SECTION;

@@ -1,9 +1,10 @@
-// Noise and turbulence of "An Image Synthesizer" (reference 16, 1985): a pseudo-random gradient at every lattice point, blended by
-// 3 t^2 - 2 t^3; the value at the lattice points is 0, which leaves no frequencies below the lattice's. The gradients come from an integer
-// hash of the point, so that host and device agree to the bit on them.
+// Noise and turbulence of "An Image Synthesizer" (reference 16, 1985): a pseudo-random gradient at every lattice point,
+// blended by 3 t^2 - 2 t^3; the value at the lattice points is 0, which leaves no frequencies below the lattice's. The
+// gradients come from an integer hash of the point, so that host and device agree to the bit on them.
 
 vec3 lattice_gradient(ivec3 cell) {
-    uint h = scramble(uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ uint(cell.z) * 0xcb1ab31fu ^ frame.noise_seed);
+    uint mixed = uint(cell.x) * 0x8da6b343u ^ uint(cell.y) * 0xd8163841u ^ uint(cell.z) * 0xcb1ab31fu;
+    uint h = scramble(mixed ^ frame.noise_seed);
     return vec3(float(h & 1023u), float((h >> 10u) & 1023u), float((h >> 20u) & 1023u)) / 511.5 - 1.0;
 }
 
@@ -23,8 +24,8 @@ float noise(vec3 p) {
     return mix(mix(x00, x10, s.y), mix(x01, x11, s.y), s.z);
 }
 
-// Noise, or turbulence: octaves while the scale exceeds pixel_size, which is a constant of the scene, so that the gas is the same from
-// everywhere.
+// Noise, or turbulence: octaves while the scale exceeds pixel_size, which is a constant of the scene, so that the gas
+// is the same from everywhere.
 float fractal(vec3 p, bool is_noise) {
     float sum = 0.0;
     float frequency = 1.0;

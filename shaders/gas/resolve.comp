@@ -1,10 +1,12 @@
 #version 450
 
-// Section "Combining A-buffer and volume rendering techniques": surface fragments and the gas's sections, sorted into one list, are blended
-// front to back by their masks, as compositing 32 sub-pixels would. Only what is visible is shaded. Where the depth ranges of
-// neighbouring fragments of two objects overlap they intersect: by Carpenter's estimate a share of the front one's area shows the other.
+// Section "Combining A-buffer and volume rendering techniques": surface fragments and the gas's sections, sorted into
+// one list, are blended front to back by their masks, as compositing 32 sub-pixels would. Only what is visible is
+// shaded. Where the depth ranges of neighbouring fragments of two objects overlap they intersect: by Carpenter's
+// estimate a fraction of the front one's area shows the other.
 //
-// A compute stage: as a fragment stage it lost groups of sub-pixels on lavapipe and took many times as long; why is not known.
+// A compute stage: as a fragment stage it lost groups of sub-pixels on lavapipe and took many times as long; why is not
+// known.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -63,31 +65,32 @@ vec3 shaded(uint f, vec3 ray) {
 }
 
 void main() {
-    uvec2 place = pixel_of(gl_GlobalInvocationID.xy);
-    if (!is_in_band(place)) {
+    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(pixel)) {
         return;
     }
-    vec3 ray = ray_direction(vec2(place) + 0.5);
-    uint head = heads[list_of(place)];
+    vec3 ray = ray_direction(vec2(pixel) + 0.5);
+    uint head = heads[list_of(pixel)];
     vec3 color = vec3(0.0);
     float opacity = 0.0;
-    // Sub-pixels that all masks treat alike are composited together: the group of the lowest that is left shrinks to those on
-    // its side of every mask that it meets. One loop goes through the lists of all groups, one after the other.
+    // Sub-pixels that all masks treat alike are composited together: the group of the lowest that is left shrinks to
+    // those on its side of every mask that it meets. One loop goes through the lists of all groups, one after the
+    // other.
     uint remaining = FULL;
     uint group = FULL;
     vec3 group_color = vec3(0.0);
-    float left = 1.0;
+    float transmittance = 1.0;
     uint node = head;
     while (remaining != 0u) {
         uint bit = remaining & (~remaining + 1u);
-        // Gas, and fragments beside the group: a loop of its own, since a processor that does many pixels in step would shade
-        // whenever one of them passes through gas.
+        // Gas, and fragments beside the group: a loop of its own, since a processor that does many pixels in step would
+        // shade whenever one of them passes through gas.
         Link link = Link(NONE, 0u, 0.0, 0.0);
-        while (node != NONE && left > 0.0) {
+        while (node != NONE && transmittance > 0.0) {
             if (is_section(node)) {
                 Section gas = sections[node & ~SECTION];
-                group_color += gas.color * left;
-                left *= gas.transparency;
+                group_color += gas.color * transmittance;
+                transmittance *= gas.transparency;
                 node = gas.next;
             } else {
                 link = links[node];
@@ -98,42 +101,42 @@ void main() {
                 node = link.next;
             }
         }
-        if (node != NONE && left > 0.0) {
+        if (node != NONE && transmittance > 0.0) {
             group &= link.mask;
-            // The share of this fragment that shows its neighbour instead.
-            float share = 0.0;
+            // The fraction of this fragment that shows its neighbour instead.
+            float fraction = 0.0;
             uint behind = fragment_at(link.next);
             if (behind != NONE) {
                 Link next = links[behind];
                 float shown = fraction_behind(link, next) * opacity_of(colors[behind]);
                 if (shown > 0.0 && surfaces[behind].object != surfaces[node].object) {
                     bool is_there = (next.mask & bit) != 0u;
-                    share = is_there ? shown : 0.0;
+                    fraction = is_there ? shown : 0.0;
                     group &= is_there ? next.mask : ~next.mask;
                 }
             }
-            float taken = left * opacity_of(colors[node]);
-            uint count = share > 0.0 ? 2u : 1u;
+            float taken = transmittance * opacity_of(colors[node]);
+            uint count = fraction > 0.0 ? 2u : 1u;
             for (uint i = 0u;; i++) {
-                float part = i == 0u ? 1.0 - share : share;
-                group_color += shaded(i == 0u ? node : behind, ray) * (taken * part);
+                float weight = i == 0u ? 1.0 - fraction : fraction;
+                group_color += shaded(i == 0u ? node : behind, ray) * (taken * weight);
                 if (i + 1u >= count) {
                     break;
                 }
             }
-            left *= 1.0 - opacity_of(colors[node]);
+            transmittance *= 1.0 - opacity_of(colors[node]);
             node = link.next;
         }
-        if (node == NONE || left <= 0.0) {
+        if (node == NONE || transmittance <= 0.0) {
             float size = float(bitCount(group)) / 32.0;
-            color += (group_color + frame.background * left) * size;
-            opacity += (1.0 - left) * size;
+            color += (group_color + frame.background * transmittance) * size;
+            opacity += (1.0 - transmittance) * size;
             remaining &= ~group;
             group = remaining;
             group_color = vec3(0.0);
-            left = 1.0;
+            transmittance = 1.0;
             node = head;
         }
     }
-    imageStore(radiance, ivec2(place), vec4(color, opacity));
+    imageStore(radiance, ivec2(pixel), vec4(color, opacity));
 }

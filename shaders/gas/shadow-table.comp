@@ -1,13 +1,14 @@
 #version 450
 
-// Section "Calculation of the shadow table", figure 2: the sum of density times step between an entry and the light. The ray towards
-// the light pierces a face of the cube of the entry's neighbours; there the sums of the four entries round the point, and their densities
-// times the distance to it, are interpolated. They must be finished before: the text sorts the entries by their distance from the
-// light, which reads unfinished ones where a farther entry lies on a nearer ray. Here a dispatch does all entries of one
-// Manhattan distance, counted in entries from the cell that holds the light: the four are nearer by it always. The eight
-// entries of that cell see the light before the face and are integrated directly. What lies outside the table has no density.
-// The text lists six of the cube's eight corners, and stores sums of densities that it multiplies by one step later; ours are times their
-// own steps, which differ with the ray.
+// Section "Calculation of the shadow table", figure 2: the sum of density times step between an entry and the light.
+// The ray towards the light pierces a face of the cube of the entry's neighbours; there the sums of the four entries
+// round the point, and their densities times the distance to it, are interpolated. They must be finished before: the
+// text sorts the entries by their distance from the light, which reads unfinished ones where a farther entry lies on a
+// nearer ray. Here a dispatch does all entries of one Manhattan distance, counted in entries from the cell that holds
+// the light: the four are nearer by it always. The eight entries of that cell see the light before the face and are
+// integrated directly. What lies outside the table has no density. The text lists six of the cube's eight corners, and
+// stores sums of densities that it multiplies by one step later; ours are times their own steps, which differ with the
+// ray.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -48,50 +49,50 @@ float sum_through(ivec3 entry, float step_m) {
 
 float sum_to_light(ivec3 entry) {
     int n = int(frame.table_size);
-    vec3 way = wave.is_point == 0u ? wave.source : wave.source - vec3(entry);
-    // At a face and on its way out: nothing lies between the entry and the light.
+    vec3 to_light = wave.is_point == 0u ? wave.source : wave.source - vec3(entry);
+    // At a face and leaving the table: nothing lies between the entry and the light.
     for (int axis = 0; axis < 3; axis++) {
-        if ((entry[axis] == 0 && way[axis] < 0.0) || (entry[axis] == n - 1 && way[axis] > 0.0)) {
+        if ((entry[axis] == 0 && to_light[axis] < 0.0) || (entry[axis] == n - 1 && to_light[axis] > 0.0)) {
             return 0.0;
         }
     }
-    vec3 size = abs(way);
+    vec3 size = abs(to_light);
     float largest = max(size.x, max(size.y, size.z));
-    float way_m = length(way * wave.spacing_m);
+    float distance_m = length(to_light * wave.spacing_m);
     if (wave.is_point != 0u && largest <= 1.0) {
-        return density_tables[wave.first_density + index_of(entry)] * way_m;
+        return density_tables[wave.first_density + index_of(entry)] * distance_m;
     }
     if (largest <= 0.0) {
         return 0.0;
     }
-    // The way to the face, a whole entry along its largest axis; b and c run along the face.
-    vec3 to_face = way / largest;
-    float step_m = way_m / largest;
+    // The offset to the face, a whole entry along its largest axis; b and c run along the face.
+    vec3 to_face = to_light / largest;
+    float step_m = distance_m / largest;
     ivec3 a = size.x == largest ? ivec3(1, 0, 0) : (size.y == largest ? ivec3(0, 1, 0) : ivec3(0, 0, 1));
     ivec3 b = ivec3(a.z, a.x, a.y);
     ivec3 c = ivec3(a.y, a.z, a.x);
-    ivec3 turn = ivec3(way.x >= 0.0 ? 1 : -1, way.y >= 0.0 ? 1 : -1, way.z >= 0.0 ? 1 : -1);
+    ivec3 signs = ivec3(to_light.x >= 0.0 ? 1 : -1, to_light.y >= 0.0 ? 1 : -1, to_light.z >= 0.0 ? 1 : -1);
     ivec3 last = ivec3(n - 1);
-    ivec3 base = entry + a * turn;
-    float share_b = abs(dot(to_face, vec3(b)));
-    float share_c = abs(dot(to_face, vec3(c)));
-    // Beyond a face only with share 0: clamped, not read outside.
-    ivec3 base_b = clamp(base + b * turn, ivec3(0), last);
-    ivec3 base_c = clamp(base + c * turn, ivec3(0), last);
-    ivec3 base_bc = clamp(base + (b + c) * turn, ivec3(0), last);
+    ivec3 base = entry + a * signs;
+    float fraction_b = abs(dot(to_face, vec3(b)));
+    float fraction_c = abs(dot(to_face, vec3(c)));
+    // Beyond a face only with fraction 0: clamped, not read outside.
+    ivec3 base_b = clamp(base + b * signs, ivec3(0), last);
+    ivec3 base_c = clamp(base + c * signs, ivec3(0), last);
+    ivec3 base_bc = clamp(base + (b + c) * signs, ivec3(0), last);
     // What is not needed is not read: it may be unfinished.
     float s0 = sum_through(base, step_m);
-    float sb = share_b > 0.0 ? sum_through(base_b, step_m) : s0;
-    float sc = share_c > 0.0 ? sum_through(base_c, step_m) : s0;
+    float sb = fraction_b > 0.0 ? sum_through(base_b, step_m) : s0;
+    float sc = fraction_c > 0.0 ? sum_through(base_c, step_m) : s0;
     float sbc = s0;
-    if (share_b > 0.0 && share_c > 0.0) {
+    if (fraction_b > 0.0 && fraction_c > 0.0) {
         sbc = sum_through(base_bc, step_m);
-    } else if (share_b > 0.0) {
+    } else if (fraction_b > 0.0) {
         sbc = sb;
-    } else if (share_c > 0.0) {
+    } else if (fraction_c > 0.0) {
         sbc = sc;
     }
-    return mix(mix(s0, sb, share_b), mix(sc, sbc, share_b), share_c);
+    return mix(mix(s0, sb, fraction_b), mix(sc, sbc, fraction_b), fraction_c);
 }
 
 void write_entry(ivec3 entry) {

@@ -1,5 +1,5 @@
-// Section "Calculation of the shadow table": the eight entries round the point, interpolated. Outside the volume's box the table is
-// read where the light's ray enters it.
+// Section "Calculation of the shadow table": the eight entries round the point, interpolated. Outside the volume's box
+// the table is read where the light's ray enters it.
 
 layout(set = 0, binding = 16, std430) readonly buffer ShadowTables {
     float shadow_tables[]; // a table a volume and light
@@ -8,9 +8,9 @@ layout(set = 0, binding = 16, std430) readonly buffer ShadowTables {
 float table_value(uint v, uint l, vec3 point) {
     uint n = frame.table_size;
     vec3 q = (point - volumes[v].center) / volumes[v].half_extent_m * 0.5 + 0.5;
-    vec3 place = clamp(q, 0.0, 1.0) * float(n - 1u);
-    uvec3 low = min(uvec3(place), uvec3(n - 2u));
-    vec3 t = place - vec3(low);
+    vec3 position = clamp(q, 0.0, 1.0) * float(n - 1u);
+    uvec3 low = min(uvec3(position), uvec3(n - 2u));
+    vec3 t = position - vec3(low);
     uint first = (v * frame.light_count + l) * n * n * n + (low.z * n + low.y) * n + low.x;
     uint up = first + n * n;
     float s00 = mix(shadow_tables[first], shadow_tables[first + 1u], t.x);
@@ -24,9 +24,9 @@ float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
     for (uint v = 0u; v < frame.volume_count; v++) {
-        vec2 span = meet(bounds_span(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
-        if (span.x <= span.y) {
-            sum += volumes[v].tau_per_m * table_value(v, l, point + to_light.direction * span.x);
+        vec2 segment = intersect(bounds_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
+        if (segment.x <= segment.y) {
+            sum += volumes[v].tau_per_m * table_value(v, l, point + to_light.direction * segment.x);
         }
     }
     return sum;

@@ -1,12 +1,13 @@
-// Section "Shadowing of the gas": the ray towards the light is traced through every volume, in increments of the volume's step, the last
-// one scaled. Sampled in their middles: the jitter of the viewer's ray makes one value noisy, here it would make all of them so.
+// Section "Shadowing of the gas": the ray towards the light is traced through every volume, in increments of the
+// volume's step, the last one scaled. Sampled in their middles: the jitter of the viewer's ray makes one value noisy,
+// here it would make all of them so.
 
 float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
     for (uint v = 0u; v < frame.volume_count; v++) {
-        vec2 span = meet(volume_span(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
-        float length_m = span.y - span.x;
+        vec2 segment = intersect(volume_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
+        float length_m = segment.y - segment.x;
         if (length_m <= 0.0) {
             continue;
         }
@@ -14,7 +15,8 @@ float optical_depth_to(uint l, vec3 point) {
         float in_volume = 0.0;
         for (float from = 0.0; from < length_m; from += step_m) {
             float increment = min(step_m, length_m - from);
-            in_volume += volume_density(v, point + to_light.direction * (span.x + from + 0.5 * increment)) * increment;
+            vec3 center = point + to_light.direction * (segment.x + from + 0.5 * increment);
+            in_volume += volume_density(v, center) * increment;
         }
         sum += volumes[v].tau_per_m * in_volume;
     }

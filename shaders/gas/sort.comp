@@ -1,8 +1,9 @@
 #version 450
 
-// Each pixel's list by mean depth ("average z value"), then object, then triangle: a merge sort of the links, for any length. The
-// extent of the tracing is found here as well: it ends at the depth where the masks of the opaque fragments cover the pixel. The
-// sections that `volume` will make are counted and their slots reserved, so that `volume` needs no atomics.
+// Each pixel's list by mean depth ("average z value"), then object, then triangle: a merge sort of the links, for any
+// length. The extent of the tracing is found here as well: it ends at the depth where the masks of the opaque fragments
+// cover the pixel. The sections that `volume` will make are counted and their slots reserved, so that `volume` needs no
+// atomics.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -46,7 +47,8 @@ bool stands_before(uint a, uint b) {
     }
     Surface surface_a = surfaces[a];
     Surface surface_b = surfaces[b];
-    return surface_a.object != surface_b.object ? surface_a.object < surface_b.object : surface_a.triangle < surface_b.triangle;
+    return surface_a.object != surface_b.object ? surface_a.object < surface_b.object
+        : surface_a.triangle < surface_b.triangle;
 }
 
 // Merges runs of 1, 2, 4, ... links until one run is left.
@@ -124,9 +126,9 @@ void main() {
     vec2 extent = vec2(1.0e30, 0.0);
     uint cuts = 0u;
     for (uint v = 0u; v < frame.volume_count; v++) {
-        vec2 span = meet(volume_span(v, frame.eye, ray), vec2(frame.hither_m, end));
-        if (span.x < span.y) {
-            extent = vec2(min(extent.x, span.x), max(extent.y, span.y));
+        vec2 segment = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
+        if (segment.x < segment.y) {
+            extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));
             cuts += 2u;
         }
     }

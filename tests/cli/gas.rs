@@ -135,7 +135,7 @@ fn the_volume_is_seen_and_another_seed_is_another_gas() {
     assert!(read("a.png") != read("d.png"));
 }
 
-/// What changes how the picture is made, and not what it shows; and what changes the gas.
+/// Bands and vertex pulling change how the picture is made, and not what it shows; densities change the gas.
 #[test]
 fn bands_and_pulled_vertices_show_the_same_and_other_densities_do_not() {
     let out = folder();
@@ -227,7 +227,7 @@ fn every_number_of_the_gases_is_seen() {
     }
 }
 
-/// How the gas and its shadows are sampled.
+/// The sampling of the gas and of its shadows.
 #[test]
 fn steps_table_and_threshold_are_seen() {
     let out = folder();

@@ -43,8 +43,8 @@ fn largest_differences(
         .collect()
 }
 
-/// Noise (one octave) and turbulence at points up to 64 texture units from the origin, exact in single precision, within 1e-5: the
-/// gradients of some hundred thousand lattice points, whose hash another one would show at once.
+/// Noise (one octave) and turbulence at points up to 64 texture units from the origin, exact in single precision,
+/// within 1e-5: the gradients of some hundred thousand lattice points, whose hash another one would show at once.
 #[test]
 fn noise_and_turbulence_are_the_oracles() {
     gpu_test(|device| {

@@ -127,7 +127,8 @@ fn slivers_take_the_nearest_sub_pixel_at_the_opacity_of_their_coverage() {
     });
 }
 
-/// Slivers in all directions: where a triangle's piece misses the middles of all sub-pixels, one that it goes through stands for it.
+/// Slivers in all directions: where a triangle's piece misses the middles of all sub-pixels, one that it goes through
+/// stands for it.
 #[test]
 fn empty_masks_take_a_sub_pixel_at_the_opacity_of_their_coverage() {
     gpu_test(|device| {

@@ -111,7 +111,7 @@ fn gases_that_overlap_are_marched_at_once() {
     });
 }
 
-/// Where the gas is thinner than a threshold its shadows are left out, and nowhere else.
+/// Shadows are left out in gas that is thinner than a threshold, and nowhere else.
 #[test]
 fn gas_thinner_than_the_threshold_is_not_shadowed() {
     gpu_test(|device| {
@@ -151,7 +151,8 @@ fn random_samples_estimate_the_integral() {
     });
 }
 
-/// A solid's normals are its density's gradient: in a ball whose surface the turbulence does not move, and in one that it does.
+/// A solid's normals are its density's gradient: in a ball whose surface the turbulence does not move, and in one that
+/// it does.
 #[test]
 fn solids_are_shaded_by_their_gradient() {
     gpu_test(|device| {

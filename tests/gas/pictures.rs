@@ -35,7 +35,7 @@ fn the_pictures_are_the_golden_ones() {
     });
 }
 
-/// Where the gas is denser than 1 % opacity, a table of 64 entries a side is within 2 L*u*v* of tracing on average, and within 6
+/// In gas denser than 1 % opacity, a table of 64 entries a side is within 2 L*u*v* of tracing on average, and within 6
 /// at the 99th percentile.
 #[test]
 fn the_table_s_picture_is_near_the_traced_one() {

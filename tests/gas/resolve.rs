@@ -95,7 +95,8 @@ fn layers(list: &[Fragment], has_gas: bool, scale: f64) -> Vec<Layer> {
     layers
 }
 
-/// Partly covered pixels, opaque ones among them, transparent and intersecting surfaces, with gas between them and without.
+/// Partly covered pixels, opaque ones among them, transparent and intersecting surfaces, with gas between them and
+/// without.
 #[test]
 fn a_pixel_is_its_32_sub_pixels() {
     gpu_test(|device| {

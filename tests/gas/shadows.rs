@@ -50,7 +50,7 @@ fn dark_gases() -> Vec<Volume> {
 /// A place of the floor in the picture.
 struct Place {
     point: DVec3,
-    /// What is seen there, over what would be seen without the gas.
+    /// The radiance there, over that without the gas.
     lit: DVec3,
     /// Of each light, what it would give without the gas, over all lights' together.
     shares: Vec<DVec3>,
@@ -156,7 +156,8 @@ fn the_table_shadows_surfaces_as_one_in_double_precision() {
     });
 }
 
-/// The mean difference on the floor of what one light's table lets through from what rays let through, both in double precision.
+/// The mean difference on the floor of what one light's table lets through from what rays let through, both in double
+/// precision.
 fn error_of_the_method(gas: Volume, light: Light, table_size: u32) -> f64 {
     let parameters = Parameters { table_size, ..floor_view(gas, vec![light]) };
     let (rays, tables) = (Rays::new(&parameters, FRAME), ShadowTables::new(&parameters, FRAME));
@@ -168,9 +169,9 @@ fn error_of_the_method(gas: Volume, light: Light, table_size: u32) -> f64 {
     spread(places.map(difference)).0
 }
 
-/// What is left between table and rays is the method's: each entry's sum is interpolated from four others', so that a shadow spreads
-/// on its way, the most from a light inside. Below 0.03 on average at 64 entries a side in gas of the usual density; in denser gas
-/// more, but the less the finer the table.
+/// The difference between table and rays is the method's: each entry's sum is interpolated from four others', so that a
+/// shadow spreads on its way, the most from a light inside. Below 0.03 on average at 64 entries a side in gas of the
+/// usual density; in denser gas more, but the less the finer the table.
 #[test]
 fn a_table_in_double_precision_is_near_rays() {
     for gas in gases().into_iter().skip(1) {

@@ -129,8 +129,8 @@ fn gas_goes_on_behind_what_covers_a_part_of_the_pixel() {
     });
 }
 
-/// The tracing begins at the farther of hither plane and entry, and ends at the nearer of yon plane and exit; the eye may stand in the
-/// gas.
+/// The tracing begins at the farther of hither plane and entry, and ends at the nearer of yon plane and exit; the eye
+/// may stand in the gas.
 #[test]
 fn gas_is_traced_between_the_hither_and_the_yon_plane() {
     gpu_test(|device| {

@@ -50,8 +50,8 @@ fn depths(column: u32, z_m: f64, slope: f64) -> [f64; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Of two panes that intersect the nearer on average is seen in the share (far_max - near_min) / (sum of both thicknesses)
-/// (Carpenter), as long as their depths overlap.
+/// Of two panes that intersect the nearer on average is seen in the share (far_max - near_min) / (sum of both
+/// thicknesses) (Carpenter), as long as their depths overlap.
 #[test]
 fn intersecting_surfaces_share_the_pixel_by_carpenters_estimate() {
     gpu_test(|device| {
@@ -136,7 +136,7 @@ fn surface_defined_gases_are_as_opaque_as_their_texture() {
     });
 }
 
-/// What the picture is, in bands of a few rows, is what it is at once, bit for bit.
+/// The picture in bands of a few rows is that of all rows at once, bit for bit.
 #[test]
 fn a_picture_in_bands_is_the_picture_at_once() {
     gpu_test(|device| {

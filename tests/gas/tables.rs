@@ -3,7 +3,7 @@
 use fumarole::papers::gas::model::{DensityFunction, SolidTexture, Volume};
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::density::Medium;
-use fumarole::papers::gas::reference::shadow_table::{place, shadow_table};
+use fumarole::papers::gas::reference::shadow_table::{entry_position, shadow_table};
 use fumarole::papers::gas::{Parameters, Variant};
 use fumarole::scene::Light;
 use glam::{DVec3, IVec3, Vec3};
@@ -19,8 +19,8 @@ fn parallel(x: f32, y: f32, z: f32) -> Light {
     Light::Parallel { direction: Vec3::new(x, y, z), intensity: Vec3::ONE }
 }
 
-/// At infinity (also along an axis and a diagonal), outside, in the middle (a node where the entries of a side are odd), on a
-/// face, inside.
+/// At infinity (also along an axis and a diagonal), outside, in the middle (a node where the entries of a side are
+/// odd), on a face, inside.
 fn lights() -> Vec<Light> {
     vec![
         parallel(-0.3, -1.0, -0.45),
@@ -72,9 +72,10 @@ fn the_devices_table_is_the_sequential_one() {
     });
 }
 
-/// The way out of the box is a linear function of the place wherever all rays leave by one face, so that the interpolation is
-/// exact: under a light along an axis everywhere, under an oblique one for all entries of which no entry that they follow from
-/// sees another face. Those are one up along the ray's largest axis, and at most one along each other.
+/// The way out of the box is a linear function of the place wherever all rays leave by one face, so that the
+/// interpolation is exact: under a light along an axis everywhere, under an oblique one for all entries of which no
+/// entry that they follow from sees another face. Those are one up along the ray's largest axis, and at most one along
+/// each other.
 #[test]
 fn a_constant_density_is_exact() {
     gpu_test(|device| {
@@ -102,7 +103,7 @@ fn a_constant_density_is_exact() {
 fn the_table_is_near_traced_rays() {
     gpu_test(|device| {
         // Of 64 entries a side.
-        let node = place(&turbulent(), 64, IVec3::new(20, 41, 33)).as_vec3();
+        let node = entry_position(&turbulent(), 64, IVec3::new(20, 41, 33)).as_vec3();
         let on_a_node = point(node.x, node.y, node.z);
         let lights = [lights(), vec![on_a_node]].concat();
         let cases = [(turbulent(), 0.03), (constant(), 0.01)];
@@ -114,7 +115,7 @@ fn the_table_is_near_traced_rays() {
                 let (mut sum, mut count) = (0.0, 0);
                 for i in (0..table.len()).step_by(1013) {
                     let i32s = i as i32;
-                    let from = place(&volume, 64, IVec3::new(i32s % 64, i32s / 64 % 64, i32s / 4096));
+                    let from = entry_position(&volume, 64, IVec3::new(i32s % 64, i32s / 64 % 64, i32s / 4096));
                     let to = end_of_ray(&volume, from, light);
                     let expected = (-medium.optical_depth(&volume, from, to, 200)).exp();
                     let found = (-f64::from(volume.tau_per_m) * f64::from(table[i])).exp();
@@ -129,7 +130,7 @@ fn the_table_is_near_traced_rays() {
     });
 }
 
-/// Where the ray from a point inside the box to the light leaves the box, or the light itself.
+/// The point at which the ray from a point inside the box to the light leaves the box, or the light itself.
 fn end_of_ray(volume: &Volume, from: DVec3, light: &Light) -> DVec3 {
     let (way, length) = match *light {
         Light::Parallel { direction, .. } => (-direction.as_dvec3().normalize(), f64::INFINITY),

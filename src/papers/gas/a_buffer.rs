@@ -70,11 +70,11 @@ impl ABuffer {
         })
     }
 
-    /// The most fragments and sections that any band of any frame has wanted; more than the capacity means a picture with
-    /// gaps.
+    /// The most fragments and sections that any band of any frame has wanted; more than the capacity means a picture
+    /// with gaps.
     ///
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn demand(&self, shaders: &ShaderLibrary) -> Result<Capacity, Error> {
         let counters = read::<CountersBlock>(shaders, &self.counters)?;
         let most = |of: fn(&CountersBlock) -> u32| counters.iter().map(of).max().unwrap_or(0);

@@ -40,7 +40,7 @@ impl Band {
     /// Dispatches a thread a pixel.
     ///
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn dispatch(self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
         frame.compute(pass, |dispatch| {
             dispatch.constants(&self.constants()).threads(self.width, self.end_row - self.first_row, 1);
@@ -50,7 +50,7 @@ impl Band {
     /// Dispatches a thread a pixel, in dispatches that take a short time each.
     ///
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn dispatch_in_parts(self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
         frame.compute(pass, |dispatch| {
             for (first_row, end_row) in ranges(self.first_row, self.end_row, DISPATCH_ROWS) {

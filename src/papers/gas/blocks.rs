@@ -1,4 +1,4 @@
-//! What the shaders read of the scene and of the frame, as bytes.
+//! The blocks that shaders read and write, as bytes.
 
 use glam::Vec3;
 
@@ -156,7 +156,7 @@ host_block! {
 }
 
 host_block! {
-    /// A pixel's slots for sections, and what `volume` counted.
+    /// A pixel's slots for sections, and the evaluations that `volume` counted.
     pub struct PixelBlock {
         first_section: u32,
         section_count: u32,
@@ -178,17 +178,17 @@ host_block! {
 /// Random numbers of the fog's front (OFFSET_SIZE).
 pub const OFFSET_SIZE: usize = 64;
 
-/// What a variant makes of the scene's volumes.
+/// The use that a variant makes of the scene's volumes.
 #[derive(Debug, Clone, Copy)]
-pub struct Gases {
+pub struct GasUse {
     pub volume_count: usize,
-    /// Whether `light-attenuation` runs.
-    pub are_shadowing: bool,
+    /// `light-attenuation` runs.
+    pub has_attenuations: bool,
 }
 
 impl FrameBlock {
-    /// Of scene frame `number`.
-    pub fn new(parameters: &Parameters, number: u32, gas: Gases, capacity: Capacity) -> Self {
+    /// The block of scene frame `number`.
+    pub fn new(parameters: &Parameters, number: u32, gas: GasUse, capacity: Capacity) -> Self {
         let camera = &parameters.camera;
         let view = camera.view();
         let [right, up, back] = [0, 1, 2].map(|i| view.row(i).truncate());
@@ -208,7 +208,7 @@ impl FrameBlock {
             to_row: (-up / pixel).to_array(),
             early_end: parameters.early_end,
             ambient: parameters.ambient.to_array(),
-            has_attenuations: gas.are_shadowing.into(),
+            has_attenuations: gas.has_attenuations.into(),
             background: parameters.background.to_array(),
             light_count: parameters.lights.len() as u32,
             size: [parameters.width, parameters.height],

@@ -9,7 +9,8 @@ const LINK_BYTES: u64 = size_of::<LinkBlock>() as u64;
 const SECTION_BYTES: u64 = size_of::<SectionBlock>() as u64;
 const PIXEL_BYTES: u64 = size_of::<PixelBlock>() as u64;
 
-/// The fraction of the largest memory heap that one buffer of the lists may take: there are six of them, and the picture.
+/// The fraction of the largest memory heap that one buffer of the lists may take: there are six of them, and the
+/// picture.
 const HEAP_DIVISOR: u64 = 16;
 
 /// Rows that are done at once (the paper does one), and the slots of their fragments and sections.
@@ -24,19 +25,21 @@ pub struct Capacity {
 #[derive(Debug, Clone, Copy)]
 pub struct BufferLimit {
     bytes: u64,
-    /// What a user changes where one row is too much: the parameter to lower, perhaps one to raise.
+    /// The parameter to lower where one row is too much, perhaps with one to raise.
     parameters: &'static str,
 }
 
 impl BufferLimit {
-    /// What the device binds and holds, or what the user allows.
+    /// The limit that the device has or the user sets, the lower one.
     pub fn new(device: &Device, parameters: &Parameters) -> Self {
         let physical = device.physical();
         let heaps = &physical.memory.memory_heaps[..physical.memory.memory_heap_count as usize];
         let heap_bytes = heaps.iter().map(|heap| heap.size).max().unwrap_or(0);
         let bytes = u64::from(physical.limits.max_storage_buffer_range).min(heap_bytes / HEAP_DIVISOR);
         match parameters.list_bytes {
-            Some(allowed) if allowed < bytes => BufferLimit { bytes: allowed, parameters: "size`; or raise `list-bytes" },
+            Some(allowed) if allowed < bytes => {
+                BufferLimit { bytes: allowed, parameters: "size`; or raise `list-bytes" }
+            }
             _ => BufferLimit { bytes, parameters: "size" },
         }
     }
@@ -63,8 +66,8 @@ impl Capacity {
         }
     }
 
-    /// The capacity for what the fullest band wanted; nothing where it was enough. An eighth more where it lacked, since the
-    /// frames to come may want a little more; fewer rows where no buffer holds so much.
+    /// The capacity for what the fullest band wanted; nothing where it was enough. An eighth more where it lacked,
+    /// since the frames to come may want a little more; fewer rows where no buffer holds so much.
     ///
     /// # Errors
     /// [`Error::Limit`] where one row of the picture wants more than a buffer holds.
@@ -120,17 +123,17 @@ mod tests {
     /// Lists grow as far as a buffer goes, then the bands shrink, down to one row and no further.
     #[test]
     fn lists_grow_and_bands_shrink() {
-        let most = BufferLimit { bytes: 16_000, parameters: "list-bytes" };
+        let limit = BufferLimit { bytes: 16_000, parameters: "list-bytes" };
         let capacity = Capacity { rows: 40, fragments: 100, sections: 50 };
-        assert_eq!(capacity.grown(capacity, most).unwrap(), None);
+        assert_eq!(capacity.grown(capacity, limit).unwrap(), None);
         let demand = Capacity { fragments: 160, ..capacity };
-        assert_eq!(capacity.grown(demand, most).unwrap(), Some(Capacity { fragments: 180, ..capacity }));
+        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { fragments: 180, ..capacity }));
         let demand = Capacity { fragments: 990, ..capacity };
-        assert_eq!(capacity.grown(demand, most).unwrap(), Some(Capacity { fragments: 1000, ..capacity }));
+        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { fragments: 1000, ..capacity }));
         let demand = Capacity { fragments: 3000, sections: 5000, ..capacity };
-        assert_eq!(capacity.grown(demand, most).unwrap(), Some(Capacity { rows: 3, fragments: 1000, sections: 500 }));
+        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { rows: 3, fragments: 1000, sections: 500 }));
         let row = Capacity { rows: 1, ..capacity };
-        let error = row.grown(demand, most).unwrap_err().to_string();
+        let error = row.grown(demand, limit).unwrap_err().to_string();
         assert!(error.contains("fragments") && error.contains("list-bytes") && error.contains("3000"), "{error}");
     }
 }

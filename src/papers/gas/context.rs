@@ -1,4 +1,4 @@
-//! What every pass and resource of one configuration is made with.
+//! The context in which every pass and resource of one configuration is made.
 
 use std::sync::Arc;
 

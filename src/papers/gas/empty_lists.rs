@@ -12,7 +12,7 @@ pub struct EmptyLists {
 
 impl EmptyLists {
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
         let pass = Pass::compute("empty-lists", "A-buffer", "gas/empty-lists.comp")
             .with("frame", &scene.frame)

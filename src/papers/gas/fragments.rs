@@ -13,7 +13,7 @@ pub struct Fragments {
 
 impl Fragments {
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
         let parameters = context.parameters;
         let has_geometry_stage =

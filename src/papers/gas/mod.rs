@@ -36,7 +36,7 @@ use std::sync::Arc;
 
 use self::a_buffer::ABuffer;
 use self::band::Band;
-use self::blocks::Gases;
+use self::blocks::GasUse;
 use self::capacity::BufferLimit;
 use self::context::Context;
 use self::density_table::DensityTable;
@@ -57,7 +57,7 @@ pub use self::a_buffer::Fragment;
 pub use self::capacity::Capacity;
 pub use self::parameters::{Parameters, Variant};
 
-/// What a device must have for this paper, beyond the baseline of the Vulkan layer.
+/// Features that a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 1] = [Feature::FragmentStores];
 
 /// The paper under one variant.
@@ -124,11 +124,12 @@ impl Passes {
 }
 
 impl Gas {
-    /// Makes every resource and pass; `label` goes before the names of the resources. The lists begin with slots for four
-    /// fragments and two sections a pixel, of as many rows as the device's buffers hold, or with those of `capacity`.
+    /// Makes every resource and pass; `label` goes before the names of the resources. The lists begin with slots for
+    /// four fragments and two sections a pixel, of as many rows as the device's buffers hold, or with those of
+    /// `capacity`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers. The caller has validated `parameters` and `objects`.
+    /// Those of the Vulkan layer. The caller has validated `parameters` and `objects`.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -151,12 +152,13 @@ impl Gas {
     /// The rows that are done at once, and the most fragments and sections that they have wanted in a frame so far.
     ///
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn demand(&self, shaders: &ShaderLibrary) -> Result<Capacity, Error> {
         self.passes.lists.demand(shaders)
     }
 
-    /// The sorted fragments of each pixel of the last frame, without the sections; of its last band, if there are several.
+    /// The sorted fragments of each pixel of the last frame, without the sections; of its last band, if there are
+    /// several.
     ///
     /// # Errors
     /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
@@ -187,9 +189,9 @@ impl Paper for Gas {
             resolve,
             view: _,
         } = &self.passes;
-        let gas = Gases {
+        let gas = GasUse {
             volume_count: if volume.is_some() { self.parameters.volumes.len() } else { 0 },
-            are_shadowing: light_attenuation.is_some(),
+            has_attenuations: light_attenuation.is_some(),
         };
         self.scene.write(&self.parameters, self.parameters.scene_frame(number), gas, lists.capacity)?;
         for band in Band::all(self.parameters.width, self.parameters.height, lists.capacity.rows) {

@@ -1,17 +1,18 @@
-//! What a scene is made of: solids full of gas, surfaces, and the solid textures of both.
+//! The elements of a scene: solids full of gas, surfaces, and the solid textures of both.
 
 use glam::Vec3;
 
 use crate::scene::Mesh;
 
-/// The solid that bounds a gas, inside its box of `center` and `half_extent_m`. Axes of cylinder and frustum are vertical.
+/// The solid that bounds a gas, inside its box of `center` and `half_extent_m`. Axes of cylinder and frustum are
+/// vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     Box,
     /// An ellipsoid where the half extents differ.
     Sphere,
     Cylinder,
-    /// Radii at the bottom and at the top as shares of the half extents, 0 to 1.
+    /// Radii at the bottom and at the top as fractions of the half extents, 0 to 1.
     Frustum {
         bottom: f32,
         top: f32,
@@ -33,19 +34,19 @@ pub enum DensityFunction {
     Steam { swirl: Swirl },
     /// A soft ball with a turbulent surface (Perlin and Hoffert).
     Hypertexture {
-        /// Share of its radius that the turbulence moves the surface by, at least 0.
+        /// Fraction of its radius by which the turbulence moves the surface, at least 0.
         amplitude: f32,
-        /// Share of the radius over which it turns dense, above 0.
+        /// Fraction of the radius over which it turns dense, above 0.
         softness: f32,
     },
 }
 
-/// How a point moves through the solid texture as the frames go on: along a helix.
+/// Motion of a point through the solid texture as the frames go on: along a helix.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Swirl {
-    /// DOWN of the fog, or how far the steam rises: texture units a frame.
+    /// DOWN of the fog, or the rise of the steam: texture units a frame.
     pub along_per_frame: f32,
-    /// SWIRL_FRAMES, frames of a turn; 0 for no turns.
+    /// SWIRL_FRAMES, frames of one revolution; 0 for none.
     pub frames: f32,
     /// ELLIPSE1 and ELLIPSE2, texture units.
     pub ellipse: [f32; 2],
@@ -62,9 +63,9 @@ pub struct Front {
     pub depth_m: f32,
     /// FULL_FOG: frames until the fog is at its thickest; 0 for at once.
     pub full_frames: f32,
-    /// How far a turbulence of 1 moves it, metres.
+    /// Metres by which a turbulence of 1 moves it.
     pub turbulence_m: f32,
-    /// How far a random number of 1 of the table moves it, metres.
+    /// Metres by which a random number of 1 of the table moves it.
     pub table_m: f32,
 }
 
@@ -99,9 +100,9 @@ pub struct Volume {
     pub center: Vec3,
     /// Metres, above 0.
     pub half_extent_m: Vec3,
-    /// Share of the way from the boundary to the middle over which the gas fades, 0 (not at all) to 1.
+    /// Fraction of the distance from the boundary to the middle over which the gas fades, 0 (not at all) to 1.
     pub falloff: f32,
-    /// Whether it is a solid, with normals and opacity = 1 - (1 - density)^(c step).
+    /// A solid, with normals and opacity = 1 - (1 - density)^(c step).
     pub is_solid: bool,
     pub texture: SolidTexture,
     /// tau of a gas or c of a solid, per metre, 0 to 1,000,000.
@@ -134,7 +135,7 @@ pub struct Highlight {
     pub exponent: f32,
 }
 
-/// A surface object: scanline-rendered in the paper's words.
+/// A surface object: scanline-rendered in the paper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
     /// In world space.
@@ -145,7 +146,7 @@ pub struct Object {
     pub opacity: f32,
     pub checker: Option<Checker>,
     pub highlight: Highlight,
-    /// Whether triangles are seen from behind.
+    /// Triangles are seen from behind as well.
     pub is_two_sided: bool,
     /// A surface-defined gas: its opacity at every point.
     pub gas: Option<SolidTexture>,

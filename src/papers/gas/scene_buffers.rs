@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::blocks::{FrameBlock, Gases, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets};
+use super::blocks::{FrameBlock, GasUse, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets};
 use super::capacity::Capacity;
 use super::context::Context;
 use super::model::Object;
@@ -24,8 +24,8 @@ pub struct SceneBuffers {
     pub triangles: Arc<Buffer>,
     pub objects: Arc<Buffer>,
     pub triangle_count: u32,
-    /// What of the objects their blocks are made from: all but the meshes.
-    moving: Vec<Object>,
+    /// The objects without their meshes.
+    objects_without_meshes: Vec<Object>,
 }
 
 impl SceneBuffers {
@@ -33,7 +33,7 @@ impl SceneBuffers {
     /// [`Error::Limit`] for meshes beyond what the device binds; what Vulkan answers.
     pub fn new(context: &Context<'_>, objects: &[Object]) -> Result<Self, Error> {
         let (device, parameters) = (context.shaders.device(), context.parameters);
-        // Scenes are small: what is beyond a limit is a mesh of the user's.
+        // Scenes are small: beyond a limit is a mesh of the user's alone.
         let storage = |what: &str, bytes: &[u8]| {
             upload(device, &context.name(what), STORAGE, bytes).map_err(|error| error.set_by("object"))
         };
@@ -71,17 +71,20 @@ impl SceneBuffers {
             triangles: storage("triangles", bytemuck::cast_slice(&triangles))?,
             objects: mapped("objects", size_of::<ObjectBlock>() * objects.len().max(1), STORAGE)?,
             triangle_count,
-            moving: objects.iter().map(|o| Object { mesh: Default::default(), ..o.clone() }).collect(),
+            objects_without_meshes: objects.iter().map(|o| Object { mesh: Default::default(), ..o.clone() }).collect(),
         })
     }
 
-    /// Writes what depends on the scene's frame `number`; the device is idle.
-    pub fn write(&self, parameters: &Parameters, number: u32, gas: Gases, capacity: Capacity) -> Result<(), Error> {
+    /// Writes the frame and the objects of the scene's frame `number`; the device is idle.
+    pub fn write(&self, parameters: &Parameters, number: u32, gas: GasUse, capacity: Capacity) -> Result<(), Error> {
         let block = FrameBlock::new(parameters, number, gas, capacity);
         self.frame.write(0, bytemuck::bytes_of(&block))?;
         let mut textures = parameters.volumes.len()..;
-        let mut blocks: Vec<ObjectBlock> =
-            self.moving.iter().map(|o| ObjectBlock::new(o, number, o.gas.and_then(|_| textures.next()))).collect();
+        let mut blocks: Vec<ObjectBlock> = self
+            .objects_without_meshes
+            .iter()
+            .map(|o| ObjectBlock::new(o, number, o.gas.and_then(|_| textures.next())))
+            .collect();
         if blocks.is_empty() {
             blocks.push(bytemuck::Zeroable::zeroed());
         }

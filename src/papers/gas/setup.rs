@@ -1,13 +1,14 @@
-//! What a user set up of the `gas` paper, and what a run says of itself.
+//! A user's set-up of the `gas` paper: its scene, its measured runs, its declaration to the command line.
 
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 
 use super::experiments::{self, Options};
-use super::parameters::volumes::{self, Place};
+use super::parameters::volumes::{self, Placement};
 use super::parameters::{default_volume, validate_object};
 use crate::field;
 use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
@@ -17,7 +18,6 @@ use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
 use crate::measure::study::{self, Declared, Identity, Metrics, Study};
-use crate::measure::Error;
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant};
@@ -33,13 +33,13 @@ pub struct Setup {
     pub objects: Vec<MeshSource>,
     pub preset: Option<String>,
     /// Volumes beside the scene's.
-    places: Vec<Place>,
+    placements: Vec<Placement>,
     /// The numbers for all volumes, in the [templates](volumes::templates).
     gases: Vec<model::Volume>,
-    /// Directions of parallel light and places of point lights; the scene's where there are neither.
+    /// Directions of parallel light and positions of point lights; the scene's where there are neither.
     parallel_lights: Vec<Vec3>,
     point_lights: Vec<Vec3>,
-    /// Names of the numbers for all volumes that some volume must have.
+    /// Names of the given numbers that some volume must have.
     given: Given,
 }
 
@@ -54,7 +54,7 @@ impl Setup {
             scene,
             objects: Vec::new(),
             preset: Some(scene.as_str().to_owned()),
-            places: Vec::new(),
+            placements: Vec::new(),
             gases: volumes::templates(),
             parallel_lights: Vec::new(),
             point_lights: Vec::new(),
@@ -65,7 +65,7 @@ impl Setup {
     /// The same values over the numbers of other figures' scenes.
     ///
     /// # Errors
-    /// [`Error::Input`] for one that none of the scenes heeds.
+    /// [`Error::Input`] for one that none of the scenes has.
     pub fn in_scenes(&self, scenes: &[Preset]) -> Result<Vec<Setup>, Error> {
         let in_scene = |&scene: &Preset| {
             let mut setup = Setup::of(scene);
@@ -75,7 +75,7 @@ impl Setup {
             setup
         };
         let setups: Vec<Setup> = scenes.iter().map(in_scene).collect();
-        volumes::check_heeded(&self.given, &setups.iter().flat_map(|s| s.parameters.volumes.clone()).collect())?;
+        volumes::check_used(&self.given, &setups.iter().flat_map(|s| s.parameters.volumes.clone()).collect())?;
         Ok(setups)
     }
 
@@ -97,7 +97,7 @@ impl Setup {
     fn apply(&mut self, given: &Given) {
         let all = &mut self.parameters.volumes;
         let first = all.first().copied().unwrap_or_else(default_volume);
-        all.extend(self.places.iter().map(|&Place { shape, center, half_extent_m }| model::Volume {
+        all.extend(self.placements.iter().map(|&Placement { shape, center, half_extent_m }| model::Volume {
             shape,
             center,
             half_extent_m,
@@ -139,7 +139,7 @@ impl Study for Setup {
 
     /// Checks the parameters, models the scene's surfaces and loads the user's.
     fn load(&self) -> Result<Scene, Error> {
-        volumes::check_heeded(&self.given, &self.parameters.volumes)?;
+        volumes::check_used(&self.given, &self.parameters.volumes)?;
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
@@ -232,15 +232,19 @@ impl Declared for Setup {
     fn parameters() -> Vec<Parameter<Self>> {
         let objects = [
             Parameter::new("object", field!(Setup.objects))
-                .help("Polygon mesh in the scene: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB file")
+                .help(
+                    "Polygon mesh in the scene: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB \
+                     file",
+                )
                 .cost(Cost::Buffers)
                 .everyday(),
-            Parameter::new("volume", field!(Setup.places))
+            Parameter::new("volume", field!(Setup.placements))
                 .group("Gases")
                 .help(
-                    "One more volume beside the scene's: box, sphere, cylinder or frustum, its centre and half extents in \
-                     metres (0.0001 to 1000000), and of a frustum the radii at the bottom and at the top as fractions of \
-                     the half extents, 0 to 1; filled as the scene's first volume, or with turbulence; up to 8 volumes",
+                    "One more volume beside the scene's: box, sphere, cylinder or frustum, its centre and half extents \
+                     in metres (0.0001 to 1000000), and of a frustum the radii at the bottom and at the top as \
+                     fractions of the half extents, 0 to 1; filled as the scene's first volume, or with turbulence; \
+                     up to 8 volumes",
                 )
                 .cost(Cost::Buffers)
                 .everyday()
@@ -307,7 +311,7 @@ impl Declared for Setup {
     /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.
     fn rendered(&self, _: Option<Variant>) -> Variant {
         match self.scene.variant() {
-            Variant::NoVolume if !self.places.is_empty() => Variant::Table,
+            Variant::NoVolume if !self.placements.is_empty() => Variant::Table,
             variant => variant,
         }
     }

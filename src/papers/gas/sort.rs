@@ -12,7 +12,7 @@ pub struct Sort {
 
 impl Sort {
     /// # Errors
-    /// What Vulkan answers.
+    /// Those of Vulkan.
     pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
         let pass = Pass::compute("sort", "A-buffer", "gas/sort.comp")
             .with("frame", &scene.frame)

@@ -81,13 +81,13 @@ pub fn all() -> Vec<Experiment<Setup>> {
         },
         Experiment {
             name: "sequence",
-            help: "The picture strips of figures 6 and 7",
+            help: "Contact sheets of figures 6 and 7",
             options: &[],
             refuses: &[
                 OWN_SCENES,
-                ("first-frame", "the strips have the paper's frames"),
-                ("json", "a strip is pictures; `1` has a record"),
-                ("csv", "a strip is pictures; `1` has rows"),
+                ("first-frame", "the contact sheets have the paper's frames"),
+                ("json", "a contact sheet is pictures; `1` has a record"),
+                ("csv", "a contact sheet is pictures; `1` has rows"),
             ],
             run: sequence,
         },
@@ -105,12 +105,12 @@ fn gpu_ms(row: &Row, names: &[&str]) -> f64 {
     passes.filter_map(|pass| pass.gpu_ms.as_ref().map(|summary| summary.median)).sum()
 }
 
-/// The volume's time with the scene's density function, and with a constant in its place: what is left is turbulence.
+/// The volume's time with the scene's density function, and with a constant one: the difference is turbulence.
 fn noise(context: &mut Context<'_>) -> Result<(), Error> {
     let turbulent = context.setup.named();
     let constant = turbulent.with_constant_density();
-    let points =
-        [("turbulent", turbulent), ("constant", constant)].map(|(label, setup)| point(label, 0.0, setup, Variant::None));
+    let points = [("turbulent", turbulent), ("constant", constant)]
+        .map(|(label, setup)| point(label, 0.0, setup, Variant::None));
     points.iter().try_for_each(|point| load(&point.study).map(drop))?;
     let mut machine = context.open()?;
     let swept = context.sweep(&mut machine, &points)?;

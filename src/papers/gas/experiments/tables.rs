@@ -37,7 +37,7 @@ pub static TABLE_1: PaperTable = PaperTable {
     base: 1,
 };
 
-/// It exchanges (c) and (d) against the caption of figure 8; rows are taken by their words.
+/// It exchanges (c) and (d) against the caption of figure 8; rows are taken by their names.
 pub static TABLE_2: PaperTable = PaperTable {
     title: "Table 2: figure 8 by shadowing",
     rows: &[
@@ -123,7 +123,8 @@ impl Outcome {
         outcome
     }
 
-    /// Time over that of the base row. Rows of one scene were measured in turn; those of another scene one after the other.
+    /// Time over that of the base row. Rows of one scene were measured interleaved; those of another scene one after
+    /// the other.
     fn ratio(&self, row: &Row) -> Option<Ratio> {
         let base = self.rows.iter().find(|row| is_of(row, self.paper.base()))?;
         ratio_within_process(base.run.frame_samples(), row.run.frame_samples())
@@ -199,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scene_s_variants_are_measured_in_turn() {
+    fn a_scene_s_variants_are_interleaved() {
         let points = TABLE_1.points(&Setup::default()).unwrap();
         let labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         assert_eq!(labels, ["fig-3", "fig-4", "fig-5", "fig-6", "fig-7"]);

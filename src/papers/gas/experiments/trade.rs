@@ -75,9 +75,8 @@ impl Trade {
         let setup = context.setup.named();
         let given = context.options.counts.as_slice();
         let counts = if given.is_empty() { self.counts() } else { given };
-        let point = |&count: &u32| {
-            point(&count.to_string(), f64::from(count), self.with(&setup, count), self.variant())
-        };
+        let point =
+            |&count: &u32| point(&count.to_string(), f64::from(count), self.with(&setup, count), self.variant());
         let points: Vec<_> = counts.iter().map(point).collect();
         points.iter().try_for_each(|point| load(&point.study).map(drop))?;
         let mut machine = context.open()?;
@@ -88,8 +87,8 @@ impl Trade {
         swept.stopped.map_or(Ok(()), Err)
     }
 
-    /// The rows' times beside the Luv difference (eq. 2-9 of the caustics thesis) of their pictures from the reference, over
-    /// the pixels in which the gas is denser than 1 % opacity.
+    /// The rows' times beside the Luv difference (eq. 2-9 of the caustics thesis) of their pictures from the reference,
+    /// over the pixels in which the gas is denser than 1 % opacity.
     fn table(self, machine: &mut Machine, setup: &Setup, rows: &[Row]) -> Result<ResultTable, Error> {
         let counts: Vec<u32> = rows.iter().map(|row| row.x as u32).collect();
         let reference = match self {

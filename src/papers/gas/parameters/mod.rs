@@ -1,4 +1,4 @@
-//! What a user can set, under the paper's own words.
+//! The paper's parameters under its own names, each declared once.
 
 pub mod volumes;
 
@@ -51,7 +51,8 @@ pub struct Parameters {
     pub volumes: Vec<Volume>,
     /// 1 to 4.
     pub lights: Vec<Light>,
-    /// Light from all around, which also stands for higher orders of scattering in gases of high albedo; linear RGB, 0 to 64.
+    /// Light from all around, which also stands for higher orders of scattering in gases of high albedo; linear RGB, 0
+    /// to 64.
     pub ambient: Vec3,
     /// Linear RGB, 0 to 64.
     pub background: Vec3,
@@ -74,8 +75,8 @@ pub struct Parameters {
     pub seed: u64,
     /// Footprints by a geometry stage, where the device has one; else by the vertex stage.
     pub geometry_stage: bool,
-    /// Most bytes of a buffer of the lists, at least 4096: the picture is done in bands of rows whose lists fit. Without, or
-    /// where it binds less, what the device binds.
+    /// Most bytes of a buffer of the lists, at least 4096: the picture is done in bands of rows whose lists fit.
+    /// Without, or where it binds less, what the device binds.
     pub list_bytes: Option<u64>,
     /// Size of the picture in pixels.
     pub width: u32,
@@ -145,8 +146,8 @@ pub fn default_volume() -> Volume {
     }
 }
 
-fn is_color(color: Vec3, most: f32) -> bool {
-    color.to_array().iter().all(|c| (0.0..=most).contains(c))
+fn is_color(color: Vec3, limit: f32) -> bool {
+    color.to_array().iter().all(|c| (0.0..=limit).contains(c))
 }
 
 impl Parameters {
@@ -207,7 +208,8 @@ impl Parameters {
             Parameter::new("list-bytes", field!(Parameters.list_bytes))
                 .range(Range::from(4096.0))
                 .help(
-                    "Most bytes of a buffer of the A-buffer's lists: the picture is done in bands of rows whose lists fit",
+                    "Most bytes of a buffer of the A-buffer's lists: the picture is done in bands of rows whose lists \
+                     fit",
                 )
                 .default_text("what the device binds")
                 .cost(Cost::Buffers)
@@ -261,7 +263,7 @@ const SIZE: Field<Parameters, Size> = Field {
 
 const CAMERA: Field<Parameters, EyeAndTarget> = Field {
     get: |p| EyeAndTarget { eye: p.camera.eye, target: p.camera.target },
-    set: |p, place| (p.camera.eye, p.camera.target) = (place.eye, place.target),
+    set: |p, camera| (p.camera.eye, p.camera.target) = (camera.eye, camera.target),
 };
 
 /// Checks the numbers of a surface.
@@ -284,7 +286,12 @@ fn validate_light(light: &Light) -> Result<(), ParameterError> {
             ParameterError::check(is_color(intensity, 1e6), "light", components(intensity), range)
         }
         Light::Point { position, intensity } => {
-            ParameterError::check(position.is_finite(), "point-light", components(position), "must be a place")?;
+            ParameterError::check(
+                position.is_finite(),
+                "point-light",
+                components(position),
+                "must be a finite position",
+            )?;
             ParameterError::check(is_color(intensity, 1e6), "point-light", components(intensity), range)
         }
     }

@@ -1,5 +1,5 @@
-//! The numbers of the gases: where there are some, their density functions, and what they do to light. Each is one number
-//! for all volumes that have it.
+//! The numbers of the gases: their solids, their density functions, their optics. Each is one number for all volumes
+//! that have it.
 
 use std::ffi::OsStr;
 use std::mem::discriminant;
@@ -17,7 +17,7 @@ use crate::papers::gas::scenes;
 
 /// The solid of one more volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct Placement {
     pub shape: Shape,
     /// Metres.
     pub center: Vec3,
@@ -25,12 +25,9 @@ pub struct Place {
 }
 
 /// `frustum,0,1,0,0.5,1,0.5,0.6,1` and its like.
-impl Value for Place {
-    const SHAPE: OptionShape = OptionShape {
-        is_several: true,
-        is_signed: true,
-        ..OptionShape::single("SHAPE,X,Y,Z,X,Y,Z[,B,T]")
-    };
+impl Value for Placement {
+    const SHAPE: OptionShape =
+        OptionShape { is_several: true, is_signed: true, ..OptionShape::single("SHAPE,X,Y,Z,X,Y,Z[,B,T]") };
 
     fn parse(texts: &[&OsStr]) -> Result<Self, String> {
         let text = one(texts)?;
@@ -45,7 +42,7 @@ impl Value for Place {
             }
             _ => return Err(format!("{name:?} is no shape: give box, sphere, cylinder or frustum")),
         };
-        Ok(Place { shape, center: Vec3::new(x, y, z), half_extent_m: Vec3::new(half_x, half_y, half_z) })
+        Ok(Placement { shape, center: Vec3::new(x, y, z), half_extent_m: Vec3::new(half_x, half_y, half_z) })
     }
 
     fn text(&self) -> String {
@@ -235,7 +232,10 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
     let scene = "the scene's";
     let figure = "the figure's";
     let parameters = vec![
-        Parameter::new("density", number!(v => Some(&mut v.texture.function))).help("Density function of all volumes").default_text(scene).everyday(),
+        Parameter::new("density", number!(v => Some(&mut v.texture.function)))
+            .help("Density function of all volumes")
+            .default_text(scene)
+            .everyday(),
         Parameter::new("opaque", number!(v => Some(&mut v.texture.opaque)))
             .range(Range::from(0.0).to(1e6))
             .help("Factor of all volumes' density (the paper's opaque)")
@@ -256,11 +256,11 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
         Parameter::new("down", number!(v => swirl(v).map(|swirl| &mut swirl.along_per_frame)))
             .range(Range::from(-1e4).to(1e4))
             .unit("texture units a frame")
-            .help("Of fog and steam: how far the gas moves (DOWN)")
+            .help("Of fog and steam: motion along the helix (DOWN)")
             .default_text(figure),
         Parameter::new("swirl-frames", number!(v => swirl(v).map(|swirl| &mut swirl.frames)))
             .range(Range::from(0.0).to(1e4))
-            .help("Of fog and steam: frames of one turn of the helix (SWIRL_FRAMES); 0 for no turns")
+            .help("Of fog and steam: frames of one revolution of the helix (SWIRL_FRAMES), 0 for none")
             .default_text(figure),
         Parameter::new("ellipse", number!(v => swirl(v).map(|swirl| &mut swirl.ellipse)))
             .range(Range::from(-1e4).to(1e4))
@@ -272,8 +272,8 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
             .range(Range::from(-1e6).to(1e6))
             .placeholder("X,STEP,DEPTH,T,R")
             .help(
-                "Of fog: the front's x in metres at frame 0, metres a frame, metres behind it until the fog is thickest \
-                 (above 0), metres by which a turbulence of 1 moves it, and a random number of 1; each",
+                "Of fog: the front's x in metres at frame 0, metres a frame, metres behind it until the fog is \
+                 thickest (above 0), metres by which a turbulence of 1 moves it, and a random number of 1; each",
             )
             .default_text("figure 7's"),
         Parameter::new("full-fog", number!(v => front(v).map(|front| &mut front.full_frames)))
@@ -284,8 +284,8 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
         Parameter::new("hypertexture", HYPERTEXTURE)
             .placeholder("NOISE,SOFTNESS")
             .help(
-                "Of hypertexture: fraction of the radius by which turbulence moves the surface, 0 to 100, and over which it \
-                 turns dense, above 0 and at most 1",
+                "Of hypertexture: fraction of the radius by which turbulence moves the surface, 0 to 100, and over \
+                 which it turns dense, above 0 and at most 1",
             )
             .default_text("1.4,0.16"),
         Parameter::new("tau", number!(v => Some(&mut v.tau_per_m)))
@@ -304,7 +304,8 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
         Parameter::new("phase", PHASE)
             .placeholder("W,G,W,G")
             .help(
-                "Two Henyey-Greenstein functions of all gases: weight,g,weight,g; weights add up to 1, g between -1 and 1",
+                "Two Henyey-Greenstein functions of all gases: weight,g,weight,g; weights add up to 1, g between -1 \
+                 and 1",
             )
             .section("Illumination of gaseous phenomena")
             .default_text("0.8,0.5,0.2,-0.3"),
@@ -359,9 +360,9 @@ fn check_volume(volume: &Volume) -> Result<(), ParameterError> {
 ///
 /// # Errors
 /// [`Error::Input`], naming the first.
-pub fn check_heeded(given: &Given, volumes: &Vec<Volume>) -> Result<(), Error> {
-    let is_unheeded = |p: &&Parameter<Vec<Volume>>| given.has(p.name) && p.text(volumes).is_empty();
-    let Some(name) = declared().iter().find(is_unheeded).map(|p| p.name) else { return Ok(()) };
+pub fn check_used(given: &Given, volumes: &Vec<Volume>) -> Result<(), Error> {
+    let is_unused = |p: &&Parameter<Vec<Volume>>| given.has(p.name) && p.text(volumes).is_empty();
+    let Some(name) = declared().iter().find(is_unused).map(|p| p.name) else { return Ok(()) };
     let missing = match name {
         "phase" => "volume of gas, and solids have normals instead",
         "frequency" => "clouds: give `density` clouds",
@@ -378,17 +379,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_is_a_shape_and_its_numbers() {
-        let parse = |text: &str| Place::parse(&[OsStr::new(text)]);
-        let place = |shape| Place { shape, center: Vec3::new(0.0, 1.0, -2.0), half_extent_m: Vec3::new(0.5, 1.0, 2.0) };
+    fn a_placement_is_a_shape_and_its_numbers() {
+        let parse = |text: &str| Placement::parse(&[OsStr::new(text)]);
+        let placement =
+            |shape| Placement { shape, center: Vec3::new(0.0, 1.0, -2.0), half_extent_m: Vec3::new(0.5, 1.0, 2.0) };
         for (text, shape) in [
             ("box,0,1,-2,0.5,1,2", Shape::Box),
             ("sphere,0,1,-2,0.5,1,2", Shape::Sphere),
             ("cylinder,0,1,-2,0.5,1,2", Shape::Cylinder),
             ("frustum,0,1,-2,0.5,1,2,0.6,1", Shape::Frustum { bottom: 0.6, top: 1.0 }),
         ] {
-            assert_eq!(parse(text), Ok(place(shape)));
-            assert_eq!(place(shape).text(), text);
+            assert_eq!(parse(text), Ok(placement(shape)));
+            assert_eq!(placement(shape).text(), text);
         }
         for text in ["", "box", "ball,0,0,0,1,1,1", "box,0,0,0,1,1", "frustum,0,0,0,1,1,1", "box,0,0,0,1,1,nan"] {
             assert!(parse(text).is_err(), "{text}");

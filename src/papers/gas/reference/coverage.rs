@@ -1,4 +1,4 @@
-//! What a triangle covers of a pixel, in double precision, by cutting it (Sutherland and Hodgman).
+//! Coverage of a pixel by a triangle, in double precision, by cutting it (Sutherland and Hodgman).
 
 use glam::DVec2;
 
@@ -23,7 +23,7 @@ pub fn cut(polygon: &[DVec2], pixel: DVec2) -> Vec<DVec2> {
     piece
 }
 
-/// Area of a polygon, whatever its turn.
+/// Area of a polygon of either orientation.
 pub fn area(polygon: &[DVec2]) -> f64 {
     let twice: f64 = (0..polygon.len()).map(|i| polygon[i].perp_dot(polygon[(i + 1) % polygon.len()])).sum();
     twice.abs() / 2.0

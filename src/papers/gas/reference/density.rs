@@ -9,7 +9,7 @@ use crate::papers::gas::blocks::{OFFSET_SIZE, offsets};
 use crate::papers::gas::model::{DensityFunction, Shape, SolidTexture, Swirl, Volume};
 use crate::papers::gas::parameters::Parameters;
 
-/// What a density depends on beyond its point.
+/// The dependences of a density beside its point.
 pub struct Medium {
     seed: u32,
     offsets: [f32; OFFSET_SIZE],
@@ -119,7 +119,7 @@ impl Medium {
     }
 }
 
-/// How far inside the solid a point is: 0 on its boundary, 1 in its middle, negative outside.
+/// Depth of a point inside the solid: 0 on its boundary, 1 in its middle, negative outside.
 pub fn inwardness(volume: &Volume, world: DVec3) -> f64 {
     let q = (world - volume.center.as_dvec3()) / volume.half_extent_m.as_dvec3();
     let around = q.x.hypot(q.z);
@@ -128,8 +128,8 @@ pub fn inwardness(volume: &Volume, world: DVec3) -> f64 {
         Shape::Sphere => 1.0 - q.length(),
         Shape::Cylinder => (1.0 - q.y.abs()).min(1.0 - around),
         Shape::Frustum { bottom, top } => {
-            let share = ((q.y + 1.0) / 2.0).clamp(0.0, 1.0);
-            let radius = f64::from(bottom) * (1.0 - share) + f64::from(top) * share;
+            let fraction = ((q.y + 1.0) / 2.0).clamp(0.0, 1.0);
+            let radius = f64::from(bottom) * (1.0 - fraction) + f64::from(top) * fraction;
             (1.0 - q.y.abs()).min(radius - around)
         }
     }

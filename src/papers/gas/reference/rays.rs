@@ -1,5 +1,5 @@
-//! A pixel's ray through the gas, and the rays to the lights, in double precision (sections "Volume rendering", "Illumination of
-//! gaseous phenomena" and "Shadowing of the gas"). Surfaces do not stand in its way.
+//! A pixel's ray through the gas, and the rays to the lights, in double precision (sections "Volume rendering",
+//! "Illumination of gaseous phenomena" and "Shadowing of the gas"). Surfaces do not occlude it.
 
 use std::f64::consts::PI;
 
@@ -12,16 +12,16 @@ use crate::papers::gas::model::Volume;
 use crate::papers::gas::parameters::Parameters;
 use crate::scene::Light;
 
-/// Where the samples of a viewer's ray lie.
+/// Positions of the samples of a viewer's ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
-    /// One in each increment, at the place that the random numbers of frame and seed say (Monte Carlo).
+    /// One in each increment, at the point that the random numbers of frame and seed say (Monte Carlo).
     Random,
     /// So many in the middles of each increment's parts: the integral that the random ones estimate.
     Fine(u32),
 }
 
-/// What a ray brings to the eye.
+/// The light of a ray at the eye.
 #[derive(Debug, Clone, Copy)]
 pub struct Gas {
     /// Premultiplied, linear RGB.
@@ -46,7 +46,7 @@ impl<'a> Rays<'a> {
         self.parameters.camera.eye.as_dvec3()
     }
 
-    /// Direction through a place of the picture, pixels from its upper left corner; of depth 1.
+    /// Direction through a point of the picture, pixels from its upper left corner; of depth 1.
     pub fn direction(&self, column: f64, row: f64) -> DVec3 {
         let camera = &self.parameters.camera;
         let forward = (camera.target.as_dvec3() - self.eye()).normalize();
@@ -57,19 +57,20 @@ impl<'a> Rays<'a> {
         forward + (right * (column - width / 2.0) - up * (row - height / 2.0)) * pixel
     }
 
-    /// The ray of a pixel through all volumes, from the hither to the yon plane. `are_shadowed`: whether the gas shadows itself.
+    /// The ray of a pixel through all volumes, from the hither to the yon plane. `are_shadowed`: whether the gas
+    /// shadows itself.
     pub fn pixel(&self, column: u32, row: u32, are_shadowed: bool, sampling: Sampling) -> Gas {
         let ray = self.direction(f64::from(column) + 0.5, f64::from(row) + 0.5);
         let scale = ray.length();
         let camera = &self.parameters.camera;
         let (near, far) = (f64::from(camera.near_m) * scale, f64::from(camera.far_m) * scale);
-        let spans: Vec<Option<(f64, f64)>> = self
+        let segments: Vec<Option<(f64, f64)>> = self
             .parameters
             .volumes
             .iter()
-            .map(|v| span(v, self.eye(), ray / scale).map(|(a, b)| (a.max(near), b.min(far))).filter(|(a, b)| a < b))
+            .map(|v| segment(v, self.eye(), ray / scale).map(|(a, b)| (a.max(near), b.min(far))).filter(|(a, b)| a < b))
             .collect();
-        let mut cuts: Vec<f64> = spans.iter().flatten().flat_map(|&(a, b)| [a, b]).collect();
+        let mut cuts: Vec<f64> = segments.iter().flatten().flat_map(|&(a, b)| [a, b]).collect();
         cuts.sort_by(f64::total_cmp);
         let mut march = March {
             rays: self,
@@ -82,9 +83,9 @@ impl<'a> Rays<'a> {
         };
         for cut in cuts.windows(2) {
             let middle = (cut[0] + cut[1]) / 2.0;
-            let is_in = |span: &Option<(f64, f64)>| span.is_some_and(|(a, b)| a <= middle && middle <= b);
+            let is_in = |segment: &Option<(f64, f64)>| segment.is_some_and(|(a, b)| a <= middle && middle <= b);
             let inside: Vec<&Volume> =
-                self.parameters.volumes.iter().zip(&spans).filter(|(_, s)| is_in(s)).map(|(v, _)| v).collect();
+                self.parameters.volumes.iter().zip(&segments).filter(|(_, s)| is_in(s)).map(|(v, _)| v).collect();
             if !inside.is_empty() && march.section(&inside, cut[0], cut[1]) {
                 break;
             }
@@ -92,11 +93,12 @@ impl<'a> Rays<'a> {
         march.gas
     }
 
-    /// tau times the density's integral from a point to a light, by the middles of each volume's steps divided by `finer`.
+    /// tau times the density's integral from a point to a light, by the middles of each volume's steps divided by
+    /// `finer`.
     pub fn optical_depth(&self, point: DVec3, light: &Light, finer: u32) -> f64 {
-        let (way, distance, _) = towards(light, point);
+        let (direction, distance, _) = towards(light, point);
         let depth = |volume: &Volume| {
-            let Some((a, b)) = span(volume, point, way) else { return 0.0 };
+            let Some((a, b)) = segment(volume, point, direction) else { return 0.0 };
             let (a, b) = (a.max(0.0), b.min(distance));
             if a >= b {
                 return 0.0;
@@ -106,7 +108,7 @@ impl<'a> Rays<'a> {
             let part = |i: u32| {
                 let from = f64::from(i) * step;
                 let increment = step.min(b - a - from);
-                self.medium.density(volume, point + way * (a + from + increment / 2.0)) * increment
+                self.medium.density(volume, point + direction * (a + from + increment / 2.0)) * increment
             };
             f64::from(volume.tau_per_m) * (0..increments).map(part).sum::<f64>()
         };
@@ -180,23 +182,23 @@ impl March<'_> {
         }
     }
 
-    /// What an element sends to the eye, for albedo 1: a gas by its phase function, a solid by its normal.
+    /// The light that an element sends to the eye, for albedo 1: a gas by its phase function, a solid by its normal.
     fn light(&self, volume: &Volume, point: DVec3, are_shadowed: bool) -> DVec3 {
         let parameters = self.rays.parameters;
         let of_light = |light: &Light| {
-            let (way, _, irradiance) = towards(light, point);
+            let (direction, _, irradiance) = towards(light, point);
             let depth = if are_shadowed { self.rays.optical_depth(point, light, 1) } else { 0.0 };
-            let share = if volume.is_solid {
-                self.normal(volume, point).dot(way).max(0.0)
+            let response = if volume.is_solid {
+                self.normal(volume, point).dot(direction).max(0.0)
             } else {
-                PI * phase(&volume.phase, way.dot(self.direction))
+                PI * phase(&volume.phase, direction.dot(self.direction))
             };
-            irradiance * (-depth).exp() * share
+            irradiance * (-depth).exp() * response
         };
         parameters.ambient.as_dvec3() + parameters.lights.iter().map(of_light).sum::<DVec3>()
     }
 
-    /// Where the density falls the fastest, by central differences (Perlin and Hoffert).
+    /// Direction in which the density falls the fastest, by central differences (Perlin and Hoffert).
     fn normal(&self, volume: &Volume, point: DVec3) -> DVec3 {
         let apart = 1e-4 * volume.half_extent_m.as_dvec3().max_element();
         let slope = |axis: DVec3| {
@@ -215,20 +217,20 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64, DVec3) {
             (-direction.as_dvec3().normalize(), f64::INFINITY, intensity.as_dvec3())
         }
         Light::Point { position, intensity } => {
-            let way = position.as_dvec3() - point;
-            (way.normalize_or_zero(), way.length(), intensity.as_dvec3() / way.length_squared())
+            let direction = position.as_dvec3() - point;
+            (direction.normalize_or_zero(), direction.length(), intensity.as_dvec3() / direction.length_squared())
         }
     }
 }
 
-/// Where a line of unit direction is inside a solid: any place inside, and from there both ends by halving. It misses spans
-/// shorter than a five-hundredth of the solid.
-fn span(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+/// The ray segment of a unit direction inside a solid: any point inside, and from there both ends by halving. It misses
+/// segments shorter than a five-hundredth of the solid.
+fn segment(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
     let radius = volume.half_extent_m.as_dvec3().length() * 1.001;
     let nearest = (volume.center.as_dvec3() - origin).dot(direction);
     let is_inside = |at: f64| inwardness(volume, origin + direction * at) >= 0.0;
-    let place = |i: i32| nearest + radius * f64::from(i) / 500.0;
-    let inside = (-500..=500).map(place).find(|&at| is_inside(at))?;
+    let parameter = |i: i32| nearest + radius * f64::from(i) / 500.0;
+    let inside = (-500..=500).map(parameter).find(|&at| is_inside(at))?;
     let end = |mut outside: f64| {
         let mut inside = inside;
         for _ in 0..60 {
@@ -251,16 +253,16 @@ mod tests {
         let texture = SolidTexture { function: DensityFunction::Constant, ..default_volume().texture };
         let ball = Volume { shape: Shape::Sphere, texture, ..default_volume() };
         for height in [0.0, 0.3, 0.9] {
-            let (a, b) = span(&ball, DVec3::new(-5.0, height, 0.0), DVec3::X).unwrap();
+            let (a, b) = segment(&ball, DVec3::new(-5.0, height, 0.0), DVec3::X).unwrap();
             let half = (1.0 - height * height).sqrt();
             assert!((a - 5.0 + half).abs() < 1e-9 && (b - 5.0 - half).abs() < 1e-9);
         }
-        assert!(span(&ball, DVec3::new(-5.0, 1.01, 0.0), DVec3::X).is_none());
+        assert!(segment(&ball, DVec3::new(-5.0, 1.01, 0.0), DVec3::X).is_none());
         let parameters = Parameters { volumes: vec![ball], early_end: 0.0, ..Parameters::default() };
         let rays = Rays::new(&parameters, 0);
         let gas = rays.pixel(180, 125, false, Sampling::Random);
         let ray = rays.direction(180.5, 125.5).normalize();
-        let (a, b) = span(&ball, rays.eye(), ray).unwrap();
+        let (a, b) = segment(&ball, rays.eye(), ray).unwrap();
         assert!((gas.transparency - (-2.0 * (b - a)).exp()).abs() < 1e-9);
     }
 }

@@ -1,5 +1,5 @@
-//! What a pixel's list shows, in double precision: 32 sub-pixels, each composited alone (section "Combining A-buffer and volume
-//! rendering techniques", and Carpenter's A-buffer).
+//! The colour of a pixel's list, in double precision: 32 sub-pixels, each composited alone (section "Combining A-buffer
+//! and volume rendering techniques", and Carpenter's A-buffer).
 
 use glam::DVec3;
 
@@ -34,8 +34,8 @@ fn sub_pixel(layers: &[Layer], bit: u32, background: DVec3) -> DVec3 {
             }
             Layer::Surface { mask, opacity, color, .. } if mask & bit != 0 => {
                 let neighbour = layers[i + 1..].iter().find(|l| matches!(l, Layer::Surface { .. }));
-                let (share, other) = neighbour.map_or((0.0, DVec3::ZERO), |next| shown(layer, next, bit));
-                sum += (color * (1.0 - share) + other * share) * (opacity * left);
+                let (fraction, other) = neighbour.map_or((0.0, DVec3::ZERO), |next| shown(layer, next, bit));
+                sum += (color * (1.0 - fraction) + other * fraction) * (opacity * left);
                 left *= 1.0 - opacity;
             }
             Layer::Surface { .. } => {}
@@ -44,8 +44,8 @@ fn sub_pixel(layers: &[Layer], bit: u32, background: DVec3) -> DVec3 {
     sum + background * left
 }
 
-/// The share in which a fragment shows the one after it where they intersect, and what it shows: Carpenter sees the front one
-/// in (far of the other - near) over the sum of both thicknesses.
+/// The fraction in which a fragment shows the one after it where they intersect, and the colour of that one: Carpenter
+/// sees the front one in (far of the other - near) over the sum of both thicknesses.
 fn shown(front: &Layer, behind: &Layer, bit: u32) -> (f64, DVec3) {
     let (
         Layer::Surface { depth_m: [near, far], object, .. },

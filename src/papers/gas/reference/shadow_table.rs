@@ -26,13 +26,13 @@ impl<'a> ShadowTables<'a> {
         ShadowTables { parameters, sums: parameters.volumes.iter().map(of_volume).collect() }
     }
 
-    /// tau times the sums between a point and light `number`: the eight entries round the point, or round the place where its
-    /// ray to the light enters the table's box, interpolated.
+    /// tau times the sums between a point and light `number`: the eight entries round the point, or round the point at
+    /// which its ray to the light enters the table's box, interpolated.
     pub fn optical_depth(&self, point: DVec3, number: usize) -> f64 {
-        let (way, distance, _) = towards(&self.parameters.lights[number], point);
+        let (direction, distance, _) = towards(&self.parameters.lights[number], point);
         let of_volume = |(volume, tables): (&Volume, &Vec<Vec<f64>>)| {
-            let entered = entry_into_box(volume, point, way).filter(|&at| at <= distance);
-            let sum = entered.map_or(0.0, |at| self.interpolated(volume, &tables[number], point + way * at));
+            let entered = entry_into_box(volume, point, direction).filter(|&at| at <= distance);
+            let sum = entered.map_or(0.0, |at| self.interpolated(volume, &tables[number], point + direction * at));
             f64::from(volume.tau_per_m) * sum
         };
         self.parameters.volumes.iter().zip(&self.sums).map(of_volume).sum()
@@ -40,8 +40,8 @@ impl<'a> ShadowTables<'a> {
 
     fn interpolated(&self, volume: &Volume, table: &[f64], point: DVec3) -> f64 {
         let last = f64::from(self.parameters.table_size - 1);
-        let share = (point - volume.center.as_dvec3()) / volume.half_extent_m.as_dvec3() / 2.0 + 0.5;
-        let at = (share * last).clamp(DVec3::ZERO, DVec3::splat(last));
+        let fraction = (point - volume.center.as_dvec3()) / volume.half_extent_m.as_dvec3() / 2.0 + 0.5;
+        let at = (fraction * last).clamp(DVec3::ZERO, DVec3::splat(last));
         let low = at.floor().min(DVec3::splat(last - 1.0));
         let n = self.parameters.table_size as usize;
         let corner = |corner: usize| {
@@ -54,12 +54,13 @@ impl<'a> ShadowTables<'a> {
     }
 }
 
-/// How far along its ray a point enters the box around the solid, 0 from inside; nothing where the ray misses it.
-fn entry_into_box(volume: &Volume, point: DVec3, way: DVec3) -> Option<f64> {
+/// Ray parameter at which the ray of a point enters the box around the solid, metres, 0 from inside; nothing where the
+/// ray misses it.
+fn entry_into_box(volume: &Volume, point: DVec3, direction: DVec3) -> Option<f64> {
     let (center, half) = (volume.center.as_dvec3(), volume.half_extent_m.as_dvec3());
     let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
     for axis in 0..3 {
-        let (from, along) = (point[axis] - center[axis], way[axis]);
+        let (from, along) = (point[axis] - center[axis], direction[axis]);
         if along == 0.0 {
             if from.abs() > half[axis] {
                 return None;
@@ -74,7 +75,7 @@ fn entry_into_box(volume: &Volume, point: DVec3, way: DVec3) -> Option<f64> {
 
 /// Densities of the entries, x fastest.
 pub fn density_table(medium: &Medium, volume: &Volume, size: u32) -> Vec<f64> {
-    entries(size).map(|entry| medium.density(volume, place(volume, size, entry))).collect()
+    entries(size).map(|entry| medium.density(volume, entry_position(volume, size, entry))).collect()
 }
 
 /// All entries, x fastest.
@@ -83,21 +84,21 @@ fn entries(size: u32) -> impl Iterator<Item = IVec3> {
     (0..n * n * n).map(move |i| IVec3::new(i % n, i / n % n, i / (n * n)))
 }
 
-/// Where an entry lies in the world.
-pub fn place(volume: &Volume, size: u32, entry: IVec3) -> DVec3 {
-    let share = entry.as_dvec3() / f64::from(size - 1) * 2.0 - 1.0;
-    volume.center.as_dvec3() + share * volume.half_extent_m.as_dvec3()
+/// The position of an entry in the world.
+pub fn entry_position(volume: &Volume, size: u32, entry: IVec3) -> DVec3 {
+    let fraction = entry.as_dvec3() / f64::from(size - 1) * 2.0 - 1.0;
+    volume.center.as_dvec3() + fraction * volume.half_extent_m.as_dvec3()
 }
 
-/// The sums of density times step towards the light: every entry asks for those that its ray needs, and each is computed
-/// once, so that none is read before it is finished.
+/// The sums of density times step towards the light: every entry asks for those that its ray needs, and each is
+/// computed once, so that none is read before it is finished.
 pub fn shadow_table(densities: &[f64], volume: &Volume, light: &Light, size: u32) -> Vec<f64> {
     let mut table = Table { densities, volume, light, size, sums: vec![None; densities.len()] };
     // By their distance from the light, so that no question goes deep.
     let mut order: Vec<IVec3> = entries(size).collect();
     let distance = |entry: &IVec3| match *light {
-        Light::Parallel { direction, .. } => place(volume, size, *entry).dot(direction.as_dvec3()),
-        Light::Point { position, .. } => place(volume, size, *entry).distance_squared(position.as_dvec3()),
+        Light::Parallel { direction, .. } => entry_position(volume, size, *entry).dot(direction.as_dvec3()),
+        Light::Point { position, .. } => entry_position(volume, size, *entry).distance_squared(position.as_dvec3()),
     };
     order.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     order.into_iter().for_each(|entry| {
@@ -129,26 +130,30 @@ impl Table<'_> {
     fn computed(&mut self, entry: IVec3, at: usize) -> f64 {
         let n = self.size as i32;
         let spacing = self.volume.half_extent_m.as_dvec3() * 2.0 / f64::from(self.size - 1);
-        let point = place(self.volume, self.size, entry);
-        let (way, distance) = match *self.light {
+        let point = entry_position(self.volume, self.size, entry);
+        let (direction, distance) = match *self.light {
             Light::Parallel { direction, .. } => (-direction.as_dvec3().normalize(), f64::INFINITY),
             Light::Point { position, .. } => {
-                let way = position.as_dvec3() - point;
-                (way.normalize_or_zero(), way.length())
+                let direction = position.as_dvec3() - point;
+                (direction.normalize_or_zero(), direction.length())
             }
         };
-        let leaves = |axis: usize| (entry[axis] == 0 && way[axis] < 0.0) || (entry[axis] == n - 1 && way[axis] > 0.0);
+        let leaves = |axis: usize| {
+            (entry[axis] == 0 && direction[axis] < 0.0) || (entry[axis] == n - 1 && direction[axis] > 0.0)
+        };
         if (0..3).any(leaves) {
             return 0.0;
         }
         // Metres to the planes of the neighbours, and the nearest of them.
-        let to_plane = |axis: usize| if way[axis] == 0.0 { f64::INFINITY } else { spacing[axis] / way[axis].abs() };
+        let to_plane =
+            |axis: usize| if direction[axis] == 0.0 { f64::INFINITY } else { spacing[axis] / direction[axis].abs() };
         let step = (0..3).map(to_plane).fold(f64::INFINITY, f64::min);
         // Where both are equal but for rounding the light lies on the plane: directly as well.
         if distance <= step * (1.0 + 1e-9) {
             return self.densities[at] * distance;
         }
-        let pierced = (entry.as_dvec3() + way * step / spacing).clamp(DVec3::ZERO, DVec3::splat(f64::from(n - 1)));
+        let pierced =
+            (entry.as_dvec3() + direction * step / spacing).clamp(DVec3::ZERO, DVec3::splat(f64::from(n - 1)));
         // Rounding must not make a whole number of entries a little less or more.
         let pierced = DVec3::from(pierced.to_array().map(|c| if (c - c.round()).abs() < 1e-9 { c.round() } else { c }));
         let low = pierced.floor();

@@ -8,7 +8,7 @@ use crate::papers::gas::model::{Checker, DensityFunction, Object, Shape, SolidTe
 use crate::papers::gas::parameters::{Parameters, default_volume};
 use crate::scene::{Camera, Light, Mesh};
 
-/// Where the drink ends and the steam begins, metres.
+/// Height of the drink's surface, from which the steam rises, metres.
 const DRINK_M: f32 = 0.85;
 
 /// A tumbler of 0.5 m radius, inside and outside.

@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3};
 
 use crate::scene::Mesh;
 
-/// Turns `profile`, points of (radius, height) from the bottom to the top of the outside, about the Y axis. Normals are smooth
-/// but where the profile repeats a point, which makes an edge.
+/// Turns `profile`, points of (radius, height) from the bottom to the top of the outside, about the Y axis. Normals are
+/// smooth but where the profile repeats a point, which makes an edge.
 pub fn turned(name: &str, profile: &[Vec2], slices: u32) -> Mesh {
     let mut mesh = Mesh { name: name.to_owned(), ..Mesh::default() };
     for run in profile.chunk_by(|a, b| a != b) {

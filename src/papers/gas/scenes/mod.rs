@@ -46,7 +46,7 @@ impl Preset {
     pub const ALL: [Preset; 7] =
         [Preset::Fig3, Preset::Fig4, Preset::Fig5, Preset::Fig6, Preset::Fig7, Preset::Fig8, Preset::Solid];
 
-    /// The word that the command line knows it by.
+    /// The name that the command line and the record know it by.
     pub fn as_str(self) -> &'static str {
         match self {
             Preset::Fig3 => "fig-3",
