@@ -247,14 +247,12 @@ impl Declared for Setup {
                      up to 8 volumes",
                 )
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
         ];
         let lights = [
             Parameter::new("light", field!(Setup.parallel_lights))
                 .help("Direction of light from infinity; takes the place of the scene's lights")
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
             Parameter::new("point-light", field!(Setup.point_lights))
                 .unit("metres")

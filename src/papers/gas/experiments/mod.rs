@@ -6,7 +6,7 @@ mod trade;
 use serde_json::json;
 
 use self::tables::{TABLE_1, TABLE_2};
-use self::trade::Trade;
+use self::trade::{STEPS, TABLE_SIZE};
 use super::Variant;
 use super::scenes::Preset;
 use super::setup::Setup;
@@ -63,14 +63,14 @@ pub fn all() -> Vec<Experiment<Setup>> {
             help: "Shadow table of 16 to 128 entries a side: cost against the difference from tracing",
             options: &["counts"],
             refuses: &[("table", "this experiment sweeps it; give `counts`")],
-            run: |context| Trade::TableSize.run(context),
+            run: |context| TABLE_SIZE.run(context),
         },
         Experiment {
             name: "steps",
             help: "Steps along a volume: cost against the difference from the most",
             options: &["counts"],
             refuses: &[("steps", "this experiment sweeps them; give `counts`")],
-            run: |context| Trade::Steps.run(context),
+            run: |context| STEPS.run(context),
         },
         Experiment {
             name: "noise",

@@ -8,8 +8,8 @@ use crate::measure::{Error, Variant as _};
 use crate::papers::gas::Variant;
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::setup::Setup;
-use crate::report::plot::{BarChart, BarSeries};
-use crate::report::record::{ExperimentRow, Run};
+use crate::report::plot::{BarChart, BarSeries, PlotError};
+use crate::report::record::ExperimentRow;
 use crate::report::table::{Align, Style, Table, interval, number};
 
 /// A row of one of the paper's tables: scene, variant, minutes on an HP 9000/370.
@@ -54,14 +54,14 @@ impl PaperTable {
     ///
     /// # Errors
     /// [`Error::Parameter`], [`Error::Input`], [`Error::Scene`], [`Error::Gpu`], [`Error::Plot`], [`Error::Output`].
-    pub fn run(&'static self, context: &mut Context<'_>) -> Result<(), Error> {
+    pub fn run(&self, context: &mut Context<'_>) -> Result<(), Error> {
         let points = self.points(&context.setup)?;
         points.iter().try_for_each(|point| load(&point.study).map(drop))?;
         let mut machine = context.open()?;
         let swept = context.sweep(&mut machine, &points)?;
-        let outcome = Outcome::new(self, swept.rows);
-        let (table, plots) = (outcome.render(context.console.style()), [(".svg".to_owned(), outcome.plot()?)]);
-        context.publish_runs(&machine, outcome.into_runs(), table, &plots)?;
+        let rows = self.compared(swept.rows);
+        let (table, plots) = (self.render(&rows, context.console.style()), [(".svg".to_owned(), self.plot(&rows)?)]);
+        context.publish_runs(&machine, rows.into_iter().map(|compared| compared.row.run).collect(), table, &plots)?;
         machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
@@ -83,15 +83,6 @@ impl PaperTable {
         };
         Ok(setups.into_iter().enumerate().map(point).collect())
     }
-
-    /// The row of the paper that a measured one reproduces.
-    fn minutes(&self, row: &Row) -> Option<f64> {
-        self.rows.iter().find(|paper| is_of(row, paper)).map(|(_, _, minutes)| *minutes)
-    }
-
-    fn base(&self) -> &PaperRow {
-        &self.rows[self.base]
-    }
 }
 
 /// Tests a measured row against one of the paper's.
@@ -99,48 +90,53 @@ fn is_of(row: &Row, (scene, variant, _): &PaperRow) -> bool {
     row.label == scene.as_str() && row.run.variant == variant.as_str()
 }
 
-/// A table's rows with what they are compared with.
-struct Outcome {
-    paper: &'static PaperTable,
-    rows: Vec<Row>,
+/// A measured row with what it is compared with.
+struct Compared {
+    row: Row,
+    /// Time over that of the base row. Rows of one scene were measured interleaved; those of another scene one after the
+    /// other.
+    ratio: Option<Ratio>,
+    minutes: Option<f64>,
+    paper_ratio: Option<f64>,
 }
 
-impl Outcome {
+impl Compared {
+    fn name(&self) -> String {
+        format!("{} {}", self.row.label, self.row.run.variant)
+    }
+
+    fn ours(&self) -> Option<f64> {
+        self.ratio.as_ref().map(|ratio| ratio.ratio)
+    }
+
+    /// Ours over the paper's.
+    fn ours_over_paper(&self) -> Option<f64> {
+        self.ours().zip(self.paper_ratio).map(|(ours, paper)| ours / paper)
+    }
+}
+
+impl PaperTable {
     /// Notes the ratio to the base row in every run's record, beside the paper's.
-    fn new(paper: &'static PaperTable, rows: Vec<Row>) -> Self {
-        let mut outcome = Outcome { paper, rows };
-        for index in 0..outcome.rows.len() {
-            let row = &outcome.rows[index];
-            let (ratio, paper) = (outcome.ratio(row).map(|r| r.ratio), outcome.paper_ratio(row));
-            let entry = ExperimentRow {
-                row: format!("{} {}", row.label, row.run.variant),
-                paper,
-                ours: ratio,
-                ratio: ratio.zip(paper).map(|(ours, paper)| ours / paper),
-            };
-            outcome.rows[index].run.experiment = Some(entry);
-        }
-        outcome
-    }
-
-    /// Time over that of the base row. Rows of one scene were measured interleaved; those of another scene one after
-    /// the other.
-    fn ratio(&self, row: &Row) -> Option<Ratio> {
-        let base = self.rows.iter().find(|row| is_of(row, self.paper.base()))?;
-        ratio_within_process(base.run.frame_samples(), row.run.frame_samples())
-    }
-
-    fn paper_ratio(&self, row: &Row) -> Option<f64> {
-        Some(self.paper.minutes(row)? / self.paper.base().2)
-    }
-
-    /// The runs, for the record.
-    fn into_runs(self) -> Vec<Run> {
-        self.rows.into_iter().map(|row| row.run).collect()
+    fn compared(&self, rows: Vec<Row>) -> Vec<Compared> {
+        let base = &self.rows[self.base];
+        let samples = rows.iter().find(|row| is_of(row, base)).map(|row| row.run.frame_samples().to_vec());
+        let compared = |row: Row| {
+            let ratio = samples.as_ref().and_then(|base| ratio_within_process(base, row.run.frame_samples()));
+            let minutes = self.rows.iter().find(|paper| is_of(&row, paper)).map(|(_, _, minutes)| *minutes);
+            let mut compared = Compared { ratio, minutes, paper_ratio: minutes.map(|m| m / base.2), row };
+            compared.row.run.experiment = Some(ExperimentRow {
+                row: compared.name(),
+                paper: compared.paper_ratio,
+                ours: compared.ours(),
+                ratio: compared.ours_over_paper(),
+            });
+            compared
+        };
+        rows.into_iter().map(compared).collect()
     }
 
     /// The table, ours beside the paper's.
-    fn render(&self, style: Style) -> String {
+    fn render(&self, rows: &[Compared], style: Style) -> String {
         let mut table = Table::new(&[
             ("scene", Align::Left),
             ("variant", Align::Left),
@@ -152,46 +148,38 @@ impl Outcome {
             ("paper ratio", Align::Right),
             ("ours / paper", Align::Right),
         ]);
-        for row in &self.rows {
-            let (ratio, paper) = (self.ratio(row), self.paper_ratio(row));
+        for compared in rows {
+            let Row { label, run, .. } = &compared.row;
             table.push(vec![
-                row.label.clone(),
-                row.run.variant.clone(),
-                format!("{}x{}", row.run.width, row.run.height),
-                number(row.run.median_frame_ms(), 1),
-                number(ratio.as_ref().map(|r| r.ratio), 3),
-                interval(ratio.as_ref().map(|r| r.interval)),
-                number(self.paper.minutes(row), 0),
-                number(paper, 3),
-                number(ratio.as_ref().zip(paper).map(|(r, p)| r.ratio / p), 2),
+                label.clone(),
+                run.variant.clone(),
+                format!("{}x{}", run.width, run.height),
+                number(run.median_frame_ms(), 1),
+                number(compared.ours(), 3),
+                interval(compared.ratio.as_ref().map(|r| r.interval)),
+                number(compared.minutes, 0),
+                number(compared.paper_ratio, 3),
+                number(compared.ours_over_paper(), 2),
             ]);
         }
-        let (scene, variant, _) = self.paper.base();
+        let (scene, variant, _) = &self.rows[self.base];
         let base = format!("ratio: frame time over that of {} {}\n", scene.as_str(), variant.as_str());
-        format!("{}\n{}{base}", style.bold(self.paper.title), table.render(style))
+        format!("{}\n{}{base}", style.bold(self.title), table.render(style))
     }
 
     /// Ratios to the base row, ours beside the paper's.
-    ///
-    /// # Errors
-    /// [`Error::Plot`].
-    fn plot(&self) -> Result<String, Error> {
-        let chart = BarChart {
-            title: self.paper.title.to_owned(),
-            y_label: "time over the base row's".to_owned(),
-            groups: self.rows.iter().map(|row| format!("{} {}", row.label, row.run.variant)).collect(),
-            series: vec![
-                BarSeries {
-                    name: "ours".to_owned(),
-                    values: self.rows.iter().map(|row| self.ratio(row).map(|r| r.ratio)).collect(),
-                },
-                BarSeries {
-                    name: "paper".to_owned(),
-                    values: self.rows.iter().map(|row| self.paper_ratio(row)).collect(),
-                },
-            ],
+    fn plot(&self, rows: &[Compared]) -> Result<String, PlotError> {
+        let bars = |name: &str, values: fn(&Compared) -> Option<f64>| BarSeries {
+            name: name.to_owned(),
+            values: rows.iter().map(values).collect(),
         };
-        Ok(chart.to_svg()?)
+        let chart = BarChart {
+            title: self.title.to_owned(),
+            y_label: "time over the base row's".to_owned(),
+            groups: rows.iter().map(Compared::name).collect(),
+            series: vec![bars("ours", Compared::ours), bars("paper", |compared| compared.paper_ratio)],
+        };
+        chart.to_svg()
     }
 }
 

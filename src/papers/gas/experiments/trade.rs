@@ -11,8 +11,8 @@ use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study;
 use crate::measure::sweep::Row;
 use crate::measure::{Error, picture};
-use crate::papers::gas::Variant;
 use crate::papers::gas::setup::Setup;
+use crate::papers::gas::{Parameters, Variant};
 use crate::report::plot::{LineChart, Scale, Series};
 use crate::scene::Light;
 
@@ -20,50 +20,41 @@ use crate::scene::Light;
 const ONE_PERCENT_SRGB: u8 = 25;
 
 /// A number that is traded against the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Trade {
-    /// Entries a side of the shadow table, against tracing.
-    TableSize,
-    /// Steps along the longest side, against the most.
-    Steps,
+pub struct Trade {
+    title: &'static str,
+    x_label: &'static str,
+    /// Counts of a sweep that names none.
+    counts: &'static [u32],
+    variant: Variant,
+    set: fn(&mut Parameters, u32),
+    /// The variant whose picture is the reference; without, the picture of the highest count is.
+    reference: Option<Variant>,
 }
 
+/// Entries a side of the shadow table, against tracing.
+pub static TABLE_SIZE: Trade = Trade {
+    title: "Shadow table: cost and Luv difference from tracing, by entries a side",
+    x_label: "entries a side",
+    counts: &[16, 32, 64, 96, 128],
+    variant: Variant::Table,
+    set: |parameters, count| parameters.table_size = count,
+    reference: Some(Variant::Traced),
+};
+
+/// Steps along the longest side, against the most.
+pub static STEPS: Trade = Trade {
+    title: "Volume: cost and Luv difference from the most steps, by steps",
+    x_label: "steps",
+    counts: &[10, 20, 40, 80, 160],
+    variant: Variant::None,
+    set: |parameters, count| parameters.steps = count,
+    reference: None,
+};
+
 impl Trade {
-    /// Counts of a sweep that names none.
-    fn counts(self) -> &'static [u32] {
-        match self {
-            Trade::TableSize => &[16, 32, 64, 96, 128],
-            Trade::Steps => &[10, 20, 40, 80, 160],
-        }
-    }
-
-    fn variant(self) -> Variant {
-        match self {
-            Trade::TableSize => Variant::Table,
-            Trade::Steps => Variant::None,
-        }
-    }
-
-    fn as_str(self) -> &'static str {
-        match self {
-            Trade::TableSize => "entries a side",
-            Trade::Steps => "steps",
-        }
-    }
-
-    fn title(self) -> &'static str {
-        match self {
-            Trade::TableSize => "Shadow table: cost and Luv difference from tracing, by entries a side",
-            Trade::Steps => "Volume: cost and Luv difference from the most steps, by steps",
-        }
-    }
-
-    fn with(self, setup: &Setup, count: u32) -> Setup {
+    fn with(&self, setup: &Setup, count: u32) -> Setup {
         let mut setup = setup.clone();
-        match self {
-            Trade::TableSize => setup.parameters.table_size = count,
-            Trade::Steps => setup.parameters.steps = count,
-        }
+        (self.set)(&mut setup.parameters, count);
         setup
     }
 
@@ -71,37 +62,44 @@ impl Trade {
     ///
     /// # Errors
     /// [`Error::Parameter`], [`Error::Scene`], [`Error::Gpu`], [`Error::Image`], [`Error::Output`].
-    pub fn run(self, context: &mut Context<'_>) -> Result<(), Error> {
+    pub fn run(&self, context: &mut Context<'_>) -> Result<(), Error> {
         let setup = context.setup.named();
         let given = context.options.counts.as_slice();
-        let counts = if given.is_empty() { self.counts() } else { given };
-        let point =
-            |&count: &u32| point(&count.to_string(), f64::from(count), self.with(&setup, count), self.variant());
+        let counts = if given.is_empty() { self.counts } else { given };
+        let point = |&count: &u32| point(&count.to_string(), f64::from(count), self.with(&setup, count), self.variant);
         let points: Vec<_> = counts.iter().map(point).collect();
         points.iter().try_for_each(|point| load(&point.study).map(drop))?;
         let mut machine = context.open()?;
         let swept = context.sweep(&mut machine, &points)?;
         let table = self.table(&mut machine, &setup, &swept.rows)?;
-        context.publish_plotted(&machine, &table, self.chart(&swept.rows).to_svg())?;
+        let points = swept.rows.iter().filter_map(|row| Some((row.x, row.run.median_frame_ms()?))).collect();
+        let chart = LineChart {
+            title: self.title.to_owned(),
+            x_label: self.x_label.to_owned(),
+            y_label: "frame, ms".to_owned(),
+            x_scale: Scale::Log,
+            y_scale: Scale::Log,
+            series: vec![Series { name: "frame".to_owned(), points, reference: false }],
+        };
+        context.publish_plotted(&machine, &table, chart.to_svg())?;
         machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
 
     /// The rows' times beside the Luv difference (eq. 2-9 of the caustics thesis) of their pictures from the reference,
     /// over the pixels in which the gas is denser than 1 % opacity.
-    fn table(self, machine: &mut Machine, setup: &Setup, rows: &[Row]) -> Result<ResultTable, Error> {
-        let counts: Vec<u32> = rows.iter().map(|row| row.x as u32).collect();
-        let reference = match self {
-            Trade::TableSize => draw(machine, setup, Variant::Traced)?,
-            Trade::Steps => {
-                let most = counts.iter().max().map_or_else(|| setup.clone(), |&count| self.with(setup, count));
-                draw(machine, &most, self.variant())?
-            }
+    fn table(&self, machine: &mut Machine, setup: &Setup, rows: &[Row]) -> Result<ResultTable, Error> {
+        let most =
+            rows.iter().map(|row| row.x as u32).max().map_or_else(|| setup.clone(), |most| self.with(setup, most));
+        let reference = match self.reference {
+            Some(variant) => draw(machine, setup, variant)?,
+            None => draw(machine, &most, self.variant)?,
         };
         let mask = gas_mask(machine, setup)?;
         let mut table = Vec::new();
-        for (row, &count) in rows.iter().zip(&counts) {
-            let drawn = draw(machine, &self.with(setup, count), self.variant())?;
+        for row in rows {
+            let count = row.x as u32;
+            let drawn = draw(machine, &self.with(setup, count), self.variant)?;
             let difference = compare(&drawn, &reference, Some(&mask))?;
             table.push(vec![
                 json!(count),
@@ -114,23 +112,10 @@ impl Trade {
             ]);
         }
         Ok(ResultTable {
-            title: self.title(),
+            title: self.title,
             columns: &["count", "frame ms", "tables ms", "volume ms", "Luv mean", "Luv p99", "pixels"],
             rows: table,
         })
-    }
-
-    /// Frame time by count.
-    fn chart(self, rows: &[Row]) -> LineChart {
-        let points = rows.iter().filter_map(|row| Some((row.x, row.run.median_frame_ms()?))).collect();
-        LineChart {
-            title: self.title().to_owned(),
-            x_label: self.as_str().to_owned(),
-            y_label: "frame, ms".to_owned(),
-            x_scale: Scale::Log,
-            y_scale: Scale::Log,
-            series: vec![Series { name: "frame".to_owned(), points, reference: false }],
-        }
     }
 }
 

@@ -217,7 +217,6 @@ impl Parameters {
             Parameter::new("camera", CAMERA)
                 .help("Camera: eye and target, x,y,z,x,y,z in metres")
                 .default_text("the scene's")
-                .everyday()
                 .unrecorded(),
             Parameter::new("size", SIZE)
                 .range(Range::from(1.0))
@@ -230,7 +229,6 @@ impl Parameters {
             Parameter::new("seed", field!(Parameters.seed))
                 .help("Seed of noise and jitter")
                 .cost(Cost::Buffers)
-                .everyday()
                 .unrecorded(),
         ]
     }
