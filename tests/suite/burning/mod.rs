@@ -1,0 +1,17 @@
+//! The paper `burning` on the device: against its laws.
+
+mod dump;
+mod fire;
+mod flames;
+mod flames_oracle;
+mod laws;
+mod melting;
+mod meshes;
+mod oracle;
+mod pictures;
+mod refinement;
+mod refusals;
+mod solid;
+mod textures;
+mod time;
+mod twin;

@@ -1,0 +1,95 @@
+//! The finished picture of each variant.
+
+use std::path::Path;
+
+use fumarole::gpu::transfer::read_image;
+use fumarole::image::Rgba8;
+use fumarole::image::golden::{self, Tolerance};
+use fumarole::measure::{Paper, Variant as _};
+use fumarole::papers::burning::model::with_triangles;
+use fumarole::papers::burning::{Parameters, Shading, Variant};
+use fumarole::scene::{Mesh, MeshSource, shapes};
+
+use super::fire::{Fire, quick};
+use crate::common::gpu_test;
+
+/// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
+const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
+
+/// The bunny of 2,000 triangles, and for the methods of chapter 4 the box of 12.
+fn object(variant: Variant) -> Mesh {
+    match variant {
+        Variant::LowPoly | Variant::FullySubdivided => shapes::cuboid(),
+        _ => with_triangles(&MeshSource::Bunny.load().unwrap(), 2000),
+    }
+}
+
+#[test]
+fn the_object_fills_its_share_of_the_picture() {
+    gpu_test(|device| {
+        // A tall object its height, a wide one the width.
+        for (mesh, by_height) in [(MeshSource::Bunny, true), (MeshSource::Teapot, false)] {
+            let (width, height) = (120, if by_height { 90 } else { 120 });
+            let parameters =
+                Parameters { shading: Shading::Normals, fire: 0, smoke: 0, width, height, ..Parameters::default() };
+            let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh.load().unwrap());
+            fire.frame(0);
+            let texels = read_image(device, fire.paper.picture()).unwrap();
+            let is_object = |i: u32| texels[4 * i as usize..][..3] != texels[..3];
+            let drawn: Vec<u32> = (0..width * height).filter(|i| is_object(*i)).collect();
+            let extent = |at: fn(u32, u32) -> u32| {
+                let places = drawn.iter().map(|i| at(*i, width));
+                f64::from(places.clone().max().unwrap() - places.min().unwrap() + 1)
+            };
+            let columns = extent(|i, width| i % width) / f64::from(width);
+            let rows = extent(|i, width| i / width) / f64::from(height);
+            let (filled, other) = if by_height { (rows, columns) } else { (columns, rows) };
+            assert!((filled - 0.8).abs() < 0.025 && other < 0.82, "{mesh}: {columns} x {rows}");
+        }
+    });
+}
+
+#[test]
+fn a_late_picture_is_that_of_all_frames_before_it() {
+    gpu_test(|device| {
+        let mesh = shapes::cuboid();
+        // So slow that it still burns; more ticks than a frame records.
+        let parameters = Parameters { speed_per_s: 0.02, ..quick() };
+        let [mut stepped, mut late] = [0, 1].map(|_| Fire::new(device, Variant::LowPoly, &parameters, &mesh));
+        stepped.ticks(1500);
+        stepped.frame(1500);
+        late.frame(1500);
+        assert!(stepped.state() == late.state());
+        let counts = late.paper.counts().unwrap();
+        assert!(counts.tick == 1501 && counts.active_vertices > 0 && counts.drawn_triangles > 0, "{counts:?}");
+        let picture = |fire: &Fire| read_image(device, fire.paper.picture()).unwrap();
+        assert!(picture(&stepped) == picture(&late));
+    });
+}
+
+#[test]
+fn the_pictures_are_the_golden_ones() {
+    gpu_test(|device| {
+        for &variant in Variant::ALL {
+            let parameters = Parameters {
+                speed_per_s: 0.2,
+                first_frame: 120,
+                fire: 300,
+                smoke: 100,
+                width: 128,
+                height: 96,
+                ..Parameters::default()
+            };
+            let mut fire = Fire::new(device, variant, &parameters, &object(variant));
+            fire.frame(0);
+            let view = fire.paper.picture();
+            let texels = read_image(device, view).unwrap();
+            let picture = Rgba8::new(view.width(), view.height(), texels).unwrap();
+            let file = format!("tests/golden/burning-{}.png", variant.as_str());
+            let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+            if let Err(error) = golden::check(&picture, &golden, TOLERANCE, Path::new(env!("CARGO_TARGET_TMPDIR"))) {
+                panic!("{error}");
+            }
+        }
+    });
+}

@@ -1,0 +1,17 @@
+//! The paper `caustics` on the device: against its oracle, against closed forms and conservation laws, variant against
+//! variant, and its pictures against goldens.
+
+mod drawing;
+mod extremes;
+mod laws;
+mod level_map;
+mod oracle;
+mod pictures;
+mod scene;
+mod seen;
+mod several;
+mod smart;
+mod stencil;
+mod variants;
+mod volumes;
+mod water_map;

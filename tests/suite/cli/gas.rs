@@ -1,0 +1,304 @@
+//! `gas` through the binary: its passes, its record, its tables, and what it refuses.
+
+use super::program::{ONCE, Program, assert_schema, entries, folder, gas, read_json};
+
+const SMALL: &str = "--size 45x31 --steps 8 --table 8";
+
+fn small(verb: &str) -> Program {
+    gas(verb).args(SMALL).on_test_device()
+}
+
+#[test]
+fn the_passes_follow_the_shadowing() {
+    let listed = small("passes --json").run().succeeded().json();
+    let names = |variant: &str| -> Vec<String> {
+        let found = listed.as_array().unwrap().iter().find(|v| v["variant"] == variant).unwrap();
+        found["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let surfaces = ["empty-lists", "fragments", "sort"];
+    let joined = |middle: &[&'static str]| [&surfaces[..], middle, &["resolve"]].concat();
+    assert_eq!(names("no-volume"), joined(&[]));
+    assert_eq!(names("none"), joined(&["volume"]));
+    assert_eq!(names("surfaces"), joined(&["volume", "light-attenuation"]));
+    assert_eq!(names("traced"), joined(&["volume", "light-attenuation"]));
+    assert_eq!(names("table"), joined(&["density-table", "shadow-table", "volume", "light-attenuation"]));
+}
+
+#[test]
+fn table_2_is_written_with_the_ratios_beside_the_paper_s() {
+    let out = folder();
+    let ended = small("experiment 2 --out .").args("--frames 1 --repeat 1 --warmup 1 --no-limits").inside(out.path());
+    let ended = ended.run().succeeded();
+    assert_eq!(entries(out.path()), ["gas-2.csv", "gas-2.json", "gas-2.svg"]);
+    let record = read_json(&out.path().join("gas-2.json"));
+    assert_schema(&record);
+    for run in record["runs"].as_array().unwrap() {
+        let minutes = match run["variant"].as_str().unwrap() {
+            "none" => 80.0,
+            "surfaces" => 101.0,
+            "traced" => 1800.0,
+            "table" => 127.0,
+            other => panic!("{other}"),
+        };
+        assert!((run["experiment"]["paper"].as_f64().unwrap() - minutes / 80.0).abs() < 1e-9, "{}", run["experiment"]);
+        assert!(run["results"]["fragments"].as_u64().unwrap() > 0, "{run}");
+    }
+    assert!(ended.stdout.contains("paper ratio"), "{}", ended.stdout);
+}
+
+/// Table 1 has a row for each time that the paper gives; figure 3's two are the only ones of one scene.
+#[test]
+fn table_1_is_written_with_the_ratios_beside_the_paper_s() {
+    let out = folder();
+    small("experiment 1 --out . --frames 1 --repeat 1 --warmup 1 --no-limits").inside(out.path()).run().succeeded();
+    let record = read_json(&out.path().join("gas-1.json"));
+    assert_schema(&record);
+    let row = |run: &serde_json::Value| {
+        let minutes = run["experiment"]["paper"].as_f64().unwrap() * 59.0;
+        (run["experiment"]["row"].as_str().unwrap().to_owned(), minutes.round())
+    };
+    let mut rows: Vec<_> = record["runs"].as_array().unwrap().iter().map(row).collect();
+    rows.sort_by(|a, b| a.0.cmp(&b.0));
+    let expected = [
+        ("fig-3 no-volume", 59.0),
+        ("fig-3 none", 71.0),
+        ("fig-4 no-volume", 105.0),
+        ("fig-5 table", 260.0),
+        ("fig-6 surfaces", 95.0),
+        ("fig-7 surfaces", 165.0),
+    ];
+    assert_eq!(rows, expected.map(|(row, minutes)| (row.to_owned(), minutes)));
+}
+
+/// Larger tables and more steps are nearer to what they are compared with; turbulence has a share of the time.
+#[test]
+fn sweeps_and_the_share_of_turbulence_are_written() {
+    let out = folder();
+    let run = |words: &str| {
+        let experiment = gas(&format!("experiment {words} --size 90x62 --quiet --out .")).args(ONCE);
+        experiment.on_test_device().inside(out.path()).run().succeeded();
+    };
+    let rows = |name: &str| read_json(&out.path().join(format!("gas-{name}.json")))["table"].clone();
+    let differences = |name: &str| -> Vec<(u64, f64)> {
+        let table = rows(name);
+        let of = |row: &serde_json::Value| (row["count"].as_u64().unwrap(), row["Luv mean"].as_f64().unwrap());
+        table["rows"].as_array().unwrap().iter().map(of).collect()
+    };
+    run("table-size --steps 20 --counts 4,24");
+    let by_size = differences("table-size");
+    assert!(by_size[0].0 == 4 && by_size[1].0 == 24 && by_size[1].1 < 0.7 * by_size[0].1, "{by_size:?}");
+    run("steps --counts 4,16,64");
+    let by_steps = differences("steps");
+    assert!(by_steps[1].1 < by_steps[0].1 && by_steps[2] == (64, 0.0) && by_steps[1].1 > 0.0, "{by_steps:?}");
+    run("noise --steps 20");
+    let share = rows("noise")["rows"][0]["share"].as_f64().unwrap();
+    assert!(share > 0.0 && share < 1.0, "{share}");
+}
+
+#[test]
+fn a_sequence_is_each_picture_and_all_of_a_figure() {
+    let out = folder();
+    gas("experiment sequence --quiet --size 24x18 --steps 4 --out .")
+        .on_test_device()
+        .inside(out.path())
+        .run()
+        .succeeded();
+    let frames = [(6, vec![0, 30, 60, 90, 120, 150]), (7, vec![0, 80, 160, 240, 320, 400, 440, 480, 520])];
+    for (figure, frames) in frames {
+        let strip = fumarole::image::read_png(&out.path().join(format!("gas-sequence-fig-{figure}.png"))).unwrap();
+        assert_eq!((strip.width(), strip.height()), (3 * 24, frames.len() as u32 / 3 * 18));
+        for (i, frame) in frames.iter().enumerate() {
+            let file = out.path().join(format!("gas-sequence-fig-{figure}-{frame:04}.png"));
+            let picture = fumarole::image::read_png(&file).unwrap();
+            let (column, row) = (i % 3, i / 3);
+            let first = 4 * ((row * 18) * 72 + column * 24);
+            assert!(picture.pixels()[..4 * 24] == strip.pixels()[first..first + 4 * 24], "{}", file.display());
+        }
+    }
+    assert_eq!(entries(out.path()).len(), 6 + 9 + 2);
+}
+
+#[test]
+fn the_volume_is_seen_and_another_seed_is_another_gas() {
+    let out = folder();
+    for (name, options) in [
+        ("a", "--variant none"),
+        ("b", "--variant none"),
+        ("c", "--variant none --seed 2"),
+        ("d", "--variant no-volume"),
+    ] {
+        small(&format!("render --quiet --image {name}.png")).args(options).inside(out.path()).run().succeeded();
+    }
+    let read = |name: &str| std::fs::read(out.path().join(name)).unwrap();
+    assert!(read("a.png") == read("b.png"));
+    assert!(read("a.png") != read("c.png"));
+    assert!(read("a.png") != read("d.png"));
+}
+
+/// Bands and vertex pulling change how the picture is made, and not what it shows; densities change the gas.
+#[test]
+fn bands_and_pulled_vertices_show_the_same_and_other_densities_do_not() {
+    let out = folder();
+    let draw = |name: &str, options: &str| {
+        small(&format!("render --quiet --variant table --image {name}.png"))
+            .args(options)
+            .inside(out.path())
+            .run()
+            .succeeded();
+        std::fs::read(out.path().join(format!("{name}.png"))).unwrap()
+    };
+    let own = draw("own", "");
+    assert!(own == draw("bands", "--list-bytes 20000"));
+    assert!(own == draw("pulled", "--no-geometry-stage"));
+    let mut others = vec![own];
+    for (name, options) in [
+        ("constant", "--density constant"),
+        ("turbulence", "--density turbulence"),
+        ("clouds", "--density clouds"),
+        ("fog", "--density fog --first-frame 300"),
+        ("hypertexture", "--density hypertexture"),
+        ("opaque", "--opaque 3"),
+        ("power", "--power 2"),
+        ("scale", "--texture-scale 4"),
+    ] {
+        let picture = draw(name, options);
+        assert!(!others.contains(&picture), "{name}");
+        others.push(picture);
+    }
+    assert!(others[0] == draw("steam", "--density steam"));
+}
+
+/// A preset's picture is its figure's: figures 3 and 5 have one scene, and differ in their shadowing.
+#[test]
+fn a_preset_is_drawn_in_its_figure_s_variant() {
+    let out = folder();
+    let drawn = |preset: &str, variant: &str| {
+        small(&format!("render --quiet --out . --preset {preset}")).inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join(format!("gas-{variant}-0000.png"))).unwrap()
+    };
+    assert!(drawn("fig-3", "none") != drawn("fig-5", "table"));
+    drawn("fig-4", "no-volume");
+    drawn("fig-6", "surfaces");
+    drawn("fig-7 --volume box,0,0.5,2,1,0.5,1", "surfaces");
+    drawn("fig-4 --volume box,0,0.5,2,1,0.5,1", "table");
+}
+
+/// Each number of the gases changes the picture of a scene that has such a gas.
+#[test]
+fn every_number_of_the_gases_is_seen() {
+    let out = folder();
+    let draw = |options: &str| {
+        small("render --quiet --variant none --image picture.png").args(options).inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join("picture.png")).unwrap()
+    };
+    for (scene, options) in [
+        (
+            "--preset fig-8",
+            &[
+                "--volume sphere,0.8,1,0,0.4,0.4,0.4",
+                "--volume frustum,0.8,1,0,0.4,0.4,0.4,1,0.2",
+                "--down 0.1",
+                "--swirl-frames 90",
+                "--ellipse 0.6,0.2",
+                "--tau 3",
+                "--albedo 0.2",
+                "--falloff 0.1",
+                "--phase 1,0,0,0",
+                "--pixel-size 0.3",
+                "--early-end 0.6",
+                "--ambient 0.6,0.6,0.6",
+                "--light 0,-1,0",
+                "--point-light 0,3,2",
+                "--camera 1,2,5,0,1,0",
+                "--object teapot",
+            ][..],
+        ),
+        ("--preset fig-7", &["--front -2,0.017,2.5,0.8,0.6", "--full-fog 900", "--down 0.1"]),
+        ("--density clouds", &["--frequency 9"]),
+        ("--preset solid", &["--hypertexture 0.5,0.16", "--hypertexture 1.4,0.6"]),
+        ("--preset fig-4", &["--volume box,0,0.5,2,1,0.5,1"]),
+    ] {
+        let mut pictures = vec![draw(scene)];
+        for option in options {
+            let picture = draw(&format!("{scene} {option}"));
+            assert!(!pictures.contains(&picture), "{scene} {option}");
+            pictures.push(picture);
+        }
+    }
+}
+
+/// The sampling of the gas and of its shadows.
+#[test]
+fn steps_table_and_threshold_are_seen() {
+    let out = folder();
+    let draw = |options: &str| {
+        let render = gas("render --quiet --variant table --size 45x31 --image picture.png").args(options);
+        render.on_test_device().inside(out.path()).run().succeeded();
+        std::fs::read(out.path().join("picture.png")).unwrap()
+    };
+    let options = ["", " --shadow-threshold 0.3"].map(|o| format!("--steps 8 --table 8{o}"));
+    let pictures = [&*options[0], &*options[1], "--steps 20 --table 8", "--steps 8 --table 30"].map(draw);
+    for (i, picture) in pictures.iter().enumerate() {
+        assert!(!pictures[..i].contains(picture), "picture {i}");
+    }
+}
+
+#[test]
+fn what_no_gas_heeds_is_refused() {
+    for (options, parts) in [
+        ("--preset fig-4 --tau 2", &["--tau", "no volume", "--volume"][..]),
+        ("--preset fig-4 --density fog", &["--density", "--volume"]),
+        ("--frequency 3", &["--frequency", "--density clouds"]),
+        ("--preset fig-3 --down 0.1", &["--down", "--density fog or steam"]),
+        ("--front 0,1,1,1,1", &["--front", "--density fog"]),
+        ("--full-fog 10", &["--full-fog", "--density fog"]),
+        ("--hypertexture 1,0.2", &["--hypertexture", "--density hypertexture"]),
+        ("--preset solid --phase 1,0,0,0", &["--phase", "solids have normals"]),
+        ("--preset fig-7 --front 0,1,0,1,1", &["--front 0,1,0,1,1", "depth above 0"]),
+        ("--preset fig-7 --full-fog -1", &["--full-fog -1"]),
+        ("--swirl-frames -1", &["--swirl-frames -1"]),
+        ("--ellipse 1,99999", &["--ellipse 1,99999"]),
+        ("--preset solid --hypertexture 1,0", &["--hypertexture 0", "softness"]),
+        ("--volume box,0,0,0,1,0,1", &["--volume 1,0,1", "half extents"]),
+        ("--volume frustum,0,0,0,1,1,1,0,0", &["--volume 0,0", "radii"]),
+    ] {
+        gas("render").on_test_device().args(options).run().refused(2, parts);
+    }
+    gas(&format!("render {}", "--volume sphere,0,0,0,1,1,1 ".repeat(8))).run().refused(2, &["--volume 9", "8"]);
+    gas("render --volume ball,0,0,0,1,1,1").run().misused(&["--volume", "sphere"]);
+    gas("experiment 2 --frequency 3").run().refused(2, &["--frequency"]);
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_its_option() {
+    for (options, parts) in [
+        ("--steps 0", &["--steps 0", "1 to 100000"][..]),
+        ("--table 1", &["--table 1"]),
+        ("--table 513", &["--table 513"]),
+        ("--tau -1", &["--tau -1"]),
+        ("--albedo 1.5", &["--albedo"]),
+        ("--falloff 2", &["--falloff 2"]),
+        ("--phase 0.5,0.5,0.2,0", &["--phase", "add up to 1"]),
+        ("--pixel-size 0", &["--pixel-size 0"]),
+        ("--shadow-threshold -1", &["--shadow-threshold -1"]),
+        ("--early-end 2", &["--early-end 2"]),
+        ("--light 0,0,0", &["--light 0,0,0"]),
+        ("--size 0x0", &["--size 0x0"]),
+        ("--opaque -1", &["--opaque -1"]),
+        ("--power 0", &["--power 0"]),
+        ("--texture-scale 0", &["--texture-scale 0"]),
+        ("--list-bytes 10", &["--list-bytes 10", "at least 4096"]),
+        // A row of glass wants more than its four fragments a pixel, and a row is the least that is done at once.
+        ("--preset fig-6 --size 60x8 --list-bytes 4096", &["--list-bytes"]),
+        ("--object no-such.obj", &["no-such.obj"]),
+    ] {
+        gas("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
+    }
+    for option in ["tau", "albedo", "falloff", "pixel-size", "shadow-threshold", "early-end"] {
+        for value in ["nan", "inf", "two", ""] {
+            gas("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
+        }
+    }
+    gas("bench --preset fig-9").run().misused(&["--preset", "fig-8"]);
+    gas("experiment 2 --preset fig-3").run().refused(2, &["--preset"]);
+}

@@ -1,0 +1,13 @@
+//! The paper `gas` on the device: against its oracle, closed forms and laws.
+
+mod density;
+mod drawing;
+mod lists;
+mod march;
+mod pictures;
+mod resolve;
+mod scenes;
+mod shadows;
+mod slab;
+mod surfaces;
+mod tables;

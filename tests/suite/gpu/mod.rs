@@ -1,0 +1,17 @@
+//! Tests of the Vulkan layer.
+
+mod barriers;
+mod counters;
+mod devices;
+mod first_pass;
+mod fixtures;
+mod indirect;
+mod memory_model;
+mod pass_desc;
+mod pictures;
+mod refusals;
+mod replay;
+mod resources;
+mod sequences;
+mod splats;
+mod timing;

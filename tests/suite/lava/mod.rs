@@ -1,0 +1,11 @@
+//! The paper `lava` on the device: each stage against its oracle, laws, and its pictures.
+
+mod animation;
+mod density;
+mod frames;
+mod objects;
+mod pictures;
+mod refusals;
+mod scene;
+mod splatting;
+mod surface;

@@ -1,0 +1,221 @@
+//! Stage three against the oracle, pixel by pixel.
+
+use std::sync::Arc;
+
+use ash::vk;
+use fumarole::gpu::transfer::upload_rows;
+use fumarole::gpu::{Device, Image, ImageDesc, ImageView, Mode, Recorder};
+use fumarole::papers::lava::reference::{Splats, Surface};
+use fumarole::papers::lava::{Parameters, Rock, Shading, Splatting, depth_range_m};
+use fumarole::scene::Camera;
+use glam::{DVec3, Vec3};
+
+use super::scene::{parameters, shaders, texels};
+use crate::common::gpu_test;
+
+/// A ridge in front of a plateau, seen from low down: it hides a part of the plateau and crosses its outline.
+fn ridge(parameters: &Parameters) -> Surface {
+    let (columns, rows) = (24, 20);
+    let space = parameters.space_m.as_dvec3();
+    let (mut heights, mut normals) = (Vec::new(), Vec::new());
+    for k in 0..rows {
+        for i in 0..columns {
+            let (x, z) = (f64::from(i) / f64::from(columns), f64::from(k) / f64::from(rows));
+            let ridge = 0.8 * (-((z - 0.75) / 0.08).powi(2)).exp() * (0.4 + 0.6 * x);
+            heights.push(ridge + 0.45 * (1.0 - z).powi(2));
+            normals.push(DVec3::new(-0.2 * x, 1.0, if z > 0.75 { 0.8 } else { -0.6 * z }).normalize());
+        }
+    }
+    // As the texture holds them.
+    let heights = heights.into_iter().map(|h| f64::from(h as f32)).collect();
+    let normals = normals.into_iter().map(|n: DVec3| n.as_vec3().as_dvec3()).collect();
+    Surface { space, columns: columns as usize, rows: rows as usize, heights, normals }
+}
+
+/// The surface as a texture of normals and heights.
+fn texture(device: &Arc<Device>, surface: &Surface) -> Arc<ImageView> {
+    let (width, height) = (surface.columns as u32, surface.rows as u32);
+    let desc = ImageDesc::new_2d("surface", vk::Format::R32G32B32A32_SFLOAT, width, height);
+    let view = Image::new(device, desc.usage(vk::ImageUsageFlags::SAMPLED)).unwrap().view().unwrap();
+    let texels = surface.normals.iter().zip(&surface.heights).map(|(n, h)| n.extend(*h).as_vec4().to_array());
+    let texels: Vec<[f32; 4]> = texels.collect();
+    let bytes: &[u8] = bytemuck::cast_slice(&texels);
+    upload_rows(device, &view, (width, height), |first_row, rows| {
+        let at = first_row as usize * 16 * surface.columns;
+        rows.copy_from_slice(&bytes[at..at + rows.len()]);
+    })
+    .unwrap();
+    view
+}
+
+fn low_camera() -> Camera {
+    Camera {
+        eye: Vec3::new(1.1, 1.0, 2.8),
+        target: Vec3::new(1.0, 0.35, 0.5),
+        vertical_fov_rad: 0.7,
+        ..Parameters::default().camera
+    }
+}
+
+fn stage(device: &Arc<Device>, parameters: &Parameters, surface: &Surface, rock: &Rock) -> Splatting {
+    parameters.validate().unwrap();
+    let texture = texture(device, surface);
+    let instanced = !parameters.geometry_stage;
+    let splatting = Splatting::new(&shaders(device), "test", parameters, &texture, rock, instanced).unwrap();
+    let mut recorder = Recorder::new(device).unwrap();
+    recorder.run(Mode::Plain, |frame| splatting.record(frame, 0.0)).unwrap();
+    splatting
+}
+
+/// Two sheets, one behind the other: what lies less than epsilon behind the nearest is blended, nothing else.
+#[test]
+fn the_front_blends_and_the_back_does_not() {
+    gpu_test(|device| {
+        for (epsilon_m, geometry_stage) in [(0.05, true), (0.05, false), (0.4, true)] {
+            let parameters = Parameters {
+                shading: Shading::Heights,
+                camera: low_camera(),
+                epsilon_m,
+                geometry_stage,
+                splats: [50, 40],
+                width: 320,
+                height: 240,
+                ..parameters()
+            };
+            let surface = ridge(&parameters);
+            let stage = stage(device, &parameters, &surface, Rock::built_in());
+            let size = [parameters.width, parameters.height];
+            let radius = f64::from(parameters.splat_radius_m);
+            let camera = &parameters.camera;
+            let splats = Splats::new(&surface, parameters.splats, radius, f64::from(epsilon_m), camera, size);
+            let sums: Vec<[f32; 4]> = texels(device, stage.accumulated_colors());
+            let depths: Vec<f32> = texels(device, stage.visibility());
+            let range_m = f64::from(depth_range_m(&parameters));
+            let (mut drawn, mut hiding, mut close_calls, mut off) = (0, 0, 0, 0);
+            // Every eleventh: the oracle asks every splat.
+            for (at, (found, depth)) in sums.iter().zip(&depths).enumerate().step_by(11) {
+                let (column, row) = (at as u32 % size[0], at as u32 / size[0]);
+                let height_share = |center: DVec3| center.y / surface.space.y;
+                let Some(pixel) = splats.pixel(column, row, height_share) else {
+                    // A rim just outside the pixel's centre may be drawn all the same, with the least weight.
+                    assert!(found[3] <= 0.012, "{column} {row}: {found:?}");
+                    continue;
+                };
+                if pixel.is_close_call {
+                    close_calls += 1;
+                    continue;
+                }
+                drawn += 1;
+                hiding += u32::from(pixel.hidden > 0);
+                let depth_off_m = (f64::from(*depth) * range_m - pixel.depth - f64::from(epsilon_m)).abs();
+                let apart = (f64::from(found[0]) - pixel.sums[0]).abs() + (f64::from(found[3]) - pixel.sums[1]).abs();
+                let relative = apart / pixel.sums[1].max(0.1);
+                // Devices interpolate coarsely across splats that they see from the side.
+                assert!(relative < 0.02 && depth_off_m < 1e-3, "{column} {row}: {found:?} {depth} {pixel:?}");
+                off += u32::from(relative > 1e-3 || depth_off_m > 1e-4);
+            }
+            assert!(off * 50 < drawn, "{off} of {drawn} pixels are off by more than rounding");
+            println!("epsilon {epsilon_m}: {drawn} pixels, {hiding} with hidden splats, {close_calls} left out");
+            assert!(drawn > 1000 && hiding > 100 && close_calls * 3 < drawn, "{drawn} {hiding} {close_calls}");
+        }
+    });
+}
+
+/// Eq. 7.2 is a weighted mean: of one colour it is that colour, wherever anything was drawn.
+#[test]
+fn a_constant_colour_comes_out_constant() {
+    gpu_test(|device| {
+        let rock = Rock { width: 2, height: 2, texels: vec![[200, 100, 50, 255]; 4] };
+        for (shading, space_y) in [(Shading::Rock, 1.0), (Shading::Color, 1.0), (Shading::Lava, 0.5)] {
+            let parameters = Parameters {
+                shading,
+                camera: low_camera(),
+                space_m: Vec3::new(2.0, space_y, 1.2),
+                splat_radius_m: 0.03,
+                ..parameters()
+            };
+            let mut surface = ridge(&parameters);
+            if shading != Shading::Rock {
+                // The colour depends on the height.
+                surface.heights.fill(0.25);
+            }
+            let stage = stage(device, &parameters, &surface, &rock);
+            let texel = Vec3::new(200.0, 100.0, 50.0) / 255.0;
+            let color = parameters.color * (space_y - 0.25);
+            let expected = match shading {
+                Shading::Rock => texel,
+                Shading::Color => color,
+                _ => color * texel,
+            };
+            let sums: Vec<[f32; 4]> = texels(device, stage.accumulated_colors());
+            let picture: Vec<[u8; 4]> = texels(device, stage.picture());
+            let mut drawn = 0;
+            for (sums, pixel) in sums.iter().zip(&picture) {
+                if sums[3] == 0.0 {
+                    assert_eq!(*pixel, [0, 0, 0, 255]);
+                    continue;
+                }
+                drawn += 1;
+                let found = Vec3::from_slice(sums) / sums[3];
+                assert!((found / expected - 1.0).abs().max_element() < 1e-5, "{found} {expected}");
+                let bytes = expected.clamp(Vec3::ZERO, Vec3::ONE) * 255.0;
+                let off = (Vec3::new(pixel[0].into(), pixel[1].into(), pixel[2].into()) - bytes).abs();
+                assert!(off.max_element() < 0.51, "{pixel:?} {bytes}");
+            }
+            assert!(drawn > 2000, "{drawn}");
+        }
+    });
+}
+
+/// The rock repeats without a seam and drifts with the lava.
+#[test]
+fn the_rock_is_read_at_the_splats_centre_and_drifts() {
+    gpu_test(|device| {
+        let parameters = Parameters {
+            shading: Shading::Rock,
+            splats: [1, 1],
+            splat_radius_m: 0.4,
+            rock_tile_m: 0.7,
+            ..parameters()
+        };
+        let rock = Rock {
+            width: 3,
+            height: 2,
+            texels: [
+                [10, 40, 0, 255],
+                [90, 0, 0, 255],
+                [250, 0, 0, 255],
+                [30, 200, 0, 255],
+                [50, 0, 0, 255],
+                [70, 9, 0, 255],
+            ]
+            .to_vec(),
+        };
+        let mut surface = ridge(&parameters);
+        surface.heights.fill(0.0);
+        let texture = texture(device, &surface);
+        let stage = Splatting::new(&shaders(device), "test", &parameters, &texture, &rock, false).unwrap();
+        let mut recorder = Recorder::new(device).unwrap();
+        // The one splat's centre is the middle of the space.
+        for drift_m in [0.0, 0.1, 0.29, 0.5] {
+            recorder.run(Mode::Plain, |frame| stage.record(frame, drift_m)).unwrap();
+            let sums: Vec<[f32; 4]> = texels(device, stage.accumulated_colors());
+            let drawn = sums.iter().find(|s| s[3] > 0.1).unwrap();
+            let at = |place: f64, count: f64| (place / 0.7).rem_euclid(1.0) * count - 0.5;
+            let (u, v) = (at(1.0 - f64::from(drift_m), 3.0), at(0.6, 2.0));
+            let texel = |i: f64, k: f64| {
+                let index = k.rem_euclid(2.0) as usize * 3 + i.rem_euclid(3.0) as usize;
+                let [r, g, ..] = rock.texels[index];
+                [f64::from(r) / 255.0, f64::from(g) / 255.0]
+            };
+            let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+            for channel in [0, 1] {
+                let row = |k: f64| mix(texel(u.floor(), k)[channel], texel(u.floor() + 1.0, k)[channel], u - u.floor());
+                let expected = mix(row(v.floor()), row(v.floor() + 1.0), v - v.floor());
+                let found = f64::from(drawn[channel] / drawn[3]);
+                // Filters may have as few as eight bits of fraction.
+                assert!((found - expected).abs() < 0.01, "drift {drift_m}: {found} {expected}");
+            }
+        }
+    });
+}

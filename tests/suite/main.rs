@@ -1,0 +1,11 @@
+//! Every test that needs a device or a program, in one program of its own: `cargo test --release --locked --test suite
+//! gas::` runs those of one module.
+
+mod burning;
+mod caustics;
+mod cli;
+mod common;
+mod gas;
+mod gpu;
+mod lava;
+mod terrain;

@@ -1,0 +1,249 @@
+//! Collisions against brute force.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use fumarole::papers::terrain::reference::Ray;
+use fumarole::papers::terrain::{Base, Collider, Inputs, Interpolation, MapInput, Parameters, Placement, Surface};
+use fumarole::scene::random::Random;
+use glam::{DVec2, DVec3};
+
+use super::land::{alone, volcano};
+use super::world::{Relief, World, random_map};
+
+/// Steps along a segment.
+const STEPS: u32 = 20_000;
+
+#[test]
+fn segments_touch_where_small_steps_do() {
+    let map = volcano(65);
+    let spacing_m = map.spacing_m().x;
+    let lowest_m = f64::from(map.range_m().0);
+    let height_m = |x: f64, z: f64| {
+        let [u, v] = [x, z].map(|c| c / spacing_m + 32.0);
+        if u < 0.0 || v < 0.0 || u > 64.0 || v > 64.0 {
+            return 0.0;
+        }
+        let (column, row) = ((u as u32).min(63), (v as u32).min(63));
+        let (a, b) = (u - f64::from(column), v - f64::from(row));
+        let at = |i: u32, j: u32| f64::from(map.height_m(column + i, row + j));
+        let north = at(0, 0) + (at(1, 0) - at(0, 0)) * a;
+        let south = at(0, 1) + (at(1, 1) - at(0, 1)) * a;
+        north + (south - north) * b - lowest_m
+    };
+    let maps = alone(map.clone());
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let mut random = Random::new(3);
+    let mut met = 0;
+    for _ in 0..300 {
+        let mut place = |high: f64| {
+            let [x, y, z] = [(); 3].map(|()| f64::from(random.unit()));
+            DVec3::new((x - 0.5) * 14_000.0, y * high, (z - 0.5) * 14_000.0)
+        };
+        let (a, b) = (place(3000.0), place(200.0));
+        let is_inside = |part: f64| {
+            let p = a.lerp(b, part);
+            p.y <= height_m(p.x, p.z)
+        };
+        let step = (0..=STEPS).map(|i| f64::from(i) / f64::from(STEPS)).find(|&part| is_inside(part));
+        let contact = collider.segment(a, b);
+        let slack = 2.0 / f64::from(STEPS);
+        match (step, contact) {
+            (Some(part), Some(contact)) => {
+                met += 1;
+                // Steps may pass a ridge that the collider meets, never the other way round.
+                assert!(contact.t <= part + 1e-5, "{a} to {b}: {} after {part}", contact.t);
+                let p = a.lerp(b, contact.t);
+                let is_wall = contact.normal.y.abs() < 1e-6;
+                assert!(is_wall || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m || contact.t == 0.0);
+                assert!(contact.t >= part - slack || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m);
+            }
+            (None, Some(contact)) => {
+                let p = contact.point;
+                assert!((p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m, "{a} to {b}: {contact:?}");
+            }
+            (Some(part), None) => panic!("{a} to {b}: nothing is met, but the ground at {part}"),
+            (None, None) => {}
+        }
+    }
+    assert!(met > 100, "only {met} segments meet the ground");
+}
+
+const BASES: [Base; 3] =
+    [Base::Plane, Base::Cylinder { radius_m: 900.0 }, Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 }];
+const INTERPOLATIONS: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
+
+fn collider(world: &World) -> Collider {
+    let (base, interpolation, base_level_m) = (world.base, world.interpolation, world.base_level_m);
+    let parameters = Parameters { base, interpolation, base_level_m, ..Parameters::default() };
+    Collider::new(&parameters, &Inputs { maps: &world.maps, ..Inputs::default() })
+}
+
+/// A map of 31 x 24 samples on every base, by both interpolations, over a base that it rises above or partly sinks into.
+fn worlds(seed: u64) -> impl Iterator<Item = World> {
+    let cases = BASES.into_iter().flat_map(|base| INTERPOLATIONS.map(|interpolation| (base, interpolation)));
+    (seed..).zip(cases).map(|(seed, (base, interpolation))| {
+        let mut random = Random::new(seed);
+        let relief = if seed.is_multiple_of(2) { Relief::Waves } else { Relief::Noise };
+        let map = random_map(&mut random, relief, (31, 24), 4.0);
+        let (low, high) = map.range_m();
+        let level = [None, Some(low + 0.3 * (high - low)), Some(low - 0.2 * (high - low))][seed as usize % 3];
+        World::alone(&format!("{base:?} {interpolation:?}"), base, interpolation, level, map)
+    })
+}
+
+/// A world's point by chance, somewhat beyond the map's edges, up to `reach` times its height above the base.
+fn place(world: &World, random: &mut Random, reach: f64) -> DVec3 {
+    let [u, v, h] = [(); 3].map(|()| f64::from(random.unit()));
+    world.point(DVec2::new(1.4 * u - 0.2, 1.4 * v - 0.2), h * reach * world.top_m())
+}
+
+/// The oracle looks at every cell. Where it ends elsewhere, the contact must be as near to the ground as single precision
+/// is, or the segment must have passed as near to a silhouette.
+#[test]
+fn segments_meet_what_brute_force_meets_on_every_surface() {
+    for world in worlds(1) {
+        let collider = collider(&world);
+        let mut random = Random::new(5);
+        let hair_m = 1e-3 * world.cell_m();
+        let (mut met, mut elsewhere) = (0, 0);
+        for _ in 0..400 {
+            let (a, b) = (place(&world, &mut random, 2.0), place(&world, &mut random, 1.0));
+            let (start, end) = (world.moved(a), world.moved(b));
+            let expected = world.terrain.segment(start, end);
+            let found = collider.segment(a, b);
+            let length_m = a.distance(b);
+            let is_same = match (found, expected) {
+                (None, None) => true,
+                (Some(found), Some(expected)) => {
+                    met += 1;
+                    let cosine = expected.normal.dot((end - start) / length_m).abs().max(1e-2);
+                    (found.t * length_m - expected.t).abs() <= 2.0 * hair_m / cosine
+                }
+                _ => false,
+            };
+            if is_same {
+                continue;
+            }
+            elsewhere += 1;
+            match found {
+                Some(contact) => {
+                    let near = world.terrain.sphere(world.moved(contact.point), 2.0 * hair_m);
+                    assert!(near.is_some(), "{}: {a} to {b}: {contact:?}, not {expected:?}", world.name);
+                }
+                None => {
+                    let ray = Ray::new(start, end - start);
+                    let clearance = world.terrain.clearance(&ray, [0.0, length_m], expected.as_ref());
+                    let is_end = expected.is_some_and(|hit| length_m - hit.t < 2.0 * hair_m);
+                    let is_graze = clearance.after_cells < 2e-3 || is_end;
+                    assert!(is_graze, "{}: {a} to {b}: nothing, not {expected:?}", world.name);
+                }
+            }
+        }
+        assert!(met > 100, "{}: only {met} segments meet the ground", world.name);
+        assert!(elsewhere * 100 <= 400, "{}: {elsewhere} end elsewhere", world.name);
+    }
+}
+
+/// A millionth of a cell is what the oracle promises of its own distance.
+#[test]
+fn spheres_are_as_far_from_the_ground_as_brute_force_says() {
+    for world in worlds(7) {
+        let collider = collider(&world);
+        let mut random = Random::new(6);
+        let cell_m = world.cell_m();
+        let mut seen = [0; 4];
+        for _ in 0..120 {
+            let center = place(&world, &mut random, 1.6);
+            let radius_m = cell_m * f64::from(random.range(0.1, 8.0));
+            let expected = world.terrain.sphere(world.moved(center), radius_m);
+            let found = collider.sphere(center, radius_m);
+            let say = || format!("{}: {center}, {radius_m} m: {found:?}, not {expected:?}", world.name);
+            let Some(touch) = found else {
+                let is_edge = expected.is_none_or(|e| (e.distance_m - radius_m).abs() < 2e-6 * cell_m);
+                assert!(is_edge, "{}", say());
+                continue;
+            };
+            let distance_m = expected.map_or(radius_m, |expected| expected.distance_m);
+            assert!((touch.distance_m - distance_m).abs() <= 2e-6 * cell_m, "{}", say());
+            let kind = match touch.surface {
+                Surface::Inside => 0,
+                Surface::Base => 1,
+                Surface::Terrain => 2,
+                _ => 3,
+            };
+            seen[kind] += 1;
+            assert!((touch.normal.length() - 1.0).abs() < 1e-9, "{}", say());
+            if kind == 0 {
+                assert_eq!((touch.distance_m, touch.point), (0.0, center));
+                continue;
+            }
+            // The point is where it is said to be: on the ground, and as far from the centre as the normal points.
+            let back = touch.point + touch.normal * touch.distance_m;
+            assert!(back.distance(center) < 1e-6 * cell_m, "{}", say());
+            assert!(world.terrain.sphere(world.moved(touch.point), 2e-6 * cell_m).is_some(), "{}", say());
+        }
+        assert!(seen.iter().all(|&seen| seen >= 3), "{} saw too little: {seen:?}", world.name);
+    }
+}
+
+/// A map that goes once round is as near at its seam as elsewhere, and two maps are as near as the nearer.
+#[test]
+fn spheres_touch_closed_and_united_maps() {
+    let radius_m = 300.0;
+    let mut random = Random::new(8);
+    let map = random_map(&mut random, Relief::Noise, (60, 12), 2.0);
+    let map = map.with_spacing_m(DVec2::splat(TAU * radius_m / 60.0)).unwrap();
+    let base = Base::Cylinder { radius_m: radius_m as f32 };
+    let closed = World::alone("once round", base, Interpolation::Bicubic, None, map.clone());
+    let input = |map, x| MapInput {
+        map: Arc::new(map),
+        placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() },
+    };
+    let other = random_map(&mut random, Relief::Waves, (30, 20), 3.0);
+    let maps = vec![input(map, 0.0), input(other, 700.0)];
+    let united = World::new("united", Base::Plane, Interpolation::Bilinear, None, maps);
+    for world in [closed, united] {
+        let collider = collider(&world);
+        for number in 0..60 {
+            let u = if number % 2 == 0 { 1.0 } else { f64::from(random.unit()) };
+            let share = DVec2::new(u, f64::from(random.unit()));
+            let center = world.point(share, world.top_m() * f64::from(random.range(0.7, 1.5)));
+            let expected = world.terrain.sphere(world.moved(center), 1e6).unwrap();
+            let touch = collider.sphere(center, 1e6).unwrap();
+            let off_m = (touch.distance_m - expected.distance_m).abs();
+            assert!(off_m <= 2e-6 * world.cell_m(), "{}: {share}: {touch:?}, not {expected:?}", world.name);
+        }
+    }
+}
+
+/// Of a million cells a sphere and a segment look at few: the levels above answer for the rest.
+#[test]
+fn the_pyramid_leaves_nearly_all_cells_out() {
+    let maps = alone(volcano(1025));
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let mut random = Random::new(9);
+    for _ in 0..50 {
+        let [x, z] = [(); 2].map(|()| 10_000.0 * (f64::from(random.unit()) - 0.5));
+        let above = DVec3::new(x, 4000.0, z);
+        let touch = collider.sphere(above, 1e5).unwrap();
+        assert!((1..20_000).contains(&touch.steps), "{touch:?}");
+        let contact = collider.segment(above, DVec3::new(z, -10.0, x)).unwrap();
+        assert!((1..500).contains(&contact.steps), "{contact:?}");
+    }
+}
+
+#[test]
+fn what_lies_beside_touches_nothing() {
+    let maps = alone(volcano(65));
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let above = DVec3::new(0.0, 9000.0, 0.0);
+    assert_eq!(collider.segment(above, above + DVec3::X), None);
+    assert_eq!(collider.sphere(above, 10.0), None);
+    // On the base beside the map, its bottom at the base: it touches; a hair higher it does not.
+    let beside = DVec3::new(30_000.0, 5.0, 0.0);
+    let touch = collider.sphere(beside, 5.0).unwrap();
+    assert_eq!((touch.surface, touch.distance_m), (Surface::Base, 5.0));
+    assert!(touch.point.distance(DVec3::new(30_000.0, 0.0, 0.0)) < 1e-9, "{touch:?}");
+    assert_eq!(collider.sphere(beside + DVec3::Y * 1e-6, 5.0), None);
+}

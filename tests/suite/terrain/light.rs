@@ -1,0 +1,200 @@
+//! The passes `shadow` and `illumination` against the oracle, and objects in the terrain's light.
+
+use std::sync::Arc;
+
+use fumarole::gpu::Compiler;
+use fumarole::papers::terrain::reference::{is_lit, lambert};
+use fumarole::papers::terrain::{
+    Base, Drape, Inputs, Interpolation, Lod, MapInput, Parameters, Placement, Rays, Sun, Surface, Variant, View,
+};
+use fumarole::scene::random::Random;
+use fumarole::scene::{Camera, HeightMap, Samples, shapes};
+use glam::{DVec2, DVec3, Mat4, Vec3};
+
+use super::drawing::{Drawing, Painter, differing};
+use super::land::map;
+use super::world::{Relief, Stand, World, random_map};
+use crate::common::gpu_test;
+
+const BASES: [Base; 3] =
+    [Base::Plane, Base::Cylinder { radius_m: 900.0 }, Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 }];
+const SIZE: (u32, u32) = (48, 36);
+
+/// How far a last piece of a ray, which is judged at its ends alone, may have gone astray, cells.
+const HAIR_CELLS: f64 = 0.05;
+
+/// Rays to the sun start a texel away from what is seen. Lifted by a hair they must be free where the device sees the sun, and
+/// lowered by a hair they must meet a map where it sees none.
+#[test]
+fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
+    gpu_test(|device| {
+        for (seed, base) in (40..).zip(BASES) {
+            for interpolation in Interpolation::ALL {
+                let mut random = Random::new(seed);
+                let map = random_map(&mut random, Relief::Waves, (61, 44), 6.0);
+                let spacing_m = map.spacing_m().max_element();
+                let world = World::alone("shadow", base, interpolation, None, map);
+                let azimuth_rad = random.range(0.0, 6.2);
+                let sun = Sun { azimuth_rad, elevation_rad: random.range(0.2, 0.5) };
+                let to_sun = world.turned(sun.direction().as_dvec3());
+                let cameras = [Stand::Above, Stand::Hovering].map(|stand| world.camera(stand, &mut random));
+                let parameters = Parameters { shadows: true, sun, ..world.parameters(cameras[0], SIZE) };
+                let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
+                let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
+                let mut painters = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu].map(paint);
+                let (mut lit, mut dark) = (0, 0);
+                for camera in cameras {
+                    let rays = Rays::new(&camera, SIZE.0, SIZE.1);
+                    let [compute, fragment, cpu] = painters.each_mut().map(|painter| painter.from(camera));
+                    for (pixel, (hit, sunlit)) in compute.hits.iter().zip(&compute.sunlit).enumerate().step_by(5) {
+                        if hit.surface == Surface::Sky {
+                            assert_eq!(*sunlit, 1.0);
+                            continue;
+                        }
+                        let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
+                        let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
+                        let depth_m = f64::from(hit.depth_m);
+                        let start = world.moved(rays.eye + depth_m * direction) + (spacing_m + 1e-5 * depth_m) * to_sun;
+                        let up = world.terrain.base.frame(world.terrain.base.place(start)).normal;
+                        let moved = |cells: f64| start + cells * world.cell_m() * up;
+                        let name = || format!("{base:?} {interpolation:?}: pixel {pixel}, {hit:?}");
+                        if *sunlit == 1.0 {
+                            lit += 1;
+                            assert!(is_lit(&world.terrain, moved(HAIR_CELLS), to_sun), "{} in the sun", name());
+                        } else {
+                            dark += 1;
+                            assert!(!is_lit(&world.terrain, moved(-HAIR_CELLS), to_sun), "{} in the shadow", name());
+                        }
+                    }
+                    for (other, drawing) in [("fragment", fragment), ("cpu", cpu)] {
+                        let differing = differing(&compute, &drawing);
+                        assert!(
+                            differing * 200 <= drawing.hits.len(),
+                            "{base:?} {interpolation:?}: {other} {differing}"
+                        );
+                    }
+                }
+                assert!(lit > 40 && dark > 5, "{base:?} {interpolation:?}: {lit} in the sun, {dark} in the shadow");
+            }
+        }
+    });
+}
+
+/// Of the sun and of the sky from above, linear, and the haze at a great distance.
+const SUNLIGHT: DVec3 = DVec3::new(2.0, 1.88, 1.7);
+const SKYLIGHT: DVec3 = DVec3::new(0.55 * 0.45, 0.68 * 0.45, 0.9 * 0.45);
+const HAZE: DVec3 = DVec3::new(0.42, 0.53, 0.66);
+
+/// A land of one grey, so that all that is seen is light: Lambert's of the sun, half of the sky's on a wall, and haze.
+#[test]
+fn a_grey_land_shows_the_light_alone() {
+    gpu_test(|device| {
+        let drape = Drape::new(1, 1, vec![[128, 128, 128, 255]]).unwrap();
+        let grey = ((128.0 / 255.0 + 0.055) / 1.055_f64).powf(2.4);
+        for (seed, base) in (50..).zip(BASES) {
+            let mut random = Random::new(seed);
+            let map = random_map(&mut random, Relief::Waves, (61, 44), 6.0);
+            let world = World::alone("grey", base, Interpolation::Bilinear, None, map);
+            let camera = world.camera(Stand::Above, &mut random);
+            let rays = Rays::new(&camera, SIZE.0, SIZE.1);
+            let sun = Sun { azimuth_rad: random.range(0.0, 6.2), elevation_rad: 0.6 };
+            let to_sun = sun.direction().as_dvec3();
+            // So that half of the light comes from the haze at the length of the map.
+            for haze_per_km in [0.0, (700.0 / world.side_m()) as f32] {
+                let parameters = Parameters { sun, haze_per_km, ..world.parameters(camera, SIZE) };
+                let inputs = Inputs { maps: &world.maps, drape: Some(&drape), ..Inputs::default() };
+                for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu] {
+                    let drawing = Drawing::with(device, variant, &parameters, &inputs);
+                    let mut seen = 0;
+                    let pixels = drawing.picture.pixels().as_chunks::<4>().0.iter();
+                    for (pixel, ((found, hit), normal)) in pixels.zip(&drawing.hits).zip(&drawing.normals).enumerate() {
+                        if hit.surface != Surface::Terrain {
+                            continue;
+                        }
+                        let (x, y) = (pixel as u32 % SIZE.0, pixel as u32 / SIZE.0);
+                        let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
+                        let normal = DVec3::new(normal[0].into(), normal[1].into(), normal[2].into());
+                        let open = (1.0 + normal.y) / 2.0;
+                        let light = grey * (SUNLIGHT * lambert(normal, to_sun) + SKYLIGHT * open);
+                        let distance_km = f64::from(hit.depth_m) * direction.length() / 1000.0;
+                        let linear = HAZE.lerp(light, (-f64::from(haze_per_km) * distance_km).exp());
+                        let encoded = linear.min(DVec3::ONE).to_array().map(|c| {
+                            255.0 * if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+                        });
+                        for (found, expected) in found.iter().zip(encoded) {
+                            let off = (f64::from(*found) - expected).abs();
+                            assert!(off <= 1.0, "{base:?} {variant:?} {haze_per_km}: {found}, not {expected}");
+                        }
+                        seen += 1;
+                    }
+                    assert!(seen > 300, "{base:?} {variant:?}: only {seen} pixels of land");
+                }
+            }
+        }
+    });
+}
+
+/// A level map of `columns` x 61 samples, 5 m apart, its middle at `x` metres east.
+fn level(columns: u32, height_m: f32, x: f64) -> MapInput {
+    let heights = vec![height_m; columns as usize * 61];
+    let map: HeightMap = map(columns, 61, Samples::Float(heights), 5.0);
+    MapInput { map: Arc::new(map), placement: Placement { center_m: DVec2::new(x, 0.0), ..Placement::default() } }
+}
+
+/// A ridge of 80 m in the west, a map of its own, and the sun low behind it: on a post in the plain the shadow ends where the
+/// line from the ridge to the sun says.
+#[test]
+fn objects_stand_in_the_terrain_s_shadow() {
+    gpu_test(|device| {
+        let maps = [level(61, 1.0, 0.0), level(6, 80.0, -137.5)];
+        let sun = Sun { azimuth_rad: 270f32.to_radians(), elevation_rad: 30f32.to_radians() };
+        // Its western face stands 63 m behind the ridge's edge.
+        let post = Mat4::from_translation(Vec3::new(-60.0, 40.0, 0.0)) * Mat4::from_scale(Vec3::new(2.0, 40.0, 20.0));
+        let objects = [shapes::cuboid().transformed(&post)];
+        let edge_m = 80.0 - 63.0 * 30f64.to_radians().tan();
+        let camera = Camera {
+            eye: Vec3::new(-220.0, 300.0, 0.0),
+            target: Vec3::new(-62.0, 20.0, 0.0),
+            up: Vec3::Y,
+            vertical_fov_rad: 0.5,
+            near_m: 1.0,
+            far_m: 1e5,
+        };
+        let (width, height) = (160, 120);
+        let rays = Rays::new(&camera, width, height);
+        let inputs = Inputs { maps: &maps, objects: &objects, ..Inputs::default() };
+        for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh] {
+            for lod in Lod::ALL {
+                let view = View::Camera(camera);
+                let base_level_m = Some(0.0);
+                let of = |shadows| {
+                    let parameters =
+                        Parameters { lod, view, sun, base_level_m, shadows, width, height, ..Parameters::default() };
+                    Drawing::with(device, variant, &parameters, &inputs)
+                };
+                let (with, without) = (of(true), of(false));
+                assert!(with.passes.ends_with(&["object-depth", "object-hits", "object-shadow", "objects"]));
+                let last = if variant == Variant::Cpu { "show" } else { "illumination" };
+                assert!(without.passes.ends_with(&[last, "object-depth", "objects"]), "{:?}", without.passes);
+                let (mut lit, mut dark) = (0, 0);
+                let pictures = [&with, &without].map(|drawing| drawing.picture.pixels().as_chunks::<4>().0);
+                for (pixel, (with, without)) in pictures[0].iter().zip(pictures[1]).enumerate() {
+                    let (x, y) = (pixel as u32 % width, pixel as u32 / width);
+                    let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
+                    let place = rays.eye + (-62.0 - rays.eye.x) / direction.x * direction;
+                    if place.z.abs() > 19.0 || !(2.0..79.0).contains(&place.y) {
+                        continue;
+                    }
+                    if place.y > edge_m + 3.0 {
+                        lit += 1;
+                        assert_eq!(with, without, "{variant:?} {lod:?}: {place} in the sun");
+                    } else if place.y < edge_m - 3.0 {
+                        dark += 1;
+                        assert!(with[0] + 40 < without[0], "{variant:?} {lod:?}: {place} in the shadow: {with:?}");
+                    }
+                }
+                assert!(lit > 100 && dark > 100, "{variant:?} {lod:?}: {lit} in the sun, {dark} in the shadow");
+            }
+        }
+    });
+}

@@ -1,0 +1,14 @@
+//! The paper `terrain` on the device: variant against variant, adversarial maps, extreme cameras, pictures.
+
+mod collisions;
+mod drawing;
+mod footprint;
+mod land;
+mod light;
+mod oracle;
+mod pictures;
+mod pyramids;
+mod scenes;
+mod variants;
+mod verdict;
+mod world;
