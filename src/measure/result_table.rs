@@ -1,8 +1,9 @@
 //! Tables of experiments that time nothing.
 
+use csv::Terminator;
 use serde_json::{Map, Value, json};
 
-use crate::report::csv::quote;
+use crate::report::csv::lines;
 use crate::report::plot::{BarChart, BarSeries, LineChart, PlotError, Scale, Series};
 use crate::report::table::{Align, Style, Table};
 
@@ -90,11 +91,11 @@ impl ResultTable {
         json!({"title": self.title, "rows": self.rows.iter().map(object).collect::<Vec<_>>()})
     }
 
-    /// Comma-separated, with a header; quoted where a mesh's name needs it.
+    /// Comma-separated, with a header.
     pub fn csv(&self) -> String {
-        let line = |cells: Vec<String>| cells.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(",") + "\n";
-        let header = line(self.columns.iter().map(|c| (*c).to_owned()).collect());
-        self.rows.iter().fold(header, |text, row| text + &line(row.iter().map(shown).collect()))
+        let header = self.columns.iter().map(|&name| name.to_owned()).collect();
+        let rows = self.rows.iter().map(|row| row.iter().map(shown).collect::<Vec<String>>());
+        lines(Terminator::Any(b'\n'), std::iter::once(header).chain(rows))
     }
 }
 

@@ -4,138 +4,114 @@
 //! samples are in the JSON only. `config`, `results` and `experiment` are JSON objects: the run's
 //! parameters, the paper's own figures, and the row of a table that it reproduces.
 
+use csv::{Terminator, WriterBuilder};
+
 use super::record::{Bytes, Pass, Record, Run, Statistics, Summary};
 
-/// The header, in order. Times are milliseconds, sizes bytes.
-pub const COLUMNS: [&str; 43] = [
-    "device",
-    "device_type",
-    "paper",
-    "variant",
-    "preset",
-    "width",
-    "height",
-    "seed",
-    "warmup",
-    "frames",
-    "repeat",
-    "process",
-    "config",
-    "results",
-    "experiment",
-    "frame_min_ms",
-    "frame_median_ms",
-    "frame_mean_ms",
-    "frame_p95_ms",
-    "frame_p99_ms",
-    "frame_max_ms",
-    "frame_mad_ms",
-    "overlap_ms",
-    "unaccounted_ms",
-    "pass_index",
-    "pass",
-    "section",
-    "kind",
-    "calls",
-    "submission",
-    "shader_compiler",
-    "gpu_min_ms",
-    "gpu_median_ms",
-    "gpu_mad_ms",
-    "host_median_ms",
-    "wait_median_ms",
-    "vertices",
-    "primitives",
-    "fragments",
-    "compute_invocations",
-    "samples_passed",
-    "bytes_read",
-    "bytes_written",
-];
-
-/// The whole record with its header line.
-pub fn to_string(record: &Record) -> String {
-    let mut text = String::new();
-    push_row(&mut text, COLUMNS.map(str::to_owned));
-    for run in &record.runs {
-        let passes: Vec<Option<(usize, &Pass)>> =
-            if run.passes.is_empty() { vec![None] } else { run.passes.iter().enumerate().map(Some).collect() };
-        for pass in passes {
-            push_row(&mut text, row(record, run, pass));
-        }
-    }
-    text
+/// A run of a record with one of its passes and the pass's index, if it has any.
+struct Row<'a> {
+    record: &'a Record,
+    run: &'a Run,
+    pass: Option<(usize, &'a Pass)>,
 }
 
-fn row(record: &Record, run: &Run, pass: Option<(usize, &Pass)>) -> [String; COLUMNS.len()] {
-    let frame = |value: fn(&Summary) -> Option<f64>| cell(run.frame_ms.as_ref().and_then(value));
-    let (index, pass) = pass.unzip();
-    let statistic =
-        |value: fn(&Statistics) -> Option<u64>| cell(pass.and_then(|pass| pass.statistics.as_ref()).and_then(value));
-    let bytes = |value: fn(Bytes) -> u64| cell(pass.and_then(|pass| pass.bytes).map(value));
-    let gpu = |value: fn(&Summary) -> Option<f64>| cell(pass.and_then(|pass| pass.gpu_ms.as_ref()).and_then(value));
-    let median =
-        |time: fn(&Pass) -> &Option<Summary>| cell(pass.and_then(|pass| time(pass).as_ref()).map(|time| time.median));
-    let device = &record.environment.device;
-    [
-        device.name.clone(),
-        device.kind.name().to_owned(),
-        run.paper.clone(),
-        run.variant.clone(),
-        cell(run.preset.as_ref()),
-        run.width.to_string(),
-        run.height.to_string(),
-        run.seed.to_string(),
-        run.warmup.to_string(),
-        run.frames.to_string(),
-        run.repeat.to_string(),
-        run.process.to_string(),
-        serde_json::Value::Object(run.config.clone()).to_string(),
-        serde_json::Value::Object(run.results.clone()).to_string(),
-        cell(run.experiment.as_ref().and_then(|row| serde_json::to_string(row).ok())),
-        frame(|time| Some(time.min)),
-        frame(|time| Some(time.median)),
-        frame(|time| Some(time.mean)),
-        frame(|time| time.p95),
-        frame(|time| time.p99),
-        frame(|time| Some(time.max)),
-        frame(|time| time.mad),
-        cell(run.overlap_ms),
-        cell(run.unaccounted_ms),
-        cell(index),
-        cell(pass.map(|pass| &pass.name)),
-        cell(pass.and_then(|pass| pass.section.as_ref())),
-        cell(pass.map(|pass| pass.kind.name())),
-        cell(pass.map(|pass| pass.calls)),
-        cell(pass.and_then(|pass| pass.submission)),
-        cell(pass.and_then(|pass| pass.shader_compiler.as_ref())),
-        gpu(|time| Some(time.min)),
-        gpu(|time| Some(time.median)),
-        gpu(|time| time.mad),
-        median(|pass| &pass.host_ms),
-        median(|pass| &pass.wait_ms),
-        statistic(|value| value.vertices),
-        statistic(|value| value.primitives),
-        statistic(|value| value.fragments),
-        statistic(|value| value.compute_invocations),
-        statistic(|value| value.samples_passed),
-        bytes(|value| value.read),
-        bytes(|value| value.written),
-    ]
+type Column = (&'static str, fn(&Row) -> String);
+
+/// Names and cells of the columns, in order. Times are milliseconds, sizes bytes.
+const COLUMNS: [Column; 43] = [
+    ("device", |row| row.record.environment.device.name.clone()),
+    ("device_type", |row| row.record.environment.device.kind.name().to_owned()),
+    ("paper", |row| row.run.paper.clone()),
+    ("variant", |row| row.run.variant.clone()),
+    ("preset", |row| cell(row.run.preset.as_ref())),
+    ("width", |row| row.run.width.to_string()),
+    ("height", |row| row.run.height.to_string()),
+    ("seed", |row| row.run.seed.to_string()),
+    ("warmup", |row| row.run.warmup.to_string()),
+    ("frames", |row| row.run.frames.to_string()),
+    ("repeat", |row| row.run.repeat.to_string()),
+    ("process", |row| row.run.process.to_string()),
+    ("config", |row| json(&row.run.config)),
+    ("results", |row| json(&row.run.results)),
+    ("experiment", |row| row.run.experiment.as_ref().map_or_else(String::new, json)),
+    ("frame_min_ms", |row| row.frame(|time| Some(time.min))),
+    ("frame_median_ms", |row| row.frame(|time| Some(time.median))),
+    ("frame_mean_ms", |row| row.frame(|time| Some(time.mean))),
+    ("frame_p95_ms", |row| row.frame(|time| time.p95)),
+    ("frame_p99_ms", |row| row.frame(|time| time.p99)),
+    ("frame_max_ms", |row| row.frame(|time| Some(time.max))),
+    ("frame_mad_ms", |row| row.frame(|time| time.mad)),
+    ("overlap_ms", |row| cell(row.run.overlap_ms)),
+    ("unaccounted_ms", |row| cell(row.run.unaccounted_ms)),
+    ("pass_index", |row| cell(row.pass.map(|(index, _)| index))),
+    ("pass", |row| row.of_pass(|pass| Some(pass.name.clone()))),
+    ("section", |row| row.of_pass(|pass| pass.section.clone())),
+    ("kind", |row| row.of_pass(|pass| Some(pass.kind.name()))),
+    ("calls", |row| row.of_pass(|pass| Some(pass.calls))),
+    ("submission", |row| row.of_pass(|pass| pass.submission)),
+    ("shader_compiler", |row| row.of_pass(|pass| pass.shader_compiler.clone())),
+    ("gpu_min_ms", |row| row.of_pass(|pass| Some(pass.gpu_ms.as_ref()?.min))),
+    ("gpu_median_ms", |row| row.of_pass(|pass| Some(pass.gpu_ms.as_ref()?.median))),
+    ("gpu_mad_ms", |row| row.of_pass(|pass| pass.gpu_ms.as_ref()?.mad)),
+    ("host_median_ms", |row| row.of_pass(|pass| Some(pass.host_ms.as_ref()?.median))),
+    ("wait_median_ms", |row| row.of_pass(|pass| Some(pass.wait_ms.as_ref()?.median))),
+    ("vertices", |row| row.statistic(|count| count.vertices)),
+    ("primitives", |row| row.statistic(|count| count.primitives)),
+    ("fragments", |row| row.statistic(|count| count.fragments)),
+    ("compute_invocations", |row| row.statistic(|count| count.compute_invocations)),
+    ("samples_passed", |row| row.statistic(|count| count.samples_passed)),
+    ("bytes_read", |row| row.bytes(|bytes| bytes.read)),
+    ("bytes_written", |row| row.bytes(|bytes| bytes.written)),
+];
+
+impl Row<'_> {
+    fn frame(&self, value: fn(&Summary) -> Option<f64>) -> String {
+        cell(self.run.frame_ms.as_ref().and_then(value))
+    }
+
+    fn of_pass<T: ToString>(&self, value: fn(&Pass) -> Option<T>) -> String {
+        cell(self.pass.and_then(|(_, pass)| value(pass)))
+    }
+
+    fn statistic(&self, value: fn(&Statistics) -> Option<u64>) -> String {
+        cell(self.pass.and_then(|(_, pass)| value(pass.statistics.as_ref()?)))
+    }
+
+    fn bytes(&self, value: fn(Bytes) -> u64) -> String {
+        cell(self.pass.and_then(|(_, pass)| pass.bytes).map(value))
+    }
 }
 
 fn cell(value: Option<impl ToString>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-fn push_row(text: &mut String, cells: [String; COLUMNS.len()]) {
-    text.push_str(&cells.map(|cell| quote(&cell)).join(","));
-    text.push_str("\r\n");
+fn json(value: &impl serde::Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_default()
 }
 
-/// A cell, quoted where it holds a comma, a quote or a line break.
-pub fn quote(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+/// The whole record with its header line.
+pub fn to_string(record: &Record) -> String {
+    let mut rows = vec![COLUMNS.map(|(name, _)| name.to_owned())];
+    for run in &record.runs {
+        let passes = run.passes.iter().enumerate().map(Some);
+        let passes = passes.chain(run.passes.is_empty().then_some(None));
+        rows.extend(passes.map(|pass| COLUMNS.map(|(_, cell)| cell(&Row { record, run, pass }))));
+    }
+    lines(Terminator::CRLF, rows)
+}
+
+/// Rows of cells as CSV text, each cell quoted where it holds a comma, a quote or a line break.
+pub fn lines<C: AsRef<[u8]>>(
+    terminator: Terminator,
+    rows: impl IntoIterator<Item = impl IntoIterator<Item = C>>,
+) -> String {
+    let mut writer = WriterBuilder::new().flexible(true).terminator(terminator).from_writer(Vec::new());
+    for row in rows {
+        // Rows of any length into memory cannot fail.
+        let _infallible = writer.write_record(row);
+    }
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -173,7 +149,7 @@ mod tests {
     #[test]
     fn one_row_per_pass_under_the_header() {
         let rows = parse(&to_string(&example::full()));
-        assert_eq!(rows[0], COLUMNS);
+        assert_eq!(rows[0], COLUMNS.map(|(name, _)| name));
         assert_eq!(rows.len(), 3);
         assert!(rows.iter().all(|row| row.len() == COLUMNS.len()));
         assert_eq!(value(&rows, 1, "results"), r#"{"fps":200.0}"#);

@@ -1,5 +1,9 @@
 //! A text table with aligned columns.
 
+use anstyle::{AnsiColor, Effects};
+pub use comfy_table::CellAlignment as Align;
+use comfy_table::{ColumnConstraint, presets};
+
 /// How text for people is decorated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
@@ -15,34 +19,28 @@ impl Style {
     }
 
     pub fn bold(self, text: &str) -> String {
-        self.paint("1", text)
+        self.paint(Effects::BOLD.into(), text)
     }
 
     pub fn dim(self, text: &str) -> String {
-        self.paint("2", text)
+        self.paint(Effects::DIMMED.into(), text)
     }
 
     pub fn red(self, text: &str) -> String {
-        self.paint("31", text)
+        self.paint(AnsiColor::Red.on_default(), text)
     }
 
     pub fn green(self, text: &str) -> String {
-        self.paint("32", text)
+        self.paint(AnsiColor::Green.on_default(), text)
     }
 
     pub fn yellow(self, text: &str) -> String {
-        self.paint("33", text)
+        self.paint(AnsiColor::Yellow.on_default(), text)
     }
 
-    fn paint(self, code: &str, text: &str) -> String {
-        if self.color { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+    fn paint(self, style: anstyle::Style, text: &str) -> String {
+        if self.color { format!("{style}{text}{style:#}") } else { text.to_owned() }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Align {
-    Left,
-    Right,
 }
 
 /// A number in a cell, with `digits` after the point; an absent one leaves the cell empty.
@@ -58,47 +56,36 @@ pub fn interval(ends: Option<[f64; 2]>) -> String {
 /// Rows under a header. Cells are plain text without colour and without line breaks.
 #[derive(Clone, Debug)]
 pub struct Table {
-    columns: Vec<(String, Align)>,
-    rows: Vec<Vec<String>>,
+    table: comfy_table::Table,
 }
 
 impl Table {
+    /// A table without rows: the name and alignment of each column.
     pub fn new(columns: &[(&str, Align)]) -> Self {
-        Self { columns: columns.iter().map(|&(name, align)| (name.to_owned(), align)).collect(), rows: vec![] }
+        let mut table = comfy_table::Table::new();
+        table.load_preset(presets::NOTHING).set_header(columns.iter().map(|(name, _)| name));
+        for (column, (_, align)) in table.column_iter_mut().zip(columns) {
+            column.set_padding((0, 2)).set_cell_alignment(*align);
+        }
+        Self { table }
     }
 
-    /// Adds a row; missing cells are empty, cells beyond the last column are left out.
-    pub fn push(&mut self, mut row: Vec<String>) {
-        row.resize(self.columns.len(), String::new());
-        self.rows.push(row);
+    /// Adds a row; missing cells are empty.
+    pub fn push(&mut self, row: Vec<String>) {
+        self.table.add_row(row);
     }
 
     /// The table, each line ending in a newline. Columns in which no row has anything are left out.
     pub fn render(&self, style: Style) -> String {
-        let shown: Vec<usize> =
-            (0..self.columns.len()).filter(|&column| self.rows.iter().any(|row| !row[column].is_empty())).collect();
-        let width = |column: usize| {
-            let cells = self.rows.iter().map(|row| row[column].as_str());
-            cells.chain([self.columns[column].0.as_str()]).map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = shown.iter().map(|&column| width(column)).collect();
-        let line = |cell: &dyn Fn(usize) -> String| {
-            let cells = shown.iter().zip(&widths).map(|(&column, &width)| {
-                let text = cell(column);
-                match self.columns[column].1 {
-                    Align::Left => format!("{text:<width$}"),
-                    Align::Right => format!("{text:>width$}"),
-                }
-            });
-            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
-        };
-        let mut text = style.bold(&line(&|column| self.columns[column].0.clone()));
-        text.push('\n');
-        for row in &self.rows {
-            text.push_str(&line(&|column| row[column].clone()));
-            text.push('\n');
+        let mut table = self.table.clone();
+        let is_empty =
+            |column: usize| self.table.column_cells_iter(column).flatten().all(|cell| cell.content().is_empty());
+        for (_, column) in table.column_iter_mut().enumerate().filter(|(index, _)| is_empty(*index)) {
+            column.set_constraint(ColumnConstraint::Hidden);
         }
-        text
+        let text = table.trim_fmt();
+        let (header, rows) = text.split_once('\n').unwrap_or((&text, ""));
+        format!("{}\n{rows}\n", style.bold(header))
     }
 }
 
