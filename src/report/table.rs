@@ -84,8 +84,10 @@ impl Table {
             column.set_constraint(ColumnConstraint::Hidden);
         }
         let text = table.trim_fmt();
-        let (header, rows) = text.split_once('\n').unwrap_or((&text, ""));
-        format!("{}\n{rows}\n", style.bold(header))
+        match text.split_once('\n') {
+            Some((header, rows)) => format!("{}\n{rows}\n", style.bold(header)),
+            None => "\n".to_owned(),
+        }
     }
 }
 
