@@ -31,7 +31,7 @@ pub struct AllArgs {
 }
 
 impl AllArgs {
-    /// What `fumarole all` without options says.
+    /// The arguments of `fumarole all` without options.
     pub fn plain() -> Self {
         #[derive(Parser)]
         struct Plain {
@@ -45,7 +45,7 @@ impl AllArgs {
 /// Short, so that all papers together take less than three minutes on two cores without a GPU.
 const SCHEDULE: Schedule = Schedule { warmup: 2, frames: 3, repeat: 3, min_time_s: 0.0 };
 
-/// What was measured so far.
+/// The runs measured so far.
 #[derive(Default)]
 struct Measured {
     /// The device's own, measured once.

@@ -234,7 +234,7 @@ impl<'a, S: Declared> Typed<'a, S> {
         Typed { matches, preset }
     }
 
-    /// What was typed, over the preset's numbers, over the defaults.
+    /// The setup: typed values, over the preset's numbers, over the defaults.
     fn resolve(&self) -> Result<S, Failure> {
         let mut setup = self.preset.as_ref().map_or_else(S::default, Preset::setup);
         read(self.matches, &S::parameters(), &mut setup)?;

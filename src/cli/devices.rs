@@ -20,7 +20,7 @@ pub struct DevicesArgs {
     json: bool,
 }
 
-/// What each paper needs beyond the baseline.
+/// Features that each paper needs beyond the baseline.
 const PAPERS: [(&str, &[Feature]); 5] = [
     (lava::Setup::PAPER, lava::Setup::NEEDS),
     (gas::Setup::PAPER, gas::Setup::NEEDS),

@@ -1,4 +1,4 @@
-//! What the verb `experiment` does for every paper: the list of names, the machine, the sweep, and the files and tables that
+//! The verb `experiment`, the same for every paper: names, machine, sweep, and the files and tables that
 //! are published.
 
 use std::fmt::Debug;
@@ -17,7 +17,7 @@ use crate::report::record::Run;
 use crate::report::{Record, csv};
 use clap::{Args, ValueEnum};
 
-/// Which experiment is wanted.
+/// Name of the experiment, or the list of all.
 #[derive(Debug, Clone, Args)]
 pub struct NameArgs<N: ValueEnum + Send + Sync + 'static> {
     /// Table or figure of the paper
@@ -49,7 +49,7 @@ pub trait ExperimentArgs: Args + Debug + 'static {
     /// Reproduces the table or figure.
     fn perform(&self, name: Self::Name, publication: &Publication<'_>) -> Result<(), Failure>;
 
-    /// What was typed: the list, or one experiment after a look at its options and files.
+    /// Runs the verb: the list, or one experiment once its options and files are checked.
     fn run(&self) -> Result<(), Failure> {
         let (Some(name), false) = (&self.asked().name, self.asked().list) else { return list::<Self::Name>() };
         let publication = Publication { output: &self.common().output, paper: Self::Study::PAPER, name: name_of(name) };
@@ -80,7 +80,7 @@ pub trait ExperimentArgs: Args + Debug + 'static {
     }
 }
 
-/// The word of an experiment.
+/// The experiment's name as it is typed.
 pub fn name_of(name: &impl ValueEnum) -> String {
     name.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default()
 }
@@ -109,7 +109,7 @@ fn refuse(common: &CommonArgs, unsuited: &[(bool, &str)]) -> Result<(), Failure>
     }
 }
 
-/// Where an experiment's results go.
+/// Destination of an experiment's results.
 pub struct Publication<'a> {
     pub output: &'a OutputArgs,
     pub paper: &'static str,
@@ -140,7 +140,7 @@ impl Publication<'_> {
         Ok(())
     }
 
-    /// A target as a drawing to look at.
+    /// A target as a drawing for viewers.
     pub fn drawing(&self, suffix: &str, raster: &Raster) -> Result<(), Failure> {
         let path = self.file(suffix);
         image::write(&path, raster)?;

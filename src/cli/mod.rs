@@ -1,4 +1,4 @@
-//! What the user typed, resolved into an experiment; exit codes.
+//! The command line, resolved into work to do, and the exit codes.
 
 mod all;
 mod bench;

@@ -77,7 +77,7 @@ pub fn parse_extents<T: FromStr, const N: usize>(text: &str) -> Result<[T; N], S
     values.try_into().map_err(|_| format!("{N} numbers with an x between them are needed, {count} are given"))
 }
 
-/// `5%` or `0.05`, as a share.
+/// Parses `5%` or `0.05` as a fraction.
 pub fn parse_share(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix('%') {
         Some(number) => (number, 0.01),
@@ -89,7 +89,7 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What was typed wins over a preset or default.
+/// Sets `target` where a value was typed, which wins over a preset or default.
 pub fn set<T>(target: &mut T, value: Option<T>) {
     if let Some(value) = value {
         *target = value;
@@ -153,7 +153,7 @@ pub struct MeasureArgs {
     /// Measure in this many fresh processes, 1 to 100
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100))]
     pub processes: u32,
-    /// Which process this is: set for the fresh ones
+    /// Number of this process: set for the fresh ones
     #[arg(long, hide = true, default_value_t = 0)]
     pub process: u32,
     /// Leave the device's own limits unmeasured
@@ -224,7 +224,7 @@ impl OutputArgs {
         Destinations { folder: self.out.clone(), json: self.json.clone(), csv: self.csv.clone(), is_quiet: self.quiet }
     }
 
-    /// Whether the record goes to standard output, which then holds nothing else.
+    /// True when the record goes to standard output, which then holds nothing else.
     pub fn json_to_stdout(&self) -> bool {
         self.json.as_deref().is_some_and(|path| path.as_os_str() == "-")
     }

@@ -18,7 +18,7 @@ use crate::report::table::Style;
 use crate::report::trace::TraceRun;
 use crate::report::{console, csv, json, trace};
 
-/// How standard output may be coloured.
+/// Style of standard output: colours on a terminal only.
 pub fn style() -> Style {
     Style::detect(io::stdout().is_terminal())
 }

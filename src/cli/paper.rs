@@ -1,4 +1,4 @@
-//! What the verbs need of a paper's command line; the verbs themselves are the same for all papers.
+//! A paper's command line as the verbs see it; the verbs themselves are the same for all papers.
 
 use std::convert::Infallible;
 use std::fmt::Debug;
@@ -29,7 +29,7 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
     /// The variant of a picture that names neither one nor a preset.
     const RENDERED: &'static str;
 
-    /// What was typed, over the preset's numbers, over the defaults.
+    /// The setup: typed values, over the preset's numbers, over the defaults.
     ///
     /// # Errors
     /// [`Failure::Input`] for options of which one would not be heeded.
@@ -45,7 +45,7 @@ pub trait PaperArgs: Args + Clone + Debug + 'static {
         self.preset_variant().or_else(|| find(Self::RENDERED)).unwrap_or(VariantOf::<Self>::ALL[0])
     }
 
-    /// What the main job measures, in the variants of [`PaperArgs::BENCHED`].
+    /// The study that the main job measures, in the variants of [`PaperArgs::BENCHED`].
     fn quick() -> Self::Study;
 }
 
@@ -62,7 +62,7 @@ impl OwnVerbs for Infallible {
 
 pub type VariantOf<P> = <<P as PaperArgs>::Study as Study>::Variant;
 
-/// One word after `--variant`.
+/// One value of `--variant`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VariantWord<V> {
     One(V),
@@ -73,19 +73,19 @@ fn find<V: Variant>(word: &str) -> Option<V> {
     V::ALL.iter().copied().find(|v| v.as_str() == word)
 }
 
-/// The words of a list of variants: each variant's, and `all`.
+/// Values of a list of variants: each variant's name, and `all`.
 pub fn variant_words<V: Variant>() -> impl TypedValueParser<Value = VariantWord<V>> {
     PossibleValuesParser::new(V::ALL.iter().map(|v| v.as_str()).chain(["all"]))
         .map(|word| find(&word).map_or(VariantWord::All, VariantWord::One))
 }
 
-/// The word of one variant.
+/// The value of one variant.
 pub fn variant_word<V: Variant>() -> impl TypedValueParser<Value = V> {
-    // The parser has let through no other word than a variant's.
+    // The parser has let through no other value than a variant's name.
     PossibleValuesParser::new(V::ALL.iter().map(|v| v.as_str())).map(|word| find(&word).unwrap_or(V::ALL[0]))
 }
 
-/// The variants that a list of words means, in the paper's order, each once.
+/// The variants that a list of values means, in the paper's order, each once.
 pub fn resolve<V: Variant>(words: &[VariantWord<V>]) -> Vec<V> {
     let wanted = |v: &V| words.contains(&VariantWord::All) || words.contains(&VariantWord::One(*v));
     V::ALL.iter().copied().filter(wanted).collect()
@@ -110,7 +110,7 @@ pub fn chosen<P: PaperArgs>(
     }
 }
 
-/// What a paper does.
+/// The verbs of a paper.
 #[derive(Debug, Subcommand)]
 pub enum Verb<P: PaperArgs> {
     /// List the passes in the paper's order

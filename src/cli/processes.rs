@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 /// that runs as well, and keeps what is finished.
 ///
 /// # Errors
-/// What the first process that fails says.
+/// The failure of the first process that fails.
 pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
     let failed = |reason: String| Failure::Running(format!("measuring in a fresh process: {reason}"));
     let program = std::env::current_exe().map_err(|e| failed(e.to_string()))?;
@@ -62,7 +62,7 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
     joined.ok_or_else(|| failed("none was asked for".into()))
 }
 
-/// How a process ended, and what it said on standard error.
+/// Exit status of a process, and its standard error.
 struct Ended {
     status: ExitStatus,
     errors: String,

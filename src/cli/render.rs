@@ -30,7 +30,7 @@ pub struct RenderArgs<P: PaperArgs> {
     picture: PictureArgs,
 }
 
-/// Which frames are drawn, and where they go.
+/// Frames to draw, and their files.
 #[derive(Debug, Clone, Args)]
 pub struct PictureArgs {
     /// Frame N, or the frames A..B from A up to but not including B
@@ -153,7 +153,7 @@ pub fn draw<S: Study>(
     }
     built.paper.warnings().iter().for_each(|warning| outcome::warn(&output, warning));
     written.iter().for_each(|path| outcome::wrote(&output, path));
-    // Asked again: a paper may write its targets by turns.
+    // Asked again: a paper may alternate its targets from frame to frame.
     let targets = built.paper.targets();
     for dump in &arguments.dump {
         for target in targets.iter().filter(|t| t.name == dump.target) {

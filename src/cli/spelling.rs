@@ -20,7 +20,7 @@ pub fn learn(command: &Command) {
     });
 }
 
-/// The message with its options spelled; other words, as names of verbs, keep their backticks.
+/// The message with its options spelled; other names, as those of verbs, keep their backticks.
 pub fn options(message: &str) -> String {
     spelled(message, |name| OPTIONS.get().is_some_and(|options| options.contains(name)))
 }

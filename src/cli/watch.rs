@@ -1,4 +1,4 @@
-//! What a user sees and does while long work runs: a progress bar on a terminal, and Ctrl-C, which keeps what is
+//! Progress and interruption of long work: a progress bar on a terminal, and Ctrl-C, which keeps what is
 //! finished.
 
 use std::io::IsTerminal;
