@@ -111,8 +111,11 @@ fn refuse(common: &CommonArgs, unsuited: &[(bool, &str)]) -> Result<(), Failure>
 
 /// Destination of an experiment's results.
 pub struct Publication<'a> {
+    /// Folder and files that the user named.
     pub output: &'a OutputArgs,
+    /// Name of the paper's command, as `gas`.
     pub paper: &'static str,
+    /// Name of the experiment as it is typed.
     pub name: String,
 }
 

@@ -40,7 +40,9 @@ impl CommonArgs {
 /// `--size 800x600` and its like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
+    /// Pixels, at least 1.
     pub width: u32,
+    /// Pixels, at least 1.
     pub height: u32,
 }
 

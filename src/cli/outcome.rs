@@ -116,6 +116,7 @@ pub fn wrote(output: &OutputArgs, path: &Path) {
 
 /// The terminal, or what stands in its place.
 pub struct Terminal {
+    /// True when only errors are said on standard error.
     pub is_quiet: bool,
 }
 
