@@ -87,9 +87,13 @@ pub struct Raster {
 
 /// A raster seen as pictures: a table is one layer of one channel, a row a line.
 pub(super) struct Planes {
+    /// Layers, at least 1.
     pub layers: usize,
+    /// Rows of a layer.
     pub height: usize,
+    /// Pixels of a row.
     pub width: usize,
+    /// Channels of a pixel, 1 to 4.
     pub channels: usize,
 }
 

@@ -15,20 +15,33 @@ const NOISY: f64 = 0.05;
 
 /// What a run says beside its measurement.
 pub struct RunMetadata {
+    /// [`Study::PAPER`](super::study::Study::PAPER).
     pub paper: &'static str,
+    /// Name of the variant.
     pub variant: String,
+    /// Preset, size and seed.
     pub identity: Identity,
     /// Which of several fresh processes measured it.
     pub process: u32,
+    /// Every parameter under its option's name, defaults included.
     pub config: Map<String, Value>,
+    /// Milliseconds of loading the input.
     pub load_ms: f64,
+    /// Milliseconds of making the variant's resources and pipelines.
     pub build_ms: f64,
+    /// Every live resource of the variant.
     pub memory: Vec<MemoryUse>,
+    /// Greatest number of bytes that the variant had allocated while it was made.
     pub peak_bytes: u64,
+    /// The paper's own figures.
     pub results: Map<String, Value>,
+    /// The device's own limits, where they were measured.
     pub limits: Option<Limits>,
+    /// GPU time of an empty pass in milliseconds; `None` without timestamps.
     pub stamp_floor_ms: Option<f64>,
+    /// State of the validation layer.
     pub validation: Validation,
+    /// Doubts about the run, one line each.
     pub warnings: Vec<String>,
 }
 

@@ -15,7 +15,9 @@ use crate::report::trace::TraceRun;
 
 /// The input of a study with the time that loading it took.
 pub struct Loaded<S: Study> {
+    /// The input, loaded and placed.
     pub scene: S::Scene,
+    /// Milliseconds of loading it.
     pub load_ms: f64,
 }
 
@@ -31,10 +33,15 @@ pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
 
 /// A variant with its resources, and what they cost.
 pub struct Built<S: Study> {
+    /// The variant.
     pub variant: S::Variant,
+    /// Its resources, ready to record frames.
     pub paper: S::Paper,
+    /// Milliseconds of making them, pipelines included.
     pub build_ms: f64,
+    /// Every live resource of the variant, without its prefix.
     pub memory: Vec<MemoryUse>,
+    /// Greatest number of bytes allocated for it while it was made.
     pub peak_bytes: u64,
 }
 
@@ -63,9 +70,13 @@ pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: 
 
 /// What is to be measured.
 pub struct Bench<'a, S: Study> {
+    /// The configuration.
     pub study: &'a S,
+    /// Its input.
     pub loaded: &'a Loaded<S>,
+    /// Variants to interleave, at least one.
     pub variants: &'a [S::Variant],
+    /// Frames and repetitions.
     pub schedule: Schedule,
     /// The device's own limits, where they were measured.
     pub limits: Option<&'a Limits>,
@@ -73,7 +84,9 @@ pub struct Bench<'a, S: Study> {
 
 /// One variant's run with its trace.
 pub struct VariantRun {
+    /// The record's run.
     pub run: Run,
+    /// Timeline of its last timestamped frame.
     pub trace: TraceRun,
 }
 

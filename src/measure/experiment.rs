@@ -23,6 +23,7 @@ use crate::report::{Record, csv, json as writer};
 pub struct Experiment<S: Declared> {
     /// The paper's own name for it: `5-1`.
     pub name: &'static str,
+    /// One line for help and lists.
     pub help: &'static str,
     /// Names among [`Declared::options`] that it heeds; the others are refused.
     pub options: &'static [&'static str],
@@ -62,15 +63,20 @@ pub struct Destinations {
     pub json: Option<PathBuf>,
     /// The record's rows.
     pub csv: Option<PathBuf>,
+    /// True when only errors are said on standard error.
     pub is_quiet: bool,
 }
 
 /// Frames, repetitions and limits as they were asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct MeasureOptions {
+    /// Frames before anything counts.
     pub warmup: u32,
+    /// Frames in one repetition, at least 1; `None` for the experiment's own number.
     pub frames: Option<u32>,
+    /// Repetitions, at least 1; `None` for the experiment's own number.
     pub repeat: Option<u32>,
+    /// Seconds of plain frames to reach, 0 to 3600.
     pub min_time_s: f64,
     /// Measure the device's own limits first.
     pub has_limits: bool,
@@ -90,16 +96,23 @@ impl MeasureOptions {
 
 /// An experiment that runs: what a user set up, and where its results go.
 pub struct Context<'a, S: Declared> {
+    /// [`Experiment::name`].
     pub name: &'static str,
     /// The preset that was named.
     pub preset: Option<Preset<S>>,
+    /// The resolved parameters.
     pub setup: S,
     /// The paper's options of experiments.
     pub options: S::Options,
+    /// Names of the parameters and options that were typed.
     pub given: Given,
+    /// Device and shaders that were asked for.
     pub machine: MachineOptions,
+    /// Frames and repetitions that were asked for.
     pub measure: MeasureOptions,
+    /// Files that were asked for.
     pub destinations: Destinations,
+    /// Output to the user.
     pub console: &'a dyn Console,
 }
 

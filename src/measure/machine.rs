@@ -15,6 +15,7 @@ pub struct MachineOptions {
     pub device: Option<String>,
     /// The validation layer with synchronization validation; any message is a failure.
     pub validate: bool,
+    /// Compiler of the SPIR-V.
     pub compiler: Compiler,
     /// Shaders compiled at start in place of the built-in ones.
     pub shader_dir: Option<PathBuf>,
@@ -24,8 +25,11 @@ pub struct MachineOptions {
 
 /// An open machine.
 pub struct Machine {
+    /// Records and times frames on the device's queue.
     pub recorder: Recorder,
+    /// Modules of the chosen compiler.
     pub shaders: ShaderLibrary,
+    /// The open device.
     pub device: Arc<Device>,
     /// RFC 3339, when it was opened.
     opened: String,

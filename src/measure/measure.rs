@@ -26,12 +26,19 @@ const MOST_REPETITIONS: u32 = 10_000;
 /// What was measured of one pass: one sample a frame, repetition after repetition.
 #[derive(Debug, Clone)]
 pub struct MeasuredPass {
+    /// Name, section, kind and shader of the pass.
     pub info: Arc<PassInfo>,
+    /// Calls in one frame.
     pub calls: u32,
+    /// Index of the queue submission within the frame, from 0.
     pub submission: u32,
+    /// Milliseconds between the pass's timestamps, one sample a timestamped frame.
     pub gpu_ms: Vec<f64>,
+    /// Milliseconds of host work without waiting, one sample a frame.
     pub host_ms: Vec<f64>,
+    /// Milliseconds that the host waited for the GPU, one sample a frame.
     pub wait_ms: Vec<f64>,
+    /// Pipeline statistics of one frame; `None` where none were taken.
     pub counts: Option<Counts>,
 }
 
@@ -40,9 +47,11 @@ pub struct MeasuredPass {
 pub struct Measurement {
     /// Whole repetitions that were finished; 0 when even the first was interrupted.
     pub repeat: u32,
+    /// Milliseconds of plain frames on the host's clock, one sample a frame.
     pub frame_ms: Vec<f64>,
     /// GPU time of whole frames with their overlap.
     pub bracket_ms: Vec<f64>,
+    /// In the order of recording.
     pub passes: Vec<MeasuredPass>,
     /// Time of the first frame less the median of the others: what first use costs.
     pub first_frame_ms: f64,

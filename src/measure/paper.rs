@@ -62,7 +62,9 @@ pub trait Paper {
 
 /// A target or buffer that can be written out.
 pub struct Target {
+    /// Name for `--dump`.
     pub name: String,
+    /// The image or buffer.
     pub resource: Resource,
     /// Values a row, for a buffer; images have their own shape.
     pub columns: u32,

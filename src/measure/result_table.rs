@@ -9,8 +9,11 @@ use crate::report::table::{Align, Style, Table};
 
 /// A table of an experiment that times nothing: for the console and, row by row, for JSON and CSV.
 pub struct ResultTable {
+    /// Line above the table.
     pub title: &'static str,
+    /// Headings, with units.
     pub columns: &'static [&'static str],
+    /// Cells of each row, one per column.
     pub rows: Vec<Vec<Value>>,
 }
 

@@ -127,10 +127,13 @@ pub trait Declared: Study + Clone + Default + 'static {
 /// The numbers of one of a paper's figures or tables.
 #[derive(Clone)]
 pub struct Preset<S: Study> {
+    /// Name after `--preset`.
     pub name: &'static str,
+    /// One line for help and lists.
     pub help: &'static str,
     /// The variant that it is made for, where it is one alone.
     pub variant: Option<S::Variant>,
+    /// Makes the set-up.
     pub setup: fn() -> S,
 }
 
@@ -155,10 +158,13 @@ pub trait Visitor {
 /// What every configuration has.
 #[derive(Debug, Clone)]
 pub struct Identity {
+    /// Name of the preset that the set-up began with; `None` without one.
     pub preset: Option<String>,
     /// Size of the picture in pixels.
     pub width: u32,
+    /// Height of the picture in pixels.
     pub height: u32,
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 

@@ -16,6 +16,7 @@ pub struct Point<S: Study> {
     pub label: String,
     /// Its place on the plot's axis.
     pub x: f64,
+    /// The configuration.
     pub study: S,
     /// Variants to measure, at least one.
     pub variants: Vec<S::Variant>,
@@ -32,7 +33,9 @@ impl<S: Study> Point<S> {
 
 /// One variant at one point.
 pub struct Row {
+    /// [`Point::label`].
     pub label: String,
+    /// [`Point::x`].
     pub x: f64,
     /// Without times where the variant was left out; a warning then says why.
     pub run: Run,
@@ -40,6 +43,7 @@ pub struct Row {
 
 /// What a sweep found.
 pub struct Swept {
+    /// Finished rows, point after point.
     pub rows: Vec<Row>,
     /// What ended it before its last point.
     pub stopped: Option<Error>,
@@ -47,6 +51,7 @@ pub struct Swept {
 
 /// How a sweep measures.
 pub struct Plan<'a> {
+    /// Frames and repetitions at each point.
     pub schedule: Schedule,
     /// The device's own limits, where they were measured.
     pub limits: Option<&'a Limits>,

@@ -13,9 +13,13 @@ pub const SCHEMA: &str = "fumarole.bench/1";
 /// One document: where it was measured, by which command, and every run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
+    /// [`SCHEMA`].
     pub schema: String,
+    /// Device, host and build of all runs.
     pub environment: Environment,
+    /// The command line, program name first.
     pub command: Vec<String>,
+    /// In the order of measurement.
     pub runs: Vec<Run>,
 }
 
@@ -31,23 +35,32 @@ impl Record {
 pub struct Environment {
     /// Start of the measurement, RFC 3339 in UTC.
     pub date: String,
+    /// The Vulkan device that measured.
     pub device: Device,
+    /// The computer and its operating system.
     pub host: Host,
     /// Version of the Vulkan loader.
     pub loader: Option<String>,
     /// Every active layer, those from outside the program included.
     pub layers: Vec<String>,
+    /// The build of the program.
     pub build: Build,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Device {
+    /// `deviceName` of the driver.
     pub name: String,
+    /// `deviceType` of the driver.
     #[serde(rename = "type")]
     pub kind: DeviceKind,
+    /// Device UUID, hyphenated; absent where the driver tells none.
     pub uuid: Option<String>,
+    /// `driverName`: name of the driver.
     pub driver: Option<String>,
+    /// `driverInfo`: its version as the driver writes it.
     pub driver_version: Option<String>,
+    /// Highest Vulkan version of the device: `1.3.255`.
     pub api_version: String,
     /// Nanoseconds per time stamp tick; absent where the queue has no time stamps.
     pub timestamp_period: Option<f64>,
@@ -80,8 +93,11 @@ impl DeviceKind {
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Host {
+    /// Name and release of the operating system, as `Debian GNU/Linux 12 (bookworm)`.
     pub os: String,
+    /// Release of the kernel; absent where the system does not tell.
     pub kernel: Option<String>,
+    /// Model name of the processor; absent where the system does not tell.
     pub cpu: Option<String>,
     /// Cores this process may run on, at least 1; absent where the system does not tell.
     pub logical_cores: Option<u32>,
@@ -92,25 +108,36 @@ pub struct Host {
 /// How this program was built.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Build {
+    /// Version of the package.
     pub version: String,
+    /// Full hash of the commit.
     pub git_commit: Option<String>,
     /// Whether the working tree differed from `git_commit`.
     pub dirty: Option<bool>,
+    /// Version of the compiler, as `rustc --version` prints it.
     pub rustc: Option<String>,
+    /// Cargo's profile: `release`.
     pub profile: Option<String>,
 }
 
 /// One configuration of one variant, measured in one process.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
+    /// Name of the paper's command: `gas`.
     pub paper: String,
+    /// Name of the variant, as `--variant` takes it.
     pub variant: String,
+    /// Name of the preset that the setup began with; absent without one.
     pub preset: Option<String>,
     /// Every parameter under its option's name, defaults included.
     pub config: Map<String, Value>,
+    /// Pixels of the picture, at least 1.
     pub width: u32,
+    /// Pixels of the picture, at least 1.
     pub height: u32,
+    /// Seed of all random numbers.
     pub seed: u64,
+    /// Frames before anything counts.
     pub warmup: u32,
     /// Frames in one repetition.
     pub frames: u32,
@@ -129,15 +156,23 @@ pub struct Run {
     pub unaccounted_ms: Option<f64>,
     /// GPU time of an empty pass.
     pub stamp_floor_ms: Option<f64>,
+    /// Loading of the input.
     pub load_ms: Option<f64>,
+    /// Making of the resources and pipelines, and the first frame less the median of the others.
     pub pipeline_ms: Option<f64>,
+    /// Bytes that the variant's resources take.
     pub memory: Memory,
+    /// The device's own limits; absent where they were not measured.
     pub limits: Option<Limits>,
     /// The paper's own figures.
     pub results: Map<String, Value>,
+    /// Row of the experiment; absent outside experiments.
     pub experiment: Option<ExperimentRow>,
+    /// State of the validation layer during the run.
     pub validation: Validation,
+    /// Doubts about the run, one line each.
     pub warnings: Vec<String>,
+    /// Picture written with the run; absent without one.
     pub image: Option<ImageFile>,
 }
 
@@ -155,9 +190,11 @@ impl Run {
 /// One pass of the paper; a loop of draws is one pass with its number of calls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
+    /// Name of the pass, unique within the variant.
     pub name: String,
     /// Section of the paper, e.g. `"3.2"`.
     pub section: Option<String>,
+    /// Kind of the work.
     pub kind: PassKind,
     /// Calls in one frame.
     pub calls: u32,
@@ -171,7 +208,9 @@ pub struct Pass {
     pub host_ms: Option<Summary>,
     /// Waiting of the host for the GPU.
     pub wait_ms: Option<Summary>,
+    /// Absent where no pipeline statistics were taken.
     pub statistics: Option<Statistics>,
+    /// Absent where the paper states none.
     pub bytes: Option<Bytes>,
 }
 
@@ -203,13 +242,17 @@ impl PassKind {
 pub struct Summary {
     /// In the order of measurement.
     pub samples: Vec<f64>,
+    /// Smallest sample.
     pub min: f64,
+    /// Mean of the middle two for an even number of samples.
     pub median: f64,
+    /// Arithmetic mean.
     pub mean: f64,
     /// Absent for fewer than 20 samples.
     pub p95: Option<f64>,
     /// Absent for fewer than 100 samples.
     pub p99: Option<f64>,
+    /// Largest sample.
     pub max: f64,
     /// Median absolute deviation from the median, unscaled; absent for fewer than 2 samples.
     pub mad: Option<f64>,
@@ -218,49 +261,68 @@ pub struct Summary {
 /// Pipeline statistics of one frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
+    /// Vertex-stage invocations.
     pub vertices: Option<u64>,
+    /// Primitives assembled.
     pub primitives: Option<u64>,
+    /// Fragment-stage invocations; some devices count whole blocks.
     pub fragments: Option<u64>,
+    /// Compute-stage invocations, of whole workgroups.
     pub compute_invocations: Option<u64>,
+    /// Samples that passed every test, discards included.
     pub samples_passed: Option<u64>,
 }
 
 /// Bytes that a pass must move in one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bytes {
+    /// Bytes read from memory.
     pub read: u64,
+    /// Bytes written to memory.
     pub written: u64,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
+    /// Sum of device-local resources.
     pub device_bytes: Option<u64>,
+    /// Sum of host-visible resources.
     pub host_bytes: Option<u64>,
+    /// Greatest sum while the resources were made.
     pub peak_bytes: Option<u64>,
+    /// Every resource of the variant.
     pub by_resource: Vec<ResourceMemory>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResourceMemory {
+    /// Name of the resource, without its variant's prefix.
     pub name: String,
+    /// Bytes allocated.
     pub bytes: u64,
 }
 
 /// What the device can do at most, measured in the same process.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
+    /// Bytes read and written by a buffer copy, 10^9 a second.
     pub copy_gb_s: Option<f64>,
+    /// Operations of 32-bit multiply-adds, two each, 10^9 a second.
     pub fma_gflops: Option<f64>,
+    /// Pixels written to an 8-bit RGBA target, 10^9 a second.
     pub fill_gpix_s: Option<f64>,
+    /// Pixels blended additively into an 8-bit RGBA target, 10^9 a second.
     pub blend_gpix_s: Option<f64>,
 }
 
 /// The row of a paper's table or figure that a run reproduces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExperimentRow {
+    /// Label of the row.
     pub row: String,
     /// The paper's number; absent where the paper prints none.
     pub paper: Option<f64>,
+    /// The number measured; absent where the variant was left out.
     pub ours: Option<f64>,
     /// `ours / paper`.
     pub ratio: Option<f64>,
@@ -286,6 +348,7 @@ impl Validation {
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageFile {
+    /// Path of the PNG file.
     pub path: String,
     /// Lower-case hexadecimal SHA-256 of the file.
     pub sha256: String,

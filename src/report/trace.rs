@@ -8,16 +8,21 @@ use serde_json::{Map, Value, json};
 /// One run's timeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceRun {
+    /// Name of the trace's process: paper, variant and configuration.
     pub name: String,
+    /// In any order.
     pub events: Vec<TraceEvent>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceEvent {
+    /// Name of the pass or of the host's work.
     pub name: String,
+    /// Track that shows it.
     pub track: Track,
     /// Microseconds since an origin common to both tracks of all runs.
     pub start_us: f64,
+    /// Microseconds, at least 0.
     pub duration_us: f64,
     /// Shown when the event is selected.
     pub args: Map<String, Value>,

@@ -3,7 +3,9 @@ use glam::Vec3;
 /// An axis-aligned box, corners included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
+    /// Corner with the smallest coordinates, in the unit of the points.
     pub min: Vec3,
+    /// Corner with the largest coordinates, in the unit of the points.
     pub max: Vec3,
 }
 

@@ -35,7 +35,9 @@ pub enum Asset {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{reason}")]
 pub struct Fault {
+    /// Place of the fault.
     pub place: Place,
+    /// One line.
     pub reason: String,
 }
 

@@ -9,6 +9,7 @@ const MAX_CORNERS: usize = 65_536;
 /// Polygons as OBJ and PLY files give them.
 #[derive(Debug, Default)]
 pub(super) struct PolygonMesh {
+    /// In the file's order and unit.
     pub positions: Vec<Vec3>,
     /// As many as positions, or empty.
     pub normals: Vec<Vec3>,

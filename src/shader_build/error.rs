@@ -67,7 +67,10 @@ pub struct ReflectError(pub String);
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[error("glslang and naga disagree on {what}: {glslang} against {naga}")]
 pub struct InterfaceMismatch {
+    /// The binding, member or location in question.
     pub what: String,
+    /// Its form in glslang's binary.
     pub glslang: String,
+    /// Its form in naga's binary.
     pub naga: String,
 }

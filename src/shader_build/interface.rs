@@ -7,11 +7,13 @@ pub use spirq::ty::ImageFormat;
 /// The interface of one entry point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
+    /// Stage of the entry point.
     pub stage: Stage,
     /// Threads of a workgroup along x, y and z; compute shaders only.
     pub local_size: Option<[u32; 3]>,
     /// Every resource that the binary declares, by ascending set and binding.
     pub bindings: Vec<Binding>,
+    /// Block of push constants, if there is one.
     pub push_constants: Option<Block>,
     /// Located inputs by ascending location; built-ins are not listed.
     pub inputs: Vec<Location>,
@@ -22,10 +24,13 @@ pub struct Interface {
 /// One descriptor binding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Binding {
+    /// Number of the descriptor set.
     pub set: u32,
+    /// Number within the set.
     pub binding: u32,
     /// Name of the variable, or of its block when the block has no instance name.
     pub name: String,
+    /// Type of the descriptors.
     pub kind: BindingKind,
     /// Number of descriptors: 1, or the length of an array of them.
     pub count: u32,
@@ -50,13 +55,16 @@ pub struct Block {
     pub name: String,
     /// End of the last member; without a trailing run-time array. Of an array's element: its stride.
     pub size_bytes: u32,
+    /// In the order of declaration.
     pub members: Vec<Member>,
 }
 
 /// One member of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Member {
+    /// Name in GLSL.
     pub name: String,
+    /// Bytes from the start of the block.
     pub offset_bytes: u32,
     /// Size of the whole member, arrays included; 0 for a run-time array.
     pub size_bytes: u32,
@@ -69,8 +77,11 @@ pub struct Member {
 /// One located input or output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
+    /// First location taken.
     pub location: u32,
+    /// Name of the variable.
     pub name: String,
+    /// Type of each location.
     pub format: Format,
     /// Consecutive locations taken: 1, or more for arrays and matrices.
     pub count: u32,
@@ -79,6 +90,7 @@ pub struct Location {
 /// Scalar or vector type of an input or output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
+    /// Type of each component.
     pub scalar: Scalar,
     /// 1 to 4.
     pub components: u32,

@@ -48,8 +48,11 @@ macro_rules! host_block {
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[error("`{host}` does not fill the GLSL block `{block}`: {difference}; change one to match the other")]
 pub struct LayoutMismatch {
+    /// Name of the host's structure.
     pub host: String,
+    /// Name of the GLSL block.
     pub block: String,
+    /// The first difference, in words.
     pub difference: String,
 }
 

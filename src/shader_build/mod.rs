@@ -123,6 +123,7 @@ impl fmt::Display for Compiler {
 pub struct EmbeddedShader {
     /// Path below the shader folder, with `/`: `caustics/position-map.frag`; of a variant with its values.
     pub name: &'static str,
+    /// Stage by the file's extension.
     pub stage: Stage,
     /// SPIR-V words of glslang.
     pub glslang: &'static [u32],
@@ -135,6 +136,7 @@ pub struct EmbeddedShader {
 pub struct CompiledShader {
     /// Path below the shader folder, with `/`: `caustics/position-map.frag`; of a variant with its values.
     pub name: String,
+    /// Stage by the file's extension.
     pub stage: Stage,
     /// SPIR-V words of glslang.
     pub glslang: Vec<u32>,

@@ -60,9 +60,13 @@ impl<'a> Configuration<'a> {
 
 #[derive(Debug)]
 pub(super) struct Matched<'a> {
+    /// Configurations of A and B with equal fields.
     pub pairs: Vec<(Configuration<'a>, Configuration<'a>)>,
+    /// Names of variants that B lacks.
     pub only_in_a: Vec<String>,
+    /// Names of variants that A lacks.
     pub only_in_b: Vec<String>,
+    /// Doubts about the comparison, one line each.
     pub warnings: Vec<String>,
 }
 

@@ -39,27 +39,36 @@ pub const SCHEMA: &str = "fumarole.compare/1";
 /// A record and the file it came from, which messages name.
 #[derive(Clone, Debug)]
 pub struct Input {
+    /// Path of the file.
     pub name: String,
+    /// Its contents.
     pub record: Record,
 }
 
 /// The outcome, as written by `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
+    /// [`SCHEMA`].
     pub schema: String,
     /// Files of each side.
     pub a: Vec<String>,
+    /// Files of side B.
     pub b: Vec<String>,
+    /// Confidence of the intervals, 0 to 1.
     pub confidence: f64,
+    /// Bootstrap resamples behind each interval.
     pub resamples: usize,
     /// The margin in use, as a part of 1.
     pub same_margin: f64,
     /// Part of 1 that B may be slower than A; absent without `--fail-above`.
     pub fail_above: Option<f64>,
+    /// In the order of A.
     pub runs: Vec<RunComparison>,
     /// Runs that the other side does not have.
     pub only_in_a: Vec<String>,
+    /// Runs that A does not have.
     pub only_in_b: Vec<String>,
+    /// Doubts about the comparison, one line each.
     pub warnings: Vec<String>,
 }
 
@@ -73,15 +82,23 @@ impl Comparison {
 /// One configuration, measured on both sides.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunComparison {
+    /// Name of the paper's command.
     pub paper: String,
+    /// Name of the variant.
     pub variant: String,
+    /// Name of the preset; absent without one.
     pub preset: Option<String>,
+    /// Every parameter under its option's name.
     pub config: Map<String, Value>,
+    /// Pixels of the picture.
     pub width: u32,
+    /// Pixels of the picture.
     pub height: u32,
     /// Distinct processes on each side that timed the frame.
     pub a_processes: usize,
+    /// Distinct processes of B that timed the frame.
     pub b_processes: usize,
+    /// Verdict on the frame's time.
     pub verdict: Verdict,
     /// Why the verdict is not clear; absent when it is.
     pub reason: Option<String>,
@@ -107,7 +124,9 @@ pub enum Verdict {
 pub struct Ratio {
     /// Geometric mean of the processes' medians.
     pub a_median_ms: f64,
+    /// Geometric mean of the medians of B's processes.
     pub b_median_ms: f64,
+    /// `b_median_ms / a_median_ms`: below 1 where B is faster.
     pub ratio: f64,
     /// Lower and upper end.
     pub interval: [f64; 2],
@@ -124,7 +143,9 @@ pub fn ratio_within_process(a: &[f64], b: &[f64]) -> Option<Ratio> {
 /// One time of one pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassComparison {
+    /// Name of the pass.
     pub name: String,
+    /// Clock that timed it.
     pub clock: Clock,
     /// Absent when a side lacks the pass or this time of it.
     pub ratio: Option<Ratio>,

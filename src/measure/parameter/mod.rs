@@ -22,7 +22,9 @@ pub use value::{Choice, Extents, EyeAndTarget, Shape, Size, Value, one, parse_ex
 
 /// Reads and writes a value of type `T` in a set-up `S`.
 pub struct Field<S, T> {
+    /// Copies the value out of the set-up.
     pub get: fn(&S) -> T,
+    /// Puts a value into the set-up.
     pub set: fn(&mut S, T),
 }
 
@@ -54,6 +56,7 @@ pub struct Parameter<S> {
     pub name: &'static str,
     /// Heading that help lists it under.
     pub group: &'static str,
+    /// One line, without range, unit and default.
     pub help: &'static str,
     /// Section or equation of the paper; empty for what is ours.
     pub section: &'static str,
@@ -61,6 +64,7 @@ pub struct Parameter<S> {
     pub unit: &'static str,
     /// Of each number of the value.
     pub range: Range,
+    /// Cost of a change.
     pub cost: Cost,
     /// The short help lists it.
     pub is_everyday: bool,

@@ -261,7 +261,9 @@ impl<T: Value + FromStr + serde::Serialize, const N: usize> Value for Extents<T,
 /// Width and height of a picture in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
+    /// Pixels.
     pub width: u32,
+    /// Pixels.
     pub height: u32,
 }
 
@@ -290,7 +292,9 @@ impl Value for Size {
 /// A camera's eye and target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EyeAndTarget {
+    /// Position of the camera in the world.
     pub eye: Vec3,
+    /// Point of the world that the camera looks at.
     pub target: Vec3,
 }
 

@@ -8,15 +8,19 @@ use super::{AXIS, LABEL, Mark, PlotError, chart, color, extent, from_zero, padde
 /// Groups of bars from zero, one bar per series in each group, with a legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarChart {
+    /// Line above the chart.
     pub title: String,
+    /// Quantity and unit of the vertical axis.
     pub y_label: String,
     /// Names under the groups.
     pub groups: Vec<String>,
+    /// At least one with a value that can be drawn.
     pub series: Vec<BarSeries>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarSeries {
+    /// Name in the legend.
     pub name: String,
     /// One value per group; absent, missing and not finite ones have no bar.
     pub values: Vec<Option<f64>>,
@@ -78,7 +82,9 @@ impl BarChart {
 /// How often samples fall into equally wide bins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
+    /// Line above the chart.
     pub title: String,
+    /// Quantity and unit of the samples.
     pub x_label: String,
     /// Samples that are not finite are left out.
     pub samples: Vec<f64>,

@@ -24,6 +24,7 @@ const MOST_DOTS: usize = 20;
 /// One line of a [`LineChart`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
+    /// Name in the legend.
     pub name: String,
     /// Drawn in this order; points that are not finite are left out.
     pub points: Vec<(f64, f64)>,
@@ -34,11 +35,17 @@ pub struct Series {
 /// Lines over common axes, with a legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineChart {
+    /// Line above the chart.
     pub title: String,
+    /// Quantity and unit of the horizontal axis.
     pub x_label: String,
+    /// Quantity and unit of the vertical axis.
     pub y_label: String,
+    /// Scale of the horizontal axis.
     pub x_scale: Scale,
+    /// Scale of the vertical axis.
     pub y_scale: Scale,
+    /// At least one with a point that can be drawn.
     pub series: Vec<Series>,
 }
 
