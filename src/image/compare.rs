@@ -1,4 +1,4 @@
-//! How far apart two pictures look: the metric of the caustics thesis (section 2.7, equation 2-9), the Euclidean
+//! Visible difference of two pictures: the metric of the caustics thesis (section 2.7, equation 2-9), the Euclidean
 //! distance in CIE 1976 L\*u\*v\* pixel by pixel, averaged over the object's pixels.
 //!
 //! Colours are taken as sRGB with its white D65; alpha takes no part. Black and white are 100 apart, neighbouring greys

@@ -1,7 +1,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What can go wrong with a picture or a raster; every message is one line.
+/// Failures of pictures and rasters; every message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("cannot tell the format of {path}: name a file that ends in .exr, .npy or .png")]

@@ -31,19 +31,18 @@ use std::path::Path;
 /// A file format for a [`Raster`], chosen by the ending of the file's name (in any case).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// OpenEXR, every value unchanged: 32-bit float channels for `f32`, 32-bit unsigned ones for unsigned integers. It knows no
-    /// signed ones: `i32` becomes float, exact up to 2^24.
-    /// Channels are named Y, RG, RGB or RGBA; an array target becomes the EXR layers `layer0`, `layer1`, ...;
-    /// a table becomes one channel, a row a line.
+    /// OpenEXR, every value unchanged: 32-bit float channels for `f32`, 32-bit unsigned ones for unsigned integers. It
+    /// knows no signed ones: `i32` becomes float, exact up to 2^24. Channels are named Y, RG, RGB or RGBA; an array
+    /// target becomes the EXR layers `layer0`, `layer1`, ...; a table becomes one channel, a row a line.
     Exr,
     /// NumPy: the element type and the shape kept exactly, `(layers, height, width, channels)` for an image and
     /// `(rows, columns)` for a table, in C order.
     Npy,
-    /// PNG. `u8` and `u16` data are stored unchanged (8 and 16 bits; two channels as red and green). Other data
-    /// becomes an 8-bit view: `f32` of two to four channels is taken as linear light, clamped to 0..=1 and
-    /// sRGB-encoded, without the fourth channel; one channel of `f32`, and all `u32` and `i32`, is drawn as a linear ramp
-    /// from the smallest finite value (0) to the largest (255), common to all channels and layers. A pixel with a
-    /// value that is not finite is magenta. The layers of an array target stand below one another.
+    /// PNG. `u8` and `u16` data are stored unchanged (8 and 16 bits; two channels as red and green). Other data becomes
+    /// an 8-bit view: `f32` of two to four channels is taken as linear light, clamped to 0..=1 and sRGB-encoded,
+    /// without the fourth channel; one channel of `f32`, and all `u32` and `i32`, is drawn as a linear ramp from the
+    /// smallest finite value (0) to the largest (255), common to all channels and layers. A pixel with a value that is
+    /// not finite is magenta. The layers of an array target stand below one another.
     Png,
 }
 

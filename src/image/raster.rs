@@ -57,7 +57,7 @@ impl From<Vec<u8>> for Samples {
     }
 }
 
-/// How the values of a [`Raster`] are laid out; the last dimension varies fastest.
+/// Layout of the values of a [`Raster`]; the last dimension varies fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// `[layers][height][width][channels]`, the top row first; 1 to 4 channels.

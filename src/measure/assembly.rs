@@ -13,7 +13,7 @@ use crate::report::trace::{TraceEvent, TraceRun, Track};
 /// Repetitions that scatter more than this are called noisy.
 const NOISY: f64 = 0.05;
 
-/// What a run says beside its measurement.
+/// Metadata of a run: all that its record holds beside the measurement.
 pub struct RunMetadata {
     /// [`Study::PAPER`](super::study::Study::PAPER).
     pub paper: &'static str,
@@ -21,7 +21,7 @@ pub struct RunMetadata {
     pub variant: String,
     /// Preset, size and seed.
     pub identity: Identity,
-    /// Which of several fresh processes measured it.
+    /// Number of the fresh process that measured it, from 0.
     pub process: u32,
     /// Every parameter under its option's name, defaults included.
     pub config: Map<String, Value>,

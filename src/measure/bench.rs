@@ -68,7 +68,7 @@ pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: 
     Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before })
 }
 
-/// What is to be measured.
+/// A configuration to measure.
 pub struct Bench<'a, S: Study> {
     /// The configuration.
     pub study: &'a S,

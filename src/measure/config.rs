@@ -1,4 +1,4 @@
-//! What a run's configuration and results are written of, the same for all papers.
+//! JSON values of a run's configuration and results, the same for all papers.
 
 use serde_json::{Map, Value, json};
 

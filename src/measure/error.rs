@@ -1,4 +1,4 @@
-//! What can fail while a user's wish is carried out; the command line maps each kind to its exit code.
+//! Failures of a command; the command line maps each kind to its exit code.
 
 use crate::report::output::OutputError;
 use crate::report::plot::PlotError;

@@ -33,12 +33,12 @@ pub struct Experiment<S: Declared> {
     pub run: fn(&mut Context<'_, S>) -> Result<(), Error>,
 }
 
-/// What a user sees of an experiment while it runs and after it.
+/// Output of an experiment to the user, while it runs and after it.
 pub trait Console {
     /// Prints on standard output.
     ///
     /// # Errors
-    /// Where nothing can be printed.
+    /// [`Error::Input`] for a standard output that cannot be written.
     fn print(&self, text: &str) -> Result<(), Error>;
 
     /// Prints a line on standard error, unless the user wants quiet.
@@ -83,7 +83,7 @@ pub struct MeasureOptions {
 }
 
 impl MeasureOptions {
-    /// What was asked for, or `frames` and `repeat`.
+    /// The schedule asked for, with `frames` and `repeat` for numbers that were not given.
     pub fn schedule(&self, (frames, repeat): (u32, u32)) -> Schedule {
         Schedule {
             warmup: self.warmup,
@@ -161,7 +161,7 @@ impl<S: Declared> Context<'_, S> {
     /// Opens the machine and says which it is.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Any error of the Vulkan layer.
     pub fn open(&self) -> Result<Machine, Error> {
         let machine = Machine::open(&self.machine, S::NEEDS)?;
         self.console.say(&format!("device: {}", machine.description()));

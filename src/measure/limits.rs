@@ -1,4 +1,4 @@
-//! What the device can do at most, measured in the same process, so that a pass can be shown as a share of it.
+//! The device's own limits, measured in the same process, so that a pass can be shown as a fraction of them.
 
 use ash::vk;
 
@@ -32,7 +32,7 @@ host_block! {
 /// RGBA target. `None` for what has no time stamps.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Any error of the Vulkan layer.
 pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
     let Machine { recorder, shaders, .. } = machine;
     Ok(Limits {
@@ -47,7 +47,7 @@ pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
 /// device must blend into such targets.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Any error of the Vulkan layer.
 pub fn float_blend_gpix_s(machine: &mut Machine) -> Result<Option<f64>, Error> {
     let Machine { recorder, shaders, .. } = machine;
     // As many bytes as the other targets have.

@@ -8,7 +8,7 @@ use crate::gpu::{Compiler, Device, Error, Feature, Instance, PhysicalDevice, Rec
 use crate::report::environment;
 use crate::report::record::{self, DeviceKind, Environment, Validation};
 
-/// What a user chose about the machine.
+/// A user's choices about the machine.
 #[derive(Debug, Clone, Default)]
 pub struct MachineOptions {
     /// Index, part of the name, or UUID.
@@ -19,7 +19,7 @@ pub struct MachineOptions {
     pub compiler: Compiler,
     /// Shaders compiled at start in place of the built-in ones.
     pub shader_dir: Option<PathBuf>,
-    /// Which of several fresh processes this is.
+    /// Number of this process among several fresh ones, from 0.
     pub process: u32,
 }
 
@@ -33,7 +33,7 @@ pub struct Machine {
     pub device: Arc<Device>,
     /// RFC 3339, when it was opened.
     opened: String,
-    /// Which of several fresh processes this is.
+    /// Number of this process among several fresh ones, from 0.
     pub process: u32,
 }
 
@@ -41,7 +41,7 @@ impl Machine {
     /// Opens the device that the options name, or the best one that has `needed`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers, [`Error::Shader`] for a shader directory that does not compile.
+    /// Any error of the Vulkan layer, [`Error::Shader`] for a shader directory that does not compile.
     pub fn open(options: &MachineOptions, needed: &[Feature]) -> Result<Self, Error> {
         let instance = Instance::new(options.validate)?;
         let physical = choose(PhysicalDevice::enumerate(&instance)?, options.device.as_deref(), needed)?;
@@ -61,7 +61,7 @@ impl Machine {
         format!("{} ({}, {} {})", p.name, p.device_type.as_str(), p.driver_name, p.driver_info)
     }
 
-    /// What the record says about device, host and build.
+    /// Device, host and build for the record.
     pub fn environment(&self) -> Environment {
         let physical = self.device.physical();
         let bits = physical.queue.map(|q| q.1).filter(|&bits| bits > 0);
@@ -95,7 +95,7 @@ impl Machine {
         Ok(if instance.validates() { Validation::Clean } else { Validation::Off })
     }
 
-    /// What makes figures of this machine doubtful, one line each.
+    /// Doubts about figures of this machine, one line each.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if cfg!(debug_assertions) {

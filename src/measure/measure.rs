@@ -1,5 +1,5 @@
-//! The measured loop: warm up, wait idle, then repetitions of the same frames, plain, stamped and bracketed in turn, the
-//! subjects interleaved frame by frame so that drift hits all alike.
+//! The measured loop: warm up, wait idle, then repetitions of the same frames, plain, stamped and bracketed in turn,
+//! the subjects interleaved frame by frame so that drift hits all alike.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, Recorder, Span};
 use crate::measure::Paper;
 
-/// How much is measured.
+/// Frames and repetitions to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
     /// Frames of each subject before anything counts, at least 1: the first use of a pipeline compiles it.
@@ -23,7 +23,7 @@ pub struct Schedule {
 /// No run repeats its frames more often than this, however long it is asked to take.
 const MOST_REPETITIONS: u32 = 10_000;
 
-/// What was measured of one pass: one sample a frame, repetition after repetition.
+/// Measurements of one pass: one sample a frame, repetition after repetition.
 #[derive(Debug, Clone)]
 pub struct MeasuredPass {
     /// Name, section, kind and shader of the pass.
@@ -42,7 +42,7 @@ pub struct MeasuredPass {
     pub counts: Option<Counts>,
 }
 
-/// What was measured of one subject.
+/// Measurements of one subject.
 #[derive(Debug, Clone, Default)]
 pub struct Measurement {
     /// Whole repetitions that were finished; 0 when even the first was interrupted.
@@ -59,7 +59,7 @@ pub struct Measurement {
     pub spans: Vec<Span>,
 }
 
-/// What the loop tells and asks while it runs.
+/// Progress and interruption of the loop.
 pub struct Watch<'a> {
     /// Set when the user wants no more; the frames finished so far are kept.
     pub interrupted: &'a AtomicBool,
@@ -70,7 +70,7 @@ pub struct Watch<'a> {
 /// Measures `subjects`, interleaved.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Any error of the Vulkan layer.
 pub fn measure(
     recorder: &mut Recorder,
     subjects: &mut [&mut dyn Paper],

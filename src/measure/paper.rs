@@ -10,7 +10,7 @@ pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
     /// In the paper's order.
     const ALL: &'static [Self];
 
-    /// The word that the command line and the record know it by.
+    /// The name that the command line and the record know it by.
     fn as_str(self) -> &'static str;
 }
 
@@ -19,36 +19,36 @@ pub trait Paper {
     /// Returns to the state before frame 0, where there is state; no measured frame contains this.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Any error of the Vulkan layer.
     fn restart(&mut self) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Records frame `number`; the simulated time is that many fixed time steps. Numbers rise after a restart. A paper whose
-    /// state advances catches up with frames that were left out, so that the picture depends on the number alone.
+    /// Records frame `number`; the simulated time is that many fixed time steps. Numbers rise after a restart. A paper
+    /// whose state advances catches up with frames that were left out, so that the picture depends on the number alone.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Any error of the Vulkan layer.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
 
     /// Records frame `number` with what a finished picture needs beyond the passes that the paper times.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Any error of the Vulkan layer.
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)
     }
 
-    /// Whether every frame so far had room for all that it made. If not, its pictures have gaps: the paper has made more room,
-    /// and the frames must be recorded again.
+    /// True when every buffer had the capacity for all that the frames so far made. If not, their pictures have gaps:
+    /// the paper has enlarged its buffers, and the frames must be recorded again.
     ///
     /// # Errors
-    /// [`Error::Limit`] where there cannot be enough room on this device.
+    /// [`Error::Limit`] where this device cannot offer the capacity.
     fn settle(&mut self, _shaders: &ShaderLibrary) -> Result<bool, Error> {
         Ok(true)
     }
 
-    /// What a user should know of the input and of the frames so far, one line each.
+    /// Warnings about the input and the frames so far, one line each.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
@@ -72,7 +72,7 @@ pub struct Target {
     pub kind: Kind,
 }
 
-/// What the 32-bit values of a buffer are.
+/// Type of a buffer's 32-bit values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     F32,

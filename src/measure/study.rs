@@ -1,4 +1,4 @@
-//! What the measured loop and the verbs need to know of a paper.
+//! A paper as the measured loop and the verbs know it.
 
 use serde_json::{Map, Value};
 
@@ -13,9 +13,9 @@ use crate::measure::{Paper, Variant};
 
 /// One paper as a user set it up.
 pub trait Study {
-    /// The paper's word on the command line and in the record.
+    /// The paper's name on the command line and in the record.
     const PAPER: &'static str;
-    /// What a device must have, beyond the baseline of the Vulkan layer.
+    /// Features that a device must have, beyond the baseline of the Vulkan layer.
     const NEEDS: &'static [Feature] = &[];
 
     type Variant: Variant;
@@ -32,7 +32,7 @@ pub trait Study {
     /// Makes the resources of a variant; `label` goes before their names.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Any error of the Vulkan layer.
     fn make(
         &self,
         shaders: &ShaderLibrary,
@@ -54,7 +54,7 @@ pub trait Study {
     /// The paper's own figures and warnings of each variant, asked after the measured loop.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Any error of the Vulkan layer.
     fn metrics(
         &self,
         _machine: &mut Machine,
@@ -102,7 +102,7 @@ pub trait Declared: Study + Clone + Default + 'static {
         Vec::new()
     }
 
-    /// What the main job measures, in the variants of [`Declared::BENCHED`].
+    /// The setup that the main job measures, in the variants of [`Declared::BENCHED`].
     fn quick() -> Self {
         Self::default()
     }
@@ -151,16 +151,16 @@ pub trait Visitor {
     type Error;
 
     /// # Errors
-    /// What ends the visits.
+    /// The error that ends the visits.
     fn visit<S: Declared>(&mut self) -> Result<(), Self::Error>;
 }
 
-/// What every configuration has.
+/// Parameters that every configuration has.
 #[derive(Debug, Clone)]
 pub struct Identity {
     /// Name of the preset that the set-up began with; `None` without one.
     pub preset: Option<String>,
-    /// Size of the picture in pixels.
+    /// Width of the picture in pixels.
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
@@ -168,11 +168,11 @@ pub struct Identity {
     pub seed: u64,
 }
 
-/// What a paper has to say of a run.
+/// A paper's own results of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Metrics {
     /// The paper's own figures.
     pub results: Map<String, Value>,
-    /// What makes the run doubtful, one line each.
+    /// Doubts about the run, one line each.
     pub warnings: Vec<String>,
 }

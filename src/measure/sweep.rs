@@ -12,7 +12,7 @@ use crate::report::record::{Limits, Memory, Run};
 
 /// One configuration of a sweep.
 pub struct Point<S: Study> {
-    /// What its rows are called.
+    /// Label of its rows.
     pub label: String,
     /// Its place on the plot's axis.
     pub x: f64,
@@ -41,15 +41,15 @@ pub struct Row {
     pub run: Run,
 }
 
-/// What a sweep found.
+/// Results of a sweep.
 pub struct Swept {
     /// Finished rows, point after point.
     pub rows: Vec<Row>,
-    /// What ended it before its last point.
+    /// The error that ended it before its last point.
     pub stopped: Option<Error>,
 }
 
-/// How a sweep measures.
+/// Schedule and limits of a sweep.
 pub struct Plan<'a> {
     /// Frames and repetitions at each point.
     pub schedule: Schedule,
@@ -58,11 +58,11 @@ pub struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Measures the points one after the other. What fails after the first point ends the sweep, which keeps its finished
-    /// rows; so does Ctrl-C.
+    /// Measures the points one after the other. What fails after the first point ends the sweep, which keeps its
+    /// finished rows; so does Ctrl-C.
     ///
     /// # Errors
-    /// What the first point answers.
+    /// The error of the first point.
     pub fn measure<S: Study>(
         &self,
         points: &[Point<S>],

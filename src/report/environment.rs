@@ -18,7 +18,7 @@ pub fn host() -> Host {
     }
 }
 
-/// How this program was built, as told by the build script; what it could not find out is absent.
+/// The build of this program, as told by the build script; what it could not find out is absent.
 pub fn build() -> Build {
     let known = |value: Option<&str>| value.filter(|v| !v.is_empty()).map(str::to_owned);
     Build {

@@ -30,7 +30,7 @@ impl Record {
     }
 }
 
-/// What a measurement depends on besides the program's input.
+/// Environment of a measurement: all that it depends on besides the program's input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Environment {
     /// Start of the measurement, RFC 3339 in UTC.
@@ -62,9 +62,9 @@ pub struct Device {
     pub driver_version: Option<String>,
     /// Highest Vulkan version of the device: `1.3.255`.
     pub api_version: String,
-    /// Nanoseconds per time stamp tick; absent where the queue has no time stamps.
+    /// Nanoseconds per timestamp tick; absent where the queue has no timestamps.
     pub timestamp_period: Option<f64>,
-    /// Valid bits of a time stamp; absent where the queue has no time stamps.
+    /// Valid bits of a timestamp; absent where the queue has no timestamps.
     pub timestamp_bits: Option<u32>,
 }
 
@@ -79,7 +79,7 @@ pub enum DeviceKind {
 }
 
 impl DeviceKind {
-    /// The word written in the record.
+    /// The name written in the record.
     pub fn name(self) -> &'static str {
         match self {
             Self::Discrete => "discrete",
@@ -105,14 +105,14 @@ pub struct Host {
     pub lp_num_threads: Option<u32>,
 }
 
-/// How this program was built.
+/// The build of this program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Build {
     /// Version of the package.
     pub version: String,
     /// Full hash of the commit.
     pub git_commit: Option<String>,
-    /// Whether the working tree differed from `git_commit`.
+    /// True when the working tree differed from `git_commit`.
     pub dirty: Option<bool>,
     /// Version of the compiler, as `rustc --version` prints it.
     pub rustc: Option<String>,
@@ -143,14 +143,14 @@ pub struct Run {
     pub frames: u32,
     /// Repetitions of those frames from a restored state, at least 1.
     pub repeat: u32,
-    /// Which of the fresh processes of `--processes` this is, from 0.
+    /// Number of this process among the fresh ones of `--processes`, from 0.
     pub process: u32,
-    /// Host clock from the start of recording to the last fence, without stamps or queries: one sample per frame,
+    /// Host clock from the start of recording to the last fence, without timestamps or queries: one sample per frame,
     /// repetition after repetition.
     pub frame_ms: Option<Summary>,
     /// The passes in the paper's order.
     pub passes: Vec<Pass>,
-    /// Median of the stamped frame minus that of the unstamped one: what the exclusive timing forbids to overlap.
+    /// Median of the timestamped frame minus that of the plain one: what the exclusive timing forbids to overlap.
     pub overlap_ms: Option<f64>,
     /// Median of the frame that no pass accounts for.
     pub unaccounted_ms: Option<f64>,
@@ -202,7 +202,7 @@ pub struct Pass {
     pub submission: Option<u32>,
     /// Whose SPIR-V ran; absent where no shader ran.
     pub shader_compiler: Option<String>,
-    /// Sum of the pass's calls in a stamped frame.
+    /// Sum of the pass's calls in a timestamped frame.
     pub gpu_ms: Option<Summary>,
     /// Host work that the paper's method needs, without waiting.
     pub host_ms: Option<Summary>,
@@ -224,7 +224,7 @@ pub enum PassKind {
 }
 
 impl PassKind {
-    /// The word written in the record.
+    /// The name written in the record.
     pub fn name(self) -> &'static str {
         match self {
             Self::Graphics => "graphics",
@@ -302,7 +302,7 @@ pub struct ResourceMemory {
     pub bytes: u64,
 }
 
-/// What the device can do at most, measured in the same process.
+/// The device's own limits, measured in the same process.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// Bytes read and written by a buffer copy, 10^9 a second.
@@ -337,7 +337,7 @@ pub enum Validation {
 }
 
 impl Validation {
-    /// The word written in the record.
+    /// The name written in the record.
     pub fn name(self) -> &'static str {
         match self {
             Self::Clean => "clean",

@@ -22,8 +22,7 @@ pub struct Camera {
 impl Camera {
     /// World to view: the camera at the origin, looking along -Z, +Y up.
     ///
-    /// Where `up` is parallel to the view, as when looking straight down, -Z or else +Y takes its
-    /// place.
+    /// -Z or else +Y stands in for an `up` parallel to the view, as when looking straight down.
     pub fn view(&self) -> Mat4 {
         let forward = (self.target - self.eye).normalize_or(Vec3::NEG_Z);
         let up = [self.up.normalize_or_zero(), Vec3::NEG_Z, Vec3::Y]

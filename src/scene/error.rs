@@ -24,14 +24,14 @@ pub enum Error {
     HeightMap { reason: String },
 }
 
-/// What a file is read as.
+/// Kind of contents that a file is read as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Asset {
     Mesh,
     HeightMap,
 }
 
-/// What is wrong with the contents of a mesh or a height map, and where.
+/// A fault in the contents of a mesh or a height map, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{reason}")]
 pub struct Fault {

@@ -1,4 +1,4 @@
-//! What is rendered, on the CPU only: meshes, height maps, cameras, lights and seeded random numbers.
+//! The input of rendering, on the CPU only: meshes, height maps, cameras, lights and seeded random numbers.
 //!
 //! The world is right handed with +Y up. A [`MeshSource`] is what a user types (a built-in shape or
 //! a file); [`MeshSource::load`] turns it into a checked [`Mesh`] or an [`Error`] that names the

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Where a mesh comes from: one of the built-in ones or a file.
+/// Source of a mesh: one of the built-in ones or a file.
 ///
 /// As text: `teapot`, `sphere`, `box`, `bunny` or `plane`; anything else is a path, so that a file named
 /// `box` is `./box`.

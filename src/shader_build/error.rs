@@ -36,7 +36,7 @@ pub enum Error {
     Reflect { shader: String, source: ReflectError },
 }
 
-/// What is wrong with a preprocessor line that the includes depend on.
+/// A fault in a preprocessor line that the includes depend on.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum DirectiveProblem {
     #[error("expected `#include \"path/from/the/shader/folder.glsl\"`")]
@@ -63,7 +63,7 @@ pub enum DirectiveProblem {
 #[error("reflecting the SPIR-V binary: {0}")]
 pub struct ReflectError(pub String);
 
-/// Where naga's binary would not fit the layouts built from glslang's.
+/// Place at which naga's binary would not fit the layouts built from glslang's.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[error("glslang and naga disagree on {what}: {glslang} against {naga}")]
 pub struct InterfaceMismatch {

@@ -11,7 +11,7 @@ use super::variants::{self, Definition};
 pub struct Source {
     /// Text for the compilers. It is ASCII: any other character, legal in comments only, became `?`.
     pub text: String,
-    /// What its variant defines, in the order of the pragma.
+    /// Definitions of its variant, in the order of the pragma.
     definitions: Vec<Definition>,
     files: Vec<PathBuf>,
     /// For each line of `text`: index into `files`, line in that file from 1.
@@ -180,7 +180,7 @@ fn quoted(rest: &str) -> Option<&str> {
     complete.then_some(name)
 }
 
-/// Whether a `/* */` comment is open at the end of a line.
+/// True when a `/* */` comment is open at the end of a line.
 fn ends_in_comment(line: &str, mut in_comment: bool) -> bool {
     let mut rest = line;
     loop {

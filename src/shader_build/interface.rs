@@ -1,4 +1,4 @@
-//! What a shader stage reads and writes, as its SPIR-V binary says.
+//! Interface of a shader stage, reflected from its SPIR-V binary.
 
 use super::Stage;
 

@@ -44,7 +44,7 @@ macro_rules! host_block {
     };
 }
 
-/// How a structure of the host differs from its GLSL block.
+/// Difference between a structure of the host and its GLSL block.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 #[error("`{host}` does not fill the GLSL block `{block}`: {difference}; change one to match the other")]
 pub struct LayoutMismatch {
@@ -119,7 +119,7 @@ impl Member {
         block.check_host::<H>()
     }
 
-    /// Whether a field of that size fills the member; a structure may carry its alignment's padding.
+    /// True when a field of that size fills the member; a structure may carry its alignment's padding.
     fn admits_size(&self, host_size: usize) -> bool {
         match (&self.block, self.array_stride_bytes) {
             (Some(_), None) => admits_tail_padding(self.size_bytes, host_size),
@@ -128,7 +128,7 @@ impl Member {
     }
 }
 
-/// Whether a structure of the host is as long as its block, or longer by no more than alignment to 16 bytes adds.
+/// True when a structure of the host is as long as its block, or longer by no more than alignment to 16 bytes adds.
 fn admits_tail_padding(block_size: u32, host_size: usize) -> bool {
     let block_size = block_size as usize;
     (block_size..=block_size.next_multiple_of(16)).contains(&host_size)

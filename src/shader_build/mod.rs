@@ -155,7 +155,7 @@ impl From<&EmbeddedShader> for CompiledShader {
     }
 }
 
-/// What a compiler says about a source, with the line in the text that it saw.
+/// A compiler's message about a source, with the line in the text that it saw.
 struct Diagnostic {
     line: Option<usize>,
     message: String,

@@ -67,8 +67,9 @@ fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
     medians.map(|median| median.filter(|m| *m > 0.0).map(f64::ln)).collect()
 }
 
-/// What is left of each process's samples, as parts of its median, without what all processes share: frames differ by
-/// content, and content is no noise. Frames are matched by their place, which needs equally many in every process.
+/// Residuals of each process's samples, as fractions of its median, less what all processes have in common: frames
+/// differ by content, and content is no noise. Frames are matched by their place, which needs equally many in every
+/// process.
 fn residuals<'a>(processes: impl Iterator<Item = &'a Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let mut residuals: Vec<Vec<f64>> = vec![];
     for samples in processes {

@@ -1,4 +1,4 @@
-//! Which runs of two sides may be compared, and why others may not.
+//! Matching of the runs of two sides, and the reasons why others may not be compared.
 //!
 //! Two runs are the same configuration when everything that fixes their work is equal: [`fields`]. The device's type
 //! must be equal too. What else may shift a time (driver, CPU, build profile, ...) is a warning, as it may be what is

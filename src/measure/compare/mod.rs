@@ -1,4 +1,4 @@
-//! Whether B is faster or slower than A, decided from several records a side.
+//! Verdict on B against A, faster or slower, from several records a side.
 //!
 //! Runs are matched by what was measured (`matching.rs`); each record, and each process inside one, is one process of
 //! its side. The frame decides: the ratio of its medians B / A has an interval of 95 % (`bootstrap.rs`), and
@@ -30,7 +30,7 @@ use serde_json::{Map, Value};
 use crate::report::record::{Record, Run};
 use matching::Configuration;
 
-/// How far from 1 the whole interval of a ratio may reach and still be called the same.
+/// Distance from 1 within which the whole interval of a ratio must lie to be called the same.
 pub const SAME_MARGIN: f64 = 0.02;
 
 /// The value of [`Comparison::schema`].
@@ -58,9 +58,9 @@ pub struct Comparison {
     pub confidence: f64,
     /// Bootstrap resamples behind each interval.
     pub resamples: usize,
-    /// The margin in use, as a part of 1.
+    /// The margin in use, as a fraction.
     pub same_margin: f64,
-    /// Part of 1 that B may be slower than A; absent without `--fail-above`.
+    /// Fraction by which B may be slower than A; absent without `--fail-above`.
     pub fail_above: Option<f64>,
     /// In the order of A.
     pub runs: Vec<RunComparison>,
@@ -73,7 +73,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether any run's interval lies beyond `fail_above`.
+    /// True when any run's interval lies beyond `fail_above`.
     pub fn has_regression(&self) -> bool {
         self.runs.iter().any(|run| run.regression)
     }
@@ -134,8 +134,8 @@ pub struct Ratio {
     pub block_length: usize,
 }
 
-/// The ratio B / A of two methods measured frame by frame in turn in one process: drift hits both alike, so the noise
-/// of frames is all that its interval has to cover. Absent without samples.
+/// The ratio B / A of two methods measured in one process, alternating frame by frame: drift hits both alike, so the
+/// noise of frames is all that its interval has to cover. Absent without samples.
 pub fn ratio_within_process(a: &[f64], b: &[f64]) -> Option<Ratio> {
     bootstrap::estimate(&[a.to_vec()], &[b.to_vec()])
 }
@@ -276,7 +276,7 @@ fn ratio(a: &[Vec<f64>], b: &[Vec<f64>], identical: bool) -> Option<Ratio> {
     Some(ratio)
 }
 
-/// Whether both sides hold the same processes' samples, in any order of the processes.
+/// True when both sides hold the same processes' samples, in any order of the processes.
 fn same_samples(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
     a.len() == b.len() && a.iter().all(|samples| b.contains(samples))
 }

@@ -26,7 +26,7 @@ fn verdict(a: &[Input], b: &[Input]) -> Verdict {
     compare(a, b, None).unwrap().runs[0].verdict
 }
 
-/// How many seeds give each of SAME, FASTER, SLOWER and UNCLEAR.
+/// Number of seeds that give each of SAME, FASTER, SLOWER and UNCLEAR.
 fn count(sides: impl Fn(&mut Noise) -> [Vec<Input>; 2]) -> [u64; 4] {
     let mut counts = [0; 4];
     for seed in 0..SEEDS {

@@ -12,7 +12,7 @@ pub struct ParameterError {
     pub name: &'static str,
     /// As it was typed.
     pub value: String,
-    /// What it must be.
+    /// The range, as it follows the value in the message.
     pub range: String,
 }
 
@@ -31,7 +31,7 @@ impl ParameterError {
     /// Passes for a picture of at least one pixel.
     ///
     /// # Errors
-    /// Where there is none.
+    /// Fails for a side of 0.
     pub fn check_size(width: u32, height: u32) -> Result<(), Self> {
         ParameterError::check(width >= 1 && height >= 1, "size", format!("{width}x{height}"), "has no pixel")
     }

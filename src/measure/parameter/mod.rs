@@ -52,7 +52,7 @@ pub enum Cost {
 
 /// One parameter of the set-up `S`.
 pub struct Parameter<S> {
-    /// The paper's own word, kebab-case; the record's key has underscores in place of hyphens.
+    /// The paper's own term, kebab-case; the record's key has underscores in place of hyphens.
     pub name: &'static str,
     /// Heading that help lists it under.
     pub group: &'static str,
@@ -173,7 +173,7 @@ impl<S: 'static> Parameter<S> {
         }
     }
 
-    /// What the type of the value says of its option.
+    /// Properties of the option that follow from the type of the value.
     pub fn shape(&self) -> Shape {
         self.access.shape()
     }
@@ -205,7 +205,7 @@ impl<S: 'static> Parameter<S> {
     /// Sets the value that was typed; its range is [checked](check) with that of all others.
     ///
     /// # Errors
-    /// What it should look like.
+    /// The form that is expected.
     pub fn set(&self, setup: &mut S, texts: &[&OsStr]) -> Result<(), String> {
         self.access.set(setup, texts)
     }

@@ -10,7 +10,7 @@ use serde_json::{Value as Json, json};
 use super::Range;
 use crate::scene::{HeightMapSource, MeshSource};
 
-/// What the type of a value says of its option.
+/// Properties of an option that follow from the type of its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shape {
     /// Form of the value: `N`, `X,Y,Z`.
@@ -52,7 +52,7 @@ pub trait Value: Clone + 'static {
     /// Reads what was typed: one text, of a list any number.
     ///
     /// # Errors
-    /// What it should look like.
+    /// The form that is expected.
     fn parse(texts: &[&OsStr]) -> Result<Self, String>;
 
     /// As it is typed; empty for none.
@@ -70,7 +70,7 @@ pub trait Value: Clone + 'static {
 /// The one text that was typed.
 ///
 /// # Errors
-/// Where there are more, or it is not UTF-8.
+/// Fails for several texts, or one that is not UTF-8.
 pub fn one<'a>(texts: &[&'a OsStr]) -> Result<&'a str, String> {
     match texts {
         [text] => text.to_str().ok_or_else(|| format!("{} is not UTF-8", text.display())),

@@ -79,7 +79,7 @@ impl BarChart {
     }
 }
 
-/// How often samples fall into equally wide bins.
+/// Counts of samples in equally wide bins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
     /// Line above the chart.

@@ -52,7 +52,7 @@ fn chart<'a, 'b>(canvas: &'b Canvas<'a>, title: &str) -> ChartBuilder<'b, 'b, SV
 const LABEL: (&str, u32) = ("sans-serif", 14);
 const AXIS: (&str, u32) = ("sans-serif", 15);
 
-/// How a legend shows a series.
+/// Sample of a series in a legend.
 #[derive(Clone, Copy)]
 enum Mark {
     Line,
@@ -125,7 +125,7 @@ fn tick(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// What a viewer checks first: the document parses, and its text is found.
+/// Texts of a document, which must parse as any viewer asks.
 #[cfg(test)]
 fn texts(svg: &str) -> Vec<String> {
     let document = roxmltree::Document::parse(svg).expect("well-formed XML");

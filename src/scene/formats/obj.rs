@@ -48,7 +48,7 @@ fn decode(bytes: &[u8]) -> Result<&str, Fault> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-/// What an index can count: positions, texture coordinates and normals, in the order in which a
+/// Things that an index can count: positions, texture coordinates and normals, in the order in which a
 /// corner names them.
 const KINDS: [&str; 3] = ["positions", "texture coordinates", "normals"];
 

@@ -75,7 +75,7 @@ struct Text<'a> {
     rest: &'a [u8],
     /// Number of the last line given, from 1.
     line: usize,
-    /// What of that line has not been read yet.
+    /// The rest of that line, not read yet.
     pending: Cursor<Vec<u8>>,
     /// True after `endsolid`, where the file may end.
     is_complete: bool,

@@ -73,7 +73,7 @@ fn samples_are_valid() {
     }
 }
 
-/// What must hold for any bytes at all: a valid mesh, or a fault told in one line.
+/// Asserts the outcome that any bytes at all must have: a valid mesh, or a fault told in one line.
 fn assert_sound(ending: &str, bytes: Vec<u8>) -> bool {
     match parse(ending, bytes) {
         Ok(mesh) => {
@@ -268,8 +268,8 @@ fn a_concave_polygon_keeps_its_area() {
     assert!((covered.iter().map(|x| x.abs()).sum::<f64>() - area.abs()).abs() < 1e-5);
 }
 
-/// Fetches the meshes that are not shipped, once, and says loudly what could not be fetched: past the test harness, which
-/// keeps the output of tests that pass to itself.
+/// Fetches the meshes that are not shipped, once, and says loudly what could not be fetched: past the test harness,
+/// which keeps the output of tests that pass to itself.
 fn fetch_assets() {
     use std::io::Write;
     let script = asset("fetch.sh");

@@ -5,7 +5,7 @@ const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// Flattening of the WGS84 ellipsoid.
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
-/// Where a map in longitude and latitude lies. North and east are positive.
+/// Placement of a map in longitude and latitude. North and east are positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geographic {
     /// Longitude of the first column's samples, degrees.

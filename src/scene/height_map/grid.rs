@@ -3,19 +3,19 @@ use super::{Geographic, HeightMap, Samples, voids};
 use crate::scene::error::{Fault, Place};
 use glam::DVec2;
 
-/// What a reader found: the samples as the source holds them, row by row from the north-west.
+/// Output of a reader: the samples as the source holds them, row by row from the north-west.
 pub(super) struct Grid<T> {
     pub(super) width: u32,
     pub(super) height: u32,
     pub(super) values: Vec<T>,
-    /// Whether all values that are not void are whole numbers.
+    /// True when all values that are not void are whole numbers.
     pub(super) integral: bool,
     /// The value of a sample without a height.
     pub(super) no_data: Option<f64>,
     pub(super) placement: Placement,
 }
 
-/// How far apart the samples lie.
+/// Spacing of the samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Placement {
     /// The source does not say: 1 m.
@@ -80,7 +80,7 @@ impl<T: Copy + Into<f64>> Grid<T> {
     }
 }
 
-/// Whether a value is the one that stands for no height.
+/// True when a value is the one that stands for no height.
 ///
 /// Headers often round the lowest 32-bit number (-3.4e38), so huge values need to agree roughly only.
 fn is_void(value: f64, no_data: Option<f64>) -> bool {

@@ -84,12 +84,12 @@ impl HeightMap {
         self.spacing_m
     }
 
-    /// Where the map lies on the Earth, if its source says so in degrees.
+    /// Placement of the map on the Earth, if its source says so in degrees.
     pub fn geographic(&self) -> Option<Geographic> {
         self.geographic
     }
 
-    /// How many samples the source left void, which were filled from their neighbours.
+    /// Number of samples that the source left void, which were filled from their neighbours.
     pub fn voids_filled(&self) -> u64 {
         self.voids_filled
     }
@@ -129,8 +129,8 @@ impl HeightMap {
         Ok(Self { samples, range_m, ..self })
     }
 
-    /// The map of a whole turn, whose first column follows its last: two columns more on each side, which repeat those of the
-    /// other. It lies in the same place; what it says of its place on the Earth is left out.
+    /// The map of a whole turn, whose first column follows its last: two columns more on each side, which repeat those
+    /// of the other. It lies in the same place; what it says of its place on the Earth is left out.
     pub fn closed(&self) -> Self {
         let width = self.width as usize;
         let columns = || (width - 2..width).chain(0..width).chain(0..2);
@@ -157,7 +157,7 @@ impl HeightMap {
 }
 
 impl Samples {
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         match self {
             Self::Steps { values, .. } => values.len(),
@@ -194,7 +194,7 @@ enum RangeFault {
     NotFinite(usize),
 }
 
-/// Whether a map may have this many columns and rows; readers ask before they allocate.
+/// Passes for a number of columns and rows that a map may have; readers ask before they allocate.
 pub(super) fn check_size(width: u64, height: u64) -> Result<(), String> {
     let (fewest, most) = (u64::from(*HeightMap::SIDE.start()), u64::from(*HeightMap::SIDE.end()));
     if [width, height].iter().all(|side| (fewest..=most).contains(side)) {

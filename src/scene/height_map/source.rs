@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Where a height map comes from: one of the built-in ones or a file.
+/// Source of a height map: one of the built-in ones or a file.
 ///
 /// As text: `volcano`, `maunga-whau` or `jacksboro`; anything else is a path, so that a file named `volcano` is
 /// `./volcano`.

@@ -1,9 +1,10 @@
 //! Heights for samples without one.
 //!
-//! A void becomes the mean of its four neighbours, as a membrane stretched over the hole would lie. The membrane is found
-//! from coarse to fine: each coarser level averages the heights that it has, the coarsest void takes its neighbours',
-//! and each finer level starts from the level before it and is relaxed a fixed number of times. So the work is
-//! proportional to the map, the result is the same on every machine, and no filled height leaves the range of the known ones.
+//! A void becomes the mean of its four neighbours, as a membrane stretched over the hole would lie. The membrane is
+//! found from coarse to fine: each coarser level averages the heights that it has, the coarsest void takes its
+//! neighbours', and each finer level starts from the level before it and is relaxed a fixed number of times. So the
+//! work is proportional to the map, the result is the same on every machine, and no filled height leaves the range of
+//! the known ones.
 
 const RELAXATIONS: usize = 8;
 

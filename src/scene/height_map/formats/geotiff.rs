@@ -119,7 +119,8 @@ impl<R: Read + Seek> Tags<'_, R> {
         Ok(MapCoordinates { north_west, step, width, height }.placed(keys.unit))
     }
 
-    /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the header.
+    /// GeoTIFF 1.1, section 7.1.2: four numbers a key (name, location, count, value or index), after four of the
+    /// header.
     fn keys(&mut self) -> Result<Keys, Fault> {
         let directory = match self.decoder.find_tag(Tag::GeoKeyDirectoryTag).map_err(foreign)? {
             Some(value) => value.into_u16_vec().map_err(|error| Fault::foreign(part("GeoKeyDirectory"), &error))?,

@@ -74,7 +74,8 @@ fn malformed(path: &Path, fault: Fault) -> Error {
     Error::Malformed { path: path.to_owned(), asset: Asset::HeightMap, fault }
 }
 
-/// Whether a compressed file can hold samples of so many bits each, so that a small file cannot ask for much memory.
+/// Passes when a compressed file can hold samples of so many bits each, so that a small file cannot ask for much
+/// memory.
 fn check_compressed(size_bytes: u64, (width, height): (u32, u32), bits: u32) -> Result<(), String> {
     /// Neither Deflate (1,032) nor LZW (about 1,400) packs tighter.
     const MOST_COMPRESSED: u64 = 2_000;

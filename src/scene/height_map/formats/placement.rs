@@ -1,4 +1,4 @@
-//! How far apart the samples of a raster with map coordinates lie.
+//! Spacing of the samples of a raster with map coordinates.
 
 use super::read_text;
 use crate::scene::error::Asset;
@@ -19,8 +19,8 @@ pub(super) enum Unit {
 /// Steps of this size or more are taken for metres where nothing names the unit.
 const COARSEST_DEG: f64 = 0.1;
 
-/// Where a raster lies in map coordinates of an unnamed unit: the centre of its north-west sample, and the steps east and
-/// south between samples.
+/// Placement of a raster in map coordinates of an unnamed unit: the centre of its north-west sample, and the steps east
+/// and south between samples.
 pub(super) struct MapCoordinates {
     pub(super) north_west: Option<DVec2>,
     pub(super) step: DVec2,

@@ -321,7 +321,7 @@ fn parse(ending: &str, bytes: Vec<u8>) -> Result<HeightMap, Fault> {
     }
 }
 
-/// What must hold for any bytes at all: a valid map, or a fault told in one line.
+/// Asserts the outcome that any bytes at all must have: a valid map, or a fault told in one line.
 fn assert_sound(ending: &str, bytes: Vec<u8>) -> bool {
     match parse(ending, bytes) {
         Ok(map) => {

@@ -6,18 +6,18 @@ use glam::{IVec2, Vec2};
 
 /// Wavelength of the widest gullies.
 const WIDEST_M: f32 = 700.0;
-/// How deep the widest gullies cut into a slope of 45 degrees.
+/// Depth of the widest gullies in a slope of 45 degrees.
 const DEEPEST_M: f32 = 78.0;
-/// How strongly gullies turn those of the next octave into them.
+/// Strength with which gullies deflect those of the next octave into them.
 const BRANCHING: f32 = 0.55;
 const OCTAVES: u32 = 5;
 
-/// What erosion adds to the height at `place` (metres east and north), where the uneroded land has the gradient `slope`
-/// (metres a metre).
+/// Metres that erosion adds to the height at `place` (metres east and north), where the uneroded terrain has the
+/// gradient `slope` (metres a metre).
 ///
-/// Each octave is a patchwork of waves whose crests point down the slope. A patch's wave is damped towards its edge, and
-/// patches overlap, so that gullies begin, join and end. The slope that an octave sees includes the octaves before it:
-/// small gullies run into the large ones.
+/// Each octave is a patchwork of waves whose crests point down the slope. A patch's wave is damped towards its edge,
+/// and patches overlap, so that gullies begin, join and end. The slope that an octave sees includes the octaves before
+/// it: small gullies run into the large ones.
 pub(super) fn eroded_m(noise: Noise, place: Vec2, slope: Vec2) -> f32 {
     let (mut height_m, mut total_slope) = (0.0, slope);
     let (mut wavelength_m, mut depth_m) = (WIDEST_M, DEEPEST_M);
@@ -36,7 +36,7 @@ pub(super) fn eroded_m(noise: Noise, place: Vec2, slope: Vec2) -> f32 {
     height_m
 }
 
-/// How far a patch's centre strays from its cell's, and the patch's radius, in cells. No patch reaches beyond the
+/// Greatest offset of a patch's centre from its cell's, and the patch's radius, in cells. No patch reaches beyond the
 /// neighbouring cells, and one reaches every place: sqrt(2) (0.5 + 0.3) < 1.2 = 1.5 - 0.3.
 const STRAY: f32 = 0.3;
 const RADIUS: f32 = 1.2;

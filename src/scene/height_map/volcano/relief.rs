@@ -7,7 +7,7 @@ use glam::Vec2;
 const PLAIN_M: f32 = 560.0;
 /// Height of the undamaged cone above the plain.
 const CONE_M: f32 = 1_480.0;
-/// Where the cone's foot runs out into the plain.
+/// Distance from the summit at which the cone's foot runs out into the plain.
 const FOOT_M: f32 = 6_200.0;
 /// The summit crater.
 const CRATER_RADIUS_M: f32 = 380.0;
@@ -15,9 +15,9 @@ const CRATER_DEPTH_M: f32 = 190.0;
 /// Half the width of the scar at its head, and how much wider it gets for each metre north.
 const SCAR_HALF_WIDTH_M: f32 = 640.0;
 const SCAR_WIDENING: f32 = 0.24;
-/// How far the centre of the scar's head lies north of the summit.
+/// Distance north of the summit of the centre of the scar's head.
 const SCAR_HEAD_M: f32 = 420.0;
-/// How far from its head the scar's floor reaches the plain.
+/// Distance from its head at which the scar's floor reaches the plain.
 const SCAR_LENGTH_M: f32 = 6_000.0;
 /// The scar's floor above the plain, at its head.
 const SCAR_FLOOR_M: f32 = 560.0;
@@ -48,8 +48,8 @@ pub(super) struct Relief {
 #[derive(Clone, Copy)]
 pub(super) struct Bare {
     pub(super) height_m: f32,
-    /// How deep gullies cut, 0 to 1: not into loose debris, which swallows the rain, nor into a crest, where none falls
-    /// from above.
+    /// Relative depth of gullies, 0 to 1: not into loose debris, which swallows the rain, nor into a crest, where none
+    /// falls from above.
     pub(super) erodibility: f32,
 }
 
@@ -124,7 +124,7 @@ fn scarred_m(place: Vec2, cone_m: f32) -> (f32, f32) {
     (smooth_min(cone_m, -wall_m, 130.0), crest)
 }
 
-/// Where the debris of the collapse lies: 0 outside the fan north of the scar, 1 inside.
+/// Cover by the debris of the collapse: 0 outside the fan north of the scar, 1 inside.
 fn fan(place: Vec2) -> f32 {
     let half_width_m = 700.0 + 0.62 * place.y.max(0.0);
     let across = 1.0 - ramp(0.35, 1.0, (place.x / half_width_m).abs());

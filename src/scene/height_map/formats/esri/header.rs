@@ -4,7 +4,7 @@ use glam::DVec2;
 use std::collections::HashMap;
 use std::str::FromStr;
 
-/// What an ESRI `.hdr` file says of the samples beside it.
+/// Contents of an ESRI `.hdr` file: the layout of the samples beside it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Header {
     pub(super) columns: u32,
@@ -21,7 +21,7 @@ pub(super) struct Header {
     pub(super) step: Option<DVec2>,
 }
 
-/// What one sample is.
+/// Type of one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Unsigned8,
