@@ -1,7 +1,8 @@
-//! How long the CPU takes to make meshes and height maps: loading the shipped files, tessellating, computing normals,
-//! sampling the volcano.
+//! How long the CPU takes for what the papers are given: loading the shipped meshes and height maps, tessellating,
+//! computing normals, sampling the volcano, building a pyramid of maxima, clustering particles.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use fumarole::papers::{lava, terrain};
 use fumarole::scene::{HeightMapSource, MeshSource, shapes, volcano};
 use std::hint::black_box;
 use std::path::Path;
@@ -58,6 +59,29 @@ fn maps(criterion: &mut Criterion) {
     });
 }
 
+fn pyramids(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("pyramid");
+    group.sample_size(10);
+    for side in [1_024, 4_096] {
+        let map = volcano(side, 1).expect("a valid side");
+        let samples: &[u16] = terrain::Texel::samples_of(&map);
+        let shape = terrain::Shape::new(map.width(), map.height());
+        group.bench_function(format!("maxima of {side} x {side}"), |bencher| {
+            bencher.iter(|| terrain::Pyramid::build(shape, black_box(samples), terrain::Bound::Highest));
+        });
+    }
+}
+
+fn clustering(criterion: &mut Criterion) {
+    let parameters = lava::Parameters::default();
+    let particles = lava::Particles::seeded(&parameters);
+    let positions: Vec<[f32; 4]> = particles.positions.iter().map(|p| p.extend(0.0).to_array()).collect();
+    let mut clusters = lava::Clusters::new(&parameters);
+    criterion.bench_function(&format!("cluster {} particles", positions.len()), |bencher| {
+        bencher.iter(|| clusters.classify(black_box(&positions)));
+    });
+}
+
 fn tessellation(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("tessellate");
     group.bench_function("teapot", |bencher| bencher.iter(shapes::teapot));
@@ -77,5 +101,5 @@ fn normals(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, files, maps, tessellation, normals);
+criterion_group!(benches, files, maps, pyramids, clustering, tessellation, normals);
 criterion_main!(benches);

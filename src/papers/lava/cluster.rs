@@ -71,14 +71,15 @@ struct Band {
 }
 
 /// The particles of every cluster, lowest cluster first.
-struct Clusters {
+pub struct Clusters {
     space_m: Vec3,
     bands: Vec<Band>,
     particles: Vec<Vec<Point>>,
 }
 
 impl Clusters {
-    fn new(parameters: &Parameters) -> Self {
+    /// Empty clusters over the space of `parameters`.
+    pub fn new(parameters: &Parameters) -> Self {
         let planes = parameters.density[1];
         let band = |k: u32| Band {
             low_m: parameters.plane_height_m(4 * k) - parameters.radius_m,
@@ -90,7 +91,7 @@ impl Clusters {
 
     /// Sorts `positions`, x, y, z and anything, into the clusters. A particle may have left the space by one step; it
     /// counts at the nearest point inside.
-    fn classify(&mut self, positions: &[[f32; 4]]) {
+    pub fn classify(&mut self, positions: &[[f32; 4]]) {
         self.particles.iter_mut().for_each(Vec::clear);
         for &[x, y, z, _] in positions {
             let place = Vec3::new(x, y, z).clamp(Vec3::ZERO, self.space_m);

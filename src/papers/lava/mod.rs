@@ -58,7 +58,7 @@ use crate::gpu::{Buffer, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::Mesh;
 
-pub use self::cluster::Point;
+pub use self::cluster::{Clusters, Point};
 pub use self::parameters::{CAMERAS, Parameters, Preset, Shading, Variant};
 pub use self::rock::Rock;
 pub use self::splats::depth_range_m;
