@@ -10,6 +10,7 @@ use super::lava::LavaArgs;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, benched};
+use super::spelling;
 use super::terrain::TerrainArgs;
 use super::watch::{interrupted, watched};
 use crate::measure::bench::{Bench, load};
@@ -117,7 +118,10 @@ fn measure_quick<S: Study>(
     let limits = measured.limits.as_ref();
     let bench = Bench { study, loaded: &loaded, variants, schedule: SCHEDULE, limits };
     let found = watched(output.quiet, paper, |watch| bench.measure(machine, watch))?;
-    let (mut runs, traces): (Vec<_>, Vec<_>) = found.into_iter().map(|m| (m.run, m.trace)).unzip();
+    let (mut runs, traces): (Vec<Run>, Vec<_>) = found.into_iter().map(|m| (m.run, m.trace)).unzip();
+    for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
+        *warning = spelling::options(warning);
+    }
     if let (Some(&variant), Some(run)) = (variants.first(), runs.first_mut()) {
         run.image = Some(bench::write_picture(machine, study, &loaded, variant, 0, &picture)?);
         outcome::wrote(output, &picture);
