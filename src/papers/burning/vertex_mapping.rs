@@ -5,7 +5,7 @@ use super::model::Model;
 use super::ping_pong::{PingPong, build, new};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
-/// The pass.
+/// Makes the pass.
 ///
 /// # Errors
 /// What the Vulkan layer answers.

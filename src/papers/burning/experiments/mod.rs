@@ -12,7 +12,7 @@ use self::rates::{CLAIMS, Claim};
 use self::refining::{Measured, is_half_refined};
 use self::sweeps::Limited;
 pub use self::timeline::snapshot;
-use self::timeline::{Snapshot, follow};
+use self::timeline::{Snapshot, busiest_tick, follow};
 use super::Variant;
 use super::setup::Setup;
 use crate::field;
@@ -148,6 +148,16 @@ fn watch_fire(
     snapshots
 }
 
+/// Follows a fire until it has burnt out.
+fn whole_fire(
+    context: &Context<'_>,
+    machine: &mut Machine,
+    setup: &Setup,
+    variant: Variant,
+) -> Result<Vec<Snapshot>, Error> {
+    watch_fire(context, machine, setup, variant, STEP, |_| false)
+}
+
 /// Publishes measured rows with their table and plot, and ends as the sweep did.
 fn publish(
     context: &Context<'_>,
@@ -170,8 +180,8 @@ fn plot(svg: String) -> [(String, String); 1] {
 fn frame_rate(context: &mut Context<'_>, claim: &Claim) -> Result<(), Error> {
     let setup = context.over(claim.preset.setup())?;
     let mut machine = context.open()?;
-    let snapshots = watch_fire(context, &mut machine, &setup, claim.variant(), STEP, |_| false)?;
-    let Swept { mut rows, stopped } = context.sweep(&mut machine, &[claim.point(&setup, &snapshots)?])?;
+    let tick = busiest_tick(&whole_fire(context, &mut machine, &setup, claim.variant())?)?;
+    let Swept { mut rows, stopped } = context.sweep(&mut machine, &[claim.point(&setup, tick)])?;
     rows.iter_mut().for_each(|row| claim.note(&mut row.run));
     let table = rows.iter().map(|row| claim.render(&row.label, &row.run, context.console.style())).collect();
     let plots = rows.iter().map(|row| Ok((".svg".to_owned(), claim.plot(&row.run)?)));
@@ -212,9 +222,8 @@ fn named_or_shell(context: &Context<'_>) -> Result<Setup, Error> {
 fn blocks(context: &mut Context<'_>) -> Result<(), Error> {
     let setup = named_or_shell(context)?;
     let mut machine = context.open()?;
-    let snapshots = watch_fire(context, &mut machine, &setup, Variant::Shell, STEP, |_| false)?;
-    let points = sweeps::block_points(&setup, timeline::busiest_tick(&snapshots)?);
-    let mut swept = context.sweep(&mut machine, &points)?;
+    let tick = busiest_tick(&whole_fire(context, &mut machine, &setup, Variant::Shell)?)?;
+    let mut swept = context.sweep(&mut machine, &sweeps::block_points(&setup, tick))?;
     let table = sweeps::block_table(&mut swept.rows);
     let svg = table.bars("ms", &["weights ms", "rotation ms", "mapping ms", "flames ms"])?;
     publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
@@ -223,13 +232,14 @@ fn blocks(context: &mut Context<'_>) -> Result<(), Error> {
 fn limits(context: &mut Context<'_>) -> Result<(), Error> {
     let setup = named_or_shell(context)?;
     let mut machine = context.open()?;
-    let free = watch_fire(context, &mut machine, &setup, Variant::Shell, STEP, |_| false)?;
+    let free = whole_fire(context, &mut machine, &setup, Variant::Shell)?;
+    let tick = busiest_tick(&free)?;
     let mut fires = Vec::new();
     for limit in sweeps::limits(&free) {
         let limited = sweeps::limited(&setup, limit);
         let snapshots = match limit {
             0 => free.clone(),
-            _ => watch_fire(context, &mut machine, &limited, Variant::Shell, STEP, |_| false)?,
+            _ => whole_fire(context, &mut machine, &limited, Variant::Shell)?,
         };
         fires.push(Limited { limit, snapshots });
     }
@@ -237,9 +247,9 @@ fn limits(context: &mut Context<'_>) -> Result<(), Error> {
     let asked = context.measure.frames;
     // Whole ticks under every division.
     context.measure.frames = asked.or(sweeps::DIVISIONS.last().map(|most| 2 * most));
-    let divided = context.sweep(&mut machine, &sweeps::division_points(&setup, &free)?)?;
+    let divided = context.sweep(&mut machine, &sweeps::division_points(&setup, tick))?;
     context.measure.frames = asked;
-    let loaded = context.sweep(&mut machine, &sweeps::loading_points(&setup, &free)?)?;
+    let loaded = context.sweep(&mut machine, &sweeps::loading_points(&setup, tick))?;
     let tables = [
         ("-active.csv", sweeps::limit_table(&fires, &limited.rows)),
         ("-division.csv", sweeps::division_table(&divided.rows)),

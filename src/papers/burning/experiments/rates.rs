@@ -2,7 +2,7 @@
 
 use super::super::setup::Setup;
 use super::presets;
-use super::timeline::{Snapshot, busiest_tick, frame_before};
+use super::sweeps::{at_tick, point};
 use crate::measure::Error;
 use crate::measure::study::Preset;
 use crate::measure::sweep::Point;
@@ -31,21 +31,10 @@ impl Claim {
         self.preset.variant.unwrap_or(Variant::Shell)
     }
 
-    /// The point to measure: the fire at its busiest.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for a fire without a snapshot of it.
-    pub fn point(&self, setup: &Setup, snapshots: &[Snapshot]) -> Result<Point<Setup>, Error> {
-        let tick = busiest_tick(snapshots)?;
-        let mut study = setup.clone();
-        study.parameters.first_frame = frame_before(&setup.parameters, tick);
-        Ok(Point {
-            label: format!("tick {tick}"),
-            x: f64::from(tick),
-            study,
-            variants: vec![self.variant()],
-            left_out: Vec::new(),
-        })
+    /// The point to measure: the fire at `tick`.
+    pub fn point(&self, setup: &Setup, tick: u32) -> Point<Setup> {
+        let study = at_tick(setup, tick, |_| ());
+        Point { variants: vec![self.variant()], ..point(format!("tick {tick}"), f64::from(tick), study) }
     }
 
     /// Notes the dissertation's figure beside ours.

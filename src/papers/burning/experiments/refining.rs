@@ -207,7 +207,7 @@ pub fn curves(measured: &[Measured]) -> ResultTable {
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
         for (frame, snapshot) in one.snapshots.iter().enumerate() {
-            let fraction = f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
+            let fraction = snapshot.refined_fraction();
             let ratio = pair.of_frame(frame, one.snapshots.len());
             rows.push(vec![json!(one.finest()), json!(frame), json!(fraction), json!(ratio), json!(one.line.speed_up)]);
         }
@@ -227,8 +227,6 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
     let mut series = Vec::new();
     for one in measured {
         let Some(pair) = one.pair(LOADS[0]) else { continue };
-        let fraction =
-            |snapshot: &Snapshot| f64::from(snapshot.refined.unwrap_or(0)) / f64::from(snapshot.coarse.max(1));
         let points: Vec<(f64, f64)> = one
             .snapshots
             .chunk_by(|a, b| a.refined == b.refined)
@@ -236,7 +234,7 @@ pub fn plot(measured: &[Measured]) -> Result<String, Error> {
                 let frames = *next..*next + snapshots.len();
                 *next = frames.end;
                 let ratios: Vec<f64> = frames.filter_map(|frame| pair.of_frame(frame, one.snapshots.len())).collect();
-                Some(mean(&ratios).map(|ratio| (fraction(&snapshots[0]), ratio)))
+                Some(mean(&ratios).map(|ratio| (snapshots[0].refined_fraction(), ratio)))
             })
             .flatten()
             .collect();

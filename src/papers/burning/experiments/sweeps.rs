@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
-use super::timeline::{Snapshot, busiest_tick, frame_before};
+use super::timeline::{Snapshot, frame_before};
 use crate::measure::Error;
 use crate::measure::result_table::ResultTable;
 use crate::measure::sweep::{Point, Row};
@@ -25,12 +25,13 @@ fn result(run: &Run, name: &str) -> Value {
     run.results.get(name).cloned().unwrap_or(Value::Null)
 }
 
-fn point(label: String, x: f64, study: Setup) -> Point<Setup> {
+/// A point under `shell`.
+pub fn point(label: String, x: f64, study: Setup) -> Point<Setup> {
     Point { label, x, study, variants: vec![Variant::Shell], left_out: Vec::new() }
 }
 
 /// A setup with a change, whose frame 0 shows `tick`.
-fn at_tick(setup: &Setup, tick: u32, change: impl FnOnce(&mut Parameters)) -> Setup {
+pub fn at_tick(setup: &Setup, tick: u32, change: impl FnOnce(&mut Parameters)) -> Setup {
     let mut study = setup.clone();
     change(&mut study.parameters);
     study.parameters.first_frame = frame_before(&study.parameters, tick);
@@ -146,17 +147,13 @@ pub fn limit_table(fires: &[Limited], rows: &[Row]) -> ResultTable {
 /// Frames that a tick is spread over.
 pub const DIVISIONS: [u32; 4] = [1, 2, 4, 8];
 
-/// The busiest tick, spread over 1 to 8 frames.
-///
-/// # Errors
-/// [`Error::Input`] without a snapshot of the fire.
-pub fn division_points(setup: &Setup, snapshots: &[Snapshot]) -> Result<Vec<Point<Setup>>, Error> {
-    let tick = busiest_tick(snapshots)?;
+/// A tick, spread over 1 to 8 frames.
+pub fn division_points(setup: &Setup, tick: u32) -> Vec<Point<Setup>> {
     let of = |division: u32| {
         let study = at_tick(setup, tick, |p| p.time_division = division);
         point(format!("division {division}"), f64::from(division), study)
     };
-    Ok(DIVISIONS.map(of).into())
+    DIVISIONS.map(of).into()
 }
 
 /// Gain of time division (3.7.2): frames of one tick differ, and the player sees the longest.
@@ -179,17 +176,13 @@ pub fn division_table(rows: &[Row]) -> ResultTable {
     }
 }
 
-/// The busiest tick with everything loaded before, and without.
-///
-/// # Errors
-/// [`Error::Input`] without a snapshot of the fire.
-pub fn loading_points(setup: &Setup, snapshots: &[Snapshot]) -> Result<Vec<Point<Setup>>, Error> {
-    let tick = busiest_tick(snapshots)?;
+/// A tick with everything loaded before, and without.
+pub fn loading_points(setup: &Setup, tick: u32) -> Vec<Point<Setup>> {
     let of = |preload: bool| {
         let study = at_tick(setup, tick, |p| p.preload = preload);
         point(format!("preload {preload}"), f64::from(u8::from(preload)), study)
     };
-    Ok([true, false].map(of).into())
+    [true, false].map(of).into()
 }
 
 /// Gain of loading ahead (3.7.4).

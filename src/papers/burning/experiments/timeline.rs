@@ -25,6 +25,13 @@ pub struct Snapshot {
     pub coarse: u32,
 }
 
+impl Snapshot {
+    /// Fraction of the coarse triangles that are refined.
+    pub fn refined_fraction(&self) -> f64 {
+        f64::from(self.refined.unwrap_or(0)) / f64::from(self.coarse.max(1))
+    }
+}
+
 /// Snapshots of a fire every `step` ticks until it has burnt out or `is_enough` of one.
 ///
 /// # Errors
@@ -94,7 +101,7 @@ pub fn snapshot(machine: &Machine, paper: &Burning) -> Result<Snapshot, Error> {
 }
 
 /// The snapshot of most live particles, of several the one of most active triangles, of those the first.
-pub fn busiest(snapshots: &[Snapshot]) -> Option<&Snapshot> {
+fn busiest(snapshots: &[Snapshot]) -> Option<&Snapshot> {
     let load = |snapshot: &Snapshot| {
         (snapshot.counts.fire_particles + snapshot.counts.smoke_particles, snapshot.counts.active_triangles)
     };
