@@ -46,52 +46,53 @@ pub struct RunMetadata {
 }
 
 /// Assembles the run.
-pub fn assemble(subject: RunMetadata, measurement: &Measurement, schedule: Schedule) -> Run {
+pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Schedule) -> Run {
     let passes: Vec<Pass> = measurement.passes.iter().map(pass).collect();
     let frame_ms = summarize(&measurement.frame_ms);
     let of_passes = |times: fn(&Pass) -> Option<f64>| passes.iter().filter_map(times).sum::<f64>();
     let gpu_ms = of_passes(|p| p.gpu_ms.as_ref().map(|s| s.median));
     let host_ms = of_passes(|p| p.host_ms.as_ref().map(|s| s.median));
-    let is_stamped = passes.iter().any(|p| p.gpu_ms.is_some());
-    let mut warnings = subject.warnings;
+    let is_timestamped = passes.iter().any(|p| p.gpu_ms.is_some());
+    let mut warnings = metadata.warnings;
     if let Some(noise) = repetition_noise(&measurement.frame_ms, schedule.frames as usize).filter(|&n| n > NOISY) {
         warnings.push(format!("noisy: repetitions of one frame scatter by {:.0} %", noise * 100.0));
     }
     if measurement.repeat < schedule.repeat {
         warnings.push(format!("interrupted after {} of {} repetitions", measurement.repeat, schedule.repeat));
     }
-    let sum = |host: bool| Some(subject.memory.iter().filter(|m| m.host_visible == host).map(|m| m.bytes).sum::<u64>());
+    let sum =
+        |host: bool| Some(metadata.memory.iter().filter(|m| m.host_visible == host).map(|m| m.bytes).sum::<u64>());
     Run {
-        paper: subject.paper.to_owned(),
-        variant: subject.variant,
-        preset: subject.identity.preset,
-        config: subject.config,
-        width: subject.identity.width,
-        height: subject.identity.height,
-        seed: subject.identity.seed,
+        paper: metadata.paper.to_owned(),
+        variant: metadata.variant,
+        preset: metadata.identity.preset,
+        config: metadata.config,
+        width: metadata.identity.width,
+        height: metadata.identity.height,
+        seed: metadata.identity.seed,
         warmup: schedule.warmup.max(1),
         frames: schedule.frames,
         repeat: measurement.repeat.max(1),
-        process: subject.process,
-        overlap_ms: median(&measurement.bracket_ms).filter(|_| is_stamped).map(|bracket| gpu_ms - bracket),
-        unaccounted_ms: frame_ms.as_ref().filter(|_| is_stamped).map(|frame| frame.median - gpu_ms - host_ms),
-        stamp_floor_ms: subject.stamp_floor_ms,
-        load_ms: Some(subject.load_ms),
-        pipeline_ms: Some(subject.build_ms + measurement.first_frame_ms),
+        process: metadata.process,
+        overlap_ms: median(&measurement.bracket_ms).filter(|_| is_timestamped).map(|bracket| gpu_ms - bracket),
+        unaccounted_ms: frame_ms.as_ref().filter(|_| is_timestamped).map(|frame| frame.median - gpu_ms - host_ms),
+        stamp_floor_ms: metadata.stamp_floor_ms,
+        load_ms: Some(metadata.load_ms),
+        pipeline_ms: Some(metadata.build_ms + measurement.first_frame_ms),
         memory: Memory {
             device_bytes: sum(false),
             host_bytes: sum(true),
-            peak_bytes: Some(subject.peak_bytes),
-            by_resource: subject
+            peak_bytes: Some(metadata.peak_bytes),
+            by_resource: metadata
                 .memory
                 .iter()
                 .map(|m| ResourceMemory { name: m.name.clone(), bytes: m.bytes })
                 .collect(),
         },
-        limits: subject.limits,
-        results: subject.results,
+        limits: metadata.limits,
+        results: metadata.results,
         experiment: None,
-        validation: subject.validation,
+        validation: metadata.validation,
         warnings,
         image: None,
         frame_ms,
@@ -128,7 +129,7 @@ fn pass(measured: &MeasuredPass) -> Pass {
     }
 }
 
-/// The last stamped frame as a trace.
+/// The last timestamped frame as a trace.
 pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
     let events = measurement
         .spans

@@ -124,7 +124,7 @@ impl<S: Study> Bench<'_, S> {
         let warnings = machine.warnings();
         let identity = study.identity();
         let runs = measured.iter().zip(metrics).map(|((built, measurement), metrics)| {
-            let subject = RunMetadata {
+            let metadata = RunMetadata {
                 paper: S::PAPER,
                 variant: built.variant.as_str().to_owned(),
                 identity: identity.clone(),
@@ -141,7 +141,7 @@ impl<S: Study> Bench<'_, S> {
                 warnings: warnings.iter().cloned().chain(metrics.warnings).collect(),
             };
             let name = format!("{} {} {}", S::PAPER, built.variant.as_str(), study.summary());
-            VariantRun { run: assemble(subject, measurement, schedule), trace: assembly::trace(name, measurement) }
+            VariantRun { run: assemble(metadata, measurement, schedule), trace: assembly::trace(name, measurement) }
         });
         Ok(runs.collect())
     }

@@ -117,7 +117,7 @@ pub struct Context<'a, S: Declared> {
 }
 
 impl<S: Declared> Context<'_, S> {
-    /// Runs an experiment after a look at its options and files.
+    /// Runs an experiment once its options and files are checked.
     ///
     /// # Errors
     /// [`Error::Input`] for an option that it does not heed, [`Error::Output`] for a file that cannot be written, and
@@ -211,7 +211,7 @@ impl<S: Declared> Context<'_, S> {
         Ok(())
     }
 
-    /// Writes a target as a drawing to look at.
+    /// Writes a target as a drawing for viewers.
     ///
     /// # Errors
     /// [`Error::Image`].

@@ -10,7 +10,7 @@ use crate::gpu::{
 use crate::host_block;
 use crate::report::record::Limits;
 
-/// A load grows until it lasts this long: far above the resolution of a stamp, short enough for every run.
+/// A load grows until it lasts this long: far above the resolution of a timestamp, short enough for every run.
 const LEAST_MS: f64 = 8.0;
 const SAMPLES: usize = 5;
 const COPY_BYTES: u64 = 64 << 20;
@@ -29,7 +29,7 @@ host_block! {
 }
 
 /// Measures copy bandwidth (bytes read and written), multiply-adds, and the fill and additive blend rates of an 8-bit
-/// RGBA target. `None` for what has no time stamps.
+/// RGBA target. `None` for what has no timestamps.
 ///
 /// # Errors
 /// Any error of the Vulkan layer.
@@ -43,7 +43,7 @@ pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
     })
 }
 
-/// The additive blend rate of a target of four 32-bit floats, in 10^9 pixels a second; `None` without time stamps. The
+/// The additive blend rate of a target of four 32-bit floats, in 10^9 pixels a second; `None` without timestamps. The
 /// device must blend into such targets.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! The machine that measures: one device, its shaders, its recorder, and what the record says about it.
+//! The machine that measures: one device, its shaders, its recorder, and their description for the record.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -85,7 +85,7 @@ impl Machine {
         }
     }
 
-    /// Fails if the validation layer said anything, else tells whether it listened.
+    /// State of the validation layer; fails if it had a message.
     ///
     /// # Errors
     /// [`Error::Validation`].
@@ -120,7 +120,7 @@ impl Machine {
     }
 }
 
-/// The record's word for a device's type.
+/// The record's name for a device's type.
 pub fn device_kind(device_type: DeviceType) -> DeviceKind {
     match device_type {
         DeviceType::Discrete => DeviceKind::Discrete,

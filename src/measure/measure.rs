@@ -1,5 +1,5 @@
-//! The measured loop: warm up, wait idle, then repetitions of the same frames, plain, stamped and bracketed in turn,
-//! the subjects interleaved frame by frame so that drift hits all alike.
+//! The measured loop: warm up, wait idle, then repetitions of the same frames, plain, timestamped and bracketed in
+//! turn, the papers interleaved frame by frame so that drift hits all alike.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,13 +10,13 @@ use crate::measure::Paper;
 /// Frames and repetitions to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Schedule {
-    /// Frames of each subject before anything counts, at least 1: the first use of a pipeline compiles it.
+    /// Frames of each paper before anything counts, at least 1: the first use of a pipeline compiles it.
     pub warmup: u32,
     /// Frames in one repetition, at least 1.
     pub frames: u32,
     /// Repetitions of those frames, at least 1.
     pub repeat: u32,
-    /// Repetitions go on until every subject has run plain frames for this long, in seconds.
+    /// Repetitions go on until every paper has run plain frames for this long, in seconds.
     pub min_time_s: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct MeasuredPass {
     pub counts: Option<Counts>,
 }
 
-/// Measurements of one subject.
+/// Measurements of one paper.
 #[derive(Debug, Clone, Default)]
 pub struct Measurement {
     /// Whole repetitions that were finished; 0 when even the first was interrupted.
@@ -55,7 +55,7 @@ pub struct Measurement {
     pub passes: Vec<MeasuredPass>,
     /// Time of the first frame less the median of the others: what first use costs.
     pub first_frame_ms: f64,
-    /// The passes' stretches of time in the last stamped frame.
+    /// The passes' spans of time in the last timestamped frame.
     pub spans: Vec<Span>,
 }
 
@@ -67,19 +67,19 @@ pub struct Watch<'a> {
     pub progress: &'a mut dyn FnMut(u64, u64),
 }
 
-/// Measures `subjects`, interleaved.
+/// Measures `papers`, interleaved.
 ///
 /// # Errors
 /// Any error of the Vulkan layer.
 pub fn measure(
     recorder: &mut Recorder,
-    subjects: &mut [&mut dyn Paper],
+    papers: &mut [&mut dyn Paper],
     schedule: Schedule,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Measurement>, Error> {
     const MODES: [Mode; 3] = [Mode::Plain, Mode::Timestamped, Mode::Bracketed];
-    let mut results = vec![Measurement::default(); subjects.len()];
-    let count = subjects.len() as u64;
+    let mut results = vec![Measurement::default(); papers.len()];
+    let count = papers.len() as u64;
     let a_repetition = MODES.len() as u64 * u64::from(schedule.frames) * count;
     let mut expected = u64::from(schedule.warmup) * count + a_repetition * u64::from(schedule.repeat) + count;
     let mut done = 0;
@@ -89,13 +89,13 @@ pub fn measure(
     };
     let stopped = || watch.interrupted.load(Ordering::Relaxed);
 
-    restart(subjects)?;
+    restart(papers)?;
     for number in 0..schedule.warmup.max(1) {
-        for (paper, result) in subjects.iter_mut().zip(&mut results) {
+        for (paper, result) in papers.iter_mut().zip(&mut results) {
             if stopped() {
                 return Ok(results);
             }
-            // The counters compile nothing new, but a driver may make its stamps' first use slow.
+            // The counters compile nothing new, but a driver may make its timestamps' first use slow.
             let mode = if number == 0 { Mode::Plain } else { MODES[number as usize % MODES.len()] };
             let sample = recorder.run(mode, |frame| paper.record(frame, number))?;
             if number == 0 {
@@ -111,9 +111,9 @@ pub fn measure(
             expected += a_repetition;
         }
         for mode in MODES {
-            restart(subjects)?;
+            restart(papers)?;
             for number in 0..schedule.frames {
-                for (paper, result) in subjects.iter_mut().zip(&mut results) {
+                for (paper, result) in papers.iter_mut().zip(&mut results) {
                     if stopped() {
                         return Ok(results);
                     }
@@ -127,8 +127,8 @@ pub fn measure(
         results.iter_mut().for_each(|r| r.repeat = repetition);
     }
 
-    restart(subjects)?;
-    for (paper, result) in subjects.iter_mut().zip(&mut results) {
+    restart(papers)?;
+    for (paper, result) in papers.iter_mut().zip(&mut results) {
         let sample = recorder.run(Mode::Counted, |frame| paper.record(frame, 0))?;
         for pass in &sample.passes {
             result.pass(pass).counts = pass.counts;
@@ -139,8 +139,8 @@ pub fn measure(
 }
 
 /// Every repetition replays the same frames.
-fn restart(subjects: &mut [&mut dyn Paper]) -> Result<(), Error> {
-    subjects.iter_mut().try_for_each(|paper| paper.restart())
+fn restart(papers: &mut [&mut dyn Paper]) -> Result<(), Error> {
+    papers.iter_mut().try_for_each(|paper| paper.restart())
 }
 
 fn is_short(results: &[Measurement], min_time_s: f64) -> bool {

@@ -54,7 +54,7 @@ impl ResultTable {
         chart.to_svg()
     }
 
-    /// Lines of some columns over column `x`: one for each of them and each combination of the rows' words.
+    /// Lines of some columns over column `x`: one for each of them and each combination of the rows' texts.
     ///
     /// # Errors
     /// [`PlotError`] when no row has a number in those columns.
@@ -63,12 +63,12 @@ impl ResultTable {
         let x_column = at(x).unwrap_or(0);
         let mut series: Vec<Series> = Vec::new();
         for row in &self.rows {
-            let words = row.iter().enumerate().filter(|(column, value)| *column != x_column && value.is_string());
-            let words: Vec<String> = words.map(|(_, value)| shown(value)).collect();
+            let names = row.iter().enumerate().filter(|(column, value)| *column != x_column && value.is_string());
+            let names: Vec<String> = names.map(|(_, value)| shown(value)).collect();
             for column in columns {
                 let value = |column: usize| row.get(column).and_then(Value::as_f64);
                 let Some(point) = value(x_column).zip(at(column).and_then(value)) else { continue };
-                let name = if columns.len() > 1 { format!("{}, {column}", words.join(" ")) } else { words.join(" ") };
+                let name = if columns.len() > 1 { format!("{}, {column}", names.join(" ")) } else { names.join(" ") };
                 match series.iter_mut().find(|s| s.name == name) {
                     Some(line) => line.points.push(point),
                     None => series.push(Series { name, points: vec![point], reference: *column == "thesis" }),
@@ -121,13 +121,13 @@ mod tests {
             vec![json!("teapot"), json!(11), json!(8), json!(7)],
             vec![json!("sphere"), json!(11), json!(5), Value::Null],
         ];
-        let facts = ResultTable { title: "Planes", columns: &["mesh", "specified", "drawn", "thesis"], rows };
-        let svg = facts.bars("planes", &["drawn", "thesis"]).unwrap();
+        let table = ResultTable { title: "Planes", columns: &["mesh", "specified", "drawn", "thesis"], rows };
+        let svg = table.bars("planes", &["drawn", "thesis"]).unwrap();
         for text in ["Planes", "teapot 11", "sphere 11", "drawn", "thesis"] {
             assert!(svg.contains(text), "{text} is missing");
         }
-        assert!(facts.bars("planes", &["no such column"]).is_err());
-        let svg = facts.lines("specified", "planes", &["drawn", "thesis"]).unwrap();
+        assert!(table.bars("planes", &["no such column"]).is_err());
+        let svg = table.lines("specified", "planes", &["drawn", "thesis"]).unwrap();
         for text in ["teapot, drawn", "teapot, thesis", "sphere, drawn"] {
             assert!(svg.contains(text), "{text} is missing");
         }

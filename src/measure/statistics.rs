@@ -56,15 +56,15 @@ pub fn summarize(samples: &[f64]) -> Option<Summary> {
     })
 }
 
-/// Noise of samples that should all be equal: their scaled MAD as a part of their median (0.03 is 3 %). Absent for
+/// Noise of samples that should all be equal: their scaled MAD as a fraction of their median (0.03 is 3 %). Absent for
 /// fewer than 2 samples or a median that is not positive.
 pub fn relative_mad(samples: &[f64]) -> Option<f64> {
     let center = median(samples).filter(|center| *center > 0.0)?;
     Some(MAD_TO_DEVIATION * mad(samples)? / center)
 }
 
-/// Noise across repetitions of the same frames, as a part of the frame's time: what differs between frames by content
-/// is no noise. `samples` holds whole repetitions of `frames` frames, one after the other.
+/// Noise across repetitions of the same frames, as a fraction of the frame's time: what differs between frames by
+/// content is no noise. `samples` holds whole repetitions of `frames` frames, one after the other.
 ///
 /// The deviations of every sample from its frame's mean are pooled; the factor √(r / (r - 1)) makes up for that mean
 /// being taken from the same r samples. Absent for fewer than 2 repetitions, an incomplete one, or a frame whose mean

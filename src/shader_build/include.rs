@@ -165,7 +165,7 @@ fn variant_list(rest: &str) -> Option<&str> {
     (list.is_empty() || list.starts_with(char::is_whitespace)).then_some(list)
 }
 
-/// Splits `  # word rest` into word and rest.
+/// Splits `  # directive rest` into directive and rest.
 fn split_directive(line: &str) -> Option<(&str, &str)> {
     let body = line.trim_start().strip_prefix('#')?.trim_start();
     let end = body.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(body.len());

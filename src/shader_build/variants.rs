@@ -8,8 +8,8 @@ pub(super) type Definition = (String, String);
 /// The combinations of `BASE=plane,curved LOD=pixel,exact`, the last name changing fastest.
 pub(super) fn parse(line: &str) -> Result<Vec<Vec<Definition>>, DirectiveProblem> {
     let mut combinations: Vec<Vec<Definition>> = vec![Vec::new()];
-    for word in line.split_whitespace().take_while(|word| !word.starts_with("//")) {
-        let (name, values) = word.split_once('=').ok_or(DirectiveProblem::VariantsSyntax)?;
+    for token in line.split_whitespace().take_while(|token| !token.starts_with("//")) {
+        let (name, values) = token.split_once('=').ok_or(DirectiveProblem::VariantsSyntax)?;
         let values: Vec<&str> = values.split(',').collect();
         let is_new = combinations[0].iter().all(|(known, _)| known != name);
         let is_distinct = values.iter().enumerate().all(|(i, value)| !values[..i].contains(value));

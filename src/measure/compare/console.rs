@@ -108,7 +108,7 @@ fn interval(ratio: &Ratio) -> String {
     format!("[{low:.4}, {high:.4}]")
 }
 
-/// A part of 1 in percent, without needless digits.
+/// A fraction in percent, without needless digits.
 fn percent(part: f64) -> String {
     let text = format!("{:.3}", 100.0 * part);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

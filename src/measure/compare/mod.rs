@@ -158,7 +158,7 @@ pub enum Clock {
     Host,
 }
 
-/// Compares side B with side A. `fail_above` is the part of 1 (0.05 is 5 %) by which B may be slower.
+/// Compares side B with side A. `fail_above` is the fraction (0.05 is 5 %) by which B may be slower.
 ///
 /// # Errors
 /// A side has no record or no run, or the sides were not measured alike; the message names the field that differs.

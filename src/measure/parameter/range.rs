@@ -1,4 +1,4 @@
-//! Ranges of parameters, and their words.
+//! Ranges of parameters, and their text in help and messages.
 
 /// A range of numbers, each end taken in or left out.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -60,24 +60,24 @@ enum Mark {
     Patch,
 }
 
-/// Draws the legend, series by series in the order of their colours, in a strip on the right where it covers no data,
+/// Draws the legend, series by series in the order of their colours, in a column on the right where it covers no data,
 /// and returns the rest of the canvas.
 fn split_legend<'a>(canvas: &Canvas<'a>, series: &[(&str, Mark)]) -> Result<Canvas<'a>, Box<dyn Error>> {
     const LINE_HEIGHT: i32 = 24;
     // An average letter is about half as wide as high; a name that is too long even so runs out of the picture.
     let longest = series.iter().map(|(name, _)| name.chars().count()).max();
     let width = (64 + 8 * longest.unwrap_or(0)).min(SIZE.0 as usize / 2) as u32;
-    let (rest, strip) = canvas.split_horizontally(SIZE.0 - width);
+    let (rest, legend) = canvas.split_horizontally(SIZE.0 - width);
     for (index, (name, mark)) in series.iter().enumerate() {
         let y = 64 + LINE_HEIGHT * index as i32;
         let style = color(index).stroke_width(2);
         let line = [(8, y), (36, y)];
         match mark {
-            Mark::Line => strip.draw(&PathElement::new(line, style))?,
-            Mark::Dashes => strip.draw(&DashedPathElement::new(line, 8, 4, style))?,
-            Mark::Patch => strip.draw(&Rectangle::new([(8, y - 6), (36, y + 6)], color(index).filled()))?,
+            Mark::Line => legend.draw(&PathElement::new(line, style))?,
+            Mark::Dashes => legend.draw(&DashedPathElement::new(line, 8, 4, style))?,
+            Mark::Patch => legend.draw(&Rectangle::new([(8, y - 6), (36, y + 6)], color(index).filled()))?,
         }
-        strip.draw(&Text::new((*name).to_owned(), (44, y - 7), LABEL))?;
+        legend.draw(&Text::new((*name).to_owned(), (44, y - 7), LABEL))?;
     }
     Ok(rest)
 }

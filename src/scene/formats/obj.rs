@@ -83,28 +83,28 @@ impl Statements {
     }
 
     fn add(&mut self, line: usize, statement: &str) -> Result<(), String> {
-        let mut words = statement.split_whitespace();
-        let keyword = words.next().unwrap_or_default();
-        let words: Vec<&str> = words.take_while(|word| !word.starts_with('#')).collect();
+        let mut tokens = statement.split_whitespace();
+        let keyword = tokens.next().unwrap_or_default();
+        let tokens: Vec<&str> = tokens.take_while(|token| !token.starts_with('#')).collect();
         let kind = match keyword {
             "v" => 0,
             "vt" => 1,
             "vn" => 2,
-            "f" => return self.add_face(line, &words),
+            "f" => return self.add_face(line, &tokens),
             _ => return Ok(()),
         };
         // A fourth coordinate divides a position; six numbers are a position and a colour.
-        let kept = match (kind, words.len()) {
+        let kept = match (kind, tokens.len()) {
             (0, 4) => 4,
             (1, 1) => 1,
             (1, _) => 2,
             _ => 3,
         };
-        let numbers = words
+        let numbers = tokens
             .get(..kept)
-            .ok_or_else(|| format!("{keyword} needs {kept} numbers, but there are {}", words.len()))?;
-        for (place, word) in numbers.iter().enumerate() {
-            let number: f32 = word.parse().map_err(|_| format!("{:?} is not a number", shortened(word)))?;
+            .ok_or_else(|| format!("{keyword} needs {kept} numbers, but there are {}", tokens.len()))?;
+        for (place, token) in numbers.iter().enumerate() {
+            let number: f32 = token.parse().map_err(|_| format!("{:?} is not a number", shortened(token)))?;
             if !number.is_finite() || (place == 3 && number == 0.0) {
                 return Err(format!("{keyword} must not contain {number}"));
             }
@@ -152,14 +152,14 @@ impl Statements {
         Ok(())
     }
 
-    fn push(&mut self, keyword: &str, words: &[&str]) {
+    fn push(&mut self, keyword: &str, tokens: &[&str]) {
         if !self.text.is_empty() {
             self.text.push('\n');
         }
         self.text.push_str(keyword);
-        for word in words {
+        for token in tokens {
             self.text.push(' ');
-            self.text.push_str(word);
+            self.text.push_str(token);
         }
     }
 }
@@ -187,9 +187,9 @@ fn logical_lines(source: &str) -> impl Iterator<Item = (usize, std::borrow::Cow<
     })
 }
 
-/// A word of the file for a message.
-fn shortened(word: &str) -> String {
-    word.chars().take(40).collect()
+/// A token of the file for a message.
+fn shortened(token: &str) -> String {
+    token.chars().take(40).collect()
 }
 
 #[cfg(test)]
@@ -259,10 +259,10 @@ mod tests {
             ("v 1 2 3,5", 5, "not a number"),
             ("vn 0 0", 5, "needs 3 numbers"),
         ];
-        for (rest, line, words) in cases {
+        for (rest, line, reason) in cases {
             let fault = square_with(rest).expect_err(rest);
             assert_eq!(fault.place, Place::Line(line), "{rest}: {fault}");
-            assert!(fault.reason.contains(words), "{rest}: {fault}");
+            assert!(fault.reason.contains(reason), "{rest}: {fault}");
         }
     }
 

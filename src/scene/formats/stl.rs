@@ -15,7 +15,7 @@ const TRIANGLE_BYTES: u64 = 50;
 pub(super) fn parse(mut bytes: Vec<u8>) -> Result<Mesh, Fault> {
     let claimed_bytes = claimed_bytes(&bytes);
     let size_bytes = bytes.len() as u64;
-    if starts_with_word(bytes.trim_ascii_start(), b"solid") && claimed_bytes != Some(size_bytes) {
+    if starts_with_keyword(bytes.trim_ascii_start(), b"solid") && claimed_bytes != Some(size_bytes) {
         let mut text = Text::new(&bytes);
         let triangles = read(&mut text);
         return triangles.map_err(|error| Fault::foreign(Place::Line(text.line), &error))?;
@@ -47,8 +47,8 @@ fn claimed_bytes(bytes: &[u8]) -> Option<u64> {
     Some(PREFIX_BYTES as u64 + u64::from(count) * TRIANGLE_BYTES)
 }
 
-fn starts_with_word(text: &[u8], word: &[u8]) -> bool {
-    text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word))
+fn starts_with_keyword(text: &[u8], keyword: &[u8]) -> bool {
+    text.get(..keyword.len()).is_some_and(|start| start.eq_ignore_ascii_case(keyword))
 }
 
 /// The mesh, or its fault; the outer error is one of syntax.
@@ -94,9 +94,9 @@ impl<'a> Text<'a> {
             self.rest = rest;
             self.line += 1;
             let line = line.trim_ascii();
-            if starts_with_word(line, b"endsolid") {
+            if starts_with_keyword(line, b"endsolid") {
                 self.is_complete = true;
-            } else if starts_with_word(line, b"solid") {
+            } else if starts_with_keyword(line, b"solid") {
                 self.is_complete = false;
             } else if !line.is_empty() {
                 self.is_complete = false;

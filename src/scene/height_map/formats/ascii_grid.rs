@@ -8,27 +8,27 @@ use glam::DVec2;
 use std::io::BufRead;
 
 /// The longest number that a program would write is some 30 characters.
-const LONGEST_WORD: usize = 64;
+const LONGEST_TOKEN: usize = 64;
 
-/// Reads an Esri ASCII grid: lines of a word and a number, then the heights, row by row from the north.
+/// Reads an Esri ASCII grid: lines of a keyword and a number, then the heights, row by row from the north.
 pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) -> Result<HeightMap, Fault> {
-    let mut words = Words { input, line: 1 };
+    let mut tokens = Tokens { input, line: 1 };
     let mut header = Header::default();
     let first = loop {
-        let Some(word) = words.next()? else {
+        let Some(token) = tokens.next()? else {
             // A header that names no samples is wrong itself.
             if header.columns.is_some() && header.rows.is_some() {
                 header.size(size_bytes)?;
             }
             return Err(
-                words.fault("the file ends before its first height; it is cut off or something else".to_owned())
+                tokens.fault("the file ends before its first height; it is cut off or something else".to_owned())
             );
         };
         // "nan" can be a height.
-        if word.starts_with(|first: char| first.is_ascii_alphabetic()) && !word.eq_ignore_ascii_case("nan") {
-            header.set(&word, &mut words)?;
+        if token.starts_with(|first: char| first.is_ascii_alphabetic()) && !token.eq_ignore_ascii_case("nan") {
+            header.set(&token, &mut tokens)?;
         } else {
-            break word;
+            break token;
         }
     };
     let (width, height) = header.size(size_bytes)?;
@@ -36,20 +36,22 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead, unit: Option<Unit>) ->
     let mut values = allocate::<f32>(count)?;
     let no_data = header.no_data;
     let mut integral = true;
-    let mut word = Some(first);
+    let mut token = Some(first);
     for (index, sample) in values.iter_mut().enumerate() {
-        let Some(text) = word else {
+        let Some(text) = token else {
             let reason =
                 format!("{index} heights for ncols x nrows = {width} x {height}, which makes {count}; it is cut off");
-            return Err(words.fault(reason));
+            return Err(tokens.fault(reason));
         };
-        let value = words.number(&text, "height")?;
+        let value = tokens.number(&text, "height")?;
         integral &= value.fract() == 0.0 || no_data == Some(value);
         *sample = value as f32;
-        word = words.next()?;
+        token = tokens.next()?;
     }
-    if word.is_some() {
-        return Err(words.fault(format!("more than the {count} heights that ncols x nrows = {width} x {height} makes")));
+    if token.is_some() {
+        return Err(
+            tokens.fault(format!("more than the {count} heights that ncols x nrows = {width} x {height} makes"))
+        );
     }
     let placement = header.placement(width, height, unit);
     Grid { width, height, values, integral, no_data, placement }.into_map()
@@ -69,7 +71,7 @@ struct Header {
 }
 
 impl Header {
-    fn set(&mut self, key: &str, words: &mut Words<impl BufRead>) -> Result<(), Fault> {
+    fn set(&mut self, key: &str, tokens: &mut Tokens<impl BufRead>) -> Result<(), Fault> {
         let key = key.to_ascii_lowercase();
         let field = match key.as_str() {
             "ncols" => &mut self.columns,
@@ -83,16 +85,16 @@ impl Header {
             "nodata_value" => &mut self.no_data,
             _ => {
                 let known = "ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, dx, dy, nodata_value";
-                return Err(words.fault(format!("the word {key:?} is none of {known}")));
+                return Err(tokens.fault(format!("the word {key:?} is none of {known}")));
             }
         };
-        let Some(value) = words.next()? else { return Err(words.fault(format!("the file ends after {key:?}"))) };
-        let value = words.number(&value, &key)?;
+        let Some(value) = tokens.next()? else { return Err(tokens.fault(format!("the file ends after {key:?}"))) };
+        let value = tokens.number(&value, &key)?;
         if field.replace(value).is_some() {
-            return Err(words.fault(format!("{key} is given twice")));
+            return Err(tokens.fault(format!("{key} is given twice")));
         }
         if matches!(key.as_str(), "cellsize" | "dx" | "dy") && !(value.is_finite() && value > 0.0) {
-            return Err(words.fault(format!("{key} is {value}; it has to be positive")));
+            return Err(tokens.fault(format!("{key} is {value}; it has to be positive")));
         }
         Ok(())
     }
@@ -129,16 +131,16 @@ impl Header {
     }
 }
 
-/// The words of a text, which is never held as a whole.
-struct Words<R> {
+/// The tokens of a text, which is never held as a whole.
+struct Tokens<R> {
     input: R,
-    /// Line of the word read last, from 1.
+    /// Line of the token read last, from 1.
     line: usize,
 }
 
-impl<R: BufRead> Words<R> {
+impl<R: BufRead> Tokens<R> {
     fn next(&mut self) -> Result<Option<String>, Fault> {
-        let mut word = Vec::new();
+        let mut token = Vec::new();
         loop {
             let place = Place::Line(self.line);
             let buffer = self.input.fill_buf().map_err(|error| Fault::foreign(place, &error))?;
@@ -146,29 +148,29 @@ impl<R: BufRead> Words<R> {
                 break;
             }
             let skipped =
-                if word.is_empty() { buffer.iter().take_while(|b| b.is_ascii_whitespace()).count() } else { 0 };
+                if token.is_empty() { buffer.iter().take_while(|b| b.is_ascii_whitespace()).count() } else { 0 };
             let (blank, rest) = buffer.split_at(skipped);
             self.line += blank.iter().filter(|byte| **byte == b'\n').count();
             let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
-            word.extend(&rest[..length.min(LONGEST_WORD + 1)]);
-            let is_complete = length < rest.len() && !word.is_empty();
+            token.extend(&rest[..length.min(LONGEST_TOKEN + 1)]);
+            let is_complete = length < rest.len() && !token.is_empty();
             self.input.consume(skipped + length);
-            if word.len() > LONGEST_WORD {
-                return Err(self.fault(format!("a word of more than {LONGEST_WORD} bytes; this is no ASCII grid")));
+            if token.len() > LONGEST_TOKEN {
+                return Err(self.fault(format!("a word of more than {LONGEST_TOKEN} bytes; this is no ASCII grid")));
             }
             if is_complete {
                 break;
             }
         }
-        if word.is_empty() {
+        if token.is_empty() {
             return Ok(None);
         }
-        let word = String::from_utf8(word).map_err(|_| self.fault("bytes that are no text".to_owned()))?;
-        Ok(Some(word))
+        let token = String::from_utf8(token).map_err(|_| self.fault("bytes that are no text".to_owned()))?;
+        Ok(Some(token))
     }
 
-    fn number(&self, word: &str, what: &str) -> Result<f64, Fault> {
-        word.parse().map_err(|_| self.fault(format!("{what} is {word:?}, not a number")))
+    fn number(&self, token: &str, what: &str) -> Result<f64, Fault> {
+        token.parse().map_err(|_| self.fault(format!("{what} is {token:?}, not a number")))
     }
 
     fn fault(&self, reason: String) -> Fault {
@@ -182,7 +184,7 @@ mod tests {
     use crate::scene::Samples;
 
     fn read(text: &str) -> Result<HeightMap, Fault> {
-        // A small buffer, so that words are cut by its end.
+        // A small buffer, so that tokens are cut by its end.
         parse(text.len() as u64, std::io::BufReader::with_capacity(5, text.as_bytes()), None)
     }
 

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use relief::{Bare, Relief};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Length of a side of the land.
+/// Length of a side of the terrain.
 const EXTENT_M: f32 = 12_000.0;
 /// Knots of the surface along a side: the shortest wave is two of their spacings, 1/512 of the side.
 const KNOTS: usize = 1_024;
@@ -30,29 +30,29 @@ const CONTROLS: usize = KNOTS + 3;
 pub fn volcano(side: u32, seed: u64) -> Result<HeightMap, Error> {
     check_size(side.into(), side.into()).map_err(|reason| Error::HeightMap { reason })?;
     let spacing_m = f64::from(EXTENT_M) / f64::from(side - 1);
-    HeightMap::new(side, side, Land::of(seed).steps(side as usize))?.with_spacing_m(DVec2::splat(spacing_m))
+    HeightMap::new(side, side, Terrain::of(seed).steps(side as usize))?.with_spacing_m(DVec2::splat(spacing_m))
 }
 
-/// The land: a uniform cubic B-spline surface, so smooth that its slope has no kink.
-struct Land {
+/// The terrain: a uniform cubic B-spline surface, so smooth that its slope has no kink.
+struct Terrain {
     /// CONTROLS x CONTROLS heights in metres, from the north-west.
     controls_m: Vec<f32>,
 }
 
-/// The land made last and its seed: whoever compares sizes samples one land many times.
-static LATEST: Mutex<Option<(u64, Arc<Land>)>> = Mutex::new(None);
+/// The terrain made last and its seed: whoever compares sizes samples one terrain many times.
+static LATEST: Mutex<Option<(u64, Arc<Terrain>)>> = Mutex::new(None);
 
-impl Land {
-    /// The land of a seed, from [`LATEST`] if it is there.
+impl Terrain {
+    /// The terrain of a seed, from [`LATEST`] if it is there.
     fn of(seed: u64) -> Arc<Self> {
         let latest = || LATEST.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, land)) = latest().as_ref().filter(|(latest, _)| *latest == seed) {
-            return Arc::clone(land);
+        if let Some((_, terrain)) = latest().as_ref().filter(|(latest, _)| *latest == seed) {
+            return Arc::clone(terrain);
         }
         // Not under the lock: a thread that waits for rayon may be given a job that comes here too.
-        let land = Arc::new(Self::new(seed));
-        *latest() = Some((seed, Arc::clone(&land)));
-        land
+        let terrain = Arc::new(Self::new(seed));
+        *latest() = Some((seed, Arc::clone(&terrain)));
+        terrain
     }
 
     fn new(seed: u64) -> Self {
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_size_samples_the_same_land() {
+    fn every_size_samples_the_same_terrain() {
         let [coarse, fine] = [65, 513].map(|side| volcano(side, 1).unwrap());
         for (column, row) in (0..65).flat_map(|row| (0..65).map(move |column| (column, row))) {
             assert_eq!(coarse.height_m(column, row), fine.height_m(column * 8, row * 8), "{column}, {row}");
@@ -134,12 +134,12 @@ mod tests {
     }
 
     #[test]
-    fn seeds_make_different_lands_and_one_seed_the_same() {
-        let made_again = Land::new(1);
-        assert_eq!(made_again.controls_m, Land::of(1).controls_m);
-        assert_ne!(made_again.controls_m, Land::of(2).controls_m);
+    fn seeds_make_different_terrains_and_one_seed_the_same() {
+        let made_again = Terrain::new(1);
+        assert_eq!(made_again.controls_m, Terrain::of(1).controls_m);
+        assert_ne!(made_again.controls_m, Terrain::of(2).controls_m);
         // Whatever was made last.
-        assert_eq!(made_again.controls_m, Land::of(1).controls_m);
+        assert_eq!(made_again.controls_m, Terrain::of(1).controls_m);
     }
 
     #[test]

@@ -44,7 +44,7 @@ pub(super) struct Relief {
     hills: Noise,
 }
 
-/// The bare land at one place.
+/// The uneroded terrain at one place.
 #[derive(Clone, Copy)]
 pub(super) struct Bare {
     pub(super) height_m: f32,
@@ -65,17 +65,17 @@ impl Relief {
         }
     }
 
-    /// The land at `place`, metres east and north of the summit.
+    /// The terrain at `place`, metres east and north of the summit.
     pub(super) fn at(&self, place: Vec2) -> Bare {
         // Nothing in nature is round: outlines are bent at the scale of ridges and ravines.
         let bent = place + bend(&self.outline, place / 3_100.0, 2) * 560.0 * ramp(200.0, 2_800.0, place.length());
         let torn = place + bend(&self.scar, place / 1_400.0, 3) * 280.0;
-        let (land_m, crest) = scarred_m(torn, self.cone_m(bent));
-        let fan = fan(bent) * (1.0 - ramp(200.0, 620.0, land_m));
-        let low = 1.0 - ramp(60.0, 500.0, land_m);
+        let (terrain_m, crest) = scarred_m(torn, self.cone_m(bent));
+        let fan = fan(bent) * (1.0 - ramp(200.0, 620.0, terrain_m));
+        let low = 1.0 - ramp(60.0, 500.0, terrain_m);
         let plain_m = low * 95.0 * self.hills.fractal(place / 3_400.0, 5);
         let debris_m = if fan > 0.0 { fan * (30.0 + 75.0 * self.mounds(place)) } else { 0.0 };
-        Bare { height_m: PLAIN_M + land_m + plain_m + debris_m, erodibility: (1.0 - 0.85 * fan) * (1.0 - crest) }
+        Bare { height_m: PLAIN_M + terrain_m + plain_m + debris_m, erodibility: (1.0 - 0.85 * fan) * (1.0 - crest) }
     }
 
     /// The cone with its crater and side vents, above the plain.
@@ -108,8 +108,8 @@ fn flank_m(radius_m: f32) -> f32 {
     CONE_M * flank * flank * (0.25 + 0.75 * flank)
 }
 
-/// The land above the plain after its north flank collapsed into a horseshoe, open to the north; and how near, 0 to 1,
-/// its rim is.
+/// The terrain above the plain after its north flank collapsed into a horseshoe, open to the north; and how near, 0 to
+/// 1, its rim is.
 fn scarred_m(place: Vec2, cone_m: f32) -> (f32, f32) {
     let along_m = place.y - SCAR_HEAD_M;
     let half_width_m = SCAR_HALF_WIDTH_M + SCAR_WIDENING * along_m.max(0.0);

@@ -44,10 +44,11 @@ impl Header {
             return Err(fields.fault("NBANDS", format!("is {band_count}; a height map has one band")));
         }
         // With one band, all three layouts are rows of samples.
-        if let Some(layout) = fields.word("LAYOUT").filter(|layout| !["BIL", "BIP", "BSQ"].contains(&layout.as_str())) {
+        if let Some(layout) = fields.upper("LAYOUT").filter(|layout| !["BIL", "BIP", "BSQ"].contains(&layout.as_str()))
+        {
             return Err(fields.fault("LAYOUT", format!("is {}, none of BIL, BIP and BSQ", shown(&layout))));
         }
-        let order = match fields.word("BYTEORDER").as_deref() {
+        let order = match fields.upper("BYTEORDER").as_deref() {
             // The format leaves it to the machine, and nearly all are little-endian.
             None | Some("I" | "L" | "LSBFIRST" | "LSB") => ByteOrder::Little,
             Some("M" | "B" | "MSBFIRST" | "MSB") => ByteOrder::Big,
@@ -80,17 +81,17 @@ impl Header {
     }
 }
 
-/// The lines of a header: a word and its value.
+/// The lines of a header: a keyword and its value.
 struct Fields(HashMap<String, (usize, String)>);
 
 impl Fields {
     fn parse(text: &str) -> Result<Self, Fault> {
         let mut fields = HashMap::new();
         for (line, text) in (1..).zip(text.lines()) {
-            let mut words = text.split_whitespace();
-            let Some(key) = words.next().map(str::to_uppercase) else { continue };
-            // Other words, such as statistics, are of no concern.
-            let Some(value) = words.next() else { continue };
+            let mut tokens = text.split_whitespace();
+            let Some(key) = tokens.next().map(str::to_uppercase) else { continue };
+            // Other keywords, such as statistics, are of no concern.
+            let Some(value) = tokens.next() else { continue };
             let key = if key == "NODATA_VALUE" { "NODATA".to_owned() } else { key };
             if let Some((before, _)) = fields.insert(key.clone(), (line, value.to_owned())) {
                 let reason = format!("{} stands on line {before} already", shown(&key));
@@ -100,7 +101,7 @@ impl Fields {
         Ok(Self(fields))
     }
 
-    fn word(&self, key: &str) -> Option<String> {
+    fn upper(&self, key: &str) -> Option<String> {
         self.0.get(key).map(|(_, value)| value.to_uppercase())
     }
 
@@ -122,7 +123,7 @@ impl Fields {
 
     fn kind(&self) -> Result<Kind, Fault> {
         let bits: u32 = self.number("NBITS")?.unwrap_or(8);
-        let pixel_type = self.word("PIXELTYPE");
+        let pixel_type = self.upper("PIXELTYPE");
         Ok(match (bits, pixel_type.as_deref()) {
             (8, None | Some("UNSIGNEDINT")) => Kind::Unsigned8,
             (8, Some("SIGNEDINT")) => Kind::Signed8,
@@ -146,9 +147,9 @@ impl Fields {
     }
 }
 
-/// A word of the file, short enough for a message.
-fn shown(word: &str) -> String {
-    format!("{:?}", word.chars().take(40).collect::<String>())
+/// A token of the file, short enough for a message.
+fn shown(token: &str) -> String {
+    format!("{:?}", token.chars().take(40).collect::<String>())
 }
 
 #[cfg(test)]
