@@ -168,6 +168,7 @@ impl<S: Declared> Context<'_, S> {
         Ok(machine)
     }
 
+    /// The schedule asked for, over the paper's numbers for experiments.
     pub fn schedule(&self) -> Schedule {
         self.measure.schedule(S::EXPERIMENT_FRAMES)
     }

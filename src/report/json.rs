@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::record::{Record, SCHEMA};
 
+/// Failures of reading a record; every message names the file.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     #[error("cannot read the record {}: {source}; name a file written by --json", .path.display())]

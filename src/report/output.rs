@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+/// Failures of writing; every message names the file.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     #[error("cannot create the directory {}: {source}; name a place where directories can be made", .path.display())]

@@ -47,6 +47,7 @@ pub struct Environment {
     pub build: Build,
 }
 
+/// A Vulkan device and its driver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Device {
     /// `deviceName` of the driver.
@@ -68,6 +69,7 @@ pub struct Device {
     pub timestamp_bits: Option<u32>,
 }
 
+/// `VkPhysicalDeviceType`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DeviceKind {
@@ -91,6 +93,7 @@ impl DeviceKind {
     }
 }
 
+/// A computer and its operating system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Host {
     /// Name and release of the operating system, as `Debian GNU/Linux 12 (bookworm)`.
@@ -182,6 +185,7 @@ impl Run {
         self.frame_ms.as_ref().map_or(&[], |frame| &frame.samples)
     }
 
+    /// Median of the plain frames; absent where nothing was measured.
     pub fn median_frame_ms(&self) -> Option<f64> {
         self.frame_ms.as_ref().map(|frame| frame.median)
     }
@@ -214,6 +218,7 @@ pub struct Pass {
     pub bytes: Option<Bytes>,
 }
 
+/// Kind of a pass's work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PassKind {
@@ -282,6 +287,7 @@ pub struct Bytes {
     pub written: u64,
 }
 
+/// Bytes allocated for a variant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     /// Sum of device-local resources.
@@ -294,6 +300,7 @@ pub struct Memory {
     pub by_resource: Vec<ResourceMemory>,
 }
 
+/// Bytes allocated for the resources of one name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResourceMemory {
     /// Name of the resource, without its variant's prefix.
@@ -328,6 +335,7 @@ pub struct ExperimentRow {
     pub ratio: Option<f64>,
 }
 
+/// State of the validation layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Validation {
@@ -346,6 +354,7 @@ impl Validation {
     }
 }
 
+/// A picture written with a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageFile {
     /// Path of the PNG file.

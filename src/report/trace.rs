@@ -14,6 +14,7 @@ pub struct TraceRun {
     pub events: Vec<TraceEvent>,
 }
 
+/// One span of time on a track.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TraceEvent {
     /// Name of the pass or of the host's work.
@@ -28,6 +29,7 @@ pub struct TraceEvent {
     pub args: Map<String, Value>,
 }
 
+/// Clock whose spans a track shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Track {
     Host,

@@ -21,6 +21,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
     }

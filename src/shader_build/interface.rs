@@ -38,6 +38,7 @@ pub struct Binding {
     pub block: Option<Block>,
 }
 
+/// Type of a binding's descriptors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     UniformBuffer,

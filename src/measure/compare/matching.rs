@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::Input;
 use crate::report::record::{Record, Run};
 
+/// Reasons why two sides cannot be compared.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CompareError {
     #[error("cannot compare: side {side} has no run; name at least one record with a finished run a side")]
@@ -33,10 +34,12 @@ pub(super) struct Configuration<'a> {
 }
 
 impl<'a> Configuration<'a> {
+    /// The first run.
     pub fn first(&self) -> &'a Run {
         self.first
     }
 
+    /// All runs, process after process.
     pub fn runs(&self) -> impl Iterator<Item = &'a Run> {
         self.processes.iter().flatten().copied()
     }

@@ -110,6 +110,7 @@ pub struct RunComparison {
     pub passes: Vec<PassComparison>,
 }
 
+/// B against A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Verdict {
@@ -151,6 +152,7 @@ pub struct PassComparison {
     pub ratio: Option<Ratio>,
 }
 
+/// Clock of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Clock {

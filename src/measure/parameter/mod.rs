@@ -241,6 +241,7 @@ pub fn config<S: 'static>(parameters: &[Parameter<S>], setup: &S) -> Map<String,
 pub struct Given(BTreeSet<String>);
 
 impl Given {
+    /// True when the parameter or option was typed.
     pub fn has(&self, name: &str) -> bool {
         self.0.contains(name)
     }

@@ -18,6 +18,7 @@ pub struct BarChart {
     pub series: Vec<BarSeries>,
 }
 
+/// One bar in each group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarSeries {
     /// Name in the legend.

@@ -10,6 +10,7 @@ use super::{
     AXIS, Canvas, LABEL, Mark, PlotError, chart, color, extent, from_zero, padded, render, split_legend, tick,
 };
 
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     #[default]

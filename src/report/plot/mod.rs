@@ -19,6 +19,7 @@ use plotters::prelude::*;
 /// Width and height of every plot in pixels.
 pub const SIZE: (u32, u32) = (960, 540);
 
+/// Reasons why there is no chart.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
     #[error("cannot draw the plot \"{title}\": it has no point that can be drawn; measure at least one")]

@@ -94,7 +94,7 @@ impl<R: Read + Seek> Tags<'_, R> {
 
     fn placement(&mut self, width: u32, height: u32) -> Result<Placement, Fault> {
         let keys = self.keys()?;
-        // What a tie point names: the sample's corner, or with PixelIsPoint its centre.
+        // A tie point names the sample's corner, or with PixelIsPoint its centre.
         let offset = if keys.raster_type == Some(2) { 0.0 } else { 0.5 };
         let (corner, step) = if let Some(scale) = self.numbers(Tag::ModelPixelScaleTag, "ModelPixelScale", 2)? {
             let step = DVec2::new(scale[0], scale[1]);
