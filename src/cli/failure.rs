@@ -70,6 +70,9 @@ impl From<gpu::Error> for Failure {
             | E::Vulkan { .. }
             | E::Allocation { .. }
             | E::ReadBeforeWrite { .. }
+            | E::InUse { .. }
+            | E::Foreign { .. }
+            | E::HostAccess { .. }
             | E::Pass { .. }
             | E::Validation { .. } => Failure::Running(message),
         }

@@ -164,6 +164,11 @@ impl State {
     /// Contents written by the host before any submission: visible to all of it without a barrier.
     pub const HOST_WRITTEN: State = State { written: true, ..State::NEW };
 
+    /// True when the host wrote it last, or when a barrier has made the last write visible to it.
+    pub(crate) fn is_for_host(&self) -> bool {
+        self.written && (self.write_stages.is_empty() || self.read_access.contains(vk::AccessFlags2::HOST_READ))
+    }
+
     /// True once a pass, a copy or the host has written it.
     pub fn is_written(&self) -> bool {
         self.written

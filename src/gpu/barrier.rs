@@ -2,11 +2,14 @@
 
 use ash::vk;
 
+use std::sync::Arc;
+
 use super::access::{AccessInfo, derive};
 use super::bindings::{Resource, Use};
 use super::device::Device;
 use super::error::Error;
 use super::image::subresource_range;
+use super::tracked::{Held, InUse, SubmissionId};
 
 /// Reused lists of barriers, so that a frame allocates none.
 #[derive(Default)]
@@ -16,32 +19,58 @@ pub(crate) struct Barriers {
 }
 
 impl Barriers {
-    /// Derives the barriers of `uses` and moves the states on.
+    /// Derives the barriers of `uses` and moves the states on, as `submission` sees them; what it touches for the first
+    /// time joins `held`.
     ///
     /// # Errors
-    /// [`Error::ReadBeforeWrite`] for a read of what no pass, upload or clear has written.
-    pub fn collect(&mut self, pass: &str, uses: &[Use]) -> Result<(), Error> {
+    /// [`Error::ReadBeforeWrite`] for a read of what no pass, upload or clear has written; [`Error::InUse`] for a resource
+    /// of another unfinished submission; [`Error::Foreign`] for one of another device.
+    pub fn collect(
+        &mut self,
+        device: &Arc<Device>,
+        submission: SubmissionId,
+        pass: &str,
+        uses: &[Use],
+        held: &mut Vec<Held>,
+    ) -> Result<(), Error> {
         self.images.clear();
         self.buffers.clear();
         for one in uses {
+            one.resource.check_device(device, pass)?;
             let info = one.access.info();
-            let unwritten = match &one.resource {
-                Resource::Buffer(_) => self.buffer(one, info),
-                Resource::Image(_) => self.image(one, info),
-                Resource::Sampler(_) => false,
+            let visited = match &one.resource {
+                Resource::Buffer(_) => self.buffer(submission, one, info, held),
+                Resource::Image(_) => self.image(submission, one, info, held),
+                Resource::Sampler(_) => Ok(false),
             };
-            if unwritten {
-                return Err(Error::ReadBeforeWrite { pass: pass.to_owned(), resource: one.resource.name().to_owned() });
+            let names = || (pass.to_owned(), one.resource.name().to_owned());
+            match visited {
+                Ok(false) => {}
+                Ok(true) => {
+                    let (pass, resource) = names();
+                    return Err(Error::ReadBeforeWrite { pass, resource });
+                }
+                Err(InUse) => {
+                    let (pass, resource) = names();
+                    return Err(Error::InUse { pass, resource });
+                }
             }
         }
         Ok(())
     }
 
-    fn buffer(&mut self, one: &Use, info: AccessInfo) -> bool {
-        let Resource::Buffer(view) = &one.resource else { return false };
+    /// True for a read of what was not written.
+    fn buffer(
+        &mut self,
+        submission: SubmissionId,
+        one: &Use,
+        info: AccessInfo,
+        held: &mut Vec<Held>,
+    ) -> Result<bool, InUse> {
+        let Resource::Buffer(view) = &one.resource else { return Ok(false) };
         let mut unwritten = false;
         let mut needed: Option<vk::BufferMemoryBarrier2<'static>> = None;
-        view.buffer.with_states(view.range.clone(), |state| {
+        let is_first = view.buffer.with_states(submission, view.range.clone(), |state| {
             unwritten |= !info.writes && !state.is_written();
             let (barrier, after) = derive(state, info, one.discard, false);
             *state = after;
@@ -59,15 +88,25 @@ impl Barriers {
                 merged.dst_stage_mask |= b.dst_stages;
                 merged.dst_access_mask |= b.dst_access;
             }
-        });
+        })?;
+        if is_first {
+            held.push(Held::Buffer(view.buffer.clone()));
+        }
         self.buffers.extend(needed);
-        unwritten
+        Ok(unwritten)
     }
 
-    fn image(&mut self, one: &Use, info: AccessInfo) -> bool {
-        let Resource::Image(view) = &one.resource else { return false };
+    /// True for a read of what was not written.
+    fn image(
+        &mut self,
+        submission: SubmissionId,
+        one: &Use,
+        info: AccessInfo,
+        held: &mut Vec<Held>,
+    ) -> Result<bool, InUse> {
+        let Resource::Image(view) = &one.resource else { return Ok(false) };
         let image = &view.image;
-        image.with_states(view.layers.clone(), |states| {
+        let (unwritten, is_first) = image.with_states(submission, view.layers.clone(), |states| {
             let mut unwritten = false;
             for (layer, state) in (view.layers.start..).zip(states.iter_mut()) {
                 // An attachment that keeps its old contents reads them.
@@ -89,7 +128,11 @@ impl Barriers {
                 self.push_image(barrier);
             }
             unwritten
-        })
+        })?;
+        if is_first {
+            held.push(Held::Image(image.clone()));
+        }
+        Ok(unwritten)
     }
 
     /// Joins the barrier of the next layer to its neighbour's when they say the same.

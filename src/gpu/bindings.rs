@@ -34,6 +34,17 @@ impl Resource {
             Resource::Sampler(_) => "sampler",
         }
     }
+
+    /// # Errors
+    /// [`Error::Foreign`] for a resource of another device than `device`.
+    pub(crate) fn check_device(&self, device: &Arc<Device>, pass: &str) -> Result<(), Error> {
+        let own = match self {
+            Resource::Buffer(view) => view.buffer.device(),
+            Resource::Image(view) => view.image.device(),
+            Resource::Sampler(sampler) => &sampler.device,
+        };
+        device.check_own(own, pass, self.name())
+    }
 }
 
 impl From<&BufferView> for Resource {

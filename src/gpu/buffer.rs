@@ -1,7 +1,8 @@
 //! Buffers, their memory, and views of byte ranges of them.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::ptr::NonNull;
+use std::sync::Arc;
 
 use ash::vk;
 use gpu_allocator::MemoryLocation;
@@ -11,6 +12,7 @@ use super::access::State;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::tracked::{InUse, SubmissionId, Tracked};
 
 /// The memory that a buffer lies in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,10 +66,11 @@ impl BufferDesc {
 pub struct Buffer {
     pub(crate) raw: vk::Buffer,
     device: Arc<Device>,
-    allocation: Mutex<Option<Allocation>>,
+    allocation: Option<Allocation>,
     allocated_bytes: u64,
     desc: BufferDesc,
-    states: Mutex<Vec<(Range<u64>, State)>>,
+    /// The state of each byte range, in order and without gaps.
+    pub(super) states: Tracked<Vec<(Range<u64>, State)>>,
 }
 
 impl Buffer {
@@ -95,10 +98,10 @@ impl Buffer {
         let mut buffer = Buffer {
             raw,
             device: device.clone(),
-            allocation: Mutex::new(None),
+            allocation: None,
             allocated_bytes: 0,
             desc: BufferDesc { size_bytes, ..desc },
-            states: Mutex::new(vec![(whole, State::NEW)]),
+            states: Tracked::new(vec![(whole, State::NEW)]),
         };
         device.name(raw, &buffer.desc.name);
         // SAFETY: `raw` is a live buffer of this device.
@@ -109,7 +112,7 @@ impl Buffer {
             .context("binding memory of buffer", &buffer.desc.name)?;
         buffer.allocated_bytes = allocation.size();
         device.live().add_memory(&buffer.desc.name, allocation.size(), buffer.is_mapped());
-        buffer.allocation = Mutex::new(Some(allocation));
+        buffer.allocation = Some(allocation);
         Ok(Arc::new(buffer))
     }
 
@@ -133,8 +136,23 @@ impl Buffer {
     }
 
     /// A range of bytes as a view.
-    pub fn range(self: &Arc<Self>, range: Range<u64>) -> BufferView {
-        BufferView { buffer: self.clone(), range: range.start..range.end.min(self.desc.size_bytes) }
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a range that is empty or ends beyond the buffer.
+    pub fn range(self: &Arc<Self>, range: Range<u64>) -> Result<BufferView, Error> {
+        if range.is_empty() || range.end > self.desc.size_bytes {
+            return Err(Error::Limit {
+                object: self.desc.name.clone(),
+                what: "end in bytes of a range that begins before it",
+                wanted: range.end,
+                limit: self.desc.size_bytes,
+            });
+        }
+        Ok(BufferView { buffer: self.clone(), range })
+    }
+
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        &self.device
     }
 
     pub(crate) fn is_readback(&self) -> bool {
@@ -145,75 +163,93 @@ impl Buffer {
         self.desc.location != Location::Device
     }
 
-    fn allocation(&self) -> MutexGuard<'_, Option<Allocation>> {
-        self.allocation.lock().unwrap_or_else(|p| p.into_inner())
-    }
-
     /// Writes `bytes` at `offset_bytes` into a mapped buffer and marks it as written by the host.
     ///
     /// # Errors
-    /// [`Error::Allocation`] when the buffer is not mapped or too small.
+    /// [`Error::HostAccess`] when the buffer is not mapped or too small, or while an unfinished frame or a reader uses it.
     pub fn write(&self, offset_bytes: u64, bytes: &[u8]) -> Result<(), Error> {
-        let end = offset_bytes + bytes.len() as u64;
-        let mut guard = self.allocation();
-        let target = guard
-            .as_mut()
-            .filter(|_| self.is_mapped())
-            .and_then(|a| a.mapped_slice_mut())
-            .and_then(|s| s.get_mut(offset_bytes as usize..end as usize))
-            .ok_or_else(|| self.not_mapped("writing"))?;
-        target.copy_from_slice(bytes);
-        drop(guard);
-        self.with_states(offset_bytes..end, |state| *state = State::HOST_WRITTEN);
-        Ok(())
+        let end = offset_bytes.saturating_add(bytes.len() as u64);
+        let target = self.mapped(end).ok_or_else(|| self.not_mapped("writing"))?;
+        let written = self.states.write_from_host(|states| {
+            // SAFETY: the mapping holds `end` bytes; no submission and no reader has the buffer while its state is
+            // locked, and `bytes` is no part of it, which is lent out by `read` alone.
+            unsafe {
+                target.add(offset_bytes as usize).copy_from_nonoverlapping(NonNull::from(bytes).cast(), bytes.len())
+            };
+            visit_range(states, offset_bytes..end, |state| *state = State::HOST_WRITTEN);
+        });
+        written.map_err(|InUse| self.in_use("writing"))
     }
 
-    /// Hands the first `len_bytes` mapped bytes to `read`; the caller has waited for the fence of what wrote them.
+    /// Hands the first `len_bytes` mapped bytes to `read`.
     ///
     /// # Errors
-    /// [`Error::Allocation`] when the buffer is not mapped or too small.
+    /// [`Error::HostAccess`] when the buffer is not mapped, too small, or not written for the host that far, or while an
+    /// unfinished frame uses it.
     pub fn read<T>(&self, len_bytes: u64, read: impl FnOnce(&[u8]) -> T) -> Result<T, Error> {
-        let guard = self.allocation();
-        let bytes = guard
-            .as_ref()
-            .filter(|_| self.is_mapped())
-            .and_then(|a| a.mapped_slice())
-            .and_then(|s| s.get(..len_bytes as usize))
-            .ok_or_else(|| self.not_mapped("reading"))?;
-        Ok(read(bytes))
+        let source = self.mapped(len_bytes).ok_or_else(|| self.not_mapped("reading"))?;
+        let look = |states: &Vec<(Range<u64>, State)>| {
+            states.iter().filter(|(range, _)| range.start < len_bytes).all(|(_, state)| state.is_for_host())
+        };
+        let (is_for_host, _guard) = self.states.read_from_host(look).map_err(|InUse| self.in_use("reading"))?;
+        if !is_for_host {
+            let problem = "reading it: nothing was written there for the host to read".to_owned();
+            return Err(Error::HostAccess { object: self.desc.name.clone(), problem });
+        }
+        // SAFETY: the mapping holds `len_bytes`, which the device has written and the host may see; while the guard
+        // lives no submission and no writer can have the buffer.
+        Ok(read(unsafe { NonNull::slice_from_raw_parts(source, len_bytes as usize).as_ref() }))
+    }
+
+    /// The start of the mapped memory, where it holds `len_bytes`.
+    fn mapped(&self, len_bytes: u64) -> Option<NonNull<u8>> {
+        let allocation = self.allocation.as_ref().filter(|_| self.is_mapped() && len_bytes <= self.desc.size_bytes)?;
+        allocation.mapped_ptr().map(NonNull::cast)
     }
 
     fn not_mapped(&self, what: &str) -> Error {
-        Error::Allocation {
-            object: self.desc.name.clone(),
-            reason: format!("{what} it from the host: it is not mapped that far"),
-        }
+        let problem = format!("{what} it: it is not mapped that far");
+        Error::HostAccess { object: self.desc.name.clone(), problem }
     }
 
-    /// Visits the states of `range`, split so that every visited piece lies inside it.
-    pub(crate) fn with_states(&self, range: Range<u64>, mut visit: impl FnMut(&mut State)) {
-        let mut states = self.states.lock().unwrap_or_else(|p| p.into_inner());
-        for cut in [range.start, range.end] {
-            if let Some(at) = states.iter().position(|(r, _)| r.start < cut && cut < r.end) {
-                let (piece, state) = states[at].clone();
-                states[at].0.end = cut;
-                states.insert(at + 1, (cut..piece.end, state));
-            }
-        }
-        for (piece, state) in states.iter_mut() {
-            if piece.start >= range.start && piece.end <= range.end {
-                visit(state);
-            }
-        }
-        // Ranges that are written anew each frame, at other lengths, would cut the list ever finer.
-        states.dedup_by(|next, piece| {
-            let same = piece.1 == next.1;
-            if same {
-                piece.0.end = next.0.end;
-            }
-            same
-        });
+    fn in_use(&self, what: &str) -> Error {
+        let problem = format!("{what} it: a frame, a copy or a reader that has not finished uses it");
+        Error::HostAccess { object: self.desc.name.clone(), problem }
     }
+
+    /// Visits the states of `range` on behalf of a submission; true when it is the first time.
+    pub(crate) fn with_states(
+        &self,
+        submission: SubmissionId,
+        range: Range<u64>,
+        visit: impl FnMut(&mut State),
+    ) -> Result<bool, InUse> {
+        self.states.visit(submission, |states| visit_range(states, range, visit)).map(|((), is_first)| is_first)
+    }
+}
+
+/// Visits the states of `range`, split so that every visited piece lies inside it.
+fn visit_range(states: &mut Vec<(Range<u64>, State)>, range: Range<u64>, mut visit: impl FnMut(&mut State)) {
+    for cut in [range.start, range.end] {
+        if let Some(at) = states.iter().position(|(r, _)| r.start < cut && cut < r.end) {
+            let (piece, state) = states[at].clone();
+            states[at].0.end = cut;
+            states.insert(at + 1, (cut..piece.end, state));
+        }
+    }
+    for (piece, state) in states.iter_mut() {
+        if piece.start >= range.start && piece.end <= range.end {
+            visit(state);
+        }
+    }
+    // Ranges that are written anew each frame, at other lengths, would cut the list ever finer.
+    states.dedup_by(|next, piece| {
+        let same = piece.1 == next.1;
+        if same {
+            piece.0.end = next.0.end;
+        }
+        same
+    });
 }
 
 impl Drop for Buffer {
@@ -221,7 +257,7 @@ impl Drop for Buffer {
         // SAFETY: a frame keeps an `Arc` of what it uses until its fence, so the device no longer reads this buffer.
         unsafe { self.device.raw.destroy_buffer(self.raw, None) };
         self.device.live().remove(Kind::Buffer);
-        if let Some(allocation) = self.allocation().take() {
+        if let Some(allocation) = self.allocation.take() {
             self.device.live().remove_memory(&self.desc.name, self.allocated_bytes, self.is_mapped());
             // Freeing fails only for memory of another allocator.
             let _ = self.device.allocator().free(allocation);

@@ -1,12 +1,28 @@
-//! One command buffer with its fence: begun, submitted, waited for.
+//! One command buffer with its fence: begun, submitted, waited for; and all that the device reads of it until then.
 
+use std::mem;
 use std::sync::Arc;
+use std::time::Instant;
 
 use ash::vk;
 
+use super::barrier::Barriers;
+use super::bindings::Use;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::pass::Pass;
+use super::tracked::{Held, SubmissionId};
+
+/// The life of what is recorded into the one command buffer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// Nothing is recorded that will be submitted, and nothing executes.
+    Idle,
+    Recording,
+    /// Submitted, and not known to have finished.
+    InFlight,
+}
 
 /// A command pool of one buffer.
 pub(crate) struct Commands {
@@ -14,6 +30,11 @@ pub(crate) struct Commands {
     pool: vk::CommandPool,
     pub buffer: vk::CommandBuffer,
     fence: vk::Fence,
+    pub submission: SubmissionId,
+    phase: Phase,
+    barriers: Barriers,
+    held: Vec<Held>,
+    passes: Vec<Pass>,
 }
 
 impl Commands {
@@ -22,13 +43,22 @@ impl Commands {
         // SAFETY: the device is alive.
         let pool = unsafe { device.raw.create_command_pool(&info, None) }.context("creating command pool", name)?;
         device.live().add(Kind::CommandPool);
-        let mut commands =
-            Commands { device: device.clone(), pool, buffer: vk::CommandBuffer::null(), fence: vk::Fence::null() };
+        let mut commands = Commands {
+            device: device.clone(),
+            pool,
+            buffer: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+            submission: SubmissionId::new(),
+            phase: Phase::Idle,
+            barriers: Barriers::default(),
+            held: Vec::new(),
+            passes: Vec::new(),
+        };
         let info = vk::CommandBufferAllocateInfo::default()
             .command_pool(pool)
             .level(vk::CommandBufferLevel::PRIMARY)
             .command_buffer_count(1);
-        // SAFETY: the pool is alive.
+        // SAFETY: the pool is alive, and nobody else has it.
         let buffers =
             unsafe { device.raw.allocate_command_buffers(&info) }.context("allocating command buffer", name)?;
         commands.buffer = buffers[0];
@@ -40,37 +70,114 @@ impl Commands {
         Ok(commands)
     }
 
-    /// Throws away what was recorded and begins anew; nothing is in flight.
+    /// Throws away what was recorded and not submitted, and begins anew.
+    ///
+    /// # Errors
+    /// Any error of Vulkan, also where an earlier submission is still not known to have finished.
     pub fn begin(&mut self) -> Result<(), Error> {
-        let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: `submit_and_wait` waits, so the pool's one buffer is never pending here.
-        unsafe {
-            self.device
-                .raw
-                .reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
-                .context("resetting", "a command pool")?;
-            self.device.raw.begin_command_buffer(self.buffer, &info).context("beginning", "a command buffer")
+        if self.phase == Phase::InFlight {
+            self.settle().context("waiting for", "an earlier submission")?;
         }
+        self.abandon();
+        let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: nothing is in flight by `phase`, so neither the pool's one buffer nor the fence is pending; `&mut self`
+        // is the only user of both.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.reset_fences(&[self.fence]).context("resetting", "a fence")?;
+            raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
+                .context("resetting", "a command pool")?;
+            raw.begin_command_buffer(self.buffer, &info).context("beginning", "a command buffer")?;
+        }
+        self.submission = SubmissionId::new();
+        self.phase = Phase::Recording;
+        Ok(())
     }
 
-    /// Ends recording, submits and returns once the device has finished.
-    pub fn submit_and_wait(&mut self) -> Result<(), Error> {
+    /// Takes hold of what `uses` touch and records the barriers before it, outside a render pass.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`], [`Error::InUse`], [`Error::Foreign`]; what was recorded cannot be submitted then.
+    pub fn synchronise(&mut self, pass: &str, uses: &[Use]) -> Result<(), Error> {
+        let Commands { device, barriers, held, submission, .. } = self;
+        barriers.collect(device, *submission, pass, uses, held)?;
+        barriers.record(device, self.buffer);
+        Ok(())
+    }
+
+    /// Keeps a pass alive until the submission has finished.
+    pub fn keep(&mut self, pass: &Pass) {
+        self.passes.push(pass.clone());
+    }
+
+    /// Ends recording, submits and returns the moment when the device has finished. Only then do the tracked states
+    /// become what the submission left.
+    ///
+    /// # Errors
+    /// Any error of Vulkan. After a failed wait the resources stay held and alive until the device is known to be idle.
+    pub fn submit_and_wait(&mut self) -> Result<Instant, Error> {
         let raw = &self.device.raw;
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
         let submits = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
-        // SAFETY: the buffer is recording; the queue is used by one recorder at a time; the fence is unsignalled.
-        unsafe {
-            raw.end_command_buffer(self.buffer).context("ending", "a command buffer")?;
-            raw.queue_submit2(self.device.queue, &submits, self.fence).context("submitting", "a command buffer")?;
-            raw.wait_for_fences(&[self.fence], true, u64::MAX).context("waiting for", "a submission")?;
-            raw.reset_fences(&[self.fence]).context("resetting", "a fence")
+        // SAFETY: the buffer is recording: every caller has begun it; nobody else has it.
+        unsafe { raw.end_command_buffer(self.buffer) }.context("ending", "a command buffer")?;
+        // SAFETY: the queue is locked for the call; the fence is unsignalled since `begin` and not pending.
+        unsafe { raw.queue_submit2(*self.device.queue(), &submits, self.fence) }
+            .context("submitting", "a command buffer")?;
+        self.phase = Phase::InFlight;
+        // SAFETY: the fence is alive and was submitted.
+        if let Err(result) = unsafe { self.device.raw.wait_for_fences(&[self.fence], true, u64::MAX) } {
+            // The wait's own error is the one to report; until the device is idle everything stays as it is.
+            let _ = self.settle();
+            return Err(Error::vulkan("waiting for", "a submission", result));
         }
+        let finished = Instant::now();
+        self.release(true);
+        Ok(finished)
+    }
+
+    /// Gives up what was recorded and not submitted: the tracked states are as they were before it.
+    pub fn abandon(&mut self) {
+        if self.phase != Phase::InFlight {
+            self.release(false);
+        }
+    }
+
+    /// True when nothing executes that was submitted here. Asks the device where a wait has failed before.
+    pub fn is_idle(&mut self) -> bool {
+        self.phase != Phase::InFlight || self.settle().is_ok()
+    }
+
+    /// After a failed wait: lets go when the device is idle, or lost, and executes nothing any more.
+    fn settle(&mut self) -> Result<(), vk::Result> {
+        match self.device.raw_wait_idle() {
+            Ok(()) => self.release(true),
+            Err(vk::Result::ERROR_DEVICE_LOST) => self.release(false),
+            Err(other) => return Err(other),
+        }
+        Ok(())
+    }
+
+    fn release(&mut self, commit: bool) {
+        self.phase = Phase::Idle;
+        for held in self.held.drain(..) {
+            held.release(self.submission, commit);
+        }
+        self.passes.clear();
     }
 }
 
 impl Drop for Commands {
     fn drop(&mut self) {
-        // SAFETY: every submission was waited for, or the device is lost and executes nothing any more.
+        if !self.is_idle() {
+            // The device may still read all of it. Leaked on purpose, and the device with it.
+            mem::forget(mem::take(&mut self.held));
+            mem::forget(mem::take(&mut self.passes));
+            mem::forget(self.device.clone());
+            return;
+        }
+        self.abandon();
+        // SAFETY: nothing is in flight: see above.
         unsafe {
             if self.fence != vk::Fence::null() {
                 self.device.raw.destroy_fence(self.fence, None);

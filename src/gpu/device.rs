@@ -17,7 +17,7 @@ pub struct Device {
     // The allocator frees its blocks through the raw device, so `drop` below takes it first.
     allocator: ManuallyDrop<Mutex<Allocator>>,
     pub(crate) raw: ash::Device,
-    pub(crate) queue: vk::Queue,
+    queue: Mutex<vk::Queue>,
     pub(crate) queue_family: u32,
     pub(crate) debug: Option<ext::debug_utils::Device>,
     physical: PhysicalDevice,
@@ -80,7 +80,7 @@ impl Device {
         Ok(Arc::new(Device {
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
             raw,
-            queue,
+            queue: Mutex::new(queue),
             queue_family,
             debug,
             physical,
@@ -108,8 +108,27 @@ impl Device {
     /// # Errors
     /// [`Error::Vulkan`] when the device is lost.
     pub fn wait_idle(&self) -> Result<(), Error> {
-        // SAFETY: the queue is used from one thread at a time: every submission goes through `&mut` of a recorder.
-        unsafe { self.raw.device_wait_idle() }.context("waiting for device", &self.physical.name)
+        self.raw_wait_idle().context("waiting for device", &self.physical.name)
+    }
+
+    pub(crate) fn raw_wait_idle(&self) -> Result<(), vk::Result> {
+        let _queue = self.queue();
+        // SAFETY: the call wants all queues for itself: the device has one, and its lock is held.
+        unsafe { self.raw.device_wait_idle() }
+    }
+
+    /// The queue, for one thread at a time.
+    pub(crate) fn queue(&self) -> MutexGuard<'_, vk::Queue> {
+        self.queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// # Errors
+    /// [`Error::Foreign`] where `object` is not of this device but of `other`.
+    pub(crate) fn check_own(self: &Arc<Self>, other: &Arc<Self>, pass: &str, object: &str) -> Result<(), Error> {
+        if Arc::ptr_eq(self, other) {
+            return Ok(());
+        }
+        Err(Error::Foreign { pass: pass.to_owned(), object: object.to_owned() })
     }
 
     pub(crate) fn allocator(&self) -> MutexGuard<'_, Allocator> {
@@ -118,9 +137,8 @@ impl Device {
 
     /// Gives a handle the name that validation messages and profilers show.
     pub(crate) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
-        if let Some(debug) = &self.debug
-            && let Ok(name) = CString::new(name)
-        {
+        if let Some(debug) = &self.debug {
+            let name = c_text(name);
             let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
             // SAFETY: the handle is a live child of this device. A failure to name costs a name, nothing else.
             let _ = unsafe { debug.set_debug_utils_object_name(&info) };
@@ -128,12 +146,17 @@ impl Device {
     }
 }
 
+/// The text as Vulkan takes it, without the zeros that would end it.
+pub(crate) fn c_text(text: &str) -> CString {
+    let bytes: Vec<u8> = text.bytes().filter(|&b| b != 0).collect();
+    CString::new(bytes).unwrap_or_default()
+}
+
 impl Drop for Device {
     fn drop(&mut self) {
-        // SAFETY: every child holds an `Arc` of this device, so none is left; the allocator goes before the device it
-        // frees through, and is not touched again.
+        // SAFETY: every child holds an `Arc` of this device and waits for its own submissions before it drops, so none is
+        // left and nothing executes; the allocator goes before the device it frees through, and is not touched again.
         unsafe {
-            let _ = self.raw.device_wait_idle();
             ManuallyDrop::drop(&mut self.allocator);
             self.raw.destroy_device(None);
         }

@@ -35,6 +35,14 @@ pub enum Error {
     Allocation { object: String, reason: String },
     #[error("pass {pass}: reads {resource}, which no pass has written")]
     ReadBeforeWrite { pass: String, resource: String },
+    #[error(
+        "pass {pass}: {resource} is in use by a frame, a copy or a reader that has not finished; let that finish first"
+    )]
+    InUse { pass: String, resource: String },
+    #[error("pass {pass}: {object} belongs to another device; make it on this one")]
+    Foreign { pass: String, object: String },
+    #[error("host access to {object}: {problem}")]
+    HostAccess { object: String, problem: String },
     #[error("pass {pass}: {problem}")]
     Pass { pass: String, problem: String },
     #[error("shader {name}: {problem}")]

@@ -24,12 +24,13 @@ pub struct Frame<'a> {
     pub(super) mode: Mode,
     pub(super) submission: u32,
     pub(super) started: Instant,
+    /// The pass whose recording failed: the frame is not submitted then.
+    pub(super) failed: Option<&'static str>,
 }
 
 impl Frame<'_> {
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let r = &mut *self.recorder;
-        r.keep.clear();
         r.intervals.clear();
         r.counted.clear();
         for pool in [&mut r.timestamps, &mut r.samples_passed, &mut r.graphics_counts, &mut r.compute_counts]
@@ -48,6 +49,7 @@ impl Frame<'_> {
     }
 
     pub(super) fn finish(&mut self) -> Result<(), Error> {
+        self.check_open()?;
         let r = &mut *self.recorder;
         if self.mode == Mode::Bracketed
             && let Some(query) = r.timestamps.as_mut().and_then(QueryPool::take)
@@ -55,10 +57,8 @@ impl Frame<'_> {
             r.write_timestamp(query);
         }
         let submitted_ms = self.started.elapsed().as_secs_f64() * 1e3;
-        let submitted = r.commands.submit_and_wait();
-        r.sample.frame_ms = self.started.elapsed().as_secs_f64() * 1e3;
-        r.keep.clear();
-        submitted?;
+        let finished = r.commands.submit_and_wait()?;
+        r.sample.frame_ms = (finished - self.started).as_secs_f64() * 1e3;
         match self.mode {
             Mode::Plain => Ok(()),
             Mode::Timestamped | Mode::Bracketed => r.read_timestamps(self.mode, submitted_ms),
@@ -75,10 +75,14 @@ impl Frame<'_> {
         let at = self.sample_of(pass.info());
         let waiting = Instant::now();
         self.finish()?;
+        // Until the rest of the frame has begun, nothing may be recorded.
+        self.failed = Some(pass.info().name);
         let wait_ms = waiting.elapsed().as_secs_f64() * 1e3;
         *self.recorder.sample.passes[at].wait_ms.get_or_insert(0.0) += wait_ms;
         self.submission += 1;
-        self.begin()
+        self.begin()?;
+        self.failed = None;
+        Ok(())
     }
 
     pub(super) fn sample_of(&mut self, info: &Arc<PassInfo>) -> usize {
@@ -177,8 +181,7 @@ impl Frame<'_> {
         if to.is_readback() {
             let r = &mut *self.recorder;
             let uses = [Use { resource: to.into(), access: Access::HostRead, discard: false }];
-            r.barriers.collect(pass.info().name, &uses)?;
-            r.barriers.record(&r.commands.device, r.commands.buffer);
+            r.commands.synchronise(pass.info().name, &uses)?;
         }
         Ok(())
     }
@@ -197,16 +200,37 @@ impl Frame<'_> {
         result
     }
 
+    /// # Errors
+    /// [`Error::Pass`] after an error: what was recorded does not fit the tracked states.
+    fn check_open(&self) -> Result<(), Error> {
+        match self.failed {
+            None => Ok(()),
+            Some(name) => Err(Error::Pass {
+                pass: name.into(),
+                problem: "it failed earlier in this frame, which goes no further".into(),
+            }),
+        }
+    }
+
     fn envelope(&mut self, pass: &Pass, body: impl FnOnce(&Device, vk::CommandBuffer) -> u32) -> Result<(), Error> {
+        self.check_open()?;
+        self.failed = Some(pass.info().name);
+        self.record(pass, body)?;
+        self.failed = None;
+        Ok(())
+    }
+
+    fn record(&mut self, pass: &Pass, body: impl FnOnce(&Device, vk::CommandBuffer) -> u32) -> Result<(), Error> {
+        let name = pass.info().name;
+        self.recorder.commands.device.check_own(&pass.inner.device, name, name)?;
         let at = self.sample_of(pass.info());
         let mode = self.mode;
         let r = &mut *self.recorder;
-        r.barriers.collect(pass.info().name, &pass.inner.uses)?;
-        r.keep.push(pass.clone());
+        r.commands.keep(pass);
         r.open_label(pass.info().name);
         let device = r.commands.device.clone();
         let commands = r.commands.buffer;
-        r.barriers.record(&device, commands);
+        r.commands.synchronise(pass.info().name, &pass.inner.uses)?;
         r.bind(&pass.inner);
         let queries = (mode == Mode::Counted).then(|| r.begin_counters(&pass.inner, at));
         let calls = body(&device, commands);
@@ -219,6 +243,13 @@ impl Frame<'_> {
             r.timestamp(at);
         }
         Ok(())
+    }
+}
+
+impl Drop for Frame<'_> {
+    fn drop(&mut self) {
+        // Nothing to do for a frame that has finished.
+        self.recorder.commands.abandon();
     }
 }
 

@@ -1,7 +1,7 @@
 //! Images, their views, and samplers.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use ash::vk;
 use gpu_allocator::vulkan::Allocation;
@@ -11,6 +11,7 @@ use super::buffer::{Location, allocate};
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::tracked::{InUse, SubmissionId, Tracked};
 
 /// The description of an image; [`Image::new`] makes it.
 #[derive(Debug, Clone)]
@@ -83,10 +84,11 @@ impl ImageDesc {
 pub struct Image {
     pub(crate) raw: vk::Image,
     device: Arc<Device>,
-    allocation: Mutex<Option<Allocation>>,
+    allocation: Option<Allocation>,
     allocated_bytes: u64,
     desc: ImageDesc,
-    states: Mutex<Vec<State>>,
+    /// The state of each layer.
+    pub(super) states: Tracked<Vec<State>>,
 }
 
 impl Image {
@@ -114,10 +116,10 @@ impl Image {
         let mut image = Image {
             raw,
             device: device.clone(),
-            allocation: Mutex::new(None),
+            allocation: None,
             allocated_bytes: 0,
             desc,
-            states: Mutex::new(vec![State::NEW; layers]),
+            states: Tracked::new(vec![State::NEW; layers]),
         };
         device.name(raw, &image.desc.name);
         // SAFETY: `raw` is a live image of this device.
@@ -128,7 +130,7 @@ impl Image {
             .context("binding memory of image", &image.desc.name)?;
         image.allocated_bytes = allocation.size();
         device.live().add_memory(&image.desc.name, allocation.size(), false);
-        image.allocation = Mutex::new(Some(allocation));
+        image.allocation = Some(allocation);
         Ok(Arc::new(image))
     }
 
@@ -192,9 +194,18 @@ impl Image {
         ImageView::new(self, kind, self.aspect(), layer..layer + 1)
     }
 
-    pub(crate) fn with_states<T>(&self, layers: Range<u32>, visit: impl FnOnce(&mut [State]) -> T) -> T {
-        let mut states = self.states.lock().unwrap_or_else(|p| p.into_inner());
-        visit(&mut states[layers.start as usize..layers.end as usize])
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
+    /// Visits the states of `layers` on behalf of a submission; true when it is the first time.
+    pub(crate) fn with_states<T>(
+        &self,
+        submission: SubmissionId,
+        layers: Range<u32>,
+        visit: impl FnOnce(&mut [State]) -> T,
+    ) -> Result<(T, bool), InUse> {
+        self.states.visit(submission, |states| visit(&mut states[layers.start as usize..layers.end as usize]))
     }
 }
 
@@ -203,8 +214,7 @@ impl Drop for Image {
         // SAFETY: views and frames hold an `Arc` of this image, so nothing refers to it any more.
         unsafe { self.device.raw.destroy_image(self.raw, None) };
         self.device.live().remove(Kind::Image);
-        let allocation = self.allocation.lock().unwrap_or_else(|p| p.into_inner()).take();
-        if let Some(allocation) = allocation {
+        if let Some(allocation) = self.allocation.take() {
             self.device.live().remove_memory(&self.desc.name, self.allocated_bytes, false);
             // Freeing fails only for memory of another allocator.
             let _ = self.device.allocator().free(allocation);
@@ -290,7 +300,7 @@ pub(crate) fn subresource_range(aspect: vk::ImageAspectFlags, layers: &Range<u32
 /// A sampler; edges are clamped.
 pub struct Sampler {
     pub(crate) raw: vk::Sampler,
-    device: Arc<Device>,
+    pub(super) device: Arc<Device>,
 }
 
 impl Sampler {

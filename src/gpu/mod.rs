@@ -34,6 +34,7 @@ mod sample;
 pub mod shader;
 #[cfg(test)]
 mod tests;
+mod tracked;
 pub mod transfer;
 
 pub use access::{Access, Stages};

@@ -27,6 +27,7 @@ pub struct Pass {
 }
 
 pub(crate) struct Inner {
+    pub device: Arc<Device>,
     /// `None` for a copy.
     pub pipeline: Option<Arc<Pipeline>>,
     /// The pipeline of the draws that count into the stencil, where there are such.
@@ -117,6 +118,7 @@ impl Pass {
         Pass {
             info,
             inner: Arc::new(Inner {
+                device: to.device().clone(),
                 pipeline: None,
                 counting: None,
                 bindings: None,
@@ -427,7 +429,7 @@ fn finish(
         }
     }
     let info = Arc::new(describe(&desc, &pipeline.program, &uses));
-    let inner = Inner { pipeline: Some(pipeline), counting, bindings, uses, body, desc };
+    let inner = Inner { device: device.clone(), pipeline: Some(pipeline), counting, bindings, uses, body, desc };
     Ok(Pass { info, inner: Arc::new(inner) })
 }
 

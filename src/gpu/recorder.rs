@@ -1,17 +1,18 @@
 //! The recorder: command buffer, query pools and lists that frames reuse, and the reading of the queries after them.
 
 use std::ffi::CString;
+use std::mem;
 use std::sync::Arc;
 use std::time::Instant;
 
 use ash::vk;
 
-use super::barrier::{self, Barriers};
+use super::barrier;
 use super::commands::Commands;
-use super::device::Device;
+use super::device::{Device, c_text};
 use super::error::Error;
 use super::frame::Frame;
-use super::pass::{Body, Inner, Pass};
+use super::pass::{Body, Inner};
 use super::pass_info::PassInfo;
 use super::physical::Feature;
 use super::query::{Counter, QueryPool};
@@ -30,8 +31,6 @@ pub struct Recorder {
     pub(super) compute_counts: Option<QueryPool>,
     pub(super) timestamp_mask: u64,
     pub(super) period_ns: f64,
-    pub(super) barriers: Barriers,
-    pub(super) keep: Vec<Pass>,
     /// The pass, as an index into `sample.passes`, of each timestamped interval and of each counter.
     pub(super) intervals: Vec<usize>,
     pub(super) counted: Vec<Counted>,
@@ -65,8 +64,6 @@ impl Recorder {
             compute_counts: pool(Feature::PipelineStatistics, Counter::Compute, COUNTERS)?,
             timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             period_ns: f64::from(physical.limits.timestamp_period),
-            barriers: Barriers::default(),
-            keep: Vec::new(),
             intervals: Vec::new(),
             counted: Vec::new(),
             labels: Vec::new(),
@@ -77,7 +74,8 @@ impl Recorder {
     /// Records a frame with `record`, submits it and waits for it.
     ///
     /// # Errors
-    /// The first error of `record` or of Vulkan; what the resources hold is then unknown.
+    /// The first error of `record` or of Vulkan. A submission that failed leaves the tracked states of its resources as
+    /// they were before it; what a frame that was given up half-way had submitted before is done.
     pub fn run<E: From<Error>>(
         &mut self,
         mode: Mode,
@@ -87,10 +85,11 @@ impl Recorder {
         self.sample.spans.clear();
         self.sample.bracket_ms = None;
         let started = Instant::now();
-        let mut frame = Frame { recorder: self, mode, submission: 0, started };
+        let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None };
         frame.begin()?;
         record(&mut frame)?;
         frame.finish()?;
+        drop(frame);
         Ok(&self.sample)
     }
 
@@ -256,11 +255,10 @@ impl Recorder {
 
     pub(super) fn open_label(&mut self, name: &'static str) {
         let Some(debug) = &self.commands.device.debug else { return };
-        let at = self.labels.iter().position(|(n, _)| *n == name).or_else(|| {
-            self.labels.push((name, CString::new(name).ok()?));
-            Some(self.labels.len() - 1)
+        let at = self.labels.iter().position(|(n, _)| *n == name).unwrap_or_else(|| {
+            self.labels.push((name, c_text(name)));
+            self.labels.len() - 1
         });
-        let Some(at) = at else { return };
         let label = vk::DebugUtilsLabelEXT::default().label_name(&self.labels[at].1);
         // SAFETY: recording; the label's text lives in `labels`.
         unsafe { debug.cmd_begin_debug_utils_label(self.commands.buffer, &label) };
@@ -270,6 +268,17 @@ impl Recorder {
         if let Some(debug) = &self.commands.device.debug {
             // SAFETY: closes the label that `open_label` opened.
             unsafe { debug.cmd_end_debug_utils_label(self.commands.buffer) };
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        if !self.commands.is_idle() {
+            // A frame that may still be executing writes its queries.
+            let pools =
+                [&mut self.timestamps, &mut self.samples_passed, &mut self.graphics_counts, &mut self.compute_counts];
+            pools.into_iter().for_each(|pool| mem::forget(pool.take()));
         }
     }
 }

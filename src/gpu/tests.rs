@@ -1,11 +1,13 @@
 //! Tests that need the layer's inside: a barrier left out is reported, and every shader makes a pipeline.
 
+use std::cell::RefCell;
 use std::env;
 use std::sync::Arc;
 
 use ash::vk;
 
 use super::access::{Access, AccessInfo, State, derive};
+use super::live::Kind;
 use super::physical::choose;
 use super::pipeline::{Attribute, Pipeline, Topology, VertexLayout};
 use super::program::Program;
@@ -29,6 +31,128 @@ fn open_device() -> Arc<Device> {
 fn color_target(device: &Arc<Device>, name: &str, format: vk::Format) -> Arc<ImageView> {
     let desc = ImageDesc::new_2d(name, format, 8, 8).usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
     Image::new(device, desc).unwrap().view().unwrap()
+}
+
+/// Failures that the hooks below answer with on this thread, and the functions that they stand before.
+struct Hooks {
+    wait: vk::PFN_vkWaitForFences,
+    idle: vk::PFN_vkDeviceWaitIdle,
+    failing_waits: u32,
+    failing_idles: u32,
+}
+
+thread_local! {
+    static HOOKS: RefCell<Option<Hooks>> = const { RefCell::new(None) };
+}
+
+unsafe extern "system" fn wait_hook(
+    device: vk::Device,
+    count: u32,
+    fences: *const vk::Fence,
+    all: vk::Bool32,
+    timeout_ns: u64,
+) -> vk::Result {
+    HOOKS.with_borrow_mut(|hooks| {
+        let Some(hooks) = hooks else { return vk::Result::ERROR_UNKNOWN };
+        if hooks.failing_waits > 0 {
+            hooks.failing_waits -= 1;
+            return vk::Result::ERROR_OUT_OF_HOST_MEMORY;
+        }
+        // SAFETY: the caller's arguments go through unchanged.
+        unsafe { (hooks.wait)(device, count, fences, all, timeout_ns) }
+    })
+}
+
+unsafe extern "system" fn idle_hook(device: vk::Device) -> vk::Result {
+    HOOKS.with_borrow_mut(|hooks| {
+        let Some(hooks) = hooks else { return vk::Result::ERROR_UNKNOWN };
+        if hooks.failing_idles > 0 {
+            hooks.failing_idles -= 1;
+            return vk::Result::ERROR_OUT_OF_HOST_MEMORY;
+        }
+        // SAFETY: as above.
+        unsafe { (hooks.idle)(device) }
+    })
+}
+
+fn fail(waits: u32, idles: u32) {
+    HOOKS.with_borrow_mut(|hooks| {
+        let hooks = hooks.as_mut().unwrap();
+        (hooks.failing_waits, hooks.failing_idles) = (waits, idles);
+    });
+}
+
+/// A device whose waits fail when [`fail`] says so, as they may when memory runs out.
+fn open_failing_device() -> Arc<Device> {
+    let mut device = Arc::into_inner(open_device()).unwrap();
+    let raw = &device.raw;
+    let mut first = raw.fp_v1_0().clone();
+    let hooks = Hooks { wait: first.wait_for_fences, idle: first.device_wait_idle, failing_waits: 0, failing_idles: 0 };
+    HOOKS.set(Some(hooks));
+    first.wait_for_fences = wait_hook;
+    first.device_wait_idle = idle_hook;
+    device.raw = ash::Device::from_parts_1_3(
+        raw.handle(),
+        first,
+        raw.fp_v1_1().clone(),
+        raw.fp_v1_2().clone(),
+        raw.fp_v1_3().clone(),
+    );
+    Arc::new(device)
+}
+
+#[test]
+fn after_a_failed_wait_nothing_is_dropped_that_the_device_may_read() {
+    let device = open_failing_device();
+    let live = device.live().clone();
+    let count = |kind| live.alive().iter().find(|(k, _)| *k == kind).map_or(0, |(_, n)| *n);
+    let shaders = ShaderLibrary::new(&device, Compiler::Glslang, None).unwrap();
+    let clear = |recorder: &mut Recorder, value: f32| {
+        let target = color_target(&device, "target", vk::Format::R8G8B8A8_UNORM);
+        let pass = Pass::graphics("clear", "", "test/asymmetric.vert", "test/asymmetric.frag")
+            .color(&target, Load::Clear([value; 4]), Blend::Replace)
+            .build(&shaders)
+            .unwrap();
+        let outcome = recorder.run(Mode::Timestamped, |frame| frame.graphics(&pass, |_| {}));
+        (target, outcome.map(|_| ()).map_err(|error: Error| error.to_string()))
+    };
+    let failure = "waiting for a submission";
+    let mut recorder = Recorder::new(&device).unwrap();
+
+    // The wait fails, and the device turns out to be idle: what was submitted is done.
+    fail(1, 0);
+    let (target, outcome) = clear(&mut recorder, 1.0);
+    assert!(outcome.clone().is_err_and(|text| text.contains(failure)), "{outcome:?}");
+    assert_eq!(transfer::read_image(&device, &target).unwrap(), [255; 256]);
+    drop(target);
+
+    // Nobody knows that it is idle: its target lives on, in use.
+    fail(1, 1);
+    let (target, outcome) = clear(&mut recorder, 1.0);
+    assert!(outcome.is_err());
+    let refused = transfer::read_image(&device, &target).unwrap_err().to_string();
+    assert!(refused.contains("target is in use"), "{refused}");
+    drop(target);
+    assert_eq!((count(Kind::Image), count(Kind::Framebuffer)), (1, 1));
+    // The next frame asks again, in vain and then with success.
+    fail(0, 1);
+    let (_, outcome) = clear(&mut recorder, 1.0);
+    assert!(outcome.is_err_and(|text| text.contains("earlier submission")));
+    let (target, outcome) = clear(&mut recorder, 1.0);
+    assert_eq!(outcome, Ok(()));
+    assert_eq!((count(Kind::Image), count(Kind::Framebuffer)), (1, 0));
+    drop(target);
+
+    // The recorder goes before anybody knows: all of it is leaked on purpose.
+    fail(1, 2);
+    let (target, outcome) = clear(&mut recorder, 1.0);
+    assert!(outcome.is_err());
+    drop((target, recorder, shaders));
+    let leaked = [Kind::Image, Kind::Framebuffer, Kind::Pipeline, Kind::CommandPool, Kind::Fence, Kind::Device];
+    assert_eq!(leaked.map(count), [1; 6]);
+    assert!(count(Kind::QueryPool) > 0);
+    let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
+    assert!(messages.is_empty(), "{messages:#?}");
 }
 
 crate::host_block! {
@@ -59,7 +183,9 @@ fn sum_of_sums(device: &Arc<Device>, forget: bool) -> Vec<Message> {
     let outcome = recorder.run(Mode::Plain, |frame| {
         record(frame, &first)?;
         if forget {
-            sums.with_states(0..sums.size_bytes(), |state| *state = State::HOST_WRITTEN);
+            let submission = frame.recorder.commands.submission;
+            let forget = |state: &mut State| *state = State::HOST_WRITTEN;
+            assert!(sums.with_states(submission, 0..sums.size_bytes(), forget).is_ok());
         }
         record(frame, &second)
     });
@@ -101,7 +227,8 @@ fn draw_and_copy(device: &Arc<Device>, forget: bool) -> Vec<Message> {
             draw.vertices(3);
         })?;
         if forget {
-            target.image().with_states(0..1, |states| states.fill(forgotten));
+            let submission = frame.recorder.commands.submission;
+            assert!(target.image().with_states(submission, 0..1, |states| states.fill(forgotten)).is_ok());
         }
         frame.copy(&copy)
     });

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::access::Access;
-use super::barrier::Barriers;
 use super::bindings::{Resource, Use};
 use super::buffer::{Buffer, BufferDesc, Location};
 use super::commands::Commands;
@@ -214,19 +213,16 @@ fn once(
     body: impl FnOnce(&ash::Device, vk::CommandBuffer),
 ) -> Result<(), Error> {
     let mut commands = Commands::new(device, what)?;
-    let mut barriers = Barriers::default();
     commands.begin()?;
-    barriers.collect(what, uses)?;
-    barriers.record(device, commands.buffer);
+    commands.synchronise(what, uses)?;
     body(&device.raw, commands.buffer);
     let to_host: Vec<Use> = uses
         .iter()
         .filter(|u| matches!(&u.resource, Resource::Buffer(view) if view.buffer.is_readback()))
         .map(|u| Use { access: Access::HostRead, ..u.clone() })
         .collect();
-    barriers.collect(what, &to_host)?;
-    barriers.record(device, commands.buffer);
-    commands.submit_and_wait()
+    commands.synchronise(what, &to_host)?;
+    commands.submit_and_wait().map(|_| ())
 }
 
 /// A copy takes one aspect: of depth and stencil, depth.

@@ -7,6 +7,7 @@ mod first_pass;
 mod fixtures;
 mod indirect;
 mod memory_model;
+mod misuse;
 mod pass_desc;
 mod pictures;
 mod refusals;
