@@ -73,6 +73,7 @@ impl From<gpu::Error> for Failure {
             | E::InUse { .. }
             | E::Foreign { .. }
             | E::HostAccess { .. }
+            | E::Unsupported { .. }
             | E::Pass { .. }
             | E::Validation { .. } => Failure::Running(message),
         }

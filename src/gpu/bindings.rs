@@ -9,6 +9,7 @@ use super::access::Access;
 use super::buffer::BufferView;
 use super::device::Device;
 use super::error::{Context, Error};
+use super::format::format_info;
 use super::image::{ImageView, Sampler};
 use super::live::Kind;
 use super::program::{Program, Slot};
@@ -120,6 +121,8 @@ impl Bindings {
             let (Some((_, resource)), None) = (found.next(), found.next()) else {
                 return Err(problem(format!("{} must be given once", slot.name)));
             };
+            resource.check_device(device, pass)?;
+            check_resource(device, slot, resource).map_err(problem)?;
             if let Some(access) = access_of(slot, resource).map_err(problem)? {
                 uses.push(Use { resource: resource.clone(), access, discard: false });
             }
@@ -163,7 +166,7 @@ impl Bindings {
                 buffers[0] = vk::DescriptorBufferInfo {
                     buffer: view.buffer.raw,
                     offset: view.range.start,
-                    range: view.range.end - view.range.start,
+                    range: view.len_bytes(),
                 };
                 write.buffer_info(&buffers)
             }
@@ -199,7 +202,7 @@ fn access_of(slot: &Slot, resource: &Resource) -> Result<Option<Access>, String>
     let stages = slot.stages;
     match (slot.kind, resource) {
         (BindingKind::UniformBuffer, Resource::Buffer(view)) => {
-            let bytes = view.range.end - view.range.start;
+            let bytes = view.len_bytes();
             match slot.block_bytes {
                 Some(block) if u64::from(block) > bytes => {
                     Err(format!("{} has {block} bytes and {} only {bytes}", slot.name, resource.name()))
@@ -217,4 +220,59 @@ fn access_of(slot: &Slot, resource: &Resource) -> Result<Option<Access>, String>
         }
         (kind, resource) => Err(format!("{} is a {kind:?}, and {} is not", slot.name, resource.name())),
     }
+}
+
+/// Checks that the device can bind the resource to a descriptor of this kind, and that the resource was made for it.
+fn check_resource(device: &Device, slot: &Slot, resource: &Resource) -> Result<(), String> {
+    let (limits, name) = (&device.physical().limits, resource.name());
+    let not_made = |usage: &str| Err(format!("{} is a {usage}, which {name} was not made to be", slot.name));
+    match resource {
+        Resource::Buffer(view) => {
+            let (usage, kind, alignment, limit) = match slot.kind {
+                BindingKind::UniformBuffer => (
+                    vk::BufferUsageFlags::UNIFORM_BUFFER,
+                    "uniform buffer",
+                    limits.min_uniform_buffer_offset_alignment,
+                    limits.max_uniform_buffer_range,
+                ),
+                _ => (
+                    vk::BufferUsageFlags::STORAGE_BUFFER,
+                    "storage buffer",
+                    limits.min_storage_buffer_offset_alignment,
+                    limits.max_storage_buffer_range,
+                ),
+            };
+            if !view.buffer.usage().contains(usage) {
+                return not_made(kind);
+            }
+            if view.range.start % alignment.max(1) != 0 {
+                return Err(format!("{name} is bound from byte {}, no multiple of {alignment}", view.range.start));
+            }
+            if view.len_bytes() > u64::from(limit) {
+                return Err(format!("{name} has {} bytes, and a {kind} at most {limit}", view.len_bytes()));
+            }
+        }
+        Resource::Image(view) => {
+            let Some(shape) = slot.image else { return Ok(()) };
+            let info = format_info(view.image.desc().format);
+            let (usage, kind, fits) = match slot.kind {
+                BindingKind::StorageImage { format } => {
+                    let fits = info.is_some_and(|info| info.storage == Some(format));
+                    (vk::ImageUsageFlags::STORAGE, "storage image", fits)
+                }
+                _ => {
+                    let fits = info.is_some_and(|info| Some(info.scalar) == shape.scalar);
+                    (vk::ImageUsageFlags::SAMPLED, "sampled image", fits && view.aspect.as_raw().count_ones() == 1)
+                }
+            };
+            if !view.image.desc().usage.contains(usage) {
+                return not_made(kind);
+            }
+            if !fits || !shape.is_plain_2d || shape.is_array != view.is_array {
+                return Err(format!("{} has another format, aspect or shape than {name}", slot.name));
+            }
+        }
+        Resource::Sampler(_) => {}
+    }
+    Ok(())
 }

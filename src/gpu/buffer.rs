@@ -89,9 +89,10 @@ impl Buffer {
                 limit,
             });
         }
+        check_usage(device, &desc, size_bytes)?;
         let info =
             vk::BufferCreateInfo::default().size(size_bytes).usage(desc.usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
-        // SAFETY: the device is alive and the description is complete.
+        // SAFETY: the device is alive; usage and size are such as it takes.
         let raw = unsafe { device.raw.create_buffer(&info, None) }.context("creating buffer", &desc.name)?;
         device.live().add(Kind::Buffer);
         let whole = 0..size_bytes;
@@ -273,10 +274,38 @@ pub struct BufferView {
 }
 
 impl BufferView {
+    pub(crate) fn len_bytes(&self) -> u64 {
+        self.range.end - self.range.start
+    }
+
     /// The buffer that the range lies in.
     pub fn buffer(&self) -> &Arc<Buffer> {
         &self.buffer
     }
+}
+
+/// The uses that the layer knows, and a size that the device takes.
+fn check_usage(device: &Device, desc: &BufferDesc, size_bytes: u64) -> Result<(), Error> {
+    use vk::BufferUsageFlags as U;
+    let known = U::TRANSFER_SRC
+        | U::TRANSFER_DST
+        | U::UNIFORM_BUFFER
+        | U::STORAGE_BUFFER
+        | U::VERTEX_BUFFER
+        | U::INDEX_BUFFER
+        | U::INDIRECT_BUFFER;
+    if desc.usage.is_empty() || !known.contains(desc.usage) {
+        return Err(Error::Unsupported {
+            object: desc.name.clone(),
+            problem: format!("a buffer for {:?}", desc.usage),
+        });
+    }
+    let limit = device.physical().max_buffer_bytes();
+    if size_bytes > limit {
+        let what = "size in bytes of a buffer";
+        return Err(Error::Limit { object: desc.name.clone(), what, wanted: size_bytes, limit });
+    }
+    Ok(())
 }
 
 /// Allocates memory for a buffer (`linear`) or an image.

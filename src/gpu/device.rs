@@ -28,8 +28,10 @@ impl Device {
     /// Opens `physical` with every feature of [`Feature`] that it has.
     ///
     /// # Errors
-    /// [`Error::MissingFeature`] when the baseline is not there, or what Vulkan answers.
+    /// [`Error::MissingFeature`] when the baseline is not there, [`Error::NoDevice`] for a device of another instance, or
+    /// any error of Vulkan.
     pub fn open(instance: &Arc<Instance>, physical: PhysicalDevice) -> Result<Arc<Self>, Error> {
+        let physical = physical.read_again(instance)?;
         let missing = physical.lacks(&[]);
         let (Some((queue_family, _)), true) = (physical.queue, missing.is_empty()) else {
             return Err(Error::MissingFeature { device: physical.name, missing: missing.join(", ") });
@@ -41,7 +43,10 @@ impl Device {
             .large_points(on(Feature::LargePoints))
             .fragment_stores_and_atomics(on(Feature::FragmentStores))
             .pipeline_statistics_query(on(Feature::PipelineStatistics))
-            .occlusion_query_precise(on(Feature::PreciseOcclusion));
+            .occlusion_query_precise(on(Feature::PreciseOcclusion))
+            // Accesses of shaders and vertex fetches stay inside the bound buffers; every device has it.
+            .robust_buffer_access(true)
+            .full_draw_index_uint32(physical.has_full_indices());
         let mut v12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true);
         let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
             .synchronization2(true)
@@ -120,6 +125,13 @@ impl Device {
     /// The queue, for one thread at a time.
     pub(crate) fn queue(&self) -> MutexGuard<'_, vk::Queue> {
         self.queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Uses of a format that the device has for images.
+    pub(crate) fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        // SAFETY: the physical device is this device's own.
+        let properties = unsafe { self.instance.raw.get_physical_device_format_properties(self.physical.raw, format) };
+        properties.optimal_tiling_features
     }
 
     /// # Errors

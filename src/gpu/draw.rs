@@ -1,114 +1,211 @@
-//! The commands that the body of a pass issues: draws inside its render pass, or dispatches.
+//! The commands that the body of a pass issues: draws inside its render pass, or dispatches. Each is checked against
+//! what is bound and what the device allows before it is recorded; the first that does not fit ends the pass with an
+//! error, and nothing after it is recorded.
+
+use std::any::TypeId;
 
 use ash::vk;
 use bytemuck::Pod;
 
 use super::device::Device;
-use super::pass::{Body, Inner};
+use super::error::Error;
+use super::pass::{Body, DrawBounds, DrawCounts, Inner};
+use super::pass_builder::PassDesc;
+
+/// What draws and dispatches have in common: the pass, its constants, and the first command that was refused.
+struct Commands<'a> {
+    device: &'a Device,
+    raw: vk::CommandBuffer,
+    inner: &'a Inner,
+    has_constants: bool,
+    calls: u32,
+    refused: Option<Error>,
+}
+
+impl<'a> Commands<'a> {
+    fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner) -> Self {
+        Commands { device, raw, inner, has_constants: false, calls: 0, refused: None }
+    }
+
+    fn desc(&self) -> &'a PassDesc {
+        &self.inner.desc
+    }
+
+    fn refuse(&mut self, problem: impl Into<String>) {
+        let error = self.desc().problem(problem);
+        self.refused.get_or_insert(error);
+    }
+
+    fn constants<T: Pod>(&mut self, constants: &T) {
+        let Some(pipeline) = &self.inner.pipeline else { return };
+        match self.desc().constants {
+            Some(declared) if declared.id == TypeId::of::<T>() => {}
+            Some(declared) => {
+                let given = std::any::type_name::<T>();
+                return self.refuse(format!("its constants are {}, and {given} is given", declared.name));
+            }
+            None => return self.refuse("it has no constants, and some are given"),
+        }
+        let program = &pipeline.program;
+        let bytes = bytemuck::bytes_of(constants);
+        // The host struct may carry its alignment's tail; the block's own size is what the layout declares.
+        let bytes = &bytes[..bytes.len().min(program.push_bytes as usize)];
+        // SAFETY: recording; `T` is the declared struct, which the build of the pass checked against the block of every
+        // stage; the range was declared in the layout.
+        unsafe { self.device.raw.cmd_push_constants(self.raw, program.layout, program.push_stages, 0, bytes) };
+        self.has_constants = true;
+    }
+
+    /// True when the next command may be recorded, which then counts as a call.
+    fn is_ready(&mut self) -> bool {
+        if self.desc().constants.is_some() && !self.has_constants {
+            self.refuse("its constants are not set before it draws or dispatches");
+        }
+        self.calls += u32::from(self.refused.is_none());
+        self.refused.is_none()
+    }
+
+    fn finish(self) -> Result<u32, Error> {
+        self.refused.map_or(Ok(self.calls), Err)
+    }
+}
 
 /// The draws of one pass.
 pub struct Draw<'a> {
-    pub(super) device: &'a Device,
-    pub(super) commands: vk::CommandBuffer,
-    pub(super) inner: &'a Inner,
-    pub(super) calls: u32,
+    commands: Commands<'a>,
+    bounds: DrawBounds,
 }
 
-impl Draw<'_> {
-    /// Sets the push constants of the draws to come.
+impl<'a> Draw<'a> {
+    pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, bounds: DrawBounds) -> Self {
+        Draw { commands: Commands::new(device, raw, inner), bounds }
+    }
+
+    /// The number of draws, or the first error.
+    pub(super) fn finish(self) -> Result<u32, Error> {
+        self.commands.finish()
+    }
+
+    /// Sets the push constants of the draws to come: the struct that the pass declares.
     pub fn constants<T: Pod>(&mut self, constants: &T) -> &mut Self {
-        push(self.device, self.commands, self.inner, bytemuck::bytes_of(constants));
+        self.commands.constants(constants);
         self
     }
 
     /// Binds the pass's counting pipeline for the draws to come, or its own.
     pub fn counting(&mut self, counting: bool) -> &mut Self {
-        let pipeline = if counting { &self.inner.counting } else { &self.inner.pipeline };
-        if let Some(pipeline) = pipeline {
-            let point = vk::PipelineBindPoint::GRAPHICS;
-            // SAFETY: inside the pass's render pass; both pipelines were made for it and share one layout.
-            unsafe { self.device.raw.cmd_bind_pipeline(self.commands, point, pipeline.raw) };
-        }
+        let inner = self.commands.inner;
+        let pipeline = if counting { &inner.counting } else { &inner.pipeline };
+        let Some(pipeline) = pipeline else {
+            self.commands.refuse("it has no counting pipeline");
+            return self;
+        };
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: inside the pass's render pass; both pipelines were made for it and share one layout.
+        unsafe { self.commands.device.raw.cmd_bind_pipeline(self.commands.raw, point, pipeline.raw) };
         self
     }
 
     /// Draws `count` vertices from `first` on without indices.
     pub fn vertices_from(&mut self, first: u32, count: u32) -> &mut Self {
-        self.calls += 1;
-        // SAFETY: as for [`Draw::vertices`].
-        unsafe { self.device.raw.cmd_draw(self.commands, count, 1, first, 0) };
-        self
+        self.draw(first, count, 1)
     }
 
     /// Draws `count` vertices without indices.
     pub fn vertices(&mut self, count: u32) -> &mut Self {
-        self.calls += 1;
-        // SAFETY: inside the pass's render pass, with its pipeline and buffers bound.
-        unsafe { self.device.raw.cmd_draw(self.commands, count, 1, 0, 0) };
-        self
+        self.draw(0, count, 1)
     }
 
     /// Draws `count` instances of `vertices` vertices each, without indices.
     pub fn instances(&mut self, vertices: u32, count: u32) -> &mut Self {
-        self.calls += 1;
-        // SAFETY: as for [`Draw::vertices`].
-        unsafe { self.device.raw.cmd_draw(self.commands, vertices, count, 0, 0) };
+        self.draw(0, vertices, count)
+    }
+
+    fn draw(&mut self, first: u32, vertices: u32, instances: u32) -> &mut Self {
+        let end = u64::from(first) + u64::from(vertices);
+        if self.is_ready(DrawCounts { vertices: end, instances: instances.into(), indices: 0 }) {
+            let Commands { device, raw, .. } = self.commands;
+            // SAFETY: inside the pass's render pass, with pipeline, set and buffers bound and the constants set; vertices
+            // and instances lie inside what is bound.
+            unsafe { device.raw.cmd_draw(raw, vertices, instances, first, 0) };
+        }
         self
     }
 
     /// Draws `count` indices.
     pub fn indices(&mut self, count: u32) -> &mut Self {
-        self.calls += 1;
-        // SAFETY: as above; the index buffer was checked when it was filled.
-        unsafe { self.device.raw.cmd_draw_indexed(self.commands, count, 1, 0, 0, 0) };
+        // Vertices that indices name beyond the buffer are not fetched: robust buffer access is on.
+        if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: count.into() }) {
+            let Commands { device, raw, .. } = self.commands;
+            // SAFETY: as for `draw`; the indices lie inside the bound buffer.
+            unsafe { device.raw.cmd_draw_indexed(raw, count, 1, 0, 0, 0) };
+        }
         self
     }
 
-    /// Draws what the pass's [indirect](super::pass::PassBuilder::indirect) buffer says; nothing without one.
+    /// Draws what the pass's [indirect](super::pass::PassBuilder::indirect) buffer says.
     pub fn indices_indirect(&mut self) -> &mut Self {
-        let Body::Graphics { indirect: Some(view), .. } = &self.inner.body else { return self };
-        self.calls += 1;
-        let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
-        // SAFETY: as above; the build of the pass checked that the buffer holds one command and may be used so, and its
-        // barrier made the command visible.
-        unsafe {
-            self.device.raw.cmd_draw_indexed_indirect(self.commands, view.buffer.raw, view.range.start, 1, stride)
+        let Body::Graphics { indirect: Some(view), .. } = &self.commands.inner.body else {
+            self.commands.refuse("it has no indirect buffer");
+            return self;
         };
+        if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
+            let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
+            let Commands { device, raw, .. } = self.commands;
+            // SAFETY: as for `draw`; the build of the pass checked that the buffer holds one command and may be used so,
+            // and its barrier made the command visible.
+            unsafe { device.raw.cmd_draw_indexed_indirect(raw, view.buffer.raw, view.range.start, 1, stride) };
+        }
         self
+    }
+
+    fn is_ready(&mut self, counts: DrawCounts) -> bool {
+        if let Some(problem) = self.bounds.problem(counts) {
+            self.commands.refuse(problem);
+        }
+        self.commands.is_ready()
     }
 }
 
 /// The dispatches of one pass.
 pub struct Dispatch<'a> {
-    pub(super) device: &'a Device,
-    pub(super) commands: vk::CommandBuffer,
-    pub(super) inner: &'a Inner,
-    pub(super) local_size: [u32; 3],
-    pub(super) calls: u32,
+    commands: Commands<'a>,
+    local_size: [u32; 3],
 }
 
-impl Dispatch<'_> {
-    /// Sets the push constants of the dispatches to come.
+impl<'a> Dispatch<'a> {
+    pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, local_size: [u32; 3]) -> Self {
+        Dispatch { commands: Commands::new(device, raw, inner), local_size }
+    }
+
+    /// The number of dispatches, or the first error.
+    pub(super) fn finish(self) -> Result<u32, Error> {
+        self.commands.finish()
+    }
+
+    /// Sets the push constants of the dispatches to come: the struct that the pass declares.
     pub fn constants<T: Pod>(&mut self, constants: &T) -> &mut Self {
-        push(self.device, self.commands, self.inner, bytemuck::bytes_of(constants));
+        self.commands.constants(constants);
         self
     }
 
     /// Dispatches at least `x` x `y` x `z` threads, in whole workgroups.
     pub fn threads(&mut self, x: u32, y: u32, z: u32) -> &mut Self {
-        self.calls += 1;
         let [a, b, c] = self.local_size;
-        // SAFETY: recording outside a render pass with the pass's pipeline bound.
-        unsafe { self.device.raw.cmd_dispatch(self.commands, x.div_ceil(a), y.div_ceil(b), z.div_ceil(c)) };
+        let groups = [x.div_ceil(a), y.div_ceil(b), z.div_ceil(c)];
+        let limits = self.commands.device.physical().limits.max_compute_work_group_count;
+        if let Some((&wanted, limit)) = groups.iter().zip(limits).find(|&(&wanted, limit)| wanted > limit) {
+            let object = format!("pass {}", self.commands.desc().name);
+            let what = "count of workgroups along one axis";
+            let error = Error::Limit { object, what, wanted: wanted.into(), limit: limit.into() };
+            self.commands.refused.get_or_insert(error);
+        }
+        if self.commands.is_ready() {
+            let Commands { device, raw, .. } = self.commands;
+            // SAFETY: recording outside a render pass, with pipeline and set bound and the constants set; the device takes
+            // so many workgroups.
+            unsafe { device.raw.cmd_dispatch(raw, groups[0], groups[1], groups[2]) };
+        }
         self
     }
-}
-
-fn push(device: &Device, commands: vk::CommandBuffer, inner: &Inner, bytes: &[u8]) {
-    let Some(pipeline) = &inner.pipeline else { return };
-    let program = &pipeline.program;
-    // The host struct may carry its alignment's tail; the block's own size is what the layout declares.
-    let bytes = &bytes[..bytes.len().min(program.push_bytes as usize)];
-    // SAFETY: the build of the pass checked the struct against the block; the range was declared in the layout.
-    unsafe { device.raw.cmd_push_constants(commands, program.layout, program.push_stages, 0, bytes) };
 }

@@ -41,6 +41,8 @@ pub enum Error {
     InUse { pass: String, resource: String },
     #[error("pass {pass}: {object} belongs to another device; make it on this one")]
     Foreign { pass: String, object: String },
+    #[error("{object}: neither this layer nor this device has {problem}")]
+    Unsupported { object: String, problem: String },
     #[error("host access to {object}: {problem}")]
     HostAccess { object: String, problem: String },
     #[error("pass {pass}: {problem}")]

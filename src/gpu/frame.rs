@@ -105,9 +105,11 @@ impl Frame<'_> {
     /// Records a pass that draws; `body` issues its draws.
     ///
     /// # Errors
-    /// [`Error::ReadBeforeWrite`].
+    /// [`Error::Pass`] for a draw beyond what is bound, or with other constants than declared, or none;
+    /// [`Error::ReadBeforeWrite`]; [`Error::InUse`] for a resource of another unfinished frame.
     pub fn graphics(&mut self, pass: &Pass, body: impl FnOnce(&mut Draw<'_>)) -> Result<(), Error> {
-        let Body::Graphics { render_pass, framebuffer, extent, clears, vertices, indices, .. } = &pass.inner.body
+        let Body::Graphics { render_pass, framebuffer, extent, clears, vertices, indices, bounds, .. } =
+            &pass.inner.body
         else {
             return Err(not_a(pass, "graphics"));
         };
@@ -143,40 +145,38 @@ impl Frame<'_> {
                     );
                 }
             }
-            let mut draw = Draw { device, commands, inner: &pass.inner, calls: 0 };
+            let mut draw = Draw::new(device, commands, &pass.inner, *bounds);
             body(&mut draw);
-            let calls = draw.calls;
             // SAFETY: inside the render pass begun above.
             unsafe { device.raw.cmd_end_render_pass(commands) };
-            calls
+            draw.finish()
         })
     }
 
     /// Records a pass that dispatches; `body` issues its dispatches.
     ///
     /// # Errors
-    /// [`Error::ReadBeforeWrite`].
+    /// [`Error::Limit`] for more workgroups than the device takes; otherwise as [`Frame::graphics`].
     pub fn compute(&mut self, pass: &Pass, body: impl FnOnce(&mut Dispatch<'_>)) -> Result<(), Error> {
-        if !matches!(pass.inner.body, Body::Compute) {
-            return Err(not_a(pass, "compute"));
-        }
+        let Body::Compute { local_size } = pass.inner.body else { return Err(not_a(pass, "compute")) };
         self.envelope(pass, |device, commands| {
-            let mut dispatch =
-                Dispatch { device, commands, inner: &pass.inner, local_size: pass.local_size(), calls: 0 };
+            let mut dispatch = Dispatch::new(device, commands, &pass.inner, local_size);
             body(&mut dispatch);
-            dispatch.calls
+            dispatch.finish()
         })
     }
 
     /// Records a copy; what the host is to read is made visible to it.
     ///
     /// # Errors
-    /// [`Error::ReadBeforeWrite`].
+    /// [`Error::Pass`] for a copy that does not fit; [`Error::ReadBeforeWrite`]; [`Error::InUse`].
     pub fn copy(&mut self, pass: &Pass) -> Result<(), Error> {
         let Body::Copy { from, to } = &pass.inner.body else { return Err(not_a(pass, "copy")) };
+        transfer::check_copy(pass.info().name, from, to)?;
+        transfer::check_uses(&pass.inner.device, pass.info().name, &pass.inner.uses)?;
         self.envelope(pass, |device, commands| {
             transfer::record_copy(&device.raw, commands, from, to);
-            1
+            Ok(1)
         })?;
         if to.is_readback() {
             let r = &mut *self.recorder;
@@ -212,7 +212,11 @@ impl Frame<'_> {
         }
     }
 
-    fn envelope(&mut self, pass: &Pass, body: impl FnOnce(&Device, vk::CommandBuffer) -> u32) -> Result<(), Error> {
+    fn envelope(
+        &mut self,
+        pass: &Pass,
+        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<u32, Error>,
+    ) -> Result<(), Error> {
         self.check_open()?;
         self.failed = Some(pass.info().name);
         self.record(pass, body)?;
@@ -220,7 +224,11 @@ impl Frame<'_> {
         Ok(())
     }
 
-    fn record(&mut self, pass: &Pass, body: impl FnOnce(&Device, vk::CommandBuffer) -> u32) -> Result<(), Error> {
+    fn record(
+        &mut self,
+        pass: &Pass,
+        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<u32, Error>,
+    ) -> Result<(), Error> {
         let name = pass.info().name;
         self.recorder.commands.device.check_own(&pass.inner.device, name, name)?;
         let at = self.sample_of(pass.info());
@@ -238,7 +246,7 @@ impl Frame<'_> {
             r.end_counters(queries);
         }
         r.close_label();
-        r.sample.passes[at].calls += calls;
+        r.sample.passes[at].calls += calls?;
         if mode == Mode::Timestamped {
             r.timestamp(at);
         }

@@ -10,6 +10,7 @@ use super::access::State;
 use super::buffer::{Location, allocate};
 use super::device::Device;
 use super::error::{Context, Error};
+use super::format::format_info;
 use super::live::Kind;
 use super::tracked::{InUse, SubmissionId, Tracked};
 
@@ -78,6 +79,37 @@ impl ImageDesc {
         }
         Ok(())
     }
+
+    fn check_support(&self, device: &Device) -> Result<(), Error> {
+        use vk::ImageUsageFlags as U;
+        let known = U::TRANSFER_SRC
+            | U::TRANSFER_DST
+            | U::SAMPLED
+            | U::STORAGE
+            | U::COLOR_ATTACHMENT
+            | U::DEPTH_STENCIL_ATTACHMENT;
+        let is_known = format_info(self.format).is_some() && !self.usage.is_empty() && known.contains(self.usage);
+        // SAFETY: the physical device is the device's own; the usage is not empty.
+        let supported = is_known.then(|| unsafe {
+            device.instance().raw.get_physical_device_image_format_properties(
+                device.physical().raw,
+                self.format,
+                vk::ImageType::TYPE_2D,
+                vk::ImageTiling::OPTIMAL,
+                self.usage,
+                vk::ImageCreateFlags::empty(),
+            )
+        });
+        let fits = supported.and_then(Result::ok).is_some_and(|most| {
+            let extent = most.max_extent;
+            self.width <= extent.width && self.height <= extent.height && self.layers <= most.max_array_layers
+        });
+        if fits {
+            return Ok(());
+        }
+        let problem = format!("{} x {} images of {:?} for {:?}", self.width, self.height, self.format, self.usage);
+        Err(Error::Unsupported { object: self.name.clone(), problem })
+    }
 }
 
 /// An image with its memory; it remembers what was last done to each of its layers.
@@ -98,6 +130,7 @@ impl Image {
     /// [`Error::Limit`] when an extent is zero or larger than the device allows, [`Error::OutOfMemory`].
     pub fn new(device: &Arc<Device>, desc: ImageDesc) -> Result<Arc<Self>, Error> {
         desc.check_limits(device)?;
+        desc.check_support(device)?;
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
             .format(desc.format)
@@ -109,7 +142,7 @@ impl Image {
             .usage(desc.usage)
             .sharing_mode(vk::SharingMode::EXCLUSIVE)
             .initial_layout(vk::ImageLayout::UNDEFINED);
-        // SAFETY: the extents were checked against the device's limits and the description is complete.
+        // SAFETY: the device was asked for this format, usage and extent, and the description is complete.
         let raw = unsafe { device.raw.create_image(&info, None) }.context("creating image", &desc.name)?;
         device.live().add(Kind::Image);
         let layers = desc.layers as usize;
@@ -146,7 +179,8 @@ impl Image {
 
     /// The aspect that the format has: depth or colour.
     pub fn aspect(&self) -> vk::ImageAspectFlags {
-        aspect_of(self.desc.format)
+        // Every image's format is known.
+        format_info(self.desc.format).map_or(vk::ImageAspectFlags::COLOR, |info| info.aspect)
     }
 
     /// A view of all layers.
@@ -222,19 +256,12 @@ impl Drop for Image {
     }
 }
 
-pub(crate) fn aspect_of(format: vk::Format) -> vk::ImageAspectFlags {
-    match format {
-        vk::Format::D16_UNORM | vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
-        vk::Format::D32_SFLOAT_S8_UINT | vk::Format::D24_UNORM_S8_UINT => {
-            vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
-        }
-        _ => vk::ImageAspectFlags::COLOR,
-    }
-}
-
 /// A view of some layers of an image.
 pub struct ImageView {
     pub(crate) raw: vk::ImageView,
+    pub(crate) aspect: vk::ImageAspectFlags,
+    /// An array view, even of one layer.
+    pub(crate) is_array: bool,
     pub(crate) image: Arc<Image>,
     pub(crate) layers: Range<u32>,
 }
@@ -246,18 +273,25 @@ impl ImageView {
         aspect: vk::ImageAspectFlags,
         layers: Range<u32>,
     ) -> Result<Arc<Self>, Error> {
+        use vk::ImageUsageFlags as U;
+        let viewed = U::SAMPLED | U::STORAGE | U::COLOR_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT;
+        if !image.aspect().contains(aspect) || !image.desc.usage.intersects(viewed) {
+            let problem = format!("a view of its {aspect:?}: it is made for {:?}", image.desc.usage);
+            return Err(Error::Unsupported { object: image.desc.name.clone(), problem });
+        }
         let info = vk::ImageViewCreateInfo::default()
             .image(image.raw)
             .view_type(kind)
             .format(image.desc.format)
             .subresource_range(subresource_range(aspect, &layers));
         let device = &image.device;
-        // SAFETY: the image is alive, the layers exist, and its usage allows views.
+        // SAFETY: the image is alive, the callers name layers that exist, and aspect and usage allow the view.
         let raw =
             unsafe { device.raw.create_image_view(&info, None) }.context("creating a view of image", image.name())?;
         device.live().add(Kind::ImageView);
         device.name(raw, image.name());
-        Ok(Arc::new(ImageView { raw, image: image.clone(), layers }))
+        let is_array = kind == vk::ImageViewType::TYPE_2D_ARRAY;
+        Ok(Arc::new(ImageView { raw, aspect, is_array, image: image.clone(), layers }))
     }
 
     /// The image that is viewed.
@@ -313,6 +347,12 @@ impl Sampler {
             .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
             .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
             .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE);
+        let (count, limit) =
+            (device.live().count(Kind::Sampler), device.physical().limits.max_sampler_allocation_count);
+        if count >= limit as usize {
+            let (object, wanted) = (name.to_owned(), count as u64 + 1);
+            return Err(Error::Limit { object, what: "count of samplers", wanted, limit: limit.into() });
+        }
         // SAFETY: the device is alive and the description is complete.
         let raw = unsafe { device.raw.create_sampler(&info, None) }.context("creating sampler", name)?;
         device.live().add(Kind::Sampler);

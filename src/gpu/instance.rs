@@ -2,6 +2,7 @@
 
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use ash::{ext, vk};
 
@@ -20,6 +21,7 @@ pub struct Instance {
     layers: Vec<String>,
     loader_version: u32,
     has_debug_utils: bool,
+    id: u64,
     // Last: the loader's library must outlive every function pointer above.
     _entry: ash::Entry,
 }
@@ -90,6 +92,7 @@ impl Instance {
         // SAFETY: every pointer in `info` refers to locals that outlive the call.
         let raw = unsafe { entry.create_instance(&info, None) }
             .map_err(|result| Error::NoInstance { reason: result.to_string() })?;
+        static NEXT: AtomicU64 = AtomicU64::new(0);
         let live = Arc::new(LiveObjects::default());
         live.add(Kind::Instance);
         let mut instance = Instance {
@@ -100,6 +103,7 @@ impl Instance {
             layers: if validate { vec![VALIDATION_LAYER.to_string_lossy().into_owned()] } else { Vec::new() },
             loader_version,
             has_debug_utils,
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
             _entry: entry,
         };
         if validate {
@@ -148,6 +152,11 @@ impl Instance {
     /// The loader's version, as `major.minor.patch`.
     pub fn loader_version(&self) -> String {
         version_text(self.loader_version)
+    }
+
+    /// Unique in the process.
+    pub(crate) fn id(&self) -> u64 {
+        self.id
     }
 
     pub(crate) fn has_debug_utils(&self) -> bool {

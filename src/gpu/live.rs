@@ -111,6 +111,11 @@ impl LiveObjects {
         }
     }
 
+    /// Live objects of one kind.
+    pub fn count(&self, kind: Kind) -> usize {
+        self.lock().counts[kind as usize]
+    }
+
     /// The kinds with live objects and how many; empty when nothing is alive.
     pub fn alive(&self) -> Vec<(Kind, usize)> {
         let live = self.lock();

@@ -130,6 +130,11 @@ pub struct PhysicalDevice {
     /// The family with graphics, compute and transfer, and its valid timestamp bits.
     pub queue: Option<(u32, u32)>,
     features: Vec<Feature>,
+    /// `fullDrawIndexUint32`: every 32-bit index is one.
+    has_full_indices: bool,
+    max_buffer_bytes: u64,
+    /// The instance that it was found on.
+    instance_id: u64,
 }
 
 impl PhysicalDevice {
@@ -150,13 +155,20 @@ impl PhysicalDevice {
     fn describe(instance: &Instance, index: usize, raw: vk::PhysicalDevice) -> Self {
         let mut id = vk::PhysicalDeviceIDProperties::default();
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
+        let mut v13 = vk::PhysicalDeviceVulkan13Properties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut id).push_next(&mut driver);
+        // SAFETY: `raw` comes from this instance.
+        let basic = unsafe { instance.raw.get_physical_device_properties(raw) };
+        if basic.api_version >= vk::API_VERSION_1_3 {
+            properties = properties.push_next(&mut v13);
+        }
         // SAFETY: `raw` comes from this instance, and the chained structures outlive the calls.
-        let (memory, queues) = unsafe {
+        let (memory, queues, core) = unsafe {
             instance.raw.get_physical_device_properties2(raw, &mut properties);
             (
                 instance.raw.get_physical_device_memory_properties(raw),
                 instance.raw.get_physical_device_queue_family_properties(raw),
+                instance.raw.get_physical_device_features(raw),
             )
         };
         let properties = properties.properties;
@@ -188,7 +200,35 @@ impl PhysicalDevice {
             memory,
             queue,
             features: supported_features(instance, raw, properties.api_version, queue),
+            has_full_indices: core.full_draw_index_uint32 == vk::TRUE,
+            max_buffer_bytes: v13.max_buffer_size,
+            instance_id: instance.id(),
         }
+    }
+
+    /// The device as it is found now, with the features that are left to it: whatever became of the description, limits
+    /// and features are the device's own.
+    pub(crate) fn read_again(self, instance: &Instance) -> Result<Self, Error> {
+        if self.instance_id != instance.id() {
+            return Err(Error::NoDevice { reason: format!("{} belongs to another instance", self.name) });
+        }
+        let mut again = Self::describe(instance, self.index, self.raw);
+        again.features.retain(|feature| self.features.contains(feature));
+        Ok(again)
+    }
+
+    pub(crate) fn has_full_indices(&self) -> bool {
+        self.has_full_indices
+    }
+
+    /// The largest index that a draw may use.
+    pub(crate) fn largest_index(&self) -> u32 {
+        if self.has_full_indices { u32::MAX - 1 } else { self.limits.max_draw_indexed_index_value }
+    }
+
+    /// The largest size of a buffer, in bytes.
+    pub(crate) fn max_buffer_bytes(&self) -> u64 {
+        self.max_buffer_bytes
     }
 
     /// True when the device has `feature`.

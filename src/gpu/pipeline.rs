@@ -62,7 +62,8 @@ impl VertexLayout {
         for input in inputs {
             let format = vertex_format(input.format);
             let bytes = (4 * input.format.components) as usize;
-            let field = T::fields().iter().find(|(name, _, size)| *name == input.name && *size == bytes);
+            let fits = |offset: usize| offset % 4 == 0 && offset + bytes <= size_of::<T>() && input.count == 1;
+            let field = T::fields().iter().find(|(name, at, size)| *name == input.name && *size == bytes && fits(*at));
             let Some(&(_, offset, _)) = field else {
                 return Err(Error::Pass {
                     pass: pass.to_owned(),
@@ -71,11 +72,30 @@ impl VertexLayout {
             };
             attributes.push(Attribute { location: input.location, format, offset_bytes: offset as u32 });
         }
-        Ok(VertexLayout {
-            stride_bytes: std::mem::size_of::<T>() as u32,
-            rate: vk::VertexInputRate::VERTEX,
-            attributes,
-        })
+        Ok(VertexLayout { stride_bytes: size_of::<T>() as u32, rate: vk::VertexInputRate::VERTEX, attributes })
+    }
+}
+
+impl VertexLayout {
+    /// # Errors
+    /// [`Error::Limit`] for more attributes or longer elements than the device fetches.
+    pub(crate) fn check_limits(&self, device: &Device, pass: &str) -> Result<(), Error> {
+        let limits = &device.physical().limits;
+        let (count, stride) = (self.attributes.len() as u32, self.stride_bytes);
+        let checks = [
+            ("count of vertex attributes", count, limits.max_vertex_input_attributes),
+            ("size in bytes of a vertex", stride, limits.max_vertex_input_binding_stride),
+            ("size in bytes of a vertex", stride, limits.max_vertex_input_attribute_offset.saturating_add(4)),
+        ];
+        match checks.into_iter().find(|&(_, wanted, limit)| wanted > limit) {
+            Some((what, wanted, limit)) => {
+                Err(Error::Limit { object: format!("pass {pass}"), what, wanted: wanted.into(), limit: limit.into() })
+            }
+            None if stride % 4 != 0 => {
+                Err(Error::Pass { pass: pass.to_owned(), problem: "its vertices are not of whole 32-bit words".into() })
+            }
+            None => Ok(()),
+        }
     }
 }
 
@@ -214,14 +234,14 @@ impl Drop for Pipeline {
     }
 }
 
-/// Checks that a host struct is what a program's push constants are.
+/// Checks a host struct against the push constants of the stages.
 ///
 /// # Errors
 /// [`Error::Pass`] naming the first field that differs.
-pub(crate) fn check_constants<T: HostBlock>(pass: &str, program: &Program) -> Result<(), Error> {
+pub(crate) fn check_constants<T: HostBlock>(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
     let problem = |problem: String| Error::Pass { pass: pass.to_owned(), problem };
     let mut found = false;
-    for module in &program.modules {
+    for module in modules {
         if let Some(block) = &module.interface.push_constants {
             found = true;
             block

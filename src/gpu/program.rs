@@ -9,8 +9,9 @@ use super::access::Stages;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::physical::Feature;
 use super::shader::{Compiler, ShaderModule};
-use crate::shader_build::BindingKind;
+use crate::shader_build::{BindingKind, ImageShape};
 
 /// One descriptor of a program's set 0.
 #[derive(Debug, Clone)]
@@ -25,6 +26,8 @@ pub struct Slot {
     pub stages: Stages,
     /// The size of its block, for buffers of fixed size.
     pub block_bytes: Option<u32>,
+    /// The shape of its image.
+    pub image: Option<ImageShape>,
 }
 
 impl Slot {
@@ -61,6 +64,7 @@ impl Program {
     /// push constants are larger than the device allows.
     pub fn new(device: &Arc<Device>, pass: &str, modules: Vec<Arc<ShaderModule>>) -> Result<Arc<Self>, Error> {
         let slots = merge(pass, &modules)?;
+        check_slots(device, pass, &slots)?;
         let mut push_stages = Stages::NONE;
         let mut push_bytes = 0;
         for module in &modules {
@@ -68,6 +72,10 @@ impl Program {
                 push_stages = push_stages | module.stage();
                 push_bytes = push_bytes.max(block.size_bytes);
             }
+        }
+        if push_bytes % 4 != 0 {
+            let problem = format!("its push constants take {push_bytes} bytes, no multiple of 4");
+            return Err(Error::Pass { pass: pass.to_owned(), problem });
         }
         let limit = device.physical().limits.max_push_constants_size;
         if push_bytes > limit {
@@ -144,6 +152,9 @@ fn merge(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<Vec<Slot>, Error> 
             if binding.set != 0 {
                 return Err(problem("lies outside descriptor set 0"));
             }
+            if binding.count != 1 {
+                return Err(problem("is an array of descriptors; this layer binds one each"));
+            }
             let block_bytes = binding.block.as_ref().map(|b| b.size_bytes);
             match slots.iter_mut().find(|s| s.binding == binding.binding) {
                 None => slots.push(Slot {
@@ -152,8 +163,10 @@ fn merge(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<Vec<Slot>, Error> 
                     kind: binding.kind,
                     stages: module.stage(),
                     block_bytes,
+                    image: binding.image,
                 }),
-                Some(slot) if slot.name == binding.name && slot.kind == binding.kind => {
+                Some(slot) if (&slot.name, slot.kind, slot.image) == (&binding.name, binding.kind, binding.image) => {
+                    slot.block_bytes = slot.block_bytes.max(block_bytes);
                     slot.stages = slot.stages | module.stage();
                 }
                 Some(slot) => {
@@ -165,6 +178,66 @@ fn merge(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<Vec<Slot>, Error> 
     }
     slots.sort_by_key(|s| s.binding);
     Ok(slots)
+}
+
+/// Descriptors within the device's limits, and written by no stage that may not write.
+fn check_slots(device: &Device, pass: &str, slots: &[Slot]) -> Result<(), Error> {
+    let limits = &device.physical().limits;
+    for stage in [Stages::VERTEX, Stages::GEOMETRY, Stages::FRAGMENT, Stages::COMPUTE] {
+        let of_stage = || slots.iter().filter(|slot| slot.stages.contains(stage));
+        let count = |of_kind: fn(&BindingKind) -> bool| of_stage().filter(|slot| of_kind(&slot.kind)).count() as u32;
+        let checks = [
+            ("all", of_stage().count() as u32, limits.max_per_stage_resources),
+            (
+                "uniform buffers",
+                count(|k| matches!(k, BindingKind::UniformBuffer)),
+                limits.max_per_stage_descriptor_uniform_buffers,
+            ),
+            (
+                "storage buffers",
+                count(|k| matches!(k, BindingKind::StorageBuffer { .. })),
+                limits.max_per_stage_descriptor_storage_buffers,
+            ),
+            (
+                "sampled images",
+                count(|k| matches!(k, BindingKind::SampledImage | BindingKind::CombinedImageSampler)),
+                limits.max_per_stage_descriptor_sampled_images,
+            ),
+            (
+                "storage images",
+                count(|k| matches!(k, BindingKind::StorageImage { .. })),
+                limits.max_per_stage_descriptor_storage_images,
+            ),
+            (
+                "samplers",
+                count(|k| matches!(k, BindingKind::Sampler | BindingKind::CombinedImageSampler)),
+                limits.max_per_stage_descriptor_samplers,
+            ),
+        ];
+        if let Some((kind, wanted, limit)) = checks.into_iter().find(|&(_, wanted, limit)| wanted > limit) {
+            return Err(Error::Limit {
+                object: format!("pass {pass} ({kind})"),
+                what: "count of descriptors of one stage",
+                wanted: wanted.into(),
+                limit: limit.into(),
+            });
+        }
+        let may_write = match stage {
+            Stages::COMPUTE => true,
+            Stages::FRAGMENT => device.physical().has(Feature::FragmentStores),
+            _ => false,
+        };
+        let writes = |slot: &&Slot| {
+            let kind = slot.kind;
+            matches!(kind, BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { .. })
+        };
+        if let (false, Some(slot)) = (may_write, of_stage().find(writes)) {
+            let problem =
+                format!("its stage {stage:?} declares {} without readonly, which the device does not take", slot.name);
+            return Err(Error::Pass { pass: pass.to_owned(), problem });
+        }
+    }
+    Ok(())
 }
 
 impl Drop for Program {

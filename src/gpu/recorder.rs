@@ -195,7 +195,7 @@ impl Recorder {
     pub(super) fn bind(&self, inner: &Inner) {
         let point = match inner.body {
             Body::Graphics { .. } => vk::PipelineBindPoint::GRAPHICS,
-            Body::Compute | Body::Copy { .. } => vk::PipelineBindPoint::COMPUTE,
+            Body::Compute { .. } | Body::Copy { .. } => vk::PipelineBindPoint::COMPUTE,
         };
         let Some(pipeline) = &inner.pipeline else { return };
         let raw = &self.commands.device.raw;
@@ -217,7 +217,7 @@ impl Recorder {
             pass,
             samples: take(&mut self.samples_passed, is_graphics),
             graphics: take(&mut self.graphics_counts, is_graphics),
-            compute: take(&mut self.compute_counts, matches!(inner.body, Body::Compute)),
+            compute: take(&mut self.compute_counts, matches!(inner.body, Body::Compute { .. })),
         };
         self.each_counter(&counted, |raw, commands, pool, query| {
             let flags = if pool.1 { vk::QueryControlFlags::PRECISE } else { vk::QueryControlFlags::empty() };

@@ -8,7 +8,7 @@ use ash::vk;
 use super::access::Access;
 use super::device::Device;
 use super::error::{Context, Error};
-use super::image::{ImageView, aspect_of};
+use super::image::ImageView;
 use super::live::Kind;
 
 /// Contents of an attachment when a pass begins.
@@ -135,6 +135,11 @@ impl DepthTest {
         }
     }
 
+    /// True where the stencil is tested.
+    pub(crate) fn has_stencil(self) -> bool {
+        matches!(self, DepthTest::CountVolume | DepthTest::InsideVolume)
+    }
+
     pub(crate) fn access(self) -> Access {
         match self {
             DepthTest::LessWrite | DepthTest::CountVolume | DepthTest::InsideVolume => Access::DepthTarget,
@@ -180,7 +185,7 @@ impl Targets {
     }
 
     /// One extent for all, and nothing cleared that is not written.
-    fn check(&self, pass: &str) -> Result<(), Error> {
+    pub(super) fn check(&self, pass: &str) -> Result<(), Error> {
         let problem = |problem: String| Err(Error::Pass { pass: pass.to_owned(), problem });
         if let Some((target, test)) = &self.depth
             && matches!(target.load, Load::Clear(_))
@@ -202,6 +207,11 @@ impl Targets {
                 first.height()
             )),
         }
+    }
+
+    /// Formats of the attachments, colours first.
+    pub(crate) fn formats(&self) -> impl Iterator<Item = vk::Format> {
+        self.views().map(|target| target.view.image().desc().format)
     }
 
     fn views(&self) -> impl Iterator<Item = &Target> {
@@ -233,7 +243,6 @@ pub struct RenderPass {
 
 impl RenderPass {
     pub(crate) fn new(device: &Arc<Device>, pass: &str, targets: &Targets) -> Result<Arc<Self>, Error> {
-        targets.check(pass)?;
         let attachment = |target: &Target, access: Access| {
             let layout = access.info().layout;
             // Storing is a write even of what was only tested, and no barrier waits for the write of a reader.
@@ -243,7 +252,7 @@ impl RenderPass {
                 Load::Keep => vk::AttachmentLoadOp::LOAD,
                 Load::Discard => vk::AttachmentLoadOp::DONT_CARE,
             };
-            let has_stencil = aspect_of(target.view.image().desc().format).contains(vk::ImageAspectFlags::STENCIL);
+            let has_stencil = target.view.image().aspect().contains(vk::ImageAspectFlags::STENCIL);
             vk::AttachmentDescription::default()
                 .format(target.view.image().desc().format)
                 .samples(vk::SampleCountFlags::TYPE_1)

@@ -10,6 +10,7 @@ use super::access::Stages;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::physical::{Feature, PhysicalDevice};
 use crate::shader_build::{self, EMBEDDED, Interface, Stage};
 
 pub use crate::shader_build::Compiler;
@@ -64,14 +65,39 @@ impl ShaderLibrary {
             (Compiler::Naga, Some(words)) => (words, Compiler::Naga),
             _ => (glslang, Compiler::Glslang),
         };
+        if let Some(capability) = unknown_capability(&words, self.device.physical()) {
+            return Err(problem(format!("it wants SPIR-V capability {capability}, with which no device is opened")));
+        }
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: the words are a SPIR-V module that one of the two compilers wrote; they outlive the call.
+        // SAFETY: the words are a SPIR-V module that one of the two compilers wrote, of capabilities that the device was
+        // opened with; they outlive the call.
         let raw =
             unsafe { self.device.raw.create_shader_module(&info, None) }.context("creating shader module", name)?;
         self.device.live().add(Kind::ShaderModule);
         self.device.name(raw, name);
         Ok(Arc::new(ShaderModule { raw, device: self.device.clone(), name: name.to_owned(), interface, compiler }))
     }
+}
+
+/// The first capability that a device is not opened with. The numbers are those of the SPIR-V specification.
+fn unknown_capability(words: &[u32], physical: &PhysicalDevice) -> Option<u32> {
+    const OP_CAPABILITY: u32 = 17;
+    /// Matrix, Shader, Sampled1D, Image1D, StorageImageExtendedFormats, ImageQuery, DerivativeControl: every device's.
+    const ALWAYS: [u32; 7] = [0, 1, 43, 44, 49, 50, 51];
+    const GEOMETRY: u32 = 2;
+    let mut rest = words.get(5..)?;
+    while let Some(&first) = rest.first() {
+        let capability = (first & 0xffff == OP_CAPABILITY).then(|| rest.get(1)).flatten().copied();
+        match capability {
+            Some(GEOMETRY) if physical.has(Feature::GeometryShader) => {}
+            Some(capability) if !ALWAYS.contains(&capability) => return Some(capability),
+            Some(_) => {}
+            // Capabilities come first.
+            None => return None,
+        }
+        rest = rest.get((first >> 16).max(1) as usize..)?;
+    }
+    None
 }
 
 /// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.

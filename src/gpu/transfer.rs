@@ -6,11 +6,13 @@ use ash::vk;
 
 use super::access::Access;
 use super::bindings::{Resource, Use};
-use super::buffer::{Buffer, BufferDesc, Location};
+use super::buffer::{Buffer, BufferDesc, BufferView, Location};
 use super::commands::Commands;
 use super::device::Device;
 use super::error::Error;
+use super::format::format_info;
 use super::image::{Image, ImageView};
+use super::pass_check;
 
 /// Makes a device buffer that holds `bytes`.
 ///
@@ -29,10 +31,7 @@ pub fn upload(
     // A buffer has at least four bytes, and all of them are copied.
     staging.write(0, &[0; 4])?;
     staging.write(0, bytes)?;
-    let uses = [
-        Use { resource: (&staging).into(), access: Access::CopySource, discard: false },
-        Use { resource: (&buffer).into(), access: Access::CopyDestination, discard: true },
-    ];
+    let uses = copy_uses(&(&staging).into(), &buffer);
     once(device, "upload", &uses, |raw, commands| record_copy(raw, commands, &uses[0].resource, &buffer))?;
     Ok(buffer)
 }
@@ -42,15 +41,10 @@ pub fn upload(
 /// # Errors
 /// [`Error::ReadBeforeWrite`] when nothing has written a source; what Vulkan answers.
 pub fn copy_buffers(device: &Arc<Device>, pairs: &[(&Arc<Buffer>, &Arc<Buffer>)]) -> Result<(), Error> {
-    let uses: Vec<Use> = pairs
-        .iter()
-        .flat_map(|&(from, to)| {
-            [
-                Use { resource: from.into(), access: Access::CopySource, discard: false },
-                Use { resource: to.into(), access: Access::CopyDestination, discard: true },
-            ]
-        })
-        .collect();
+    let uses: Vec<Use> = pairs.iter().flat_map(|&(from, to)| copy_uses(&from.into(), to)).collect();
+    for &(from, to) in pairs {
+        check_copy("copy", &from.into(), to)?;
+    }
     once(device, "copy", &uses, |raw, commands| {
         for (from, to) in pairs {
             record_copy(raw, commands, &Resource::from(*from), to);
@@ -72,8 +66,8 @@ pub fn upload_rows(
     (width, height): (u32, u32),
     mut fill: impl FnMut(u32, &mut [u8]),
 ) -> Result<(), Error> {
-    check_rectangle(view, width, height)?;
-    let row_bytes = u64::from(width) * texel_bytes(view.image())?;
+    check_rectangle("upload", view, (0, width), (0, height))?;
+    let row_bytes = u64::from(width) * texel_bytes(view.image());
     let chunk_rows = ((CHUNK_BYTES / row_bytes).max(1) as u32).min(height);
     let name = format!("{} staging", view.image().name());
     let desc = BufferDesc::new(name, row_bytes * u64::from(chunk_rows)).location(Location::Upload);
@@ -114,8 +108,12 @@ pub fn copy_rectangle(
     (column, row): (u32, u32),
     (width, height): (u32, u32),
 ) -> Result<(), Error> {
-    check_rectangle(from, width, height)?;
-    check_rectangle(to, column.saturating_add(width), row.saturating_add(height))?;
+    check_rectangle("copy", from, (0, width), (0, height))?;
+    check_rectangle("copy", to, (column, width), (row, height))?;
+    if from.image().desc().format != to.image().desc().format {
+        let problem = format!("{} and {} differ in format", from.image().name(), to.image().name());
+        return Err(Error::Pass { pass: "copy".into(), problem });
+    }
     let uses = [
         Use { resource: from.into(), access: Access::CopySource, discard: false },
         Use { resource: to.into(), access: Access::CopyDestination, discard: false },
@@ -133,17 +131,73 @@ pub fn copy_rectangle(
     })
 }
 
-fn check_rectangle(view: &Arc<ImageView>, right: u32, bottom: u32) -> Result<(), Error> {
-    let sides = [("column of a copy", right, view.width()), ("row of a copy", bottom, view.height())];
-    match sides.into_iter().find(|&(_, wanted, limit)| wanted > limit) {
-        None => Ok(()),
-        Some((what, wanted, limit)) => Err(Error::Limit {
-            object: view.image().name().to_owned(),
-            what,
-            wanted: wanted.into(),
-            limit: limit.into(),
-        }),
+/// The rectangle, given as first and count of columns and rows, is no empty one and lies inside a view of one layer.
+fn check_rectangle(pass: &str, view: &Arc<ImageView>, columns: (u32, u32), rows: (u32, u32)) -> Result<(), Error> {
+    let name = view.image().name();
+    if columns.1 == 0 || rows.1 == 0 || view.layer_count() != 1 {
+        let problem = format!("{name}: it copies rectangles that are not empty, of one layer at a time");
+        return Err(Error::Pass { pass: pass.to_owned(), problem });
     }
+    let sides = [("column of a copy", columns, view.width()), ("row of a copy", rows, view.height())];
+    for (what, (first, count), limit) in sides {
+        let wanted = u64::from(first) + u64::from(count);
+        if wanted > limit.into() {
+            return Err(Error::Limit { object: name.to_owned(), what, wanted, limit: limit.into() });
+        }
+    }
+    Ok(())
+}
+
+/// The uses of a copy of all of `from` to the start of `to`.
+pub(crate) fn copy_uses(from: &Resource, to: &Arc<Buffer>) -> [Use; 2] {
+    let written = BufferView { range: 0..copied_bytes(from).clamp(1, to.size_bytes()), ..to.view() };
+    [
+        Use { resource: from.clone(), access: Access::CopySource, discard: false },
+        Use { resource: (&written).into(), access: Access::CopyDestination, discard: true },
+    ]
+}
+
+fn copied_bytes(from: &Resource) -> u64 {
+    match from {
+        Resource::Buffer(view) => view.len_bytes(),
+        Resource::Image(view) => {
+            let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(view.layer_count());
+            texels * texel_bytes(view.image())
+        }
+        Resource::Sampler(_) => 0,
+    }
+}
+
+/// # Errors
+/// [`Error::Pass`] for a source that is larger than `to`, or that has no contents.
+pub(crate) fn check_copy(pass: &str, from: &Resource, to: &Arc<Buffer>) -> Result<(), Error> {
+    let bytes = copied_bytes(from);
+    if bytes > 0 && bytes <= to.size_bytes() {
+        return Ok(());
+    }
+    let problem = format!("copies {bytes} bytes of {} to {}, which has {}", from.name(), to.name(), to.size_bytes());
+    Err(Error::Pass { pass: pass.to_owned(), problem })
+}
+
+/// # Errors
+/// [`Error::Pass`] for a resource that was not made for copies, or one that is written and used twice;
+/// [`Error::Foreign`].
+pub(crate) fn check_uses(device: &Arc<Device>, pass: &str, uses: &[Use]) -> Result<(), Error> {
+    for one in uses {
+        let is_source = one.access == Access::CopySource;
+        let fits = match &one.resource {
+            Resource::Buffer(view) if is_source => view.buffer.usage().contains(vk::BufferUsageFlags::TRANSFER_SRC),
+            Resource::Buffer(view) => view.buffer.usage().contains(vk::BufferUsageFlags::TRANSFER_DST),
+            Resource::Image(view) if is_source => view.image.desc().usage.contains(vk::ImageUsageFlags::TRANSFER_SRC),
+            Resource::Image(view) => view.image.desc().usage.contains(vk::ImageUsageFlags::TRANSFER_DST),
+            Resource::Sampler(_) => false,
+        };
+        if !fits {
+            let problem = format!("{} was not made to be copied so", one.resource.name());
+            return Err(Error::Pass { pass: pass.to_owned(), problem });
+        }
+    }
+    pass_check::uses(device, pass, uses)
 }
 
 fn subresource(view: &ImageView) -> vk::ImageSubresourceLayers {
@@ -168,16 +222,14 @@ pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>
 pub fn read_image(device: &Arc<Device>, view: &Arc<ImageView>) -> Result<Vec<u8>, Error> {
     let layer_count = view.layers.end - view.layers.start;
     let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(layer_count);
-    read(device, view.into(), texels * texel_bytes(view.image())?)
+    read(device, view.into(), texels * texel_bytes(view.image()))
 }
 
 fn read(device: &Arc<Device>, from: Resource, size_bytes: u64) -> Result<Vec<u8>, Error> {
     let desc = BufferDesc::new(format!("{} readback", from.name()), size_bytes).location(Location::Readback);
     let target = Buffer::new(device, desc)?;
-    let uses = [
-        Use { resource: from, access: Access::CopySource, discard: false },
-        Use { resource: (&target).into(), access: Access::CopyDestination, discard: true },
-    ];
+    let uses = copy_uses(&from, &target);
+    check_copy("readback", &from, &target)?;
     once(device, "readback", &uses, |raw, commands| record_copy(raw, commands, &uses[0].resource, &target))?;
     target.read(size_bytes, <[u8]>::to_vec)
 }
@@ -186,9 +238,8 @@ fn read(device: &Arc<Device>, from: Resource, size_bytes: u64) -> Result<Vec<u8>
 pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: &Resource, to: &Buffer) {
     match from {
         Resource::Buffer(view) => {
-            let size = (view.range.end - view.range.start).min(to.size_bytes());
-            let region = vk::BufferCopy::default().src_offset(view.range.start).size(size);
-            // SAFETY: recording; the region lies inside both buffers, which outlive the submission.
+            let region = vk::BufferCopy::default().src_offset(view.range.start).size(view.len_bytes());
+            // SAFETY: recording; the region lies inside both buffers by `check_copy`; the submission keeps both.
             unsafe { raw.cmd_copy_buffer(commands, view.buffer.raw, to.raw, &[region]) };
         }
         Resource::Image(view) => {
@@ -196,8 +247,8 @@ pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: 
                 .image_subresource(subresource(view))
                 .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
             let layout = Access::CopySource.info().layout;
-            // SAFETY: recording; the image is in that layout by its barrier, and whoever made `to` sized it for the
-            // view's texels; both outlive the submission.
+            // SAFETY: recording; the image is in that layout by its barrier, and `to` holds the view's texels by
+            // `check_copy`; the submission keeps both.
             unsafe { raw.cmd_copy_image_to_buffer(commands, view.image.raw, layout, to.raw, &[region]) };
         }
         Resource::Sampler(_) => {}
@@ -212,6 +263,7 @@ fn once(
     uses: &[Use],
     body: impl FnOnce(&ash::Device, vk::CommandBuffer),
 ) -> Result<(), Error> {
+    check_uses(device, what, uses)?;
     let mut commands = Commands::new(device, what)?;
     commands.begin()?;
     commands.synchronise(what, uses)?;
@@ -230,21 +282,7 @@ fn copied_aspect(aspect: vk::ImageAspectFlags) -> vk::ImageAspectFlags {
     if aspect.contains(vk::ImageAspectFlags::DEPTH) { vk::ImageAspectFlags::DEPTH } else { aspect }
 }
 
-/// Bytes of one texel of the formats that targets use.
-fn texel_bytes(image: &Image) -> Result<u64, Error> {
-    match image.desc().format {
-        vk::Format::R16_UINT => Ok(2),
-        vk::Format::R8G8B8A8_UNORM
-        | vk::Format::R8G8B8A8_SRGB
-        | vk::Format::R32_SFLOAT
-        | vk::Format::R32_UINT
-        | vk::Format::D32_SFLOAT
-        | vk::Format::D32_SFLOAT_S8_UINT => Ok(4),
-        vk::Format::R16G16B16A16_SFLOAT => Ok(8),
-        vk::Format::R32G32B32A32_SFLOAT => Ok(16),
-        other => Err(Error::Allocation {
-            object: image.name().to_owned(),
-            reason: format!("reading it back: the size of a texel of {other:?} is not known"),
-        }),
-    }
+/// Bytes of one texel. Every image's format is known.
+fn texel_bytes(image: &Image) -> u64 {
+    format_info(image.desc().format).map_or(0, |info| info.texel_bytes)
 }

@@ -11,6 +11,8 @@ pub struct Interface {
     pub stage: Stage,
     /// Threads of a workgroup along x, y and z; compute shaders only.
     pub local_size: Option<[u32; 3]>,
+    /// Vertices of a primitive that a geometry stage takes: 1 for points, 2 for lines, 3 for triangles.
+    pub primitive_vertices: Option<u32>,
     /// Every resource that the binary declares, by ascending set and binding.
     pub bindings: Vec<Binding>,
     /// Block of push constants, if there is one.
@@ -36,6 +38,19 @@ pub struct Binding {
     pub count: u32,
     /// Contents of a uniform or storage buffer.
     pub block: Option<Block>,
+    /// Shape of a sampled or storage image.
+    pub image: Option<ImageShape>,
+}
+
+/// Shape of an image as a shader declares it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageShape {
+    /// Two-dimensional, with one sample a texel.
+    pub is_plain_2d: bool,
+    /// An array of layers.
+    pub is_array: bool,
+    /// Type of a texel of a sampled image; a storage image has a format.
+    pub scalar: Option<Scalar>,
 }
 
 /// Type of a binding's descriptors.

@@ -74,7 +74,9 @@ pub use embedded::EMBEDDED;
 pub use error::{DirectiveProblem, Error, InterfaceMismatch, ReflectError};
 pub use exceptions::{NAGA_EXCEPTIONS, check_exceptions};
 pub use include::Source;
-pub use interface::{Binding, BindingKind, Block, Format, ImageFormat, Interface, Location, Member, Scalar};
+pub use interface::{
+    Binding, BindingKind, Block, Format, ImageFormat, ImageShape, Interface, Location, Member, Scalar,
+};
 pub use layout::{HostBlock, LayoutMismatch};
 
 /// The stage of a shader, told by the ending of its file.

@@ -3,11 +3,11 @@
 use spirq::ReflectConfig;
 use spirq::constant::ConstantValue;
 use spirq::entry_point::EntryPoint;
-use spirq::spirv::{ExecutionMode, ExecutionModel};
+use spirq::spirv::{Dim, ExecutionMode, ExecutionModel};
 use spirq::ty::{AccessType, DescriptorType, ScalarType, StructType, Type};
 use spirq::var::Variable;
 
-use super::interface::{Binding, BindingKind, Block, Format, Interface, Location, Member, Scalar};
+use super::interface::{Binding, BindingKind, Block, Format, ImageShape, Interface, Location, Member, Scalar};
 use super::{ReflectError, Stage};
 
 /// First word of every binary.
@@ -49,6 +49,7 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
     let mut interface = Interface {
         stage,
         local_size: read_local_size(entry_point),
+        primitive_vertices: read_primitive(entry_point),
         bindings: Vec::new(),
         push_constants: None,
         inputs: Vec::new(),
@@ -93,6 +94,31 @@ fn read_local_size(entry_point: &EntryPoint) -> Option<[u32; 3]> {
     Some([size(0)?, size(1)?, size(2)?])
 }
 
+fn read_primitive(entry_point: &EntryPoint) -> Option<u32> {
+    entry_point.exec_modes.iter().find_map(|mode| match mode.exec_mode {
+        ExecutionMode::InputPoints => Some(1),
+        ExecutionMode::InputLines => Some(2),
+        ExecutionMode::Triangles => Some(3),
+        _ => None,
+    })
+}
+
+fn read_image(ty: &Type) -> Option<ImageShape> {
+    match ty {
+        Type::SampledImage(image) => Some(ImageShape {
+            is_plain_2d: image.dim == Dim::Dim2D && !image.is_multisampled,
+            is_array: image.is_array,
+            scalar: read_scalar(&image.scalar_ty, 1).map(|format| format.scalar),
+        }),
+        Type::StorageImage(image) => Some(ImageShape {
+            is_plain_2d: image.dim == Dim::Dim2D && !image.is_multisampled,
+            is_array: image.is_array,
+            scalar: None,
+        }),
+        _ => None,
+    }
+}
+
 fn read_binding(variable: &Variable) -> Result<Binding, ReflectError> {
     let Variable::Descriptor { name, desc_bind, desc_ty, ty, nbind } = variable else {
         return Err(refuse("a variable that is no descriptor was read as one"));
@@ -113,9 +139,17 @@ fn read_binding(variable: &Variable) -> Result<Binding, ReflectError> {
             )));
         }
     };
-    let block = read_block(ty)?;
+    let (block, image) = (read_block(ty)?, read_image(ty));
     let block_name = block.as_ref().map(|block| block.name.clone());
-    Ok(Binding { set, binding, name: name.clone().or(block_name).unwrap_or_default(), kind, count: *nbind, block })
+    Ok(Binding {
+        set,
+        binding,
+        name: name.clone().or(block_name).unwrap_or_default(),
+        kind,
+        count: *nbind,
+        block,
+        image,
+    })
 }
 
 fn read_location(location: u32, name: &str, ty: &Type) -> Result<Location, ReflectError> {

@@ -1,0 +1,310 @@
+//! The description of a pass, and its building.
+
+use std::any::TypeId;
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Access;
+use super::bindings::{Bindings, Resource, Use};
+use super::buffer::{Buffer, BufferView};
+use super::device::Device;
+use super::error::Error;
+use super::image::ImageView;
+use super::pass::{Body, DrawBounds, Inner, Pass};
+use super::pass_check;
+use super::pass_info::{PassInfo, PassKind};
+use super::physical::Feature;
+use super::pipeline::{Pipeline, Topology, VertexLayout, check_constants};
+use super::program::Program;
+use super::render_pass::{Blend, DepthTest, Framebuffer, Load, RenderPass, Target, Targets};
+use super::shader::{Compiler, ShaderLibrary, ShaderModule};
+use crate::shader_build::HostBlock;
+
+/// Everything that the builder was told; kept so that a pass can be rebound to other resources.
+#[derive(Clone)]
+pub(crate) struct PassDesc {
+    pub name: &'static str,
+    pub section: &'static str,
+    pub kind: PassKind,
+    pub shaders: Vec<String>,
+    pub resources: Vec<(&'static str, Resource)>,
+    /// The host struct of the push constants.
+    pub constants: Option<Constants>,
+    pub targets: Targets,
+    pub vertices: Option<BufferView>,
+    pub vertex_rate: vk::VertexInputRate,
+    pub indices: Option<BufferView>,
+    pub indirect: Option<BufferView>,
+    pub topology: Topology,
+    pub counting: Option<(String, DepthTest)>,
+}
+
+/// A declared type of push constants.
+#[derive(Clone, Copy)]
+pub(crate) struct Constants {
+    pub id: TypeId,
+    pub name: &'static str,
+    check: fn(&str, &[Arc<ShaderModule>]) -> Result<(), Error>,
+}
+
+impl PassDesc {
+    pub fn new(name: &'static str, section: &'static str, kind: PassKind, shaders: Vec<String>) -> Self {
+        PassDesc {
+            name,
+            section,
+            kind,
+            shaders,
+            resources: Vec::new(),
+            constants: None,
+            targets: Targets::default(),
+            vertices: None,
+            vertex_rate: vk::VertexInputRate::VERTEX,
+            indices: None,
+            indirect: None,
+            topology: Topology::default(),
+            counting: None,
+        }
+    }
+
+    pub fn problem(&self, problem: impl Into<String>) -> Error {
+        Error::Pass { pass: self.name.to_owned(), problem: problem.into() }
+    }
+
+    /// The accesses that no descriptor names: fetches and attachments.
+    fn fixed_function_uses(&self) -> Vec<Use> {
+        let fetches = [
+            (&self.vertices, Access::VertexRead),
+            (&self.indices, Access::IndexRead),
+            (&self.indirect, Access::IndirectRead),
+        ];
+        let fetches = fetches
+            .into_iter()
+            .filter_map(|(view, access)| Some(Use { resource: view.as_ref()?.into(), access, discard: false }));
+        let attachment = |target: &Target, access| Use {
+            resource: (&target.view).into(),
+            access,
+            discard: target.load != Load::Keep,
+        };
+        let colors = self.targets.colors.iter().map(|(target, _)| attachment(target, Access::ColorTarget));
+        let depth = self.targets.depth.iter().map(|(target, test)| attachment(target, test.access()));
+        fetches.chain(colors).chain(depth).collect()
+    }
+
+    fn describe(&self, program: &Program, uses: &[Use]) -> PassInfo {
+        let names = |writes: bool| {
+            let of_kind = uses.iter().filter(|u| u.access.info().writes == writes);
+            let mut names: Vec<String> = of_kind.map(|u| u.resource.name().to_owned()).collect();
+            names.dedup();
+            names
+        };
+        PassInfo {
+            name: self.name,
+            section: self.section,
+            kind: self.kind,
+            shaders: self.shaders.iter().chain(self.counting.iter().map(|(shader, _)| shader)).cloned().collect(),
+            reads: names(false),
+            writes: names(true),
+            blend: self.targets.colors.iter().map(|(_, blend)| blend.as_str()).collect(),
+            depth: self.targets.depth.as_ref().map(|(_, test)| test.as_str()),
+            counting: self.counting.as_ref().map(|(_, test)| test.as_str()),
+            compiler: Some(program.compiler()),
+        }
+    }
+}
+
+type LayoutOf = fn(&str, &Program) -> Result<VertexLayout, Error>;
+
+/// The description of a pass; [`PassBuilder::build`] makes it.
+#[derive(Clone)]
+pub struct PassBuilder {
+    desc: PassDesc,
+    vertex_layout: Option<LayoutOf>,
+}
+
+impl PassBuilder {
+    pub(super) fn new(name: &'static str, section: &'static str, kind: PassKind, shaders: Vec<String>) -> Self {
+        PassBuilder { desc: PassDesc::new(name, section, kind, shaders), vertex_layout: None }
+    }
+
+    /// A geometry shader between the vertex and the fragment shader. naga has no such stage, so glslang compiles all
+    /// stages of the pass.
+    pub fn geometry(mut self, geometry: &str) -> Self {
+        self.desc.shaders.insert(1, geometry.to_owned());
+        self
+    }
+
+    /// A resource that the shaders read or write, by the name they give it. Their binaries say how it is accessed.
+    pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
+        self.desc.resources.push((name, resource.into()));
+        self
+    }
+
+    /// The host struct of the push constants; the build of the pass checks it against the shaders.
+    pub fn constants<T: HostBlock + 'static>(mut self) -> Self {
+        self.desc.constants = Some(Constants { id: TypeId::of::<T>(), name: T::NAME, check: check_constants::<T> });
+        self
+    }
+
+    /// The vertex buffer, of `T`s; its fields feed the vertex stage's inputs of the same names.
+    pub fn vertices<T: HostBlock>(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.desc.vertices = Some(buffer.view());
+        self.vertex_layout = Some(VertexLayout::of::<T>);
+        self
+    }
+
+    /// As [`PassBuilder::vertices`], with one `T` for each instance.
+    pub fn instances<T: HostBlock>(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.desc.vertex_rate = vk::VertexInputRate::INSTANCE;
+        self.vertices::<T>(buffer)
+    }
+
+    /// The index buffer, of 32-bit indices.
+    pub fn indices(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.desc.indices = Some(buffer.view());
+        self
+    }
+
+    /// The buffer that [`Draw::indices_indirect`](super::Draw::indices_indirect) takes its parameters from: a
+    /// `VkDrawIndexedIndirectCommand` at its start.
+    pub fn indirect(mut self, buffer: &Arc<Buffer>) -> Self {
+        self.desc.indirect = Some(buffer.view());
+        self
+    }
+
+    /// The kind of primitive that is drawn.
+    pub fn topology(mut self, topology: Topology) -> Self {
+        self.desc.topology = topology;
+        self
+    }
+
+    /// The next colour attachment.
+    pub fn color(mut self, view: &Arc<ImageView>, load: Load, blend: Blend) -> Self {
+        self.desc.targets.colors.push((Target { view: view.clone(), load }, blend));
+        self
+    }
+
+    /// The depth (and stencil) attachment.
+    pub fn depth(mut self, view: &Arc<ImageView>, load: Load, test: DepthTest) -> Self {
+        self.desc.targets.depth = Some((Target { view: view.clone(), load }, test));
+        self
+    }
+
+    /// A second pipeline for draws that alternate with the pass's own inside its render pass: the same vertices, another
+    /// fragment shader and depth state, colours masked. [`Draw::counting`](super::Draw::counting) chooses it.
+    pub fn counting(mut self, fragment: &str, test: DepthTest) -> Self {
+        self.desc.counting = Some((fragment.to_owned(), test));
+        self
+    }
+
+    /// The extent of a pass that has no attachments.
+    pub fn extent(mut self, width: u32, height: u32) -> Self {
+        self.desc.targets.extent = Some((width, height));
+        self
+    }
+
+    /// Makes modules, layouts, pipeline, descriptor set and framebuffer, checking every declared name against the
+    /// shaders and every resource against its use.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] or [`Error::Shader`] for a description that does not fit its shaders or its resources;
+    /// [`Error::Limit`] for what is beyond the device; [`Error::MissingFeature`] for a geometry stage on a device without;
+    /// [`Error::Foreign`] for a resource of another device; any error of Vulkan.
+    pub fn build(self, shaders: &ShaderLibrary) -> Result<Pass, Error> {
+        let device = shaders.device();
+        let PassBuilder { desc, vertex_layout } = self;
+        let name = desc.name;
+        let has_geometry = desc.shaders.iter().any(|s| s.ends_with(".geom"));
+        if has_geometry && !device.physical().has(Feature::GeometryShader) {
+            let missing = Feature::GeometryShader.as_str().to_owned();
+            return Err(Error::MissingFeature { device: device.physical().name.clone(), missing });
+        }
+        let load = |shader: &str| {
+            if has_geometry { shaders.module_by(shader, Compiler::Glslang) } else { shaders.module(shader) }
+        };
+        let modules = desc.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
+        pass_check::stages(device, &desc, &modules)?;
+        let program = Program::new(device, name, modules)?;
+        match desc.constants {
+            Some(constants) => (constants.check)(name, &program.modules)?,
+            None if program.push_bytes > 0 => {
+                return Err(desc.problem("its shaders take push constants and none are declared"));
+            }
+            None => {}
+        }
+        if desc.kind == PassKind::Compute {
+            let pipeline = Pipeline::compute(device, name, &program)?;
+            return finish(device, desc, Pipelines { own: pipeline, counting: None, stride_bytes: 0 }, None);
+        }
+        pass_check::targets(device, &desc, &program.modules)?;
+        let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
+        layout.rate = desc.vertex_rate;
+        layout.check_limits(device, name)?;
+        let render_pass = RenderPass::new(device, name, &desc.targets)?;
+        let targets = &desc.targets;
+        let modules = &program.modules;
+        let topology = desc.topology;
+        let own = Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology)?;
+        let counting = match &desc.counting {
+            None => None,
+            Some((fragment, test)) => {
+                let mut modules = modules.clone();
+                modules.pop();
+                modules.push(load(fragment)?);
+                let targets = targets.for_counting(*test);
+                pass_check::counting(device, &desc, &program, &modules, &targets)?;
+                if let Some(constants) = desc.constants {
+                    (constants.check)(name, &modules)?;
+                }
+                let made =
+                    Pipeline::graphics(device, name, &program, &modules, &render_pass, &targets, &layout, topology)?;
+                Some(made)
+            }
+        };
+        let pipelines = Pipelines { own, counting, stride_bytes: layout.stride_bytes };
+        finish(device, desc, pipelines, Some(render_pass))
+    }
+}
+
+/// The pipelines of a pass that draws or dispatches.
+pub(super) struct Pipelines {
+    pub own: Arc<Pipeline>,
+    pub counting: Option<Arc<Pipeline>>,
+    /// From one element of the vertex buffer to the next; 0 without one.
+    pub stride_bytes: u32,
+}
+
+/// Binds the resources of `desc` to pipelines that were made for it.
+pub(super) fn finish(
+    device: &Arc<Device>,
+    desc: PassDesc,
+    pipelines: Pipelines,
+    render_pass: Option<Arc<RenderPass>>,
+) -> Result<Pass, Error> {
+    let Pipelines { own: pipeline, counting, stride_bytes } = pipelines;
+    let bindings = Bindings::new(device, desc.name, &pipeline.program, &desc.resources)?;
+    let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
+    uses.extend(desc.fixed_function_uses());
+    pass_check::uses(device, desc.name, &uses)?;
+    let body = match render_pass {
+        None => Body::Compute { local_size: pass_check::local_size(device, &desc, &pipeline.program)? },
+        Some(render_pass) => {
+            let extent = pass_check::extent(device, &desc)?;
+            pass_check::fetches(device, &desc, stride_bytes)?;
+            Body::Graphics {
+                framebuffer: Framebuffer::new(device, desc.name, &render_pass, &desc.targets, extent)?,
+                render_pass,
+                extent,
+                clears: desc.targets.clear_values(),
+                vertices: desc.vertices.clone(),
+                indices: desc.indices.clone(),
+                indirect: desc.indirect.clone(),
+                bounds: DrawBounds::new(&desc, stride_bytes),
+            }
+        }
+    };
+    let info = Arc::new(desc.describe(&pipeline.program, &uses));
+    let device = device.clone();
+    let inner = Inner { device, pipeline: Some(pipeline), counting, bindings, uses, body, stride_bytes, desc };
+    Ok(Pass { info, inner: Arc::new(inner) })
+}

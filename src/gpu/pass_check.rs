@@ -1,0 +1,271 @@
+//! The checks of a pass when it is built: stages against each other, attachments against the fragment stage, buffers
+//! and images against their use, everything against the device's limits. Vulkan leaves all of it to the caller.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::access::Stages;
+use super::bindings::{Resource, Use};
+use super::buffer::BufferView;
+use super::device::Device;
+use super::error::Error;
+use super::format::format_info;
+use super::image::ImageView;
+use super::pass_builder::PassDesc;
+use super::pass_info::PassKind;
+use super::physical::Feature;
+use super::pipeline::Topology;
+use super::program::Program;
+use super::render_pass::{Blend, Targets};
+use super::shader::ShaderModule;
+use crate::shader_build::{Location, Scalar};
+
+/// The stages are those of the pass's kind, and each takes what the one before it gives.
+pub(super) fn stages(device: &Device, desc: &PassDesc, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
+    let stages: Vec<Stages> = modules.iter().map(|m| m.stage()).collect();
+    let fits = match desc.kind {
+        PassKind::Compute => stages == [Stages::COMPUTE],
+        _ => {
+            stages == [Stages::VERTEX, Stages::FRAGMENT]
+                || stages == [Stages::VERTEX, Stages::GEOMETRY, Stages::FRAGMENT]
+        }
+    };
+    if !fits {
+        let kind = desc.kind.as_str();
+        return Err(desc.problem(format!("{} are not the stages of a {kind} pass", desc.shaders.join(", "))));
+    }
+    let draws = !desc.targets.colors.is_empty()
+        || desc.targets.depth.is_some()
+        || desc.targets.extent.is_some()
+        || desc.vertices.is_some()
+        || desc.indices.is_some()
+        || desc.indirect.is_some()
+        || desc.counting.is_some();
+    if desc.kind == PassKind::Compute && draws {
+        return Err(desc.problem("a compute pass has neither attachments nor vertices"));
+    }
+    let topology_vertices = match desc.topology {
+        Topology::Points => 1,
+        Topology::Lines => 2,
+        Topology::Triangles | Topology::TriangleStrip => 3,
+    };
+    for module in modules.iter().filter(|m| m.stage() == Stages::GEOMETRY) {
+        if module.interface.primitive_vertices != Some(topology_vertices) {
+            let topology = desc.topology;
+            return Err(desc.problem(format!("shader {} does not take {topology:?}", module.name)));
+        }
+    }
+    linked(device, desc, modules)
+}
+
+/// Every input of a stage is an output of the one before it, of the same type and wide enough.
+fn linked(device: &Device, desc: &PassDesc, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
+    let may_narrow = device.physical().has(Feature::Maintenance4);
+    for pair in modules.windows(2) {
+        for input in &pair[1].interface.inputs {
+            let fed = |at: u32| {
+                pair[0].interface.outputs.iter().any(|output| {
+                    let (given, taken) = (output.format, input.format);
+                    takes(output, at)
+                        && given.scalar == taken.scalar
+                        && (given.components == taken.components || (may_narrow && given.components > taken.components))
+                })
+            };
+            if !(input.location..input.location.saturating_add(input.count)).all(fed) {
+                let (from, to) = (&pair[0].name, &pair[1].name);
+                return Err(desc.problem(format!("shader {to} takes {}, which {from} does not give it", input.name)));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn takes(place: &Location, at: u32) -> bool {
+    place.location <= at && at - place.location < place.count
+}
+
+/// The attachments suit the device, and the fragment stage writes each with values of its type.
+pub(super) fn targets(device: &Arc<Device>, desc: &PassDesc, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
+    attachments(device, desc)?;
+    outputs(desc, modules, &desc.targets)
+}
+
+fn outputs(desc: &PassDesc, modules: &[Arc<ShaderModule>], targets: &Targets) -> Result<(), Error> {
+    let Some(fragment) = modules.last() else { return Ok(()) };
+    for (at, (target, blend)) in (0..).zip(&targets.colors) {
+        if *blend == Blend::Masked {
+            continue;
+        }
+        let output = fragment.interface.outputs.iter().find(|output| takes(output, at));
+        let wanted = scalar_of(&target.view);
+        if output.map(|output| output.format.scalar) != wanted {
+            let (shader, image) = (&fragment.name, target.view.image().name());
+            return Err(desc.problem(format!("shader {shader} writes no value of its type to target {at}, {image}")));
+        }
+    }
+    Ok(())
+}
+
+fn scalar_of(view: &ImageView) -> Option<Scalar> {
+    format_info(view.image().desc().format).map(|info| info.scalar)
+}
+
+/// The attachments may be such, and the device may blend into them.
+pub(super) fn attachments(device: &Arc<Device>, desc: &PassDesc) -> Result<(), Error> {
+    desc.targets.check(desc.name)?;
+    let limit = device.physical().limits.max_color_attachments;
+    check_limit(desc, "count of colour attachments", desc.targets.colors.len() as u64, limit)?;
+    let check = |view: &Arc<ImageView>, usage, aspect| {
+        Resource::from(view).check_device(device, desc.name)?;
+        let image = view.image();
+        let name = image.name();
+        if !image.desc().usage.contains(usage) || !image.aspect().contains(aspect) || view.aspect != image.aspect() {
+            return Err(desc.problem(format!("image {name} was not made to be this attachment: {usage:?}")));
+        }
+        if view.layer_count() != 1 {
+            return Err(desc.problem(format!("draws into all {} layers of {name}; give one", view.layer_count())));
+        }
+        Ok(())
+    };
+    for (target, blend) in &desc.targets.colors {
+        check(&target.view, vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageAspectFlags::COLOR)?;
+        let format = target.view.image().desc().format;
+        let features = device.format_features(format);
+        let is_blended = !matches!(blend, Blend::Replace | Blend::Masked);
+        if is_blended && !features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND) {
+            let name = target.view.image().name();
+            return Err(desc.problem(format!("this device does not blend into {format:?}, which {name} has")));
+        }
+    }
+    if let Some((target, test)) = &desc.targets.depth {
+        let aspect = if test.has_stencil() {
+            vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
+        } else {
+            vk::ImageAspectFlags::DEPTH
+        };
+        check(&target.view, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT, aspect)?;
+    }
+    Ok(())
+}
+
+/// The second fragment stage lives with the layouts and the vertex stage of the first.
+pub(super) fn counting(
+    device: &Arc<Device>,
+    desc: &PassDesc,
+    program: &Program,
+    modules: &[Arc<ShaderModule>],
+    targets: &Targets,
+) -> Result<(), Error> {
+    stages(device, desc, modules)?;
+    let alone = PassDesc { targets: targets.clone(), ..desc.clone() };
+    attachments(device, &alone)?;
+    let Some(fragment) = modules.last() else { return Ok(()) };
+    for binding in &fragment.interface.bindings {
+        let known = |slot: &&super::program::Slot| {
+            slot.binding == binding.binding
+                && slot.kind == binding.kind
+                && slot.name == binding.name
+                && slot.stages.contains(Stages::FRAGMENT)
+        };
+        if binding.set != 0 || !program.slots.iter().any(|slot| known(&slot)) {
+            let (name, shader) = (&binding.name, &fragment.name);
+            return Err(desc.problem(format!("shader {shader} reads {name}, which the pass's own does not")));
+        }
+    }
+    if let Some(block) = &fragment.interface.push_constants
+        && (block.size_bytes > program.push_bytes || !program.push_stages.contains(vk::ShaderStageFlags::FRAGMENT))
+    {
+        return Err(desc.problem(format!("shader {} takes push constants that the pass's own does not", fragment.name)));
+    }
+    Ok(())
+}
+
+/// All is of this device, and nothing that is written is touched a second time in the same pass.
+pub(super) fn uses(device: &Arc<Device>, pass: &str, uses: &[Use]) -> Result<(), Error> {
+    for (i, a) in uses.iter().enumerate() {
+        a.resource.check_device(device, pass)?;
+        for b in &uses[..i] {
+            let (one, other) = (a.access.info(), b.access.info());
+            let conflict = match (&a.resource, &b.resource) {
+                (Resource::Image(x), Resource::Image(y)) => {
+                    Arc::ptr_eq(&x.image, &y.image)
+                        && x.layers.start < y.layers.end
+                        && y.layers.start < x.layers.end
+                        && (one.layout != other.layout || one.writes || other.writes)
+                }
+                (Resource::Buffer(x), Resource::Buffer(y)) => {
+                    Arc::ptr_eq(&x.buffer, &y.buffer)
+                        && x.range.start < y.range.end
+                        && y.range.start < x.range.end
+                        && (one.writes || other.writes)
+                }
+                _ => false,
+            };
+            if conflict {
+                let kind = if matches!(a.resource, Resource::Image(_)) { "image" } else { "buffer" };
+                let problem = format!("uses {kind} {} in two ways at once", a.resource.name());
+                return Err(Error::Pass { pass: pass.to_owned(), problem });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Threads of a workgroup of the compute stage.
+pub(super) fn local_size(device: &Device, desc: &PassDesc, program: &Program) -> Result<[u32; 3], Error> {
+    let size = program.modules.first().and_then(|m| m.interface.local_size);
+    let Some(size) = size else { return Err(desc.problem("its shader does not say how large a workgroup is")) };
+    let limits = &device.physical().limits;
+    for (threads, limit) in size.into_iter().zip(limits.max_compute_work_group_size) {
+        check_limit(desc, "threads of a workgroup along one axis", threads.into(), limit)?;
+    }
+    let threads = size.into_iter().map(u64::from).product();
+    check_limit(desc, "threads of a workgroup", threads, limits.max_compute_work_group_invocations)?;
+    if size.contains(&0) { Err(desc.problem("its workgroup has no threads")) } else { Ok(size) }
+}
+
+/// The extent that the pass draws over.
+pub(super) fn extent(device: &Device, desc: &PassDesc) -> Result<vk::Extent2D, Error> {
+    let extent = desc.targets.extent().ok_or_else(|| desc.problem("it has neither attachments nor an extent"))?;
+    let limits = &device.physical().limits;
+    check_limit(desc, "width in pixels", extent.width.into(), limits.max_framebuffer_width)?;
+    check_limit(desc, "height in pixels", extent.height.into(), limits.max_framebuffer_height)?;
+    if extent.width == 0 || extent.height == 0 { Err(desc.problem("its extent is empty")) } else { Ok(extent) }
+}
+
+/// The buffers that draws fetch from were made for it.
+pub(super) fn fetches(device: &Device, desc: &PassDesc, stride_bytes: u32) -> Result<(), Error> {
+    let made_for = |view: &Option<BufferView>, usage, kind: &str| match view {
+        Some(view) if !view.buffer.usage().contains(usage) => {
+            Err(desc.problem(format!("{} is no {kind} buffer", view.buffer.name())))
+        }
+        _ => Ok(()),
+    };
+    made_for(&desc.vertices, vk::BufferUsageFlags::VERTEX_BUFFER, "vertex")?;
+    made_for(&desc.indices, vk::BufferUsageFlags::INDEX_BUFFER, "index")?;
+    if let (Some(vertices), Some(_), true) = (&desc.vertices, &desc.indices, stride_bytes > 0) {
+        // Indices beyond the vertices fetch nothing; those within them must be values that the device takes.
+        let last = (vertices.len_bytes() / u64::from(stride_bytes)).saturating_sub(1);
+        check_limit(desc, "index of a vertex", last, device.physical().largest_index())?;
+    }
+    if let Some(parameters) = &desc.indirect {
+        let wanted = size_of::<vk::DrawIndexedIndirectCommand>() as u64;
+        let is_indirect = parameters.buffer.usage().contains(vk::BufferUsageFlags::INDIRECT_BUFFER);
+        if parameters.len_bytes() < wanted || !is_indirect {
+            let name = parameters.buffer.name();
+            return Err(desc.problem(format!("{name} is no indirect buffer of {wanted} bytes")));
+        }
+        if desc.indices.is_none() {
+            return Err(desc.problem("draws indices by an indirect buffer, and no index buffer is bound"));
+        }
+    }
+    Ok(())
+}
+
+fn check_limit(desc: &PassDesc, what: &'static str, wanted: u64, limit: u32) -> Result<(), Error> {
+    if wanted <= u64::from(limit) {
+        return Ok(());
+    }
+    Err(Error::Limit { object: format!("pass {}", desc.name), what, wanted, limit: limit.into() })
+}
