@@ -145,16 +145,16 @@ impl<'a> Draw<'a> {
 
     /// Draws what the pass's [indirect](super::pass::PassBuilder::indirect) buffer says.
     pub fn indices_indirect(&mut self) -> &mut Self {
-        let Body::Graphics { indirect: Some(view), .. } = &self.commands.inner.body else {
+        let Body::Graphics { indirect: Some(clamp), .. } = &self.commands.inner.body else {
             self.commands.refuse("it has no indirect buffer");
             return self;
         };
         if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
             let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
             let Commands { device, raw, .. } = self.commands;
-            // SAFETY: as for `draw`; the build of the pass checked that the buffer holds one command and may be used so,
-            // and its barrier made the command visible.
-            unsafe { device.raw.cmd_draw_indexed_indirect(raw, view.buffer.raw, view.range.start, 1, stride) };
+            // SAFETY: as for `draw`; the buffer holds one command, which the kernel before the pass has kept inside what
+            // is bound and which the pass's barrier made visible.
+            unsafe { device.raw.cmd_draw_indexed_indirect(raw, clamp.clamped.raw, 0, 1, stride) };
         }
         self
     }

@@ -235,9 +235,17 @@ impl Frame<'_> {
         let mode = self.mode;
         let r = &mut *self.recorder;
         r.commands.keep(pass);
-        r.open_label(pass.info().name);
+        r.open_label(name);
         let device = r.commands.device.clone();
         let commands = r.commands.buffer;
+        if let Body::Graphics { indirect: Some(clamp), .. } = &pass.inner.body {
+            let kernel = &clamp.pass.inner;
+            r.commands.synchronise(name, &kernel.uses)?;
+            r.bind(kernel);
+            let mut dispatch = Dispatch::new(&device, commands, kernel, [1; 3]);
+            clamp.dispatch(&mut dispatch);
+            dispatch.finish()?;
+        }
         r.commands.synchronise(pass.info().name, &pass.inner.uses)?;
         r.bind(&pass.inner);
         let queries = (mode == Mode::Counted).then(|| r.begin_counters(&pass.inner, at));

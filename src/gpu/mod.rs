@@ -20,6 +20,7 @@ pub mod error;
 mod format;
 pub mod frame;
 pub mod image;
+mod indirect;
 pub mod instance;
 pub mod live;
 pub mod messages;

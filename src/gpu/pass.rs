@@ -8,6 +8,7 @@ use ash::vk;
 use super::bindings::{Bindings, Resource, Use};
 use super::buffer::{Buffer, BufferView};
 use super::device::Device;
+use super::indirect::ClampDraw;
 use super::pass_builder::PassDesc;
 use super::pass_info::{PassInfo, PassKind};
 use super::pipeline::Pipeline;
@@ -47,7 +48,7 @@ pub(crate) enum Body {
         clears: Vec<vk::ClearValue>,
         vertices: Option<BufferView>,
         indices: Option<BufferView>,
-        indirect: Option<BufferView>,
+        indirect: Option<ClampDraw>,
         bounds: DrawBounds,
     },
     Compute {

@@ -8,9 +8,9 @@ use ash::vk;
 use super::access::Access;
 use super::bindings::{Bindings, Resource, Use};
 use super::buffer::{Buffer, BufferView};
-use super::device::Device;
 use super::error::Error;
 use super::image::ImageView;
+use super::indirect::ClampDraw;
 use super::pass::{Body, DrawBounds, Inner, Pass};
 use super::pass_check;
 use super::pass_info::{PassInfo, PassKind};
@@ -73,11 +73,7 @@ impl PassDesc {
 
     /// The accesses that no descriptor names: fetches and attachments.
     fn fixed_function_uses(&self) -> Vec<Use> {
-        let fetches = [
-            (&self.vertices, Access::VertexRead),
-            (&self.indices, Access::IndexRead),
-            (&self.indirect, Access::IndirectRead),
-        ];
+        let fetches = [(&self.vertices, Access::VertexRead), (&self.indices, Access::IndexRead)];
         let fetches = fetches
             .into_iter()
             .filter_map(|(view, access)| Some(Use { resource: view.as_ref()?.into(), access, discard: false }));
@@ -166,7 +162,8 @@ impl PassBuilder {
     }
 
     /// The buffer that [`Draw::indices_indirect`](super::Draw::indices_indirect) takes its parameters from: a
-    /// `VkDrawIndexedIndirectCommand` at its start.
+    /// `VkDrawIndexedIndirectCommand` at its start, in a storage buffer. A kernel of the pass's own keeps it inside the
+    /// index buffer first.
     pub fn indirect(mut self, buffer: &Arc<Buffer>) -> Self {
         self.desc.indirect = Some(buffer.view());
         self
@@ -234,7 +231,7 @@ impl PassBuilder {
         }
         if desc.kind == PassKind::Compute {
             let pipeline = Pipeline::compute(device, name, &program)?;
-            return finish(device, desc, Pipelines { own: pipeline, counting: None, stride_bytes: 0 }, None);
+            return finish(shaders, desc, Pipelines { own: pipeline, counting: None, stride_bytes: 0 }, None);
         }
         pass_check::targets(device, &desc, &program.modules)?;
         let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
@@ -262,7 +259,7 @@ impl PassBuilder {
             }
         };
         let pipelines = Pipelines { own, counting, stride_bytes: layout.stride_bytes };
-        finish(device, desc, pipelines, Some(render_pass))
+        finish(shaders, desc, pipelines, Some(render_pass))
     }
 }
 
@@ -276,13 +273,14 @@ pub(super) struct Pipelines {
 
 /// Binds the resources of `desc` to pipelines that were made for it.
 pub(super) fn finish(
-    device: &Arc<Device>,
+    shaders: &ShaderLibrary,
     desc: PassDesc,
     pipelines: Pipelines,
     render_pass: Option<Arc<RenderPass>>,
 ) -> Result<Pass, Error> {
     let Pipelines { own: pipeline, counting, stride_bytes } = pipelines;
-    let bindings = Bindings::new(device, desc.name, &pipeline.program, &desc.resources)?;
+    let bindings = Bindings::new(shaders.device(), desc.name, &pipeline.program, &desc.resources)?;
+    let device = shaders.device();
     let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
     uses.extend(desc.fixed_function_uses());
     pass_check::uses(device, desc.name, &uses)?;
@@ -291,6 +289,12 @@ pub(super) fn finish(
         Some(render_pass) => {
             let extent = pass_check::extent(device, &desc)?;
             pass_check::fetches(device, &desc, stride_bytes)?;
+            let bounds = DrawBounds::new(&desc, stride_bytes);
+            let indirect = ClampDraw::new(shaders, &desc, bounds)?;
+            if let Some(clamp) = &indirect {
+                let resource = (&clamp.clamped).into();
+                uses.push(Use { resource, access: Access::IndirectRead, discard: false });
+            }
             Body::Graphics {
                 framebuffer: Framebuffer::new(device, desc.name, &render_pass, &desc.targets, extent)?,
                 render_pass,
@@ -298,8 +302,8 @@ pub(super) fn finish(
                 clears: desc.targets.clear_values(),
                 vertices: desc.vertices.clone(),
                 indices: desc.indices.clone(),
-                indirect: desc.indirect.clone(),
-                bounds: DrawBounds::new(&desc, stride_bytes),
+                indirect,
+                bounds,
             }
         }
     };

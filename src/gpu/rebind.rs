@@ -101,6 +101,6 @@ impl RebindBuilder {
             return Err(desc.problem("a copy has no descriptors to rebind"));
         };
         let pipelines = Pipelines { own, counting: old.counting.clone(), stride_bytes: old.stride_bytes };
-        finish(device, desc, pipelines, render_pass)
+        finish(shaders, desc, pipelines, render_pass)
     }
 }

@@ -34,6 +34,8 @@ pub struct Recorder {
     /// The pass, as an index into `sample.passes`, of each timestamped interval and of each counter.
     pub(super) intervals: Vec<usize>,
     pub(super) counted: Vec<Counted>,
+    /// Passes with calls beyond the queries: not measured, rather than in part.
+    overrun: Vec<usize>,
     pub(super) labels: Vec<(&'static str, CString)>,
     pub(super) sample: FrameSample,
 }
@@ -66,6 +68,7 @@ impl Recorder {
             period_ns: f64::from(physical.limits.timestamp_period),
             intervals: Vec::new(),
             counted: Vec::new(),
+            overrun: Vec::new(),
             labels: Vec::new(),
             sample: FrameSample::default(),
         })
@@ -84,12 +87,16 @@ impl Recorder {
         self.sample.passes.clear();
         self.sample.spans.clear();
         self.sample.bracket_ms = None;
+        self.overrun.clear();
         let started = Instant::now();
         let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None };
         frame.begin()?;
         record(&mut frame)?;
         frame.finish()?;
         drop(frame);
+        for &pass in &self.overrun {
+            (self.sample.passes[pass].gpu_ms, self.sample.passes[pass].counts) = (None, None);
+        }
         Ok(&self.sample)
     }
 
@@ -122,9 +129,13 @@ impl Recorder {
 
     /// `full, timestamp, full` after a pass.
     pub(super) fn timestamp(&mut self, pass: usize) {
-        if let Some(query) = self.timestamps.as_mut().and_then(QueryPool::take) {
-            self.write_timestamp(query);
-            self.intervals.push(pass);
+        let Some(pool) = &mut self.timestamps else { return };
+        match pool.take() {
+            Some(query) => {
+                self.write_timestamp(query);
+                self.intervals.push(pass);
+            }
+            None => self.overrun.push(pass),
         }
     }
 
@@ -211,8 +222,14 @@ impl Recorder {
 
     pub(super) fn begin_counters(&mut self, inner: &Inner, pass: usize) -> Counted {
         let is_graphics = matches!(inner.body, Body::Graphics { .. });
-        let take =
-            |pool: &mut Option<QueryPool>, wanted: bool| pool.as_mut().filter(|_| wanted).and_then(QueryPool::take);
+        let overrun = &mut self.overrun;
+        let mut take = |pool: &mut Option<QueryPool>, wanted: bool| {
+            let query = pool.as_mut().filter(|_| wanted)?.take();
+            if query.is_none() {
+                overrun.push(pass);
+            }
+            query
+        };
         let counted = Counted {
             pass,
             samples: take(&mut self.samples_passed, is_graphics),

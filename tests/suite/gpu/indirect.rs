@@ -27,7 +27,7 @@ fn quads(device: &Arc<Device>) -> (Arc<Buffer>, Arc<Buffer>) {
 }
 
 fn arguments(device: &Arc<Device>, name: &str, index_count: u32) -> Arc<Buffer> {
-    let usage = vk::BufferUsageFlags::INDIRECT_BUFFER;
+    let usage = vk::BufferUsageFlags::INDIRECT_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
     upload(device, name, usage, bytemuck::cast_slice(&[index_count, 1, 0, 0, 0])).unwrap()
 }
 

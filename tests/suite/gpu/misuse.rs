@@ -15,7 +15,9 @@ use fumarole::gpu::{
 };
 
 use crate::common::gpu_test;
-use crate::fixtures::{Advance, BLACK, Range, Vertex, color_target, paint, paint_pass, run, shaders, storage_buffer, texels, values};
+use crate::fixtures::{
+    Advance, BLACK, Range, Vertex, color_target, paint, paint_pass, run, shaders, storage_buffer, texels, values,
+};
 
 /// The message of a refusal, which is one line.
 fn message<T>(outcome: Result<T, Error>) -> String {
@@ -434,7 +436,8 @@ fn stages_fit_each_other_and_their_pass() {
         let target = color_target(device, "target", vk::Format::R8G8B8A8_UNORM, 4, 4);
         let onto = |pass: PassBuilder| message(pass.color(&target, BLACK, Blend::Replace).build(&library));
         let unfed = Pass::graphics("unfed", "", "common/fullscreen.vert", "test/asymmetric.frag");
-        let expected = "pass unfed: shader test/asymmetric.frag takes colour, which common/fullscreen.vert does not give it";
+        let expected =
+            "pass unfed: shader test/asymmetric.frag takes colour, which common/fullscreen.vert does not give it";
         assert_eq!(onto(unfed), expected);
         let swapped = Pass::graphics("swapped", "", "test/asymmetric.frag", "test/asymmetric.vert");
         assert!(onto(swapped).ends_with("are not the stages of a graphics pass"));
