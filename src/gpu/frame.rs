@@ -31,6 +31,8 @@ pub struct Frame<'a> {
 impl Frame<'_> {
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let r = &mut *self.recorder;
+        // First: the queries of an earlier submission are in use until it is known to have finished.
+        r.commands.begin()?;
         r.intervals.clear();
         r.counted.clear();
         for pool in [&mut r.timestamps, &mut r.samples_passed, &mut r.graphics_counts, &mut r.compute_counts]
@@ -39,7 +41,6 @@ impl Frame<'_> {
         {
             pool.reset();
         }
-        r.commands.begin()?;
         if matches!(self.mode, Mode::Timestamped | Mode::Bracketed)
             && let Some(query) = r.timestamps.as_mut().and_then(QueryPool::take)
         {

@@ -1,13 +1,48 @@
 //! The explicit Vulkan layer. It knows no paper.
 //!
-//! - **Who validates**: the description of a pass is checked against the shaders when a [`Pass`] is built (names, kinds,
-//!   block layouts); with validation on, the Khronos layer checks the rest, synchronization included, and any message
-//!   is a failure ([`Instance::check_messages`]).
 //! - **Who synchronises**: [`Frame`] alone. Each pass declares its reads and writes; barriers are derived from them
 //!   ([`access`]) and recorded by the one envelope. Passes run in the order they are written.
 //! - **Who keeps what alive**: every object is an `Arc` with `Drop` and holds its parents; a frame holds its passes
-//!   until its fence, and one frame is in flight.
-//! - **What can fail**: [`Error`], one line each.
+//!   until its fence, and each recorder has one frame in flight.
+//! - **What can fail**: [`Error`], one line each. An error of a pass ends its frame, which is not submitted.
+//!
+//! # What a caller cannot get wrong
+//!
+//! No safe call of this layer breaks a rule of Vulkan. What the types do not rule out is checked before it is recorded;
+//! for a draw that is a few comparisons of integers. Every line is tried under validation: in `tests/suite/gpu` by
+//! `misuse.rs` and `misuse_passes.rs`, what a build refuses also by `pass_desc.rs`, reads of nothing by `refusals.rs`;
+//! failed waits in `src/gpu/tests.rs`.
+//!
+//! | a caller cannot | because | checked by |
+//! | --- | --- | --- |
+//! | draw vertices, instances or indices that are not bound | each draw is compared with the bound buffers' lengths | [`Draw`] |
+//! | fetch or store beyond a buffer in a shader, or by an index | every device is opened with `robustBufferAccess` | [`Device::open`] |
+//! | draw indirectly beyond the index buffer | a kernel before the pass clamps the parameters, which the host never sees | `indirect` |
+//! | use larger indices, more workgroups or larger ones than the device takes | each is compared with the device's limits | `pass_check`, [`Dispatch`] |
+//! | give constants of another type than declared, none, or some to a pass without | types are compared by `TypeId`, a draw wants them set | [`Draw`], [`Dispatch`] |
+//! | give a host struct another layout than its block's | fields are compared with the reflected binary | [`pass::PassBuilder::build`] |
+//! | leave a descriptor unwritten, or write one of another kind, shape, format, alignment or size | each is compared with the reflected binding, the resource's usage and the limits | `bindings` |
+//! | join stages that do not fit, or attachments that no stage writes | inputs, outputs and formats are compared | `pass_check` |
+//! | want what a device was not opened with: stages, stores, capabilities, blending, formats | the features are asked for each | `pass_check`, `program`, `shader`, [`Image::new`] |
+//! | touch what a pass writes a second time in that pass | uses are compared with each other | `pass_check` |
+//! | read what nothing has written | each layer and byte range knows if it was | `barrier` |
+//! | copy more than fits, between formats, or onto itself | sizes, formats and ranges are compared | [`transfer`] |
+//! | leave an image's tracked layout wrong by an error, a panic or a failed submission | states are committed when the submission has finished | `tracked` |
+//! | go on with a frame after an error in it | the frame refuses, and is not submitted | [`Frame`] |
+//! | use a resource of an unfinished frame in another, on this thread or another | one submission holds it; the second is refused with [`Error::InUse`] | `tracked` |
+//! | read or write mapped memory that the device uses, or read what was not made visible | the same hold, with readers of its own | [`Buffer::read`], [`Buffer::write`] |
+//! | submit from two threads at once | the queue has a lock; command pools belong to one recorder each | [`Device`] |
+//! | free what the device may still read after a failed wait | it is kept until the device is idle or lost, and otherwise leaked on purpose | `commands` |
+//! | mix objects of two devices, or of two instances | each knows its own | [`Error::Foreign`] |
+//! | bind to a pass attachments of other formats | formats are compared with the first pass's | [`pass::RebindBuilder::build`] |
+//! | end a name early by a zero in it | zeros are left out | [`Device`] |
+//!
+//! Two recorders on two threads record at the same time as long as they share no resource; whoever wants to share one
+//! waits for the other's `run` to return.
+//!
+//! Not checked here: the inside of a shader, its loops, shared memory and stride of varyings. Shaders are built in, and
+//! a test makes every pipeline under validation; run with `--validate` what `--shader-dir` replaces. A texel fetch
+//! beyond an image gives undefined values, as Vulkan defines it.
 
 pub mod access;
 mod barrier;

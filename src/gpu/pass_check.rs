@@ -114,6 +114,7 @@ fn scalar_of(view: &ImageView) -> Option<Scalar> {
 /// The attachments may be such, and the device may blend into them.
 pub(super) fn attachments(device: &Arc<Device>, desc: &PassDesc) -> Result<(), Error> {
     desc.targets.check(desc.name)?;
+    let _ = extent(device, desc)?;
     let limit = device.physical().limits.max_color_attachments;
     check_limit(desc, "count of colour attachments", desc.targets.colors.len() as u64, limit)?;
     let check = |view: &Arc<ImageView>, usage, aspect| {

@@ -8,6 +8,7 @@ mod fixtures;
 mod indirect;
 mod memory_model;
 mod misuse;
+mod misuse_passes;
 mod pass_desc;
 mod pictures;
 mod refusals;
