@@ -1,5 +1,5 @@
 //! `terrain`: the paper's own benchmark binary.
 
 fn main() -> std::process::ExitCode {
-    fumarole::cli::terrain()
+    fumarole::cli::binary::<fumarole::papers::terrain::setup::Setup>()
 }

@@ -11,7 +11,6 @@ use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, benched};
 use super::spelling;
-use super::terrain::TerrainArgs;
 use super::watch::{interrupted, watched};
 use crate::measure::bench::{Bench, load};
 use crate::measure::limits;
@@ -70,7 +69,6 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let mut measured = Measured::default();
     measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
-    measure::<TerrainArgs>(&mut machine, &output, &mut measured)?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)
 }

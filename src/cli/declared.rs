@@ -52,10 +52,12 @@ fn bench_command<S: Declared>() -> Command {
 fn experiment_command<S: Declared>() -> Command {
     let names = S::experiments().into_iter().map(|e| PossibleValue::new(e.name).help(e.help));
     let name = Arg::new("name").value_name("NAME").help("Table or figure of the paper").required_unless_present("list");
+    let heeded: Vec<&str> = S::experiments().iter().flat_map(|e| e.options).copied().collect();
+    let own: Vec<_> = S::options().into_iter().filter(|o| heeded.contains(&o.name)).collect();
     let command = Command::new("experiment")
         .arg(name.value_parser(PossibleValuesParser::new(names)))
         .arg(Arg::new("list").long("list").action(ArgAction::SetTrue).help("List the experiments"))
-        .args(options(&S::options(), &S::Options::default()));
+        .args(options(&own, &S::Options::default()));
     let command = CommonArgs::augment_args(with_scene::<S>(command));
     finish(command, "Reproduce one table or figure, ours beside the paper's")
 }

@@ -16,7 +16,6 @@ mod passes;
 mod processes;
 mod render;
 mod spelling;
-mod terrain;
 mod watch;
 
 use std::convert::Infallible;
@@ -29,7 +28,6 @@ use self::failure::Failure;
 use self::lava::LavaArgs;
 pub use self::page::options_table;
 use self::paper::PaperCommand;
-use self::terrain::TerrainArgs;
 use crate::measure::study::{Declared, Visitor};
 use crate::papers;
 
@@ -51,8 +49,6 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Lava: particles to density to isosurface to splats (Unnthorsson)
     Lava(PaperCommand<LavaArgs>),
-    /// The volcano paper's terrain, ray-cast from a shape texture (Vyatkin)
-    Terrain(PaperCommand<TerrainArgs>),
 }
 
 /// The command with every paper below it, and what runs each.
@@ -89,7 +85,6 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Lava(arguments)) => arguments.run(),
-        Some(Command::Terrain(arguments)) => arguments.run(),
     })
 }
 
@@ -109,11 +104,6 @@ pub fn paper_from<S: Declared>(arguments: impl IntoIterator<Item = OsString>) ->
     spelling::learn(&command);
     let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());
     code(declared::run::<S>(&matches))
-}
-
-/// Runs the paper's own binary `terrain`.
-pub fn terrain() -> ExitCode {
-    end(paper::binary::<TerrainArgs>())
 }
 
 fn end(result: Result<(), Failure>) -> ExitCode {

@@ -300,6 +300,9 @@ impl<S: Declared> Context<'_, S> {
 }
 
 /// A document as JSON text.
-fn json_text(document: &impl serde::Serialize) -> Result<String, Error> {
+///
+/// # Errors
+/// [`Error::Input`] where it has none.
+pub fn json_text(document: &impl serde::Serialize) -> Result<String, Error> {
     writer::to_string(document).map_err(|e| Error::Input(format!("writing JSON: {e}")))
 }

@@ -4,7 +4,6 @@
 mod layout;
 
 pub mod lava;
-pub mod terrain;
 
 use crate::measure::study::Visitor;
 
@@ -28,4 +27,5 @@ papers! {
     gas
     caustics
     burning
+    terrain
 }

@@ -1,7 +1,7 @@
 //! "Detection of spatial collisions" (section 1): segments and spheres against the terrain, through the same altitude map as
 //! the rays.
 //!
-//! A segment is a ray that ends, followed to the surface of the data: exact to a thousandth of a cell, as `--lod exact` is. A
+//! A segment is a ray that ends, followed to the surface of the data: exact to a thousandth of a cell, as `lod` exact is. A
 //! sphere is measured in double precision: exact to a millionth of a cell. Both hold on every base and interpolation.
 
 use glam::{DVec3, Vec3};

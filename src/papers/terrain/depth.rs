@@ -14,6 +14,7 @@ use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::DeviceScene;
 use super::stage::Stage;
+use crate::measure::parameter::Choice;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLibrary};
 
 /// The pass on the device: section 4's second application.
@@ -35,7 +36,7 @@ impl Depth {
         scene: &DeviceScene,
     ) -> Result<Self, Error> {
         let Parameters { base, interpolation, lod, .. } = parameters;
-        let program = format!("depth-{}-{}-{}", base.kind(), interpolation.as_str(), lod.as_str());
+        let program = format!("depth-{}-{}-{}", base.kind(), interpolation.name(), lod.name());
         let ping_pong = (0..scene.maps.len().min(2))
             .map(|_| stage.image(shaders, format!("{label}/depth"), vk::Format::R32G32B32A32_SFLOAT, parameters))
             .collect::<Result<Vec<_>, _>>()?;

@@ -20,7 +20,7 @@ impl Drape {
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 4]>) -> Result<Self, ParameterError> {
         let is_whole = width > 0 && height > 0 && texels.len() as u64 == u64::from(width) * u64::from(height);
         let value = format!("{width}x{height}");
-        ParameterError::check(is_whole, "--drape", value, "its texels do not fill a picture of that size")?;
+        ParameterError::check(is_whole, "drape", value, "its texels do not fill a picture of that size")?;
         Ok(Drape { width, height, texels })
     }
 

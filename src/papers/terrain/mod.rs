@@ -338,7 +338,7 @@ impl Paper for Terrain {
         let of = self.scene.maps.len();
         let warning = |(number, map): (usize, &Arc<HeightMap>)| {
             let voids = map.voids_filled();
-            format!("--map {number} of {of}: voids are filled from their neighbours: {voids}")
+            format!("`map` {number} of {of}: voids are filled from their neighbours: {voids}")
         };
         maps.map(warning).collect()
     }

@@ -17,6 +17,7 @@ use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::DeviceScene;
 use super::stage::Stage;
+use crate::measure::parameter::Choice;
 use crate::gpu::{Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLibrary};
 
 /// The pass on the device.
@@ -39,7 +40,7 @@ impl Normal {
         depth: &Arc<ImageView>,
     ) -> Result<Self, Error> {
         let target = stage.image(shaders, format!("{label}/normal"), vk::Format::R32G32B32A32_SFLOAT, parameters)?;
-        let program = format!("normal-{}", parameters.interpolation.as_str());
+        let program = format!("normal-{}", parameters.interpolation.name());
         let mut passes = Vec::new();
         for (i, map) in scene.maps.iter().enumerate() {
             let load = if i == 0 { Load::Discard } else { Load::Keep };

@@ -1,12 +1,18 @@
 //! The numbers of a configuration.
 
+use std::f32::consts::FRAC_PI_4;
 use std::f64::consts::PI;
+use std::ffi::OsStr;
 
 use glam::{DVec3, Vec3};
+use serde_json::{Value as Json, json};
 
 use super::placement::{Extent, Placement};
-use crate::measure;
-use crate::measure::{ParameterError, components};
+use crate::field;
+use crate::measure::parameter::{
+    self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one, parse_finite, parse_numbers,
+};
+use crate::measure::{self, ParameterError, components, config};
 use crate::scene::Camera;
 
 /// The applications of section 4, and what a user would do without them.
@@ -44,15 +50,12 @@ pub enum Lod {
     Pixel,
 }
 
-impl Lod {
-    pub const ALL: [Lod; 2] = [Lod::Exact, Lod::Pixel];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Lod::Exact => "exact",
-            Lod::Pixel => "pixel",
-        }
-    }
+impl Choice for Lod {
+    const ALL: &'static [Self] = &[Lod::Exact, Lod::Pixel];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("exact", "To the interpolated surface of the data"),
+        ("pixel", "To the footprint of a pixel, with heights from the level of that size"),
+    ];
 }
 
 /// The surface between the samples.
@@ -64,15 +67,9 @@ pub enum Interpolation {
     Bicubic,
 }
 
-impl Interpolation {
-    pub const ALL: [Interpolation; 2] = [Interpolation::Bilinear, Interpolation::Bicubic];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Interpolation::Bilinear => "bilinear",
-            Interpolation::Bicubic => "bicubic",
-        }
-    }
+impl Choice for Interpolation {
+    const ALL: &'static [Self] = &[Interpolation::Bilinear, Interpolation::Bicubic];
+    const NAMES: &'static [(&'static str, &'static str)] = &[("bilinear", "Eq. 7"), ("bicubic", "Catmull-Rom")];
 }
 
 /// The base surface P that heights are added to along its normal (eq. 5, 6).
@@ -100,6 +97,39 @@ impl Base {
         match self {
             Base::Plane => "plane",
             Base::Ellipsoid { .. } | Base::Cylinder { .. } => "curved",
+        }
+    }
+}
+
+impl Value for Base {
+    const SHAPE: Shape = Shape::single("BASE");
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        let text = one(texts)?;
+        match text.split_once(':') {
+            None if text == "plane" => Ok(Base::Plane),
+            None if text == "earth" => Ok(Base::EARTH),
+            Some(("ellipsoid", axes)) => {
+                parse_numbers(axes).map(|[equatorial_m, polar_m]| Base::Ellipsoid { equatorial_m, polar_m })
+            }
+            Some(("cylinder", radius)) => parse_finite(radius).map(|radius_m| Base::Cylinder { radius_m }),
+            _ => Err("give plane, earth, ellipsoid:EQUATORIAL,POLAR or cylinder:RADIUS".to_owned()),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Base::Plane => "plane".to_owned(),
+            Base::Ellipsoid { equatorial_m, polar_m } => format!("ellipsoid:{equatorial_m},{polar_m}"),
+            Base::Cylinder { radius_m } => format!("cylinder:{radius_m}"),
+        }
+    }
+
+    fn json(&self) -> Json {
+        match self {
+            Base::Plane => json!("plane"),
+            Base::Ellipsoid { equatorial_m, polar_m } => json!({"ellipsoid": [equatorial_m, polar_m]}),
+            Base::Cylinder { radius_m } => json!({"cylinder": radius_m}),
         }
     }
 }
@@ -133,7 +163,37 @@ pub enum View {
     Camera(Camera),
 }
 
-/// Every number of a configuration. [`Parameters::validate`] checks the ranges given here.
+impl Value for View {
+    const SHAPE: Shape = Shape { placeholder: "side|top|EYE,TARGET", ..EyeAndTarget::SHAPE };
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        let camera = |EyeAndTarget { eye, target }| {
+            View::Camera(Camera { eye, target, up: Vec3::Y, vertical_fov_rad: FRAC_PI_4, near_m: 1.0, far_m: 1.0e6 })
+        };
+        match one(texts)? {
+            "side" => Ok(View::Side),
+            "top" => Ok(View::Top),
+            _ => EyeAndTarget::parse(texts).map(camera).map_err(|e| format!("side, top, or eye and target: {e}")),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            View::Side => "side".to_owned(),
+            View::Top => "top".to_owned(),
+            View::Camera(camera) => [camera.eye, camera.target].map(components).join(","),
+        }
+    }
+
+    fn json(&self) -> Json {
+        match self {
+            View::Side | View::Top => json!(self.text()),
+            View::Camera(camera) => config::camera(camera),
+        }
+    }
+}
+
+/// Every number of a configuration, in the ranges of [`Parameters::declared`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     pub lod: Lod,
@@ -151,6 +211,19 @@ pub struct Parameters {
     pub width: u32,
     pub height: u32,
 }
+
+/// Azimuth and elevation, degrees.
+const SUN: Field<Parameters, [f32; 2]> = Field {
+    get: |p| [p.sun.azimuth_rad.to_degrees(), p.sun.elevation_rad.to_degrees()],
+    set: |p, [azimuth, elevation]| {
+        p.sun = Sun { azimuth_rad: azimuth.to_radians(), elevation_rad: elevation.to_radians() };
+    },
+};
+
+const SIZE: Field<Parameters, Size> = Field {
+    get: |p| Size { width: p.width, height: p.height },
+    set: |p, size| (p.width, p.height) = (size.width, size.height),
+};
 
 impl Default for Parameters {
     fn default() -> Self {
@@ -170,44 +243,91 @@ impl Default for Parameters {
 }
 
 impl Parameters {
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Parameters>> {
+        vec![
+            Parameter::new("interpolation", field!(Parameters.interpolation))
+                .help("The surface between the samples")
+                .section("3")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("base", field!(Parameters.base))
+                .help(
+                    "Base surface that heights are added to: plane, earth (WGS84), ellipsoid:EQUATORIAL,POLAR or \
+                     cylinder:RADIUS, semi-axes and radius in metres, 1 to 100000000; the cylinder's axis runs north and \
+                     south",
+                )
+                .section("eq. 5, 6")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("base-level", field!(Parameters.base_level_m))
+                .range(Range::from(-1e6).to(1e6))
+                .unit("metres")
+                .help("Height at which the base surface lies")
+                .default_text("the maps' minimum")
+                .cost(Cost::Buffers),
+            Parameter::new("shadows", field!(Parameters.shadows))
+                .help("Shadows of the terrain, by rays towards the sun")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("lod", field!(Parameters.lod))
+                .help("End of a ray's subdivision")
+                .section("3")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("sun", SUN)
+                .placeholder("AZIMUTH,ELEVATION")
+                .help("Place of the sun: degrees clockwise from north, degrees above the horizon")
+                .default_text("300,35"),
+            Parameter::new("haze", field!(Parameters.haze_per_km))
+                .range(Range::from(0.0).to(1000.0))
+                .unit("per kilometre")
+                .help("Extinction by haze"),
+            Parameter::new("camera", field!(Parameters.view))
+                .help("Camera: side, top, or eye and target x,y,z,x,y,z in metres: east, up from the base, south")
+                .everyday(),
+            Parameter::new("size", SIZE)
+                .range(Range::from(1.0))
+                .unit("pixel")
+                .help("Size of the picture")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+        ]
+    }
+
     /// Checks every range.
     ///
     /// # Errors
     /// The first parameter outside its range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        if let Some(level) = self.base_level_m {
-            ParameterError::check(level.abs() <= 1.0e6, "--base-level", level, "must be -1000000 to 1000000 metres")?;
-        }
+        parameter::check(&Self::declared(), self)?;
         match self.base {
             Base::Plane => {}
             Base::Cylinder { radius_m } => {
                 let range = "its radius must be 1 to 100000000 metres";
-                ParameterError::check((1.0..=1.0e8).contains(&radius_m), "--base", radius_m, range)?;
+                ParameterError::check((1.0..=1.0e8).contains(&radius_m), "base", radius_m, range)?;
             }
             Base::Ellipsoid { equatorial_m, polar_m } => {
                 let is_good = [equatorial_m, polar_m].iter().all(|axis| (1.0..=1.0e8).contains(axis))
                     && (0.25..=4.0).contains(&(polar_m / equatorial_m));
                 let range = "its semi-axes must be 1 to 100000000 metres and within a factor of 4 of each other";
-                ParameterError::check(is_good, "--base", format!("{equatorial_m},{polar_m}"), range)?;
+                ParameterError::check(is_good, "base", format!("{equatorial_m},{polar_m}"), range)?;
             }
         }
-        let Sun { azimuth_rad, elevation_rad } = self.sun;
-        let (azimuth, elevation) = (azimuth_rad.to_degrees(), elevation_rad.to_degrees());
+        let [azimuth, elevation] = (SUN.get)(self);
         let sun = format!("{azimuth},{elevation}");
-        ParameterError::check(azimuth.abs() <= 360.01, "--sun", &sun, "its azimuth must be -360 to 360 degrees")?;
+        ParameterError::check(azimuth.abs() <= 360.01, "sun", &sun, "its azimuth must be -360 to 360 degrees")?;
         ParameterError::check(
             (0.0..=90.01).contains(&elevation),
-            "--sun",
+            "sun",
             &sun,
             "its elevation must be 0 to 90 degrees",
         )?;
-        let haze = self.haze_per_km;
-        ParameterError::check((0.0..=1000.0).contains(&haze), "--haze", haze, "must be 0 to 1000 per kilometre")?;
-        ParameterError::check_size(self.width, self.height)?;
         let View::Camera(camera) = self.view else { return Ok(()) };
         let place = [camera.eye, camera.target].map(components).join(",");
         let is_near = camera.eye.abs().max_element() <= 1.0e8;
-        ParameterError::check(is_near, "--camera", place, "must lie within 100000 km")?;
+        ParameterError::check(is_near, "camera", place, "must lie within 100000 km")?;
         ParameterError::check_camera(&camera)
     }
 
@@ -219,9 +339,9 @@ impl Parameters {
         let Placement { center_m, turn_rad } = *placement;
         let place = format!("{},{},{}", center_m.x, center_m.y, turn_rad.to_degrees());
         let is_near = center_m.is_finite() && center_m.abs().max_element() <= 1.0e8 && turn_rad.is_finite();
-        ParameterError::check(is_near, "--place", &place, "must lie within 100000 km and be finite")?;
+        ParameterError::check(is_near, "place", &place, "must lie within 100000 km and be finite")?;
         let is_turnable = self.base == Base::Plane || turn_rad == 0.0;
-        ParameterError::check(is_turnable, "--place", &place, "only maps on a plane can be turned; give 0 degrees")
+        ParameterError::check(is_turnable, "place", &place, "only maps on a plane can be turned; give 0 degrees")
     }
 
     /// The number of pixels of the picture.

@@ -1,22 +1,27 @@
-//! The experiments of the `terrain` paper: what a user set up, what a run says of itself, the table and the figures.
+//! A user's configuration of the `terrain` paper: its declaration, its scene, its measured runs.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec2;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value as Json, json};
 
+use super::experiments::{self, Options, figures};
+use crate::field;
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::image::read_png;
-use crate::measure::Error;
 use crate::measure::bench::Built;
-use crate::measure::config::{self, entries};
+use crate::measure::config::entries;
+use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
+use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
-use crate::measure::study::{Identity, Metrics, Study};
-use crate::measure::{Paper, ParameterError};
-use crate::papers::terrain::{Base, Drape, Inputs, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View};
+use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use crate::measure::{Error, Paper, ParameterError};
+use crate::papers::terrain::{
+    Drape, Inputs, Interpolation, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View,
+};
 use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
 
 /// A user's configuration.
@@ -24,7 +29,9 @@ use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
 pub struct Setup {
     pub parameters: Parameters,
     /// At least one.
-    pub maps: Vec<PlacedMap>,
+    pub maps: Vec<HeightMapSource>,
+    /// Of each map: metres east and south of the origin, degrees counterclockwise; 0 where there are none.
+    pub places: Vec<[f32; 3]>,
     /// Polygon objects in the maps' frame, metres: x east, y up from the base, z south.
     pub objects: Vec<MeshSource>,
     /// PNG over the first map, in place of the colour ramp.
@@ -32,7 +39,7 @@ pub struct Setup {
     /// Samples a side of the synthetic volcano.
     pub resolution: u32,
     /// Metres between samples, in place of what a map says of itself.
-    pub spacing_m: Option<f64>,
+    pub spacing_m: Option<f32>,
     /// Factor of the heights.
     pub exaggeration: f32,
     /// Of the synthetic volcano.
@@ -40,19 +47,13 @@ pub struct Setup {
     pub preset: Option<String>,
 }
 
-/// A map and where it lies.
-#[derive(Debug, Clone)]
-pub struct PlacedMap {
-    pub source: HeightMapSource,
-    pub placement: Placement,
-}
-
 impl Default for Setup {
     /// The synthetic volcano at 1024 x 1024 samples.
     fn default() -> Self {
         Setup {
             parameters: Parameters::default(),
-            maps: vec![PlacedMap { source: HeightMapSource::Volcano, placement: Placement::default() }],
+            maps: vec![HeightMapSource::Volcano],
+            places: Vec::new(),
             objects: Vec::new(),
             drape: None,
             resolution: HeightMapSource::VOLCANO_SIDE,
@@ -72,33 +73,35 @@ pub struct Scene {
 }
 
 impl Setup {
-    /// Checks what needs no map.
+    /// Checks everything that needs no map.
     ///
     /// # Errors
     /// [`Error::Parameter`].
     pub fn check(&self) -> Result<(), Error> {
+        parameter::check(&Self::parameters(), self)?;
         self.parameters.validate()?;
         let count = self.maps.len();
-        ParameterError::check(count <= Inputs::MAPS, "--map", count, "are too many; at most 16 are united")?;
-        let check = |good, name, value: f64, range| ParameterError::check(good, name, value, range);
-        let sides = HeightMap::SIDE;
-        let range = format!("must be {} to {} samples a side", sides.start(), sides.end());
-        check(sides.contains(&self.resolution), "--resolution", self.resolution.into(), &range)?;
-        let spacing_m = self.spacing_m.unwrap_or(1.0);
-        check((1e-6..=1e6).contains(&spacing_m), "--spacing", spacing_m, "must be 0.000001 to 1000000 metres")?;
-        let exaggeration = self.exaggeration.into();
-        check((1e-3..=1e3).contains(&exaggeration), "--exaggeration", exaggeration, "must be 0.001 to 1000")?;
+        ParameterError::check(count <= Inputs::MAPS, "map", count, "are too many; at most 16 are united")?;
+        self.placements().try_for_each(|placement| self.parameters.validate_placement(&placement))?;
         Ok(())
+    }
+
+    /// The place of each map.
+    fn placements(&self) -> impl Iterator<Item = Placement> {
+        let place = |[east, south, degrees]: [f32; 3]| Placement {
+            center_m: DVec2::new(east.into(), south.into()),
+            turn_rad: f64::from(degrees).to_radians(),
+        };
+        self.maps.iter().enumerate().map(move |(i, _)| place(self.places.get(i).copied().unwrap_or_default()))
     }
 
     /// Names the map that the device or the variant cannot hold: the paper calls it by its number.
     fn name_map(&self, label: &str, error: gpu::Error) -> gpu::Error {
-        let gpu::Error::Limit { object, .. } = &error else { return error };
-        let is_of = |number: &usize| object.starts_with(&format!("{label}/map-{number}/"));
-        match (0..self.maps.len()).find(is_of) {
-            Some(number) => error.set_by(&format!("--map {}", self.maps[number].source)),
-            None => error,
-        }
+        let gpu::Error::Limit { object, what, wanted, limit } = error else { return error };
+        let maps = self.maps.iter().enumerate();
+        let found = maps.into_iter().find(|(number, _)| object.starts_with(&format!("{label}/map-{number}/")));
+        let object = found.map_or(object.clone(), |(_, source)| format!("{object} (`map` {source})"));
+        gpu::Error::Limit { object, what, wanted, limit }
     }
 
     fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
@@ -107,7 +110,7 @@ impl Setup {
             other => other.load()?,
         };
         if let Some(spacing_m) = self.spacing_m {
-            map = map.with_spacing_m(DVec2::splat(spacing_m))?;
+            map = map.with_spacing_m(DVec2::splat(spacing_m.into()))?;
         }
         if self.exaggeration != 1.0 {
             map = map.with_exaggeration(self.exaggeration)?;
@@ -127,11 +130,8 @@ impl Study for Setup {
     /// Checks the parameters and loads the maps, the objects and the drape.
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
-        for placed in &self.maps {
-            self.parameters.validate_placement(&placed.placement)?;
-        }
-        let input = |placed: &PlacedMap| -> Result<MapInput, Error> {
-            Ok(MapInput { map: Arc::new(self.load_map(&placed.source)?), placement: placed.placement })
+        let input = |(source, placement)| -> Result<MapInput, Error> {
+            Ok(MapInput { map: Arc::new(self.load_map(source)?), placement })
         };
         let drape = self.drape.as_ref().map(|path| -> Result<Drape, Error> {
             let picture = read_png(path)?;
@@ -139,7 +139,7 @@ impl Study for Setup {
             Ok(Drape::new(picture.width(), picture.height(), texels)?)
         });
         Ok(Scene {
-            maps: self.maps.iter().map(input).collect::<Result<_, _>>()?,
+            maps: self.maps.iter().zip(self.placements()).map(input).collect::<Result<_, _>>()?,
             objects: self.objects.iter().map(|source| source.load()).collect::<Result<_, _>>()?,
             drape: drape.transpose()?,
         })
@@ -165,51 +165,24 @@ impl Study for Setup {
         }
     }
 
-    fn config(&self, scene: &Scene, _: &Terrain) -> Map<String, Value> {
-        let p = &self.parameters;
-        let maps: Vec<Value> = self
-            .maps
-            .iter()
-            .zip(&scene.maps)
-            .map(|(placed, input)| {
-                let Placement { center_m, turn_rad } = placed.placement;
-                json!({
-                    "source": placed.source.to_string(), "samples": [input.map.width(), input.map.height()],
-                    "spacing": input.map.spacing_m().to_array(), "voids_filled": input.map.voids_filled(),
-                    "place": [center_m.x, center_m.y, turn_rad.to_degrees()],
-                })
+    fn config(&self, scene: &Scene, _: &Terrain) -> Map<String, Json> {
+        let map = |(source, input): (&HeightMapSource, &MapInput)| {
+            let Placement { center_m, turn_rad } = input.placement;
+            json!({
+                "source": source.to_string(), "samples": [input.map.width(), input.map.height()],
+                "spacing": input.map.spacing_m().to_array(), "voids_filled": input.map.voids_filled(),
+                "place": [center_m.x, center_m.y, turn_rad.to_degrees()],
             })
-            .collect();
+        };
+        let maps: Vec<Json> = self.maps.iter().zip(&scene.maps).map(map).collect();
         let first = scene.maps.first().map(|input| input.map.width().max(input.map.height()));
-        let view = match p.view {
-            View::Side => json!("side"),
-            View::Top => json!("top"),
-            View::Camera(camera) => config::camera(&camera),
-        };
-        let base = match p.base {
-            Base::Plane => json!("plane"),
-            Base::Ellipsoid { equatorial_m, polar_m } => json!({"ellipsoid": [equatorial_m, polar_m]}),
-            Base::Cylinder { radius_m } => json!({"cylinder": radius_m}),
-        };
-        entries([
-            ("resolution", json!(first)),
-            ("maps", json!(maps)),
-            ("exaggeration", json!(self.exaggeration)),
-            ("object", json!(self.objects.iter().map(ToString::to_string).collect::<Vec<_>>())),
-            ("drape", json!(self.drape.as_ref().map(|path| path.display().to_string()))),
-            ("shadows", json!(p.shadows)),
-            ("lod", json!(p.lod.as_str())),
-            ("interpolation", json!(p.interpolation.as_str())),
-            ("base", base),
-            ("base_level", json!(p.base_level_m)),
-            ("camera", view),
-            ("sun", json!([p.sun.azimuth_rad.to_degrees(), p.sun.elevation_rad.to_degrees()])),
-            ("haze", json!(p.haze_per_km)),
-        ])
+        let mut config = parameter::config(&Self::parameters(), self);
+        config.extend(entries([("resolution", json!(first)), ("maps", json!(maps))]));
+        config
     }
 
     fn summary(&self) -> String {
-        let maps: Vec<String> = self.maps.iter().map(|placed| placed.source.to_string()).collect();
+        let maps: Vec<String> = self.maps.iter().map(ToString::to_string).collect();
         format!("{}, {} samples a side", maps.join(" + "), self.resolution)
     }
 
@@ -222,7 +195,7 @@ impl Study for Setup {
         let mut metrics = Vec::new();
         for (built, measurement) in measured {
             let frame_ms = median(&measurement.frame_ms).filter(|&ms| ms > 0.0);
-            let census = super::experiments::figures::census(machine, &mut built.paper)?;
+            let census = figures::census(machine, &mut built.paper)?;
             // A rasterised grid has no steps.
             let steps = (built.variant != Variant::Mesh).then(|| census.steps_per_ray());
             let results = entries([
@@ -233,5 +206,119 @@ impl Study for Setup {
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }
         Ok(metrics)
+    }
+}
+
+impl Declared for Setup {
+    const ABOUT: &'static str = "The volcano paper's terrain, ray-cast from a shape texture (Vyatkin), pass by pass";
+    const BENCHED: &'static [Variant] = <Variant as crate::measure::Variant>::ALL;
+    const RENDERED: Variant = Variant::GpuCompute;
+
+    type Options = Options;
+
+    fn parameters() -> Vec<Parameter<Self>> {
+        let maps = [
+            Parameter::new("map", field!(Setup.maps))
+                .help(
+                    "Height map: volcano, maunga-whau, jacksboro, or a .hgt, .hdr with .bil or .dem, .tif, .png or .asc file; \
+                     the terrains of several are united",
+                )
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("place", field!(Setup.places))
+                .placeholder("EAST,SOUTH,DEGREES")
+                .help("Place of a map's middle: metres east and south of the origin, degrees counterclockwise; once for each map")
+                .default_text("0,0,0")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("resolution", field!(Setup.resolution))
+                .range(Range::from(*HeightMap::SIDE.start() as f64).to(*HeightMap::SIDE.end() as f64))
+                .unit("samples a side")
+                .help("Size of the synthetic volcano")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("spacing", field!(Setup.spacing_m))
+                .range(Range::from(1e-6).to(1e6))
+                .unit("metres")
+                .help("Distance between samples")
+                .default_text("what the map says of itself")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+            Parameter::new("exaggeration", field!(Setup.exaggeration))
+                .range(Range::from(1e-3).to(1e3))
+                .help("Factor of the heights")
+                .cost(Cost::Buffers),
+            Parameter::new("seed", field!(Setup.seed))
+                .help("Seed of the synthetic volcano")
+                .cost(Cost::Buffers)
+                .unrecorded(),
+        ];
+        let scene = [
+            Parameter::new("object", field!(Setup.objects))
+                .help(
+                    "Polygon mesh in the maps' frame, metres (x east, y up from the base, z south): teapot, sphere, box, \
+                     bunny, plane, or an OBJ, PLY, STL, glTF or GLB file",
+                )
+                .section("1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("drape", field!(Setup.drape))
+                .placeholder("FILE.png")
+                .help("Picture over the first map in place of the colour ramp, PNG, north up")
+                .cost(Cost::Buffers),
+        ];
+        let numbers = Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
+        maps.into_iter().map(|p| p.group("Terrain")).chain(scene).chain(numbers).collect()
+    }
+
+    fn options() -> Vec<Parameter<Options>> {
+        experiments::options()
+    }
+
+    fn presets() -> Vec<Preset<Self>> {
+        let preset = |name, help, setup| Preset { name, help, variant: None, setup };
+        vec![
+            preset("figure-1", "Figure 1: 200 x 200 samples from above", || Setup::figure(View::Top)),
+            preset("figure-2", "Figure 2: 200 x 200 samples from the side", || Setup::figure(View::Side)),
+        ]
+    }
+
+    fn experiments() -> Vec<Experiment<Self>> {
+        experiments::all()
+    }
+
+    fn verbs() -> Vec<Experiment<Self>> {
+        experiments::verbs()
+    }
+
+    fn quick() -> Self {
+        Setup::default()
+    }
+
+    fn preset_mut(&mut self) -> &mut Option<String> {
+        &mut self.preset
+    }
+
+    fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        let (places, maps) = (self.places.len(), self.maps.len());
+        if places > maps {
+            return Err(Error::Input(format!("`place`: {places} places for {maps} maps; give one for each")));
+        }
+        if given.has("resolution") && !self.maps.contains(&HeightMapSource::Volcano) {
+            let resolution = self.resolution;
+            let reason = "only the synthetic volcano has any size; name `map` volcano";
+            return Err(Error::Input(format!("`resolution` {resolution}: {reason}")));
+        }
+        Ok(())
+    }
+}
+
+impl Setup {
+    /// The volcano of figures 1 and 2.
+    fn figure(view: View) -> Self {
+        let parameters = Parameters { view, interpolation: Interpolation::Bilinear, ..Parameters::default() };
+        Setup { parameters, resolution: figures::SIDE, ..Setup::default() }
     }
 }

@@ -15,6 +15,7 @@ use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::{DeviceScene, texels};
 use super::stage::Stage;
+use crate::measure::parameter::Choice;
 use crate::gpu::{Device, Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLibrary};
 
 /// A single texel for where the sun reaches everything.
@@ -48,7 +49,7 @@ impl Shadow {
         scene: &DeviceScene,
         depth: &Arc<ImageView>,
     ) -> Result<Self, Error> {
-        let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.as_str());
+        let program = format!("shadow-{}-{}", parameters.base.kind(), parameters.interpolation.name());
         let ping_pong = (0..scene.maps.len().min(2))
             .map(|index| stage.image(shaders, format!("{label}/{name}-{index}"), vk::Format::R32_SFLOAT, parameters))
             .collect::<Result<Vec<_>, _>>()?;

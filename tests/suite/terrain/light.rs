@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Compiler;
+use fumarole::measure::parameter::Choice;
 use fumarole::papers::terrain::reference::{is_lit, lambert};
 use fumarole::papers::terrain::{
     Base, Drape, Inputs, Interpolation, Lod, MapInput, Parameters, Placement, Rays, Sun, Surface, Variant, View,
@@ -29,7 +30,7 @@ const HAIR_CELLS: f64 = 0.05;
 fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
     gpu_test(|device| {
         for (seed, base) in (40..).zip(BASES) {
-            for interpolation in Interpolation::ALL {
+            for &interpolation in Interpolation::ALL {
                 let mut random = Random::new(seed);
                 let map = random_map(&mut random, Relief::Waves, (61, 44), 6.0);
                 let spacing_m = map.spacing_m().max_element();
@@ -164,7 +165,7 @@ fn objects_stand_in_the_terrain_s_shadow() {
         let rays = Rays::new(&camera, width, height);
         let inputs = Inputs { maps: &maps, objects: &objects, ..Inputs::default() };
         for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh] {
-            for lod in Lod::ALL {
+            for &lod in Lod::ALL {
                 let view = View::Camera(camera);
                 let base_level_m = Some(0.0);
                 let of = |shadows| {

@@ -1,11 +1,14 @@
 //! "Detection of spatial collisions" (section 1): what bodies meet in a setup's terrain.
 
+use std::ffi::OsStr;
+
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::{Value as Json, json};
 
 use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::ParameterError;
+use crate::measure::parameter::{Shape, Value, one};
 use crate::measure::study::Study;
 use crate::papers::terrain::{Collider, Inputs, Surface};
 
@@ -26,10 +29,53 @@ pub enum Body {
     },
 }
 
+/// A [`Body::Segment`] as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment(pub Body);
+
+/// A [`Body::Sphere`] as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere(pub Body);
+
+/// Comma-separated numbers in double precision, exactly `N` of them.
+fn parse_exact<const N: usize>(texts: &[&OsStr]) -> Result<[f64; N], String> {
+    let numbers = one(texts)?.split(',').map(|part| f64::parse(&[OsStr::new(part.trim())]));
+    let values = numbers.collect::<Result<Vec<_>, _>>()?;
+    let count = values.len();
+    values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
+}
+
+macro_rules! typed {
+    ($($body:ident, $placeholder:literal, $parse:expr);+) => { $(
+        impl Value for $body {
+            const SHAPE: Shape = Shape { is_signed: true, ..Shape::single($placeholder) };
+
+            fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+                parse_exact(texts).map($parse).map($body)
+            }
+
+            fn text(&self) -> String {
+                self.0.to_string()
+            }
+
+            fn json(&self) -> Json {
+                json!(self.text())
+            }
+        }
+    )+ };
+}
+
+typed!(
+    Segment, "X,Y,Z,X,Y,Z", |[x, y, z, to @ ..]: [f64; 6]| {
+        Body::Segment { from: DVec3::new(x, y, z), to: to.into() }
+    };
+    Sphere, "X,Y,Z,R", |[x, y, z, radius_m]| Body::Sphere { center: DVec3::new(x, y, z), radius_m }
+);
+
 /// A body's first contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Meeting {
-    /// The part of the segment before it, 0 to 1; none for a sphere.
+    /// Of the segment, 0 to 1; none for a sphere.
     pub parameter: Option<f64>,
     /// From the start of the segment, or from the centre of the sphere, metres.
     pub distance_m: f64,
@@ -52,9 +98,9 @@ pub struct Collision {
 impl Body {
     fn check(&self) -> Result<(), Error> {
         let (name, places, is_body, what) = match *self {
-            Body::Segment { from, to } => ("--segment", vec![from, to], from != to, "has no length"),
+            Body::Segment { from, to } => ("segment", vec![from, to], from != to, "has no length"),
             Body::Sphere { center, radius_m } => (
-                "--sphere",
+                "sphere",
                 vec![center],
                 radius_m > 0.0 && radius_m <= FAR_M,
                 "needs a radius of more than 0 to 100000 km",
@@ -116,7 +162,7 @@ pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<Vec<Collision>, Error> 
 }
 
 impl Collision {
-    pub fn json(&self) -> Value {
+    pub fn json(&self) -> Json {
         let meeting = self.meeting.map(|m| {
             json!({
                 "surface": m.surface.as_str(), "map": m.map, "parameter": m.parameter, "distance_m": m.distance_m,

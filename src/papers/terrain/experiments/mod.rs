@@ -3,3 +3,228 @@
 pub mod collisions;
 pub mod figures;
 pub mod table;
+
+use serde_json::json;
+
+use self::collisions::{Collision, Segment, Sphere, collide};
+use self::table::{Axis, Outcome};
+use super::setup::Setup;
+use super::{Variant, View};
+use crate::field;
+use crate::measure::experiment::Experiment;
+use crate::measure::parameter::{Choice, Parameter};
+use crate::measure::study::Study;
+use crate::measure::sweep::Point;
+use crate::measure::{Error, Variant as _, experiment};
+use crate::report::output::{check_writable, write};
+
+type Context<'a> = experiment::Context<'a, Setup>;
+
+/// Options of the experiments and of `collide`.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Samples a side or pixels a row of a sweep.
+    counts: Vec<u32>,
+    /// Variants of a sweep; all where there are none.
+    variants: Vec<Listed>,
+    segments: Vec<Segment>,
+    spheres: Vec<Sphere>,
+}
+
+impl Options {
+    fn counts(&self, default: &[u32]) -> Vec<u32> {
+        if self.counts.is_empty() { default.to_vec() } else { self.counts.clone() }
+    }
+
+    /// Each variant that was named, once, in the paper's order.
+    fn variants(&self) -> Vec<Variant> {
+        let is_all = self.variants.is_empty() || self.variants.contains(&Listed(None));
+        Variant::ALL.iter().copied().filter(|v| is_all || self.variants.contains(&Listed(Some(*v)))).collect()
+    }
+}
+
+/// A variant in a list, or all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Listed(Option<Variant>);
+
+impl Choice for Listed {
+    const ALL: &'static [Self] = &[
+        Listed(Some(Variant::Cpu)),
+        Listed(Some(Variant::GpuCompute)),
+        Listed(Some(Variant::GpuFragment)),
+        Listed(Some(Variant::Mesh)),
+        Listed(None),
+    ];
+    const NAMES: &'static [(&'static str, &'static str)] =
+        &[("cpu", ""), ("gpu-compute", ""), ("gpu-fragment", ""), ("mesh", ""), ("all", "")];
+}
+
+/// The options of the experiments and of `collide`.
+pub fn options() -> Vec<Parameter<Options>> {
+    vec![
+        Parameter::new("counts", field!(Options.counts))
+            .placeholder("N,N,..")
+            .help("Samples a side in table 1, or widths of the screen in pixels, comma-separated")
+            .default_text("128,256,512,1024,2048,4096,8192,16384, or 200,400,800,1200,1600"),
+        Parameter::new("variant", field!(Options.variants))
+            .placeholder("VARIANT,..")
+            .help("Variants of a sweep, comma-separated, or all; a figure shows the first")
+            .default_text("all"),
+        Parameter::new("segment", field!(Options.segments))
+            .help("From a place to another, metres: east, up from the base, south")
+            .everyday(),
+        Parameter::new("sphere", field!(Options.spheres))
+            .help("Centre, metres as in `segment`, and radius, above 0")
+            .everyday(),
+    ]
+}
+
+/// Every experiment, in the paper's order.
+pub fn all() -> Vec<Experiment<Setup>> {
+    let by_map = |name, help, run| Experiment {
+        name,
+        help,
+        options: &["counts", "variant"],
+        refuses: &[
+            ("map", "table 1 takes the synthetic volcano, which has any size"),
+            ("resolution", "table 1 sweeps it; give `counts`"),
+        ],
+        run,
+    };
+    let figure = |name, help, run| Experiment {
+        name,
+        help,
+        options: &["variant"],
+        refuses: &[
+            ("json", "a figure is a picture; `1` has a record"),
+            ("csv", "a figure is a picture; `1` has rows"),
+        ],
+        run,
+    };
+    vec![
+        by_map("1", "Table 1: time by samples a side of the map, all variants", |context| {
+            tabulate(context, Axis::Map, &context.options.variants()).map(drop)
+        }),
+        figure("figure-1", "Figure 1: the volcano from above", |context| draw(context, View::Top)),
+        figure("figure-2", "Figure 2: the volcano from the side", |context| draw(context, View::Side)),
+        Experiment {
+            name: "screen",
+            help: "Section 5's claim: time by the screen's size",
+            options: &["counts", "variant"],
+            refuses: &[("size", "this experiment sweeps it; give `counts`")],
+            run: |context| tabulate(context, Axis::Screen, &context.options.variants()).map(drop),
+        },
+        // Every variant takes the same steps; the paper's second application stands for all.
+        by_map("steps", "Steps of each ray by samples a side of the map; a heat map of each", |context| {
+            let points = tabulate(context, Axis::Map, &[Variant::GpuCompute])?;
+            heat_maps(context, &points)
+        }),
+        Experiment {
+            name: "interpolation",
+            help: "Bilinear and bicubic interpolation at both levels of detail: time, and the pictures",
+            options: &["variant"],
+            refuses: &[],
+            run: |context| tabulate(context, Axis::Interpolation, &context.options.variants()).map(drop),
+        },
+    ]
+}
+
+/// The verb `collide`.
+pub fn verbs() -> Vec<Experiment<Setup>> {
+    const NO_PICTURE: &str = "nothing is drawn";
+    vec![Experiment {
+        name: "collide",
+        help: "The first contacts of segments and spheres with the terrain: section 1's detection of spatial collisions",
+        options: &["segment", "sphere"],
+        refuses: &[
+            ("object", NO_PICTURE),
+            ("drape", NO_PICTURE),
+            ("shadows", NO_PICTURE),
+            ("lod", NO_PICTURE),
+            ("sun", NO_PICTURE),
+            ("haze", NO_PICTURE),
+            ("camera", NO_PICTURE),
+            ("size", NO_PICTURE),
+        ],
+        run: collisions,
+    }]
+}
+
+fn draw(context: &mut Context<'_>, view: View) -> Result<(), Error> {
+    let setup = &mut context.setup;
+    if !context.given.has("resolution") {
+        setup.resolution = figures::SIDE;
+    }
+    if !context.given.has("camera") {
+        setup.parameters.view = view;
+    }
+    // All variants show one surface; of all, the paper's second application stands for them.
+    let variant = match context.options.variants().as_slice() {
+        [only] => *only,
+        _ => Variant::GpuCompute,
+    };
+    setup.load()?;
+    let mut machine = context.open()?;
+    let picture = figures::draw(&mut machine, &context.setup, variant)?;
+    machine.check_validation()?;
+    if !context.given.has("map") {
+        let name = context.name;
+        context.console.say(&format!("{name}: the synthetic volcano stands for Bandai; `map` names another"));
+    }
+    context.picture(".png", &picture)
+}
+
+/// Measures and publishes a sweep along the axis.
+fn tabulate(context: &Context<'_>, axis: Axis, variants: &[Variant]) -> Result<Vec<Point<Setup>>, Error> {
+    let (setup, options) = (&context.setup, &context.options);
+    let points = match axis {
+        Axis::Map => table::by_map(setup, &options.counts(&table::SIDES), variants),
+        Axis::Screen => table::by_screen(setup, &options.counts(&table::WIDTHS), variants),
+        Axis::Interpolation => table::by_interpolation(setup, variants),
+    };
+    // A map that is larger than the others is made when its point comes; the rest is checked before the first.
+    points.iter().try_for_each(|point| point.study.check())?;
+    let mut machine = context.open()?;
+    let swept = context.sweep(&mut machine, &points)?;
+    let outcome = Outcome::new(axis, swept.rows);
+    let (table, plots) = (outcome.render(context.console.style()), [(".svg".to_owned(), outcome.plot()?)]);
+    context.publish_runs(&machine, outcome.into_runs(), table, &plots)?;
+    if axis == Axis::Interpolation {
+        for point in &points {
+            let picture = figures::draw(&mut machine, &point.study, Variant::GpuCompute)?;
+            context.picture(&format!("-{}.png", point.label.replace(' ', "-")), &picture)?;
+        }
+    }
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok(points), Err)
+}
+
+fn heat_maps(context: &Context<'_>, points: &[Point<Setup>]) -> Result<(), Error> {
+    let mut machine = context.open()?;
+    let (most, pictures) = figures::heat_maps(&mut machine, points.iter().map(|point| &point.study))?;
+    for (point, picture) in points.iter().zip(&pictures) {
+        context.picture(&format!("-{}.png", point.label), picture)?;
+    }
+    context.console.say(&format!("heat maps: black is no step, nearly white {most} steps, by logarithm"));
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
+    let Options { segments, spheres, .. } = &context.options;
+    let bodies: Vec<_> = segments.iter().map(|s| s.0).chain(spheres.iter().map(|s| s.0)).collect();
+    if bodies.is_empty() {
+        return Err(Error::Input("collide: there is nothing to collide; give a `segment` or a `sphere`".into()));
+    }
+    let json = context.destinations.json.as_deref();
+    let file = json.filter(|path| path.as_os_str() != "-");
+    file.map_or(Ok(()), check_writable)?;
+    let collisions = collide(&context.setup, &bodies)?;
+    let record = json!({"collisions": collisions.iter().map(Collision::json).collect::<Vec<_>>()});
+    let record = experiment::json_text(&record)?;
+    match file {
+        Some(path) => write(path, record.as_bytes())?,
+        None if json.is_some() => return context.console.print(&record),
+        None => {}
+    }
+    context.console.print(&collisions.iter().map(Collision::text).collect::<String>())
+}

@@ -7,6 +7,7 @@ use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::Variant as _;
 use crate::measure::compare::{Ratio, ratio_within_process};
+use crate::measure::parameter::Choice;
 use crate::measure::sweep::{Point, Row};
 use crate::papers::terrain::{Interpolation, Lod, Variant};
 use crate::report::plot::{LineChart, Scale, Series};
@@ -93,11 +94,11 @@ pub fn by_screen(setup: &Setup, widths: &[u32], variants: &[Variant]) -> Vec<Poi
 /// One map by both interpolations at both levels of detail.
 pub fn by_interpolation(setup: &Setup, variants: &[Variant]) -> Vec<Point<Setup>> {
     let mut points = Vec::new();
-    for lod in Lod::ALL {
-        for interpolation in Interpolation::ALL {
+    for &lod in Lod::ALL {
+        for &interpolation in Interpolation::ALL {
             let mut study = setup.clone();
             (study.parameters.lod, study.parameters.interpolation) = (lod, interpolation);
-            let label = format!("{} {}", interpolation.as_str(), lod.as_str());
+            let label = format!("{} {}", interpolation.name(), lod.name());
             let x = points.len() as f64;
             points.push(Point { label, x, study, variants: variants.to_vec(), left_out: Vec::new() });
         }
