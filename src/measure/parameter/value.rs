@@ -94,7 +94,11 @@ pub fn parse_finite(text: &str) -> Result<f32, String> {
 /// # Errors
 /// For other text.
 pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
-    let values = text.split(',').map(|part| parse_finite(part.trim())).collect::<Result<Vec<_>, _>>()?;
+    <[f32; N]>::parse(&[OsStr::new(text)])
+}
+
+fn parse_array<T: Value, const N: usize>(text: &str) -> Result<[T; N], String> {
+    let values = text.split(',').map(|part| T::parse(&[OsStr::new(part.trim())])).collect::<Result<Vec<_>, _>>()?;
     let count = values.len();
     values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
 }
@@ -166,6 +170,26 @@ macro_rules! real {
                 range.holds(f64::from(*self), |end| f64::from(end as $type))
             }
         }
+
+        impl<const N: usize> Value for [$type; N] {
+            const SHAPE: Shape = Shape { is_several: true, is_signed: true, ..Shape::single("F,F,..") };
+
+            fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+                parse_array(one(texts)?)
+            }
+
+            fn text(&self) -> String {
+                joined(self, ",")
+            }
+
+            fn json(&self) -> Json {
+                json!(self.as_slice())
+            }
+
+            fn lies_in(&self, range: &Range) -> bool {
+                self.iter().all(|value| value.lies_in(range))
+            }
+        }
     )+ };
 }
 
@@ -185,26 +209,6 @@ impl Value for bool {
 
     fn json(&self) -> Json {
         json!(self)
-    }
-}
-
-impl<const N: usize> Value for [f32; N] {
-    const SHAPE: Shape = Shape { is_several: true, is_signed: true, ..Shape::single("F,F,..") };
-
-    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
-        parse_numbers(one(texts)?)
-    }
-
-    fn text(&self) -> String {
-        joined(self, ",")
-    }
-
-    fn json(&self) -> Json {
-        json!(self.as_slice())
-    }
-
-    fn lies_in(&self, range: &Range) -> bool {
-        self.iter().all(|value| value.lies_in(range))
     }
 }
 

@@ -2,13 +2,10 @@
 
 use std::sync::Arc;
 
-use ash::vk;
-
 use super::hit::NO_DEPTH;
-use super::parameters::Parameters;
 use super::scene::DeviceScene;
-use super::stage::{Stage, depth_buffer};
-use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use super::stage::{Build, VECTOR};
+use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass};
 
 /// The pass, and the targets that it shares with the pass `mesh`.
 pub struct BasePass {
@@ -22,25 +19,19 @@ pub struct BasePass {
 impl BasePass {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        scene: &DeviceScene,
-    ) -> Result<Self, Error> {
-        let format = vk::Format::R32G32B32A32_SFLOAT;
-        let target = Stage::Fragment.image(shaders, format!("{label}/depth"), format, parameters)?;
-        let tested = depth_buffer(shaders, format!("{label}/tested"), parameters)?;
+    pub fn new(build: &Build<'_>, scene: &DeviceScene) -> Result<Self, Error> {
+        let target = build.image("depth", VECTOR)?;
+        let tested = build.depth_buffer("tested")?;
         let Some(first) = scene.maps.first() else {
             return Err(Error::Pass { pass: "mesh".into(), problem: "there is no map".into() });
         };
-        let fragment = format!("terrain/mesh-base-{}.frag", parameters.base.kind());
+        let fragment = format!("terrain/mesh-base-{}.frag", build.parameters.base.kind());
         let pass = Pass::graphics("base", "2", "common/fullscreen.vert", &fragment)
             .with("terrain", &first.terrain)
             .with("levels", &first.levels.view)
             .color(&target, Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]), Blend::Replace)
             .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
-            .build(shaders)?;
+            .build(build.shaders)?;
         Ok(BasePass { pass, target, tested })
     }
 

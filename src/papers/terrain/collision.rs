@@ -19,35 +19,24 @@ use super::ray_caster::{Footprint, RayCaster};
 use super::scene::{Inputs, Scene};
 use super::solid::Solid;
 
-/// The first contact of a moving point with the ground.
+/// The first contact of a body with the ground: of a moving point where it meets it, of a sphere the ground's nearest point
+/// to its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The parameter of the segment, 0 to 1; 0 where it begins in the ground.
-    pub t: f64,
-    /// World, metres.
-    pub point: DVec3,
-    /// Of the surface there, a unit vector of the world.
-    pub normal: DVec3,
-    pub surface: Surface,
-    /// Number of the map; the base belongs to the first.
-    pub map: u32,
-    /// Pieces of the segment that were tried until the map's surface was met, up to 4095; 0 where none was.
-    pub steps: u32,
-}
-
-/// The contact of a sphere with the ground: the ground's nearest point to its centre.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// From the centre, metres; 0 where the centre is in the ground.
+    /// The parameter of a segment, 0 to 1; 0 where it begins in the ground; none of a sphere.
+    pub t: Option<f64>,
+    /// From the start of the segment, or from the centre of the sphere, metres; 0 where that is in the ground.
     pub distance_m: f64,
-    /// World, metres; the centre itself where it is in the ground.
+    /// World, metres; of a sphere the centre itself where that is in the ground.
     pub point: DVec3,
-    /// From the point to the centre, a unit vector of the world; away from the base where the centre is in the ground.
+    /// A unit vector of the world: of a segment the surface's, of a sphere from the point to the centre, or away from the base
+    /// where that is in the ground.
     pub normal: DVec3,
     pub surface: Surface,
     /// Number of the map; the base belongs to the first.
     pub map: u32,
-    /// Blocks and pieces of cells that were tried in all maps.
+    /// Pieces of the segment that were tried until the map's surface was met, up to 4095, 0 where none was; blocks and pieces of
+    /// cells that were tried in all maps.
     pub steps: u32,
 }
 
@@ -79,7 +68,8 @@ impl Collider {
         }
         let t = f64::from(hit.depth_m);
         (hit.surface != Surface::Sky).then(|| Contact {
-            t,
+            t: Some(t),
+            distance_m: t * a.distance(b),
             point: a.lerp(b, t),
             normal: normal.as_dvec3(),
             surface: hit.surface,
@@ -89,8 +79,9 @@ impl Collider {
     }
 
     /// The contact of a sphere, world, metres, with the ground; none where the ground is farther from its centre than its radius.
-    pub fn sphere(&self, center: DVec3, radius_m: f64) -> Option<Touch> {
-        let mut touch = Touch {
+    pub fn sphere(&self, center: DVec3, radius_m: f64) -> Option<Contact> {
+        let mut contact = Contact {
+            t: None,
             distance_m: radius_m.next_up(),
             point: center,
             normal: DVec3::Y,
@@ -99,19 +90,19 @@ impl Collider {
             steps: 0,
         };
         for (number, (ground, map)) in (0..).zip(self.scene.grounds.iter().zip(&self.maps)) {
-            touch = nearest(center, ground, map, number, touch);
+            contact = nearest(center, ground, map, number, contact);
         }
-        (touch.surface != Surface::Sky).then_some(touch)
+        (contact.surface != Surface::Sky).then_some(contact)
     }
 }
 
-/// The nearer of `touch` and what one map, or the base below it, has.
-fn nearest(center: DVec3, ground: &Ground, map: &HeightField, number: u32, touch: Touch) -> Touch {
+/// The nearer of `contact` and what one map, or the base below it, has.
+fn nearest(center: DVec3, ground: &Ground, map: &HeightField, number: u32, contact: Contact) -> Contact {
     let solid = Solid::new(ground);
     let framed = solid.framed(center);
     let (place, height_m) = solid.place(framed);
     let foot = solid.point(place, 0.0);
-    let start = Nearest { distance_m: touch.distance_m, point: framed, surface: Surface::Sky, steps: touch.steps };
+    let start = Nearest { distance_m: contact.distance_m, point: framed, surface: Surface::Sky, steps: contact.steps };
     let best = match height_m {
         height_m if height_m <= 0.0 => Nearest { distance_m: 0.0, surface: Surface::Inside, ..start },
         height_m if height_m < start.distance_m => {
@@ -121,14 +112,15 @@ fn nearest(center: DVec3, ground: &Ground, map: &HeightField, number: u32, touch
     };
     let found = map.with(Search { solid, center: framed, best });
     if found.surface == Surface::Sky {
-        return Touch { steps: found.steps, ..touch };
+        return Contact { steps: found.steps, ..contact };
     }
     let point = solid.world(found.point);
     let apart = center - point;
     let [_, _, up] = solid.axes(place, height_m);
     let up = (solid.world(framed + up) - center).normalize();
     let is_apart = found.distance_m > 0.0;
-    Touch {
+    Contact {
+        t: None,
         distance_m: found.distance_m,
         point: if is_apart { point } else { center },
         normal: if is_apart { apart.normalize() } else { up },

@@ -11,10 +11,11 @@ use super::blocks::LightBlock;
 use super::drape::Drape;
 use super::geometric_transformation::SceneView;
 use super::hit::{Hit, Surface};
+use super::host::HostPass;
 use super::parameters::Parameters;
 use super::scene::DeviceScene;
-use super::stage::Stage;
-use crate::gpu::{Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLibrary};
+use super::stage::{Build, PixelPass};
+use crate::gpu::{Error, Frame, ImageView, Load, PassInfo};
 
 /// Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
 const TINTS: [Vec3; 6] = [
@@ -31,59 +32,37 @@ const ZENITH: Vec3 = Vec3::new(0.16, 0.34, 0.68);
 const SUNLIGHT: Vec3 = Vec3::new(2.0, 1.88, 1.7);
 const SKYLIGHT: Vec3 = Vec3::new(0.55, 0.68, 0.9);
 
-/// The pass on the device.
-pub struct Illumination {
-    stage: Stage,
-    pass: Pass,
-    pub picture: Arc<ImageView>,
-}
-
-impl Illumination {
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        stage: Stage,
-        parameters: &Parameters,
-        scene: &DeviceScene,
-        [depth, normal, shadow]: [&Arc<ImageView>; 3],
-    ) -> Result<Self, Error> {
-        let picture = stage.image(shaders, format!("{label}/picture"), vk::Format::R8G8B8A8_UNORM, parameters)?;
-        let resources = [
-            ("light", (&scene.light).into()),
-            ("depth", depth.into()),
-            ("normal", normal.into()),
-            ("shadow", shadow.into()),
-            ("drape", (&scene.drape).into()),
-        ];
-        let pass = stage.pass(("illumination", "4"), "illumination", (&picture, Load::Discard), &resources);
-        Ok(Illumination { stage, pass: pass.build(shaders)?, picture })
-    }
-
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.stage.record(frame, &self.pass, &self.picture)
-    }
+/// The pass on the device. Its target is the picture.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn illumination(
+    build: &Build<'_>,
+    scene: &DeviceScene,
+    [depth, normal, shadow]: [&Arc<ImageView>; 3],
+) -> Result<PixelPass, Error> {
+    let target = build.image("picture", vk::Format::R8G8B8A8_UNORM)?;
+    let resources = [
+        ("light", (&scene.light).into()),
+        ("depth", depth.into()),
+        ("normal", normal.into()),
+        ("shadow", shadow.into()),
+        ("drape", (&scene.drape).into()),
+    ];
+    let pass = build.pass(("illumination", "4"), "illumination", (&target, Load::Discard), &resources)?;
+    Ok(PixelPass { stage: build.stage, passes: vec![pass], target })
 }
 
 /// The pass on the processor.
 pub struct HostIllumination {
-    info: Arc<PassInfo>,
-    width: u32,
+    pass: HostPass<[u8; 4]>,
     drape: Option<Drape>,
-    colors: Vec<[u8; 4]>,
 }
 
 impl HostIllumination {
     pub fn new(parameters: &Parameters, drape: Option<&Drape>) -> Self {
-        HostIllumination {
-            info: PassInfo::host("illumination", "4", &["light", "depth", "normal"], &["picture"]),
-            width: parameters.width,
-            drape: drape.cloned(),
-            colors: vec![[0; 4]; parameters.pixels()],
-        }
+        let info = PassInfo::host("illumination", "4", &["light", "depth", "normal"], &["picture"]);
+        HostIllumination { pass: HostPass::new(info, parameters, [0; 4]), drape: drape.cloned() }
     }
 
     /// The picture, 8-bit sRGB; `sunlit` is empty where no shadows are thrown.
@@ -93,19 +72,19 @@ impl HostIllumination {
         view: &SceneView,
         (hits, normals, sunlit): (&[Hit], &[Vec4], &[f32]),
     ) -> &[[u8; 4]] {
-        let HostIllumination { ref info, width, ref drape, ref mut colors } = *self;
+        let HostIllumination { pass: HostPass { info, width, values }, drape } = self;
+        let width = *width as usize;
         frame.host(info, || {
-            let rows = colors.par_chunks_mut(width as usize).enumerate();
-            rows.for_each(|(y, row)| {
+            values.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
                 for (x, color) in row.iter_mut().enumerate() {
-                    let index = y * width as usize + x;
+                    let index = y * width + x;
                     let sunlit = sunlit.get(index).copied().unwrap_or(1.0);
                     let pixel = (x as u32, y as u32);
                     *color = color_of(&view.light, drape.as_ref(), pixel, &hits[index], normals[index], sunlit);
                 }
             });
         });
-        colors
+        values
     }
 }
 

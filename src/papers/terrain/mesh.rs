@@ -9,8 +9,9 @@ use super::ground::Ground;
 use super::hit::Surface;
 use super::pyramid::Shape;
 use super::scene::DeviceScene;
+use super::stage::Build;
 use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, DepthTest, Error, Frame, Load, Pass};
 use crate::host_block;
 
 /// The most samples a side that are drawn as triangles.
@@ -45,13 +46,8 @@ impl Mesh {
     ///
     /// # Errors
     /// [`Error::Limit`] for a map of more than [`MESH_SIDE`] samples a side, errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        grounds: &[Ground],
-        scene: &DeviceScene,
-        base: &BasePass,
-    ) -> Result<Self, Error> {
+    pub fn new(build: &Build<'_>, grounds: &[Ground], scene: &DeviceScene, base: &BasePass) -> Result<Self, Error> {
+        let Build { shaders, label, .. } = *build;
         let mut grids = Vec::new();
         for (index, (ground, map)) in grounds.iter().zip(&scene.maps).enumerate() {
             let shape = ground.shape;

@@ -18,6 +18,7 @@ mod geometric_transformation;
 mod ground;
 mod height_field;
 mod hit;
+mod host;
 mod illumination;
 mod interpolation;
 #[cfg(test)]
@@ -46,18 +47,18 @@ mod stage;
 use std::sync::Arc;
 
 use self::base::BasePass;
-pub use self::collision::{Collider, Contact, Touch};
-use self::depth::{Depth, HostDepth};
+pub use self::collision::{Collider, Contact};
+use self::depth::{HostDepth, depth};
 pub use self::drape::Drape;
 use self::geometric_transformation::{GeometricTransformation, SceneView};
 pub use self::ground::{Ground, Origin};
 use self::height_field::HeightField;
 pub use self::hit::{Hit, NO_DEPTH, Surface};
-use self::illumination::{HostIllumination, Illumination};
+use self::illumination::{HostIllumination, illumination};
 pub use self::levels::Levels;
 pub use self::mesh::MESH_SIDE;
 use self::mesh::Mesh;
-use self::normal::{HostNormal, Normal};
+use self::normal::{HostNormal, normal};
 use self::object_depth::ObjectDepth;
 use self::object_hits::ObjectHits;
 use self::object_shadow::object_shadow;
@@ -67,9 +68,9 @@ pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
 use self::scene::{DeviceScene, Scene};
 pub use self::scene::{Inputs, MapInput};
-use self::shadow::{HostShadow, Shadow, all_lit};
+use self::shadow::{HostShadow, all_lit, shadow};
 use self::show::Show;
-use self::stage::Stage;
+use self::stage::{Build, PixelPass, Stage};
 use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::HeightMap;
@@ -91,7 +92,7 @@ pub struct Terrain {
 /// The passes that make the picture of the terrain.
 enum Technique {
     Cpu(HostPasses),
-    RayCast(Depth, Shading),
+    RayCast(PixelPass, Shading),
     Mesh(BasePass, Mesh, Shading),
 }
 
@@ -108,9 +109,9 @@ struct HostPasses {
 /// The passes that follow the depth on the device.
 struct Shading {
     depth: Arc<ImageView>,
-    normal: Normal,
-    shadow: Option<Shadow>,
-    illumination: Illumination,
+    normal: PixelPass,
+    shadow: Option<PixelPass>,
+    illumination: PixelPass,
 }
 
 /// Polygon objects in the picture of the terrain.
@@ -118,7 +119,7 @@ struct ObjectPasses {
     meshes: Vec<ObjectMesh>,
     depth: ObjectDepth,
     /// None where the maps throw no shadows.
-    shadow: Option<(ObjectHits, Shadow)>,
+    shadow: Option<(ObjectHits, PixelPass)>,
     objects: Objects,
 }
 
@@ -126,8 +127,8 @@ impl Terrain {
     /// Makes every resource and pass, and the maps' pyramids; `label` goes before the names of the resources.
     ///
     /// # Errors
-    /// [`Error::Limit`] for too many maps and for a map that the device or the variant cannot hold, errors of the Vulkan layer
-    /// answers. The caller has validated `parameters`, and there is a map.
+    /// [`Error::Limit`] for too many maps and for a map that the device or the variant cannot hold, errors of the Vulkan layer.
+    /// The caller has validated `parameters`, and there is a map.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -143,26 +144,27 @@ impl Terrain {
                 limit: Inputs::MAPS as u64,
             });
         }
+        let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
+        let build = Build { shaders, label, parameters, stage };
         let scene = Scene::new(parameters, inputs);
         let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene.maps, drape);
         let (device_scene, technique) = match variant {
             Variant::Cpu => {
-                let host = HostPasses::new(shaders, label, parameters, &scene, inputs)?;
+                let host = HostPasses::new(&build, &scene, inputs.drape)?;
                 let shades_objects = parameters.shadows && !inputs.objects.is_empty();
                 (shades_objects.then(|| on_device(None)).transpose()?, Technique::Cpu(host))
             }
             Variant::GpuCompute | Variant::GpuFragment => {
-                let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
                 let maps = on_device(inputs.drape)?;
-                let depth = Depth::new(shaders, label, stage, parameters, &maps)?;
-                let shading = Shading::new(shaders, label, stage, parameters, &maps, &depth.target)?;
+                let depth = depth(&build, &maps)?;
+                let shading = Shading::new(&build, &maps, &depth.target)?;
                 (Some(maps), Technique::RayCast(depth, shading))
             }
             Variant::Mesh => {
                 let maps = on_device(inputs.drape)?;
-                let base = BasePass::new(shaders, label, parameters, &maps)?;
-                let mesh = Mesh::new(shaders, label, &scene.grounds, &maps, &base)?;
-                let shading = Shading::new(shaders, label, Stage::Fragment, parameters, &maps, &base.target)?;
+                let base = BasePass::new(&build, &maps)?;
+                let mesh = Mesh::new(&build, &scene.grounds, &maps, &base)?;
+                let shading = Shading::new(&build, &maps, &base.target)?;
                 (Some(maps), Technique::Mesh(base, mesh, shading))
             }
         };
@@ -176,9 +178,9 @@ impl Terrain {
         };
         if !inputs.objects.is_empty() {
             let maps = terrain.device_scene.as_ref().filter(|_| parameters.shadows);
+            let build = Build { stage: Stage::Fragment, ..build };
             let (depth, picture) = (terrain.depth(), terrain.picture());
-            let objects = ObjectPasses::new(shaders, label, parameters, inputs.objects, (depth, picture), maps)?;
-            terrain.objects = Some(objects);
+            terrain.objects = Some(ObjectPasses::new(&build, inputs.objects, (depth, picture), maps)?);
         }
         Ok(terrain)
     }
@@ -201,10 +203,10 @@ impl Terrain {
         let view = geometric_transformation.record(frame, scene, parameters, device_scene.as_ref())?;
         match &mut self.technique {
             Technique::Cpu(host) => {
-                let hits = host.depth.record(frame, &host.maps, &view);
-                let normals = host.normal.record(frame, &host.maps, &view, hits);
-                let shadow = host.shadow.as_mut();
-                let sunlit = shadow.map_or(&[][..], |shadow| shadow.record(frame, &host.maps, &view, hits));
+                let maps = (&host.maps[..], &view);
+                let hits = host.depth.record(frame, maps);
+                let normals = host.normal.record(frame, maps, hits);
+                let sunlit = host.shadow.as_mut().map_or(&[][..], |shadow| shadow.record(frame, maps, hits));
                 let colors = host.illumination.record(frame, &view, (hits, normals, sunlit));
                 // Polygons are drawn by the device, so the processor's picture has to be there first.
                 if shows || self.objects.is_some() {
@@ -226,43 +228,25 @@ impl Terrain {
 }
 
 impl HostPasses {
-    fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        scene: &Scene,
-        inputs: &Inputs<'_>,
-    ) -> Result<Self, Error> {
+    fn new(build: &Build<'_>, scene: &Scene, drape: Option<&Drape>) -> Result<Self, Error> {
+        let parameters = build.parameters;
         Ok(HostPasses {
-            show: Show::new(shaders, label, parameters)?,
+            show: Show::new(build)?,
             maps: scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation)).collect(),
             depth: HostDepth::new(parameters),
             normal: HostNormal::new(parameters),
             shadow: parameters.shadows.then(|| HostShadow::new(parameters)),
-            illumination: HostIllumination::new(parameters, inputs.drape),
+            illumination: HostIllumination::new(parameters, drape),
         })
     }
 }
 
 impl Shading {
-    fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        stage: Stage,
-        parameters: &Parameters,
-        scene: &DeviceScene,
-        depth: &Arc<ImageView>,
-    ) -> Result<Self, Error> {
-        let normal = Normal::new(shaders, label, stage, parameters, scene, depth)?;
-        let shadow =
-            parameters.shadows.then(|| Shadow::new(shaders, label, (stage, "shadow"), parameters, scene, depth));
-        let shadow = shadow.transpose()?;
-        let sunlit = match &shadow {
-            Some(shadow) => shadow.target.clone(),
-            None => all_lit(shaders.device(), label)?,
-        };
-        let found = [depth, &normal.target, &sunlit];
-        let illumination = Illumination::new(shaders, label, stage, parameters, scene, found)?;
+    fn new(build: &Build<'_>, scene: &DeviceScene, depth: &Arc<ImageView>) -> Result<Self, Error> {
+        let normal = normal(build, scene, depth)?;
+        let shadow = build.parameters.shadows.then(|| shadow(build, "shadow", scene, depth)).transpose()?;
+        let sunlit = shadow.as_ref().map_or_else(|| all_lit(build, ""), |shadow| Ok(shadow.target.clone()))?;
+        let illumination = illumination(build, scene, [depth, &normal.target, &sunlit])?;
         Ok(Shading { depth: depth.clone(), normal, shadow, illumination })
     }
 
@@ -282,29 +266,25 @@ impl Shading {
 impl ObjectPasses {
     /// `scene` is that of the maps that throw shadows.
     fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
+        build: &Build<'_>,
         meshes: &[crate::scene::Mesh],
         (depth, picture): (&Arc<ImageView>, &Arc<ImageView>),
         scene: Option<&DeviceScene>,
     ) -> Result<Self, Error> {
-        let object_depth = ObjectDepth::new(shaders, label, parameters, depth)?;
-        let meshes = meshes.iter().map(|mesh| ObjectMesh::new(shaders, label, mesh)).collect::<Result<Vec<_>, _>>()?;
-        let shadow = match scene {
-            None => None,
-            Some(scene) => {
-                let hits = ObjectHits::new(shaders, label, parameters, &meshes, &object_depth)?;
-                let shadow = object_shadow(shaders, label, parameters, scene, &hits.target)?;
-                Some((hits, shadow))
-            }
-        };
+        let depth = ObjectDepth::new(build, depth)?;
+        let meshes = meshes.iter().map(|mesh| ObjectMesh::new(build, mesh)).collect::<Result<Vec<_>, _>>()?;
+        let shadow = scene.map(|scene| -> Result<_, Error> {
+            let hits = ObjectHits::new(build, &meshes, &depth)?;
+            let shadow = object_shadow(build, scene, &hits)?;
+            Ok((hits, shadow))
+        });
+        let shadow = shadow.transpose()?;
         let (sunlit, test) = match &shadow {
-            None => (all_lit(shaders.device(), &format!("{label}/objects"))?, DepthTest::LessWrite),
+            None => (all_lit(build, "/objects")?, DepthTest::LessWrite),
             Some((_, shadow)) => (shadow.target.clone(), DepthTest::EqualReadOnly),
         };
-        let objects = Objects::new(shaders, &meshes, (&object_depth, test), &sunlit, picture)?;
-        Ok(ObjectPasses { meshes, depth: object_depth, shadow, objects })
+        let objects = Objects::new(build, &meshes, (&depth, test), &sunlit, picture)?;
+        Ok(ObjectPasses { meshes, depth, shadow, objects })
     }
 
     fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
@@ -317,7 +297,7 @@ impl ObjectPasses {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let shadow = |(hits, shadow): &(ObjectHits, Shadow)| {
+        let shadow = |(hits, shadow): &(ObjectHits, PixelPass)| {
             [Target::image("object-hits", &hits.target), Target::image("object-shadow", &shadow.target)]
         };
         self.shadow.iter().flat_map(shadow).collect()
@@ -346,7 +326,7 @@ impl Paper for Terrain {
     fn picture(&self) -> &Arc<ImageView> {
         match &self.technique {
             Technique::Cpu(host) => &host.show.picture,
-            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => &shading.illumination.picture,
+            Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => &shading.illumination.target,
         }
     }
 

@@ -3,107 +3,62 @@
 
 use std::sync::Arc;
 
-use ash::vk;
 use glam::{Vec2, Vec3, Vec3Swizzles, Vec4};
-use rayon::prelude::*;
 
 use super::blocks::{CYLINDER, PLANE, TerrainBlock};
 use super::geodesy::meridian;
 use super::geometric_transformation::SceneView;
-use super::height_field::{Field, FieldWork, HeightField};
+use super::height_field::HeightField;
 use super::hit::{Hit, Surface};
+use super::host::{HostPass, PixelWork};
 use super::parameters::Parameters;
 use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
 use super::scene::DeviceScene;
-use super::stage::Stage;
+use super::stage::{Build, PixelPass, VECTOR};
+use crate::gpu::{Error, Frame, ImageView, Load, PassInfo};
 use crate::measure::parameter::Choice;
-use crate::gpu::{Error, Frame, ImageView, Load, Pass, PassInfo, ShaderLibrary};
 
-/// The pass on the device.
-pub struct Normal {
-    stage: Stage,
-    passes: Vec<Pass>,
-    /// Of each pixel the normal in the world, and the height above the base in metres.
-    pub target: Arc<ImageView>,
-}
-
-impl Normal {
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        stage: Stage,
-        parameters: &Parameters,
-        scene: &DeviceScene,
-        depth: &Arc<ImageView>,
-    ) -> Result<Self, Error> {
-        let target = stage.image(shaders, format!("{label}/normal"), vk::Format::R32G32B32A32_SFLOAT, parameters)?;
-        let program = format!("normal-{}", parameters.interpolation.name());
-        let mut passes = Vec::new();
-        for (i, map) in scene.maps.iter().enumerate() {
-            let load = if i == 0 { Load::Discard } else { Load::Keep };
-            let resources =
-                [("terrain", (&map.terrain).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())];
-            passes.push(stage.pass(("normal", "4"), &program, (&target, load), &resources).build(shaders)?);
-        }
-        Ok(Normal { stage, passes, target })
+/// The pass on the device. Its target has the normal of each pixel in the world, and the height above the base in metres.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn normal(build: &Build<'_>, scene: &DeviceScene, depth: &Arc<ImageView>) -> Result<PixelPass, Error> {
+    let target = build.image("normal", VECTOR)?;
+    let program = format!("normal-{}", build.parameters.interpolation.name());
+    let mut passes = Vec::new();
+    for map in &scene.maps {
+        let load = if passes.is_empty() { Load::Discard } else { Load::Keep };
+        let resources =
+            [("terrain", (&map.terrain).into()), ("levels", (&map.levels.view).into()), ("depth", depth.into())];
+        passes.push(build.pass(("normal", "4"), &program, (&target, load), &resources)?);
     }
-
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.passes.iter().try_for_each(|pass| self.stage.record(frame, pass, &self.target))
-    }
+    Ok(PixelPass { stage: build.stage, passes, target })
 }
 
 /// The pass on the processor.
-pub struct HostNormal {
-    info: Arc<PassInfo>,
-    width: u32,
-    normals: Vec<Vec4>,
-}
+pub struct HostNormal(HostPass<Vec4>);
 
 impl HostNormal {
     pub fn new(parameters: &Parameters) -> Self {
-        HostNormal {
-            info: PassInfo::host("normal", "4", &["land", "levels", "depth"], &["normal"]),
-            width: parameters.width,
-            normals: vec![Vec4::ZERO; parameters.pixels()],
+        let info = PassInfo::host("normal", "4", &["land", "levels", "depth"], &["normal"]);
+        HostNormal(HostPass::new(info, parameters, Vec4::ZERO))
+    }
+
+    /// The normal of each pixel in the world, and the height above the base in metres.
+    pub fn record(&mut self, frame: &mut Frame<'_>, scene: (&[HeightField], &SceneView), hits: &[Hit]) -> &[Vec4] {
+        self.0.record(frame, scene, (None, Footprint::Data), &Normals(hits))
+    }
+}
+
+struct Normals<'a>(&'a [Hit]);
+
+impl PixelWork<Vec4> for Normals<'_> {
+    fn run<T: Texel>(&self, caster: &RayCaster<'_, T>, (x, y): (u32, u32), index: usize, normal: &mut Vec4) {
+        let hit = &self.0[index];
+        if hit.map == caster.terrain.map_index as u32 {
+            *normal = normal_of(caster, caster.direction(x, y), hit);
         }
-    }
-
-    /// Of each pixel the normal in the world, and the height above the base in metres.
-    pub fn record(&mut self, frame: &mut Frame<'_>, maps: &[HeightField], view: &SceneView, hits: &[Hit]) -> &[Vec4] {
-        let HostNormal { ref info, width, ref mut normals } = *self;
-        frame.host(info, || {
-            for (map, terrain) in maps.iter().zip(&view.terrains) {
-                map.with(Rows { terrain, width, hits, normals });
-            }
-        });
-        normals
-    }
-}
-
-struct Rows<'a> {
-    terrain: &'a TerrainBlock,
-    width: u32,
-    hits: &'a [Hit],
-    normals: &'a mut [Vec4],
-}
-
-impl FieldWork for Rows<'_> {
-    type Output = ();
-
-    fn run<T: Texel>(self, field: Field<'_, T>) {
-        let (width, map) = (self.width as usize, self.terrain.map_index as u32);
-        let caster = RayCaster { terrain: self.terrain, field, footprint: Footprint::Data };
-        self.normals.par_chunks_mut(width).zip(self.hits.par_chunks(width)).enumerate().for_each(|(y, (row, hits))| {
-            for (x, (normal, hit)) in row.iter_mut().zip(hits).enumerate().filter(|(_, (_, hit))| hit.map == map) {
-                *normal = normal_of(&caster, caster.direction(x as u32, y as u32), hit);
-            }
-        });
     }
 }
 

@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 use super::blocks::LightBlock;
 use super::geometric_transformation::SceneView;
-use super::parameters::Parameters;
 use super::scene::block_buffer;
-use super::stage::depth_buffer;
-use crate::gpu::{Buffer, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use super::stage::Build;
+use crate::gpu::{Buffer, DepthTest, Error, Frame, ImageView, Load, Pass};
 
 /// The pass, and what it shares with the passes that draw the objects.
 pub struct ObjectDepth {
@@ -21,19 +20,14 @@ pub struct ObjectDepth {
 impl ObjectDepth {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        depth: &Arc<ImageView>,
-    ) -> Result<Self, Error> {
-        let tested = depth_buffer(shaders, format!("{label}/object-depth"), parameters)?;
-        let light = block_buffer::<LightBlock>(shaders.device(), &format!("{label}/object-light"))?;
+    pub fn new(build: &Build<'_>, depth: &Arc<ImageView>) -> Result<Self, Error> {
+        let tested = build.depth_buffer("object-depth")?;
+        let light = block_buffer::<LightBlock>(build.shaders.device(), &format!("{}/object-light", build.label))?;
         let pass = Pass::graphics("object-depth", "1", "common/fullscreen.vert", "terrain/object-depth.frag")
             .with("light", &light)
             .with("depth", depth)
             .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
-            .build(shaders)?;
+            .build(build.shaders)?;
         Ok(ObjectDepth { pass, light, tested })
     }
 

@@ -3,15 +3,12 @@
 
 use std::sync::Arc;
 
-use ash::vk;
-
 use super::geometric_transformation::SceneView;
 use super::hit::NO_DEPTH;
 use super::object_depth::ObjectDepth;
 use super::objects::ObjectMesh;
-use super::parameters::Parameters;
-use super::stage::Stage;
-use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use super::stage::{Build, VECTOR};
+use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass};
 
 pub struct ObjectHits {
     passes: Vec<Pass>,
@@ -22,15 +19,8 @@ pub struct ObjectHits {
 impl ObjectHits {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        meshes: &[ObjectMesh],
-        object_depth: &ObjectDepth,
-    ) -> Result<Self, Error> {
-        let format = vk::Format::R32G32B32A32_SFLOAT;
-        let target = Stage::Fragment.image(shaders, format!("{label}/object-hits"), format, parameters)?;
+    pub fn new(build: &Build<'_>, meshes: &[ObjectMesh], object_depth: &ObjectDepth) -> Result<Self, Error> {
+        let target = build.image("object-hits", VECTOR)?;
         let mut passes = Vec::new();
         for (number, mesh) in meshes.iter().enumerate() {
             let load = if number == 0 { Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]) } else { Load::Keep };
@@ -39,7 +29,7 @@ impl ObjectHits {
                 Load::Keep,
                 DepthTest::LessWrite,
             );
-            passes.push(pass.build(shaders)?);
+            passes.push(pass.build(build.shaders)?);
         }
         Ok(ObjectHits { passes, target })
     }

@@ -1,23 +1,15 @@
 //! The pass `object-shadow` (section 2): the maps' shadow on polygon objects.
 
-use std::sync::Arc;
-
-use super::parameters::Parameters;
+use super::object_hits::ObjectHits;
 use super::scene::DeviceScene;
-use super::shadow::Shadow;
-use super::stage::Stage;
-use crate::gpu::{Error, ImageView, ShaderLibrary};
+use super::shadow::shadow;
+use super::stage::{Build, PixelPass};
+use crate::gpu::Error;
 
-/// The pass: `shadow` by fragment stages, from the objects' hits.
+/// The pass: `shadow` from the objects' hits.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
-pub fn object_shadow(
-    shaders: &ShaderLibrary,
-    label: &str,
-    parameters: &Parameters,
-    scene: &DeviceScene,
-    hits: &Arc<ImageView>,
-) -> Result<Shadow, Error> {
-    Shadow::new(shaders, label, (Stage::Fragment, "object-shadow"), parameters, scene, hits)
+pub fn object_shadow(build: &Build<'_>, scene: &DeviceScene, hits: &ObjectHits) -> Result<PixelPass, Error> {
+    shadow(build, "object-shadow", scene, &hits.target)
 }

@@ -7,9 +7,10 @@ use ash::vk;
 
 use super::geometric_transformation::SceneView;
 use super::object_depth::ObjectDepth;
+use super::stage::Build;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::upload;
-use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 use crate::scene::Mesh;
 
@@ -38,7 +39,7 @@ impl Objects {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(
-        shaders: &ShaderLibrary,
+        build: &Build<'_>,
         meshes: &[ObjectMesh],
         (object_depth, test): (&ObjectDepth, DepthTest),
         shadow: &Arc<ImageView>,
@@ -50,7 +51,7 @@ impl Objects {
                 .with("shadow", shadow)
                 .color(picture, Load::Keep, Blend::Replace)
                 .depth(&object_depth.tested, Load::Keep, test)
-                .build(shaders)
+                .build(build.shaders)
         };
         Ok(Objects { passes: meshes.iter().map(pass).collect::<Result<_, _>>()? })
     }
@@ -72,9 +73,9 @@ pub struct ObjectMesh {
 impl ObjectMesh {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(shaders: &ShaderLibrary, label: &str, mesh: &Mesh) -> Result<Self, Error> {
+    pub fn new(build: &Build<'_>, mesh: &Mesh) -> Result<Self, Error> {
         let buffer = |what: &str, usage, bytes: &[u8]| {
-            upload(shaders.device(), &format!("{label}/{}/{what}", mesh.name), usage, bytes)
+            upload(build.shaders.device(), &format!("{}/{}/{what}", build.label, mesh.name), usage, bytes)
         };
         let pairs = mesh.positions.iter().zip(&mesh.normals);
         let vertices: Vec<ObjectVertex> =

@@ -228,7 +228,10 @@ impl Declared for Setup {
                 .unrecorded(),
             Parameter::new("place", field!(Setup.places))
                 .placeholder("EAST,SOUTH,DEGREES")
-                .help("Place of a map's middle: metres east and south of the origin, degrees counterclockwise; once for each map")
+                .help(
+                    "Place of a map's middle: metres east and south of the origin, degrees counterclockwise; once for \
+                     each map",
+                )
                 .default_text("0,0,0")
                 .cost(Cost::Buffers)
                 .unrecorded(),

@@ -6,9 +6,8 @@ use ash::vk;
 use glam::Vec4;
 
 use super::hit::Hit;
-use super::parameters::Parameters;
-use super::stage::Stage;
-use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location, Pass, ShaderLibrary};
+use super::stage::{Build, VECTOR};
+use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Location, Pass};
 use crate::host_block;
 use crate::measure::Target;
 
@@ -34,16 +33,16 @@ pub struct Show {
 impl Show {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(shaders: &ShaderLibrary, label: &str, parameters: &Parameters) -> Result<Self, Error> {
+    pub fn new(build: &Build<'_>) -> Result<Self, Error> {
+        let Build { shaders, label, parameters, .. } = *build;
         let buffer = |name: &str, pixel_bytes: usize| {
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
             let desc = BufferDesc::new(format!("{label}/{name}"), (parameters.pixels() * pixel_bytes) as u64);
             Buffer::new(shaders.device(), desc.usage(usage).location(Location::Upload))
         };
-        let image = |name: &str, format| Stage::Fragment.image(shaders, format!("{label}/{name}"), format, parameters);
         let colors = buffer("colors", 4)?;
-        let picture = image("picture", vk::Format::R8G8B8A8_UNORM)?;
-        let depth = image("depth", vk::Format::R32G32B32A32_SFLOAT)?;
+        let picture = build.image("picture", vk::Format::R8G8B8A8_UNORM)?;
+        let depth = build.image("depth", VECTOR)?;
         let depths = buffer("depth", 16)?;
         let pass = Pass::graphics("show", "4", "common/fullscreen.vert", "terrain/show.frag")
             .with("colors", &colors)

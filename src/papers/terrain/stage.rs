@@ -1,13 +1,16 @@
-//! A program over all pixels, by compute stages or as full-screen fragment passes.
+//! Passes over all pixels, by compute stages or as full-screen fragment passes, and all that they are built with.
 
 use std::sync::Arc;
 
 use ash::vk;
 
 use super::parameters::Parameters;
+use super::scene::DeviceScene;
 use crate::gpu::bindings::Resource;
-use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
+
+/// Format of hits and normals.
+pub const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The stages that a device offers for one program over all pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,75 +19,108 @@ pub enum Stage {
     Fragment,
 }
 
-impl Stage {
-    fn file(self, program: &str) -> String {
-        format!("terrain/{program}.{}", if self == Stage::Compute { "comp" } else { "frag" })
+/// All that passes are built with.
+#[derive(Clone, Copy)]
+pub struct Build<'a> {
+    pub shaders: &'a ShaderLibrary,
+    /// Goes before the names of the resources.
+    pub label: &'a str,
+    pub parameters: &'a Parameters,
+    /// Of the passes over all pixels.
+    pub stage: Stage,
+}
+
+impl Build<'_> {
+    fn image_of(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Arc<ImageView>, Error> {
+        let Parameters { width, height, .. } = *self.parameters;
+        let desc = ImageDesc::new_2d(format!("{}/{name}", self.label), format, width, height);
+        Image::new(self.shaders.device(), desc.usage(usage))?.view()
     }
 
-    fn usage(self) -> vk::ImageUsageFlags {
+    /// An image of the picture's size that passes write and later ones read.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn image(&self, name: &str, format: vk::Format) -> Result<Arc<ImageView>, Error> {
         // Polygons are drawn into what compute stages wrote.
-        let written = match self {
+        let written = match self.stage {
             Stage::Compute => vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::COLOR_ATTACHMENT,
             Stage::Fragment => vk::ImageUsageFlags::COLOR_ATTACHMENT,
         };
-        written | vk::ImageUsageFlags::SAMPLED
+        self.image_of(name, format, written | vk::ImageUsageFlags::SAMPLED)
     }
 
-    /// An image of the picture's size that this stage writes and later passes read.
+    /// A depth buffer of the picture's size.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn image(
-        self,
-        shaders: &ShaderLibrary,
-        name: String,
-        format: vk::Format,
-        parameters: &Parameters,
-    ) -> Result<Arc<ImageView>, Error> {
-        let desc = ImageDesc::new_2d(name, format, parameters.width, parameters.height).usage(self.usage());
-        Image::new(shaders.device(), desc)?.view()
+    pub fn depth_buffer(&self, name: &str) -> Result<Arc<ImageView>, Error> {
+        self.image_of(name, vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)
     }
 
-    /// Records `pass` over all pixels of `target`.
+    /// A pass of `program` over all pixels of `target`, which compute stages know by the pass's name.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(self, frame: &mut Frame<'_>, pass: &Pass, target: &ImageView) -> Result<(), Error> {
-        match self {
-            Stage::Compute => frame.compute(pass, |dispatch| {
-                dispatch.threads(target.width(), target.height(), 1);
-            }),
-            Stage::Fragment => frame.graphics(pass, |draw| {
-                draw.vertices(3);
-            }),
-        }
-    }
-
-    /// A pass for either stage: `program` over all pixels of `target`, which compute stages know by the pass's name.
     pub fn pass(
-        self,
+        &self,
         (name, section): (&'static str, &'static str),
         program: &str,
         (target, load): (&Arc<ImageView>, Load),
         resources: &[(&'static str, Resource)],
-    ) -> PassBuilder {
-        let pass = match self {
-            Stage::Compute => Pass::compute(name, section, &self.file(program)).with(name, target),
-            Stage::Fragment => Pass::graphics(name, section, "common/fullscreen.vert", &self.file(program)).color(
-                target,
-                load,
-                Blend::Replace,
-            ),
+    ) -> Result<Pass, Error> {
+        let pass = match self.stage {
+            Stage::Compute => Pass::compute(name, section, &format!("terrain/{program}.comp")).with(name, target),
+            Stage::Fragment => {
+                Pass::graphics(name, section, "common/fullscreen.vert", &format!("terrain/{program}.frag"))
+                    .color(target, load, Blend::Replace)
+            }
         };
-        resources.iter().fold(pass, |pass, (name, resource)| pass.with(name, resource.clone()))
+        let pass = resources.iter().fold(pass, |pass, (name, resource)| pass.with(name, resource.clone()));
+        pass.build(self.shaders)
+    }
+
+    /// A pass once for each map, that reads as `prior` what it left of the maps before. It writes two images in turn.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn map_passes(
+        &self,
+        name: (&'static str, &'static str),
+        program: &str,
+        ping_pong: [&Arc<ImageView>; 2],
+        scene: &DeviceScene,
+        (mut prior, others): (Arc<ImageView>, &[(&'static str, Resource)]),
+    ) -> Result<PixelPass, Error> {
+        let mut passes = Vec::new();
+        for (map, target) in scene.maps.iter().zip(ping_pong.into_iter().cycle()) {
+            let own =
+                [("terrain", (&map.terrain).into()), ("levels", (&map.levels.view).into()), ("prior", (&prior).into())];
+            passes.push(self.pass(name, program, (target, Load::Discard), &[&own[..], others].concat())?);
+            prior = target.clone();
+        }
+        Ok(PixelPass { stage: self.stage, passes, target: prior })
     }
 }
 
-/// A depth buffer of the picture's size.
-///
-/// # Errors
-/// Errors of the Vulkan layer.
-pub fn depth_buffer(shaders: &ShaderLibrary, name: String, parameters: &Parameters) -> Result<Arc<ImageView>, Error> {
-    let desc = ImageDesc::new_2d(name, vk::Format::D32_SFLOAT, parameters.width, parameters.height);
-    Image::new(shaders.device(), desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()
+/// A pass over all pixels, once or once for each map.
+pub struct PixelPass {
+    pub stage: Stage,
+    pub passes: Vec<Pass>,
+    pub target: Arc<ImageView>,
+}
+
+impl PixelPass {
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.passes.iter().try_for_each(|pass| match self.stage {
+            Stage::Compute => frame.compute(pass, |dispatch| {
+                dispatch.threads(self.target.width(), self.target.height(), 1);
+            }),
+            Stage::Fragment => frame.graphics(pass, |draw| {
+                draw.vertices(3);
+            }),
+        })
+    }
 }

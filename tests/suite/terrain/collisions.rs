@@ -52,11 +52,11 @@ fn segments_touch_where_small_steps_do() {
             (Some(part), Some(contact)) => {
                 met += 1;
                 // Steps may pass a ridge that the collider meets, never the other way round.
-                assert!(contact.t <= part + 1e-5, "{a} to {b}: {} after {part}", contact.t);
-                let p = a.lerp(b, contact.t);
+                assert!(contact.t.unwrap() <= part + 1e-5, "{a} to {b}: {} after {part}", contact.t.unwrap());
+                let p = a.lerp(b, contact.t.unwrap());
                 let is_wall = contact.normal.y.abs() < 1e-6;
-                assert!(is_wall || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m || contact.t == 0.0);
-                assert!(contact.t >= part - slack || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m);
+                assert!(is_wall || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m || contact.t.unwrap() == 0.0);
+                assert!(contact.t.unwrap() >= part - slack || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m);
             }
             (None, Some(contact)) => {
                 let p = contact.point;
@@ -118,7 +118,7 @@ fn segments_meet_what_brute_force_meets_on_every_surface() {
                 (Some(found), Some(expected)) => {
                     met += 1;
                     let cosine = expected.normal.dot((end - start) / length_m).abs().max(1e-2);
-                    (found.t * length_m - expected.t).abs() <= 2.0 * hair_m / cosine
+                    (found.t.unwrap() * length_m - expected.t).abs() <= 2.0 * hair_m / cosine
                 }
                 _ => false,
             };

@@ -1,16 +1,13 @@
 //! "Detection of spatial collisions" (section 1): what bodies meet in a setup's terrain.
 
-use std::ffi::OsStr;
-
 use glam::DVec3;
-use serde_json::{Value as Json, json};
+use serde_json::{Value, json};
 
 use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::ParameterError;
-use crate::measure::parameter::{Shape, Value, one};
 use crate::measure::study::Study;
-use crate::papers::terrain::{Collider, Inputs, Surface};
+use crate::papers::terrain::{Collider, Contact, Inputs, Surface};
 
 /// A coordinate's and a radius' largest value, metres.
 const FAR_M: f64 = 1.0e8;
@@ -29,70 +26,23 @@ pub enum Body {
     },
 }
 
-/// A [`Body::Segment`] as it is typed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Segment(pub Body);
-
-/// A [`Body::Sphere`] as it is typed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere(pub Body);
-
-/// Comma-separated numbers in double precision, exactly `N` of them.
-fn parse_exact<const N: usize>(texts: &[&OsStr]) -> Result<[f64; N], String> {
-    let numbers = one(texts)?.split(',').map(|part| f64::parse(&[OsStr::new(part.trim())]));
-    let values = numbers.collect::<Result<Vec<_>, _>>()?;
-    let count = values.len();
-    values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
-}
-
-macro_rules! typed {
-    ($($body:ident, $placeholder:literal, $parse:expr);+) => { $(
-        impl Value for $body {
-            const SHAPE: Shape = Shape { is_signed: true, ..Shape::single($placeholder) };
-
-            fn parse(texts: &[&OsStr]) -> Result<Self, String> {
-                parse_exact(texts).map($parse).map($body)
-            }
-
-            fn text(&self) -> String {
-                self.0.to_string()
-            }
-
-            fn json(&self) -> Json {
-                json!(self.text())
-            }
-        }
-    )+ };
-}
-
-typed!(
-    Segment, "X,Y,Z,X,Y,Z", |[x, y, z, to @ ..]: [f64; 6]| {
-        Body::Segment { from: DVec3::new(x, y, z), to: to.into() }
-    };
-    Sphere, "X,Y,Z,R", |[x, y, z, radius_m]| Body::Sphere { center: DVec3::new(x, y, z), radius_m }
-);
-
-/// A body's first contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Meeting {
-    /// Of the segment, 0 to 1; none for a sphere.
-    pub parameter: Option<f64>,
-    /// From the start of the segment, or from the centre of the sphere, metres.
-    pub distance_m: f64,
-    pub point: DVec3,
-    /// A unit vector.
-    pub normal: DVec3,
-    pub surface: Surface,
-    pub map: u32,
-    /// Pieces and blocks that were tried.
-    pub steps: u32,
-}
-
-/// A body and what it meets; none where that is nothing.
+/// A body and its first contact, if any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Collision {
     pub body: Body,
-    pub meeting: Option<Meeting>,
+    pub contact: Option<Contact>,
+}
+
+impl From<&[f64; 6]> for Body {
+    fn from([x, y, z, to @ ..]: &[f64; 6]) -> Self {
+        Body::Segment { from: DVec3::new(*x, *y, *z), to: (*to).into() }
+    }
+}
+
+impl From<&[f64; 4]> for Body {
+    fn from([x, y, z, radius_m]: &[f64; 4]) -> Self {
+        Body::Sphere { center: DVec3::new(*x, *y, *z), radius_m: *radius_m }
+    }
 }
 
 impl Body {
@@ -113,26 +63,10 @@ impl Body {
         Ok(())
     }
 
-    fn meet(&self, collider: &Collider) -> Option<Meeting> {
+    fn meet(&self, collider: &Collider) -> Option<Contact> {
         match *self {
-            Body::Segment { from, to } => collider.segment(from, to).map(|contact| Meeting {
-                parameter: Some(contact.t),
-                distance_m: contact.t * from.distance(to),
-                point: contact.point,
-                normal: contact.normal,
-                surface: contact.surface,
-                map: contact.map,
-                steps: contact.steps,
-            }),
-            Body::Sphere { center, radius_m } => collider.sphere(center, radius_m).map(|touch| Meeting {
-                parameter: None,
-                distance_m: touch.distance_m,
-                point: touch.point,
-                normal: touch.normal,
-                surface: touch.surface,
-                map: touch.map,
-                steps: touch.steps,
-            }),
+            Body::Segment { from, to } => collider.segment(from, to),
+            Body::Sphere { center, radius_m } => collider.sphere(center, radius_m),
         }
     }
 }
@@ -158,21 +92,21 @@ pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<Vec<Collision>, Error> 
     bodies.iter().try_for_each(Body::check)?;
     let scene = setup.load()?;
     let collider = Collider::new(&setup.parameters, &Inputs { maps: &scene.maps, ..Inputs::default() });
-    Ok(bodies.iter().map(|body| Collision { body: *body, meeting: body.meet(&collider) }).collect())
+    Ok(bodies.iter().map(|body| Collision { body: *body, contact: body.meet(&collider) }).collect())
 }
 
 impl Collision {
-    pub fn json(&self) -> Json {
-        let meeting = self.meeting.map(|m| {
+    pub fn json(&self) -> Value {
+        let contact = self.contact.map(|m| {
             json!({
-                "surface": m.surface.as_str(), "map": m.map, "parameter": m.parameter, "distance_m": m.distance_m,
+                "surface": m.surface.as_str(), "map": m.map, "parameter": m.t, "distance_m": m.distance_m,
                 "point": m.point.to_array(), "normal": m.normal.to_array(), "steps": m.steps,
             })
         });
         match self.body {
-            Body::Segment { from, to } => json!({"segment": [from.to_array(), to.to_array()], "meets": meeting}),
+            Body::Segment { from, to } => json!({"segment": [from.to_array(), to.to_array()], "meets": contact}),
             Body::Sphere { center, radius_m } => {
-                json!({"sphere": {"center": center.to_array(), "radius_m": radius_m}, "meets": meeting})
+                json!({"sphere": {"center": center.to_array(), "radius_m": radius_m}, "meets": contact})
             }
         }
     }
@@ -184,18 +118,18 @@ impl Collision {
             Body::Sphere { .. } => "sphere",
         };
         let body = &self.body;
-        let Some(m) = self.meeting else { return format!("{kind} {body}: meets nothing\n") };
+        let Some(m) = self.contact else { return format!("{kind} {body}: meets nothing\n") };
         let what = match m.surface {
             Surface::Base => "meets the base".to_owned(),
-            Surface::Inside if m.parameter.is_some() => "begins in the ground".to_owned(),
+            Surface::Inside if m.t.is_some() => "begins in the ground".to_owned(),
             Surface::Inside => "has its centre in the ground".to_owned(),
             surface => format!("meets the {} of map {}", surface.as_str(), m.map),
         };
         // No minus before a zero.
         let rounded = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
         let three = |v: DVec3, digits: usize| v.to_array().map(|c| format!("{:.digits$}", rounded(c))).join(",");
-        let place = match m.parameter {
-            Some(parameter) => format!("parameter {parameter:.6}, {:.3} m from its start", m.distance_m),
+        let place = match m.t {
+            Some(t) => format!("parameter {t:.6}, {:.3} m from its start", m.distance_m),
             None => format!("{:.6} m from its centre", m.distance_m),
         };
         let (point, normal) = (three(m.point, 3), three(m.normal, 6));

@@ -6,7 +6,7 @@ pub mod table;
 
 use serde_json::json;
 
-use self::collisions::{Collision, Segment, Sphere, collide};
+use self::collisions::{Body, Collision, collide};
 use self::table::{Axis, Outcome};
 use super::setup::Setup;
 use super::{Variant, View};
@@ -27,8 +27,10 @@ pub struct Options {
     counts: Vec<u32>,
     /// Variants of a sweep; all where there are none.
     variants: Vec<Listed>,
-    segments: Vec<Segment>,
-    spheres: Vec<Sphere>,
+    /// From a place to another, metres.
+    segments: Vec<[f64; 6]>,
+    /// Centre and radius, metres.
+    spheres: Vec<[f64; 4]>,
 }
 
 impl Options {
@@ -71,9 +73,11 @@ pub fn options() -> Vec<Parameter<Options>> {
             .help("Variants of a sweep, comma-separated, or all; a figure shows the first")
             .default_text("all"),
         Parameter::new("segment", field!(Options.segments))
+            .placeholder("X,Y,Z,X,Y,Z")
             .help("From a place to another, metres: east, up from the base, south")
             .everyday(),
         Parameter::new("sphere", field!(Options.spheres))
+            .placeholder("X,Y,Z,R")
             .help("Centre, metres as in `segment`, and radius, above 0")
             .everyday(),
     ]
@@ -211,7 +215,7 @@ fn heat_maps(context: &Context<'_>, points: &[Point<Setup>]) -> Result<(), Error
 
 fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
     let Options { segments, spheres, .. } = &context.options;
-    let bodies: Vec<_> = segments.iter().map(|s| s.0).chain(spheres.iter().map(|s| s.0)).collect();
+    let bodies: Vec<Body> = segments.iter().map(Body::from).chain(spheres.iter().map(Body::from)).collect();
     if bodies.is_empty() {
         return Err(Error::Input("collide: there is nothing to collide; give a `segment` or a `sphere`".into()));
     }
