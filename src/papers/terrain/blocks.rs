@@ -17,6 +17,7 @@ const ELLIPSOID: i32 = 2;
 host_block! {
     /// A map and how the camera sees it, in the map's frame (see [`Ground::to_frame`]).
     pub struct TerrainBlock {
+        /// The camera, in the map's frame.
         pub eye: Vec3,
         /// Nodes that a pixel covers at a depth of 1 m.
         pub pixel_nodes: f32,
@@ -26,9 +27,11 @@ host_block! {
         pub near_m: f32,
         /// The direction's change from a pixel to the next on the right.
         pub right_step: Vec3,
+        /// Number of the map.
         pub map_index: i32,
         /// The direction's change from a pixel to the next below.
         pub down_step: Vec3,
+        /// [`PLANE`], [`CYLINDER`] or an ellipsoid.
         pub base_kind: i32,
         /// For 1 m.
         pub to_sun: Vec3,
@@ -38,12 +41,17 @@ host_block! {
         pub east: Vec3,
         /// Metres for a unit of height.
         pub height_unit_m: f32,
+        /// The frame's second axis.
         pub up: Vec3,
+        /// Height of the base.
         pub base_height: f32,
+        /// The frame's third axis.
         pub south: Vec3,
         /// The height above the surface that counts as met where a root is approached.
         pub height_tolerance: f32,
+        /// The lowest height that a ray may meet.
         pub lowest: f32,
+        /// The highest height that a ray may meet.
         pub highest: f32,
         /// Bound of the rounding of a place, in nodes.
         pub rounding_nodes: f32,
@@ -61,10 +69,13 @@ host_block! {
         pub is_float: i32,
         /// Of the ellipse of a meridian. This and what follows is 0 over a plane.
         pub semi_major_m: f32,
+        /// Of that ellipse; negative where it is prolate.
         pub squared_eccentricity: f32,
         /// Of the latitude of the map's middle.
         pub sine_latitude: f32,
+        /// Of the latitude of the map's middle.
         pub cosine_latitude: f32,
+        /// The map's middle.
         pub middle_node: Vec2,
         /// From the axis to the map's middle.
         pub axis_distance_m: f32,
@@ -76,10 +87,13 @@ host_block! {
         pub curvature_change: f32,
         /// Of the quadric through the highest height: constant, squares and linear terms, off the axis and along it.
         pub shell_constant: f32,
+        /// Of the shell, off the axis and along it.
         pub shell_squares: Vec2,
+        /// Of the shell, off the axis and along it.
         pub shell_linear: Vec2,
         /// Of the base's quadric, whose constant is 0.
         pub base_squares: Vec2,
+        /// Of the base's quadric.
         pub base_linear: Vec2,
     }
 }
@@ -93,11 +107,13 @@ host_block! {
         pub near_m: f32,
         /// The direction's change from a pixel to the next on the right.
         pub right_step: Vec3,
+        /// The sky's light, as a fraction of its full strength.
         pub sky_strength: f32,
         /// The direction's change from a pixel to the next below.
         pub down_step: Vec3,
         /// By haze.
         pub extinction_per_m: f32,
+        /// A unit vector.
         pub to_sun: Vec3,
         /// The lowest height above the base.
         pub lowest_m: f32,
@@ -109,6 +125,7 @@ host_block! {
         pub drape_cells: Vec2,
         /// The column of the first map at which the draped picture begins.
         pub drape_first_column: f32,
+        /// 1 where a picture lies over the first map.
         pub is_draped: i32,
     }
 }

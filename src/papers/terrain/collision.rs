@@ -32,6 +32,7 @@ pub struct Contact {
     /// A unit vector of the world: of a segment the surface's, of a sphere from the point to the centre, or away from the base
     /// where that is in the ground.
     pub normal: DVec3,
+    /// The surface that is met.
     pub surface: Surface,
     /// Number of the map; the base belongs to the first.
     pub map: u32,

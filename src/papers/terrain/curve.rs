@@ -6,14 +6,17 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 /// ellipsoid points north, that of a cylinder south.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
+    /// A cylinder, or else an ellipsoid.
     pub is_cylinder: bool,
     /// Semi-major axis, or radius.
     pub a: f64,
     /// 1 - (b / a)^2 for a polar semi-axis b.
     pub squared_eccentricity: f64,
+    /// Of the middle.
     pub latitude_rad: f64,
     /// Distance of the middle from the axis, and along it from the centre.
     pub off_m: f64,
+    /// Distance of the middle along the axis from the centre.
     pub along_m: f64,
     /// The middle in nodes.
     pub middle: DVec2,
@@ -30,8 +33,11 @@ pub struct Curve {
 /// A quadric around the axis: squares off and along the axis, linear terms off and along it, constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadric {
+    /// Factors of the squared coordinates, off the axis and along it.
     pub squares: DVec2,
+    /// Half of the linear factors, off the axis and along it.
     pub linear: DVec2,
+    /// The value in the middle.
     pub constant: f64,
 }
 

@@ -31,11 +31,15 @@ pub fn map_coordinates(terrain: &TerrainBlock, point: Vec3, side: f32) -> Vec3 {
 /// point lies to the middle's, off and along the axis; radii of curvature across the meridian and along it. Written in
 /// differences, so that nothing of a planet's size cancels.
 pub struct Meridian {
+    /// Of the latitude.
     pub sine: f32,
+    /// Of the latitude.
     pub cosine: f32,
     off: f32,
     along: f32,
+    /// Radius of curvature across the meridian, metres.
     pub across: f32,
+    /// Radius of curvature along the meridian, metres.
     pub radius: f32,
 }
 

@@ -16,6 +16,7 @@ use crate::scene::Camera;
 pub struct SceneView {
     /// Of each map.
     pub terrains: Vec<TerrainBlock>,
+    /// Light and camera in the world.
     pub light: LightBlock,
     /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
     /// 1 - near / w, without a far plane.

@@ -18,7 +18,9 @@ const T: DMat4 = DMat4::from_cols(DVec4::X, DVec4::Z, DVec4::Y, DVec4::W);
 /// Longitude and latitude of the world's origin on an ellipsoid, radians.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Origin {
+    /// East of the prime meridian.
     pub longitude_rad: f64,
+    /// North of the equator.
     pub latitude_rad: f64,
 }
 
@@ -43,6 +45,7 @@ fn middle_of(map: &HeightMap) -> Option<Origin> {
 /// One map as the rays see it.
 #[derive(Debug, Clone)]
 pub struct Ground {
+    /// Size of the map and its levels.
     pub shape: Shape,
     /// World to the map's frame. On a plane u and v in nodes from the first sample and h in the map's own numbers: G = T M. On
     /// a curved base metres from the map's middle: east, off the axis, along it.
@@ -55,8 +58,11 @@ pub struct Ground {
     pub unit_m: f64,
     /// Lowest and highest h, and that of the base.
     pub lowest: f64,
+    /// Highest h.
     pub highest: f64,
+    /// The base's h.
     pub base: f64,
+    /// None over a plane.
     pub curve: Option<Curve>,
     /// True where the map's columns fill a whole turn, so that the first follows the last. `shape` then has two columns more on
     /// each side, which repeat those of the other.

@@ -73,13 +73,16 @@ pub struct Field<'a, T> {
     data: &'a [T],
     highest: &'a Pyramid<T>,
     lowest: Option<&'a Pyramid<T>>,
+    /// The surface between the samples.
     pub interpolation: Interpolation,
 }
 
 /// The cell of a level around a place: its north-west corner, and where the place lies in it, 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
+    /// Column and row of the north-west corner.
     pub corner: IVec2,
+    /// The place in the cell, 0 to 1.
     pub uv: Vec2,
 }
 

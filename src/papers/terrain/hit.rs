@@ -51,6 +51,7 @@ pub struct Hit {
     pub depth_m: f32,
     /// u and v in nodes of the map; one that goes once round has two more on each side.
     pub place: [f32; 2],
+    /// The surface that is met.
     pub surface: Surface,
     /// The level that the surface was taken from, counted from the data.
     pub shift: u32,

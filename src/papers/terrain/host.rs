@@ -14,8 +14,11 @@ use crate::gpu::{Frame, PassInfo};
 
 /// A pass that has a value for each pixel, row by row.
 pub struct HostPass<V> {
+    /// Name, section, reads and writes.
     pub info: Arc<PassInfo>,
+    /// Pixels of a row.
     pub width: u32,
+    /// Of each pixel, row by row.
     pub values: Vec<V>,
 }
 

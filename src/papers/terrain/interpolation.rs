@@ -248,7 +248,9 @@ pub struct Patch {
 /// The surface at a place of the cell: the height, and its derivatives along u and v, metres for a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
+    /// Above the base.
     pub height_m: f64,
+    /// Along u and v.
     pub slope: DVec2,
 }
 

@@ -29,6 +29,7 @@ const DATA: u32 = 0;
 pub struct Levels {
     /// All layers.
     pub view: Arc<ImageView>,
+    /// Sizes of the levels.
     pub shape: Shape,
     /// Texels are the bits of floats, not 16-bit steps.
     pub is_float: bool,

@@ -23,9 +23,11 @@ const ROUNDING: f64 = 1e-6;
 /// The nearest point so far.
 #[derive(Debug, Clone, Copy)]
 pub struct Nearest {
+    /// From the centre.
     pub distance_m: f64,
     /// In the map's frame.
     pub point: DVec3,
+    /// The surface that it lies on.
     pub surface: Surface,
     /// Blocks and squares that were tried.
     pub steps: u32,
@@ -33,8 +35,11 @@ pub struct Nearest {
 
 /// Looks for what is nearer than `best`.
 pub struct Search<'a> {
+    /// The map's solid.
     pub solid: Solid<'a>,
+    /// In the map's frame.
     pub center: DVec3,
+    /// The nearest point that is known.
     pub best: Nearest,
 }
 

@@ -12,6 +12,7 @@ use crate::gpu::{Buffer, DepthTest, Error, Frame, ImageView, Load, Pass};
 /// The pass, and what it shares with the passes that draw the objects.
 pub struct ObjectDepth {
     pass: Pass,
+    /// A [`LightBlock`].
     pub light: Arc<Buffer>,
     /// The depth buffer.
     pub tested: Arc<ImageView>,

@@ -196,12 +196,17 @@ impl Value for View {
 /// Every number of a configuration, in the ranges of [`Parameters::declared`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
+    /// The end of a ray's subdivision.
     pub lod: Lod,
+    /// The surface between the samples.
     pub interpolation: Interpolation,
+    /// The surface below the heights.
     pub base: Base,
     /// The height in the maps' own frame at which the base lies, metres; the lowest sample without one.
     pub base_level_m: Option<f32>,
+    /// The camera.
     pub view: View,
+    /// The source of parallel light.
     pub sun: Sun,
     /// The terrain throws shadows on itself; adds the pass `shadow`.
     pub shadows: bool,
@@ -209,6 +214,7 @@ pub struct Parameters {
     pub haze_per_km: f32,
     /// Size of the picture in pixels.
     pub width: u32,
+    /// Rows of pixels.
     pub height: u32,
 }
 

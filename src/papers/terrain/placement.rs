@@ -7,7 +7,9 @@ use crate::scene::Camera;
 /// The box around all maps in the world, metres; y counts from the base.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
+    /// The lowest coordinates.
     pub low: DVec3,
+    /// The highest coordinates.
     pub high: DVec3,
 }
 
@@ -25,9 +27,13 @@ pub struct Placement {
 /// view's axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rays {
+    /// The camera, metres.
     pub eye: DVec3,
+    /// Direction to the middle of pixel (0, 0).
     pub corner: DVec3,
+    /// Change of direction from a pixel to the next on the right.
     pub across: DVec3,
+    /// Change of direction from a pixel to the next below.
     pub down: DVec3,
 }
 

@@ -8,7 +8,9 @@ use crate::scene::{HeightMap, Samples};
 /// 0, to the single texel, `top`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shape {
+    /// Columns of the data.
     pub width: u32,
+    /// Rows of the data.
     pub height: u32,
     /// The shift of the level of one texel: n.
     pub top: u32,
@@ -91,6 +93,7 @@ impl Texel for f32 {
 /// The levels above the data, by shift from 1 on, row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pyramid<T> {
+    /// Sizes of the levels.
     pub shape: Shape,
     coarser: Vec<Vec<T>>,
 }

@@ -41,8 +41,11 @@ impl From<Lod> for Footprint {
 
 /// Casts rays at one map.
 pub struct RayCaster<'a, T> {
+    /// The map as the camera sees it.
     pub terrain: &'a TerrainBlock,
+    /// The map's values.
     pub field: Field<'a, T>,
+    /// The end of subdivision.
     pub footprint: Footprint,
 }
 

@@ -11,17 +11,24 @@ use super::hit::{NO_DEPTH, Surface};
 /// leave the straight line between them.
 #[derive(Debug, Clone, Copy)]
 pub struct Subsegment {
+    /// The near end: u, v and h.
     pub near: Vec3,
+    /// The far end: u, v and h.
     pub far: Vec3,
+    /// Depth of the near end.
     pub depth_m: f32,
+    /// Bound of the ray's distance from the straight line: nodes along u and v, height.
     pub slack: Vec3,
 }
 
 /// The range of the fraction of a subsegment that is over the map, and the surface at its near end.
 #[derive(Debug, Clone, Copy)]
 pub struct Clip {
+    /// Its beginning.
     pub near: f32,
+    /// Its end; before the beginning where nothing is over the map.
     pub far: f32,
+    /// The surface at the beginning.
     pub surface: Surface,
 }
 

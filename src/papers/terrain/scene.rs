@@ -22,7 +22,9 @@ use crate::scene::{HeightMap, Mesh, Samples};
 /// A height map and its place.
 #[derive(Debug, Clone)]
 pub struct MapInput {
+    /// The samples.
     pub map: Arc<HeightMap>,
+    /// The map's place on the base.
     pub placement: Placement,
 }
 
@@ -33,6 +35,7 @@ pub struct Inputs<'a> {
     pub maps: &'a [MapInput],
     /// Polygon objects in the world, metres: x east, y up from the base, z south.
     pub objects: &'a [Mesh],
+    /// A picture over the first map.
     pub drape: Option<&'a Drape>,
 }
 
@@ -43,9 +46,11 @@ impl Inputs<'_> {
 
 /// The maps' places over the base, and the box around all.
 pub struct Scene {
+    /// The maps over the base.
     pub grounds: Vec<Ground>,
     /// The maps as passes read them: those of a whole turn are closed.
     pub maps: Vec<Arc<HeightMap>>,
+    /// The box around all maps.
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
     range_m: (f64, f64),
@@ -119,14 +124,19 @@ impl Scene {
 
 /// A map on the device.
 pub struct Map {
+    /// The samples and the levels above them.
     pub levels: Levels,
+    /// A [`TerrainBlock`].
     pub terrain: Arc<Buffer>,
 }
 
 /// The maps on the device, and the blocks that the host writes anew for every frame.
 pub struct DeviceScene {
+    /// The maps in their order.
     pub maps: Vec<Map>,
+    /// A [`LightBlock`].
     pub light: Arc<Buffer>,
+    /// The draped picture; a white texel without one.
     pub drape: Arc<ImageView>,
     /// A single texel, of the sky: what is found before the first map.
     pub no_hits: Arc<ImageView>,

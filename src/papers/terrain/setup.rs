@@ -27,6 +27,7 @@ use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
 /// A user's configuration.
 #[derive(Debug, Clone)]
 pub struct Setup {
+    /// The numbers.
     pub parameters: Parameters,
     /// At least one.
     pub maps: Vec<HeightMapSource>,
@@ -44,6 +45,7 @@ pub struct Setup {
     pub exaggeration: f32,
     /// Of the synthetic volcano.
     pub seed: u64,
+    /// Name of the preset or the experiment.
     pub preset: Option<String>,
 }
 
@@ -67,8 +69,11 @@ impl Default for Setup {
 
 /// A setup with its maps, objects and drape loaded.
 pub struct Scene {
+    /// In the order in which they were named.
     pub maps: Vec<MapInput>,
+    /// Polygon objects in the maps' frame.
     pub objects: Vec<Mesh>,
+    /// A picture over the first map.
     pub drape: Option<Drape>,
 }
 

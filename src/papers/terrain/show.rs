@@ -23,6 +23,7 @@ pub struct Show {
     depths: Arc<Buffer>,
     normals: Arc<Buffer>,
     colors: Arc<Buffer>,
+    /// 8-bit sRGB.
     pub picture: Arc<ImageView>,
     /// A [`Hit`] of each pixel.
     pub depth: Arc<ImageView>,

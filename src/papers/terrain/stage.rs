@@ -22,9 +22,11 @@ pub enum Stage {
 /// All that passes are built with.
 #[derive(Clone, Copy)]
 pub struct Build<'a> {
+    /// The compiled shaders of the device.
     pub shaders: &'a ShaderLibrary,
     /// Goes before the names of the resources.
     pub label: &'a str,
+    /// The numbers of the configuration.
     pub parameters: &'a Parameters,
     /// Of the passes over all pixels.
     pub stage: Stage,
@@ -105,8 +107,11 @@ impl Build<'_> {
 
 /// A pass over all pixels, once or once for each map.
 pub struct PixelPass {
+    /// The stage of its shaders.
     pub stage: Stage,
+    /// In the order of the maps.
     pub passes: Vec<Pass>,
+    /// The image that the last of them writes.
     pub target: Arc<ImageView>,
 }
 

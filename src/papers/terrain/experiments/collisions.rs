@@ -29,7 +29,9 @@ pub enum Body {
 /// A body and its first contact, if any.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Collision {
+    /// The body.
     pub body: Body,
+    /// None where it meets nothing.
     pub contact: Option<Contact>,
 }
 
