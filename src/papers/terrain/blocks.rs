@@ -3,10 +3,12 @@
 use bytemuck::Zeroable;
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
-use super::ground::Ground;
+use super::ground::{Ground, REPEATED};
 use super::interpolation::OVERSHOOT;
 use super::parameters::{Interpolation, Parameters};
 use super::placement::Rays;
+use super::pyramid::Shape;
+use super::scene::Scene;
 use crate::host_block;
 
 /// Kinds of base in [`TerrainBlock::base_kind`].
@@ -215,11 +217,16 @@ impl TerrainBlock {
 }
 
 impl LightBlock {
-    /// `range_m` is the lowest and the highest above the base, `near_m` the near plane of what is rasterised. Nothing is draped.
-    pub fn new(parameters: &Parameters, rays: &Rays, range_m: (f64, f64), near_m: f32) -> Self {
+    /// `near_m` is the near plane of what is rasterised.
+    pub fn new(scene: &Scene, parameters: &Parameters, rays: &Rays, near_m: f32) -> Self {
+        let (lowest_m, highest_m) = scene.range_m;
         // A level map has one tint: over a range of nothing, rounding would choose it.
-        let rounding_m = 1e-3 * range_m.0.abs().max(1.0);
-        let highest_m = range_m.1.max(range_m.0 + rounding_m);
+        let rounding_m = 1e-3 * lowest_m.abs().max(1.0);
+        // Of a map that goes once round the outermost columns repeat others.
+        let (shape, repeated) = scene.grounds.first().map_or((Shape::new(2, 2), 0), |ground| {
+            (ground.shape, if ground.closes { REPEATED } else { 0 })
+        });
+        let columns = if repeated > 0 { shape.width - 2 * repeated } else { shape.width - 1 };
         LightBlock {
             corner_direction: rays.corner.as_vec3(),
             near_m,
@@ -228,12 +235,12 @@ impl LightBlock {
             down_step: rays.down.as_vec3(),
             extinction_per_m: parameters.haze_per_km / 1000.0,
             to_sun: parameters.sun.direction(),
-            lowest_m: range_m.0 as f32,
+            lowest_m: lowest_m as f32,
             haze_color: HAZE,
-            highest_m: highest_m as f32,
-            drape_cells: Vec2::ONE,
-            drape_first_column: 0.0,
-            is_draped: 0,
+            highest_m: highest_m.max(lowest_m + rounding_m) as f32,
+            drape_cells: UVec2::new(columns, shape.height - 1).as_vec2(),
+            drape_first_column: if repeated > 0 { repeated as f32 - 0.5 } else { 0.0 },
+            is_draped: scene.is_draped.into(),
         }
     }
 }

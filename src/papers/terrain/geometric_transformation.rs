@@ -29,7 +29,7 @@ impl SceneView {
         let rays = Rays::new(&camera, parameters.width, parameters.height);
         SceneView {
             terrains: scene.terrain_blocks(parameters, &rays, camera.near_m).collect(),
-            light: scene.light_block(parameters, &rays, camera.near_m),
+            light: LightBlock::new(scene, parameters, &rays, camera.near_m),
             to_clip: to_clip(&camera, parameters.aspect()),
         }
     }

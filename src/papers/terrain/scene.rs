@@ -4,12 +4,11 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use ash::vk;
-use glam::Vec2;
 
 use super::blocks::{LightBlock, TerrainBlock};
 use super::drape::Drape;
 use super::geometric_transformation::SceneView;
-use super::ground::{Ground, Origin, REPEATED};
+use super::ground::{Ground, Origin};
 use super::hit::NO_DEPTH;
 use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters};
@@ -53,49 +52,32 @@ pub struct Scene {
     /// The box around all maps.
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
-    range_m: (f64, f64),
-    is_draped: bool,
-    /// Columns and rows of the first map's cells.
-    drape_cells: Vec2,
-    /// The column of the first map at which the draped picture begins.
-    drape_first_column: f32,
-    /// Of each map, whether its texels are the bits of floats.
-    are_floats: Vec<bool>,
+    pub range_m: (f64, f64),
+    /// A picture lies over the first map.
+    pub is_draped: bool,
 }
 
 impl Scene {
     /// Of at least one map.
     pub fn new(parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
-        let is_draped = inputs.drape.is_some();
-        let inputs = inputs.maps;
-        let maps = || inputs.iter().map(|input| &*input.map);
+        let placed = inputs.maps;
+        let maps = || placed.iter().map(|input| &*input.map);
         let lowest_m = maps().map(|map| map.range_m().0).fold(f32::INFINITY, f32::min);
         let highest_m = maps().map(|map| map.range_m().1).fold(f32::NEG_INFINITY, f32::max);
         let base_level_m = f64::from(parameters.base_level_m.unwrap_or(lowest_m));
         let origin = Origin::of(maps());
         let ground = |input: &MapInput| Ground::new(&input.map, input.placement, parameters.base, origin, base_level_m);
-        let grounds: Vec<Ground> = inputs.iter().map(ground).collect();
+        let grounds: Vec<Ground> = placed.iter().map(ground).collect();
         let start = Extent::of(std::iter::empty());
         let closed = |(input, ground): (&MapInput, &Ground)| {
             if ground.closes { Arc::new(input.map.closed()) } else { input.map.clone() }
         };
-        let (drape_cells, drape_first_column) = match grounds.first() {
-            Some(Ground { shape, closes: true, .. }) => {
-                let columns = shape.width - 2 * REPEATED;
-                (Vec2::new(columns as f32, shape.height as f32 - 1.0), REPEATED as f32 - 0.5)
-            }
-            Some(Ground { shape, .. }) => (Vec2::new(shape.width as f32, shape.height as f32) - 1.0, 0.0),
-            None => (Vec2::ONE, 0.0),
-        };
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
-            is_draped,
-            drape_cells,
-            drape_first_column,
-            maps: inputs.iter().zip(&grounds).map(closed).collect(),
+            is_draped: inputs.drape.is_some(),
+            maps: placed.iter().zip(&grounds).map(closed).collect(),
             grounds,
-            are_floats: maps().map(|map| matches!(map.samples(), Samples::Float(_))).collect(),
         }
     }
 
@@ -106,19 +88,11 @@ impl Scene {
         rays: &'a Rays,
         near_m: f32,
     ) -> impl Iterator<Item = TerrainBlock> + 'a {
-        let maps = self.grounds.iter().zip(&self.are_floats).zip(0..);
-        maps.map(move |((ground, &is_float), index)| {
+        let maps = self.grounds.iter().zip(&self.maps).zip(0..);
+        maps.map(move |((ground, map), index)| {
+            let is_float = matches!(map.samples(), Samples::Float(_));
             TerrainBlock::new(ground, parameters, is_float, index, rays, near_m)
         })
-    }
-
-    pub fn light_block(&self, parameters: &Parameters, rays: &Rays, near_m: f32) -> LightBlock {
-        LightBlock {
-            drape_cells: self.drape_cells,
-            drape_first_column: self.drape_first_column,
-            is_draped: self.is_draped.into(),
-            ..LightBlock::new(parameters, rays, self.range_m, near_m)
-        }
     }
 }
 
