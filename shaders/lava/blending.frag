@@ -16,8 +16,8 @@ layout(set = 0, binding = 3) uniform texture2D rock;
 layout(set = 0, binding = 4) uniform sampler linear;
 
 layout(push_constant, std430) uniform Shading {
-    vec2 drift_m; // how far the rock has moved with the lava
-    uint mode; // which of the thesis's pictures is drawn
+    vec2 drift_m; // distance that the rock has moved with the lava, along x and z
+    uint mode; // the one of the thesis's pictures that is drawn
 } shading;
 
 layout(location = 0) out vec4 accumulated;
@@ -40,7 +40,7 @@ void main() {
     if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest) {
         discard;
     }
-    vec3 color = scene.glow.rgb * (scene.space_m.y - center_m.y);
+    vec3 color = scene.glow * (scene.space_m.y - center_m.y);
     if (shading.mode == LAVA) {
         color *= rock_at(center_m.xz);
     } else if (shading.mode == ROCK) {

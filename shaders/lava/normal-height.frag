@@ -17,7 +17,7 @@ layout(push_constant, std430) uniform Grid {
 layout(location = 0) out vec4 normal_height;
 
 // 1 inside, falling to 0 at the borders.
-float share_at(ivec2 column) {
+float fraction_at(ivec2 column) {
     vec2 place_m = (vec2(column) + 0.5) * grid.space_m / grid.columns;
     vec2 to_border_m = min(place_m, grid.space_m - place_m);
     float nearest_m = min(to_border_m.x, to_border_m.y);
@@ -26,7 +26,7 @@ float share_at(ivec2 column) {
 
 float height_at(ivec2 column) {
     vec4 sums = texelFetch(accumulated_depths, column, 0);
-    return sums.a > 0.0 ? share_at(column) * sums.r / sums.a : 0.0;
+    return sums.a > 0.0 ? fraction_at(column) * sums.r / sums.a : 0.0;
 }
 
 // Height difference per metre along one axis: central, at the sides one-sided.
@@ -44,6 +44,6 @@ void main() {
     vec2 spacing_m = grid.space_m / grid.columns;
     vec2 slopes = vec2(slope(column, ivec2(1, 0), spacing_m.x), slope(column, ivec2(0, 1), spacing_m.y));
     vec3 normal = normalize(vec3(-slopes.x, 1.0, -slopes.y));
-    vec3 turned = normalize(mix(vec3(0.0, 1.0, 0.0), normal, share_at(column)));
+    vec3 turned = normalize(mix(vec3(0.0, 1.0, 0.0), normal, fraction_at(column)));
     normal_height = vec4(turned, height_at(column));
 }

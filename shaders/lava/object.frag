@@ -27,5 +27,5 @@ void main() {
     }
     vec3 normal = facing / max(length(facing), 1.0e-20);
     normal = dot(normal, world_m - object.eye_m) > 0.0 ? -normal : normal;
-    color = vec4(PAINT * mix(OF_THE_GLOW * scene.glow.rgb, SKY, 0.5 + 0.5 * normal.y), 1.0);
+    color = vec4(PAINT * mix(OF_THE_GLOW * scene.glow, SKY, 0.5 + 0.5 * normal.y), 1.0);
 }

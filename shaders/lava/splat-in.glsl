@@ -1,4 +1,4 @@
-// What the fragment stages get of a splat.
+// Inputs of the fragment stages of a splat.
 
 layout(location = 0) in vec2 disc; // from the centre, in radii along tangent and binormal
 layout(location = 1) in float eye_depth_m;

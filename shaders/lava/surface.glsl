@@ -16,10 +16,10 @@ vec4 texel_at(vec2 column) {
 Splat splat_at(vec2 place_m) {
     vec2 column = place_m / scene.space_m.xz * scene.columns - 0.5;
     vec2 base = floor(column);
-    vec2 share = column - base;
-    vec4 near_row = mix(texel_at(base), texel_at(base + vec2(1.0, 0.0)), share.x);
-    vec4 far_row = mix(texel_at(base + vec2(0.0, 1.0)), texel_at(base + vec2(1.0, 1.0)), share.x);
-    vec4 surface = mix(near_row, far_row, share.y);
+    vec2 fraction = column - base;
+    vec4 near_row = mix(texel_at(base), texel_at(base + vec2(1.0, 0.0)), fraction.x);
+    vec4 far_row = mix(texel_at(base + vec2(0.0, 1.0)), texel_at(base + vec2(1.0, 1.0)), fraction.x);
+    vec4 surface = mix(near_row, far_row, fraction.y);
     vec3 normal = normalize(surface.xyz);
 
     Splat splat;

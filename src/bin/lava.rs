@@ -1,5 +1,5 @@
 //! `lava`: the paper's own benchmark binary.
 
 fn main() -> std::process::ExitCode {
-    fumarole::cli::lava()
+    fumarole::cli::binary::<fumarole::papers::lava::setup::Setup>()
 }

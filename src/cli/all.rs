@@ -6,7 +6,6 @@ use clap::{Args, Parser};
 
 use super::bench;
 use super::failure::Failure;
-use super::lava::LavaArgs;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
 use super::paper::{PaperArgs, benched};
@@ -67,7 +66,6 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
     outcome::say_device(&output, &machine);
     let mut measured = Measured::default();
-    measure::<LavaArgs>(&mut machine, &output, &mut measured)?;
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::options::{CommonArgs, OutputArgs};
 use super::outcome;
 use super::watch::watched;
-use crate::image::{self, Raster, Rgba8, write_png};
+use crate::image::{Rgba8, write_png};
 use crate::measure::machine::Machine;
 use crate::measure::study::Study;
 use crate::measure::sweep::{Plan, Point, Swept};
@@ -139,14 +139,6 @@ impl Publication<'_> {
     pub fn picture(&self, suffix: &str, picture: &Rgba8) -> Result<(), Failure> {
         let path = self.file(suffix);
         write_png(&path, picture)?;
-        outcome::wrote(self.output, &path);
-        Ok(())
-    }
-
-    /// A target as a drawing for viewers.
-    pub fn drawing(&self, suffix: &str, raster: &Raster) -> Result<(), Failure> {
-        let path = self.file(suffix);
-        image::write(&path, raster)?;
         outcome::wrote(self.output, &path);
         Ok(())
     }

@@ -7,7 +7,6 @@ mod declared;
 mod devices;
 mod experiment;
 mod failure;
-mod lava;
 mod options;
 mod outcome;
 mod page;
@@ -25,7 +24,6 @@ use std::process::ExitCode;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
-use self::lava::LavaArgs;
 pub use self::page::options_table;
 use self::paper::PaperCommand;
 use crate::measure::study::{Declared, Visitor};
@@ -47,8 +45,6 @@ enum Command {
     All(all::AllArgs),
     /// Compare records: is B faster or slower than A?
     Compare(compare::CompareArgs),
-    /// Lava: particles to density to isosurface to splats (Unnthorsson)
-    Lava(PaperCommand<LavaArgs>),
 }
 
 /// The command with every paper below it, and what runs each.
@@ -84,13 +80,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::All(arguments)) => all::run(arguments),
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
-        Some(Command::Lava(arguments)) => arguments.run(),
     })
-}
-
-/// Runs the paper's own binary `lava`.
-pub fn lava() -> ExitCode {
-    end(paper::binary::<LavaArgs>())
 }
 
 /// Runs a paper's own binary.

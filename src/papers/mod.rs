@@ -3,7 +3,6 @@
 #[cfg(test)]
 mod layout;
 
-pub mod lava;
 
 use crate::measure::study::Visitor;
 
@@ -24,6 +23,7 @@ macro_rules! papers {
 }
 
 papers! {
+    lava
     gas
     caustics
     burning

@@ -1,5 +1,5 @@
-//! Pass `bounding-box` (section 4.2.1): each receiver's box, aligned with the light. The planes of smart slicing wait for
-//! the depth profile; the other variants slice in the same pass, under its name there.
+//! Pass `bounding-box` (section 4.2.1): each receiver's box, aligned with the light. The planes of smart slicing wait
+//! for the depth profile; the other variants slice in the same pass, under its name there.
 
 use std::sync::Arc;
 

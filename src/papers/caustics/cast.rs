@@ -27,7 +27,7 @@ impl Cast {
     /// The first light lays down depth and ambient light, the others are added (eq. 4-20).
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         lit: &LitReceiver,
@@ -58,7 +58,7 @@ impl Cast {
     /// Draws the receiver; heights of the position map lie within `height_slack_m` of the surface.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver, height_slack_m: f32) -> Result<(), Error> {
         let constants = CastConstants {
             bounds: lit.box_block(),

@@ -52,7 +52,7 @@ impl CausticsMap {
     /// The level map's: a plane lights the texels whose height lies in its cell (figure 4-15, steps 2.1 to 2.3).
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn of_level_map(
         context: Context<'_>,
         volumes: &IlluminationVolumes,
@@ -66,7 +66,7 @@ impl CausticsMap {
     /// The volumetric method's: a plane at a time, which lights every texel that it meets (figure 5-4).
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn of_sample_plane(
         context: Context<'_>,
         volumes: &IlluminationVolumes,
@@ -84,7 +84,7 @@ impl CausticsMap {
     /// Clears the map and adds the light of these planes.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(
         &self,
         frame: &mut Frame<'_>,
@@ -113,7 +113,7 @@ pub fn intersections(
 /// Draws the intersection triangles of each plane.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn draw_planes(
     frame: &mut Frame<'_>,
     pass: &Pass,

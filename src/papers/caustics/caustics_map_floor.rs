@@ -15,7 +15,7 @@ pub struct CausticsMapFloor {
 
 impl CausticsMapFloor {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         volumes: &IlluminationVolumes,
@@ -31,7 +31,7 @@ impl CausticsMapFloor {
     /// Draws the planes of the last frame. It spoils the caustics map.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver, volumes: &IlluminationVolumes) -> Result<(), Error> {
         draw_planes(frame, &self.pass, lit, &lit.cells, volumes)
     }

@@ -30,7 +30,7 @@ pub struct Combine {
 
 impl Combine {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         volumes: &IlluminationVolumes,
@@ -49,7 +49,7 @@ impl Combine {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.constants(&self.constants).vertices(3);

@@ -26,7 +26,7 @@ pub struct CombineSlices {
 
 impl CombineSlices {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, illumination_map: &Arc<ImageView>) -> Result<Self, Error> {
         let map = context.map("combined-map", LIGHT)?;
         let position = context.map("position-map", POSITION)?;
@@ -41,7 +41,7 @@ impl CombineSlices {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
         let height = lit.aligned.extent.y;
         let constants = SlicesConstants {

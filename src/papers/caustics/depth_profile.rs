@@ -1,5 +1,5 @@
-//! Pass `depth-profile` (section 4.7.2, figure 5-9): the levels of the box that hold the receiver, counted on the host in
-//! the position map, and the planes that smart slicing places there.
+//! Pass `depth-profile` (section 4.7.2, figure 5-9): the levels of the box that hold the receiver, counted on the host
+//! in the position map, and the planes that smart slicing places there.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ impl DepthProfile {
     /// Places the planes of `lit` by the heights that `positions` holds.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>, positions: &Buffer, lit: &mut LitReceiver) -> Result<(), Error> {
         let height = lit.aligned.extent.y;
         let SmartParameters { levels, placement } = self.parameters;
@@ -107,8 +107,8 @@ impl Profile {
         let uniform = || height / (2.0 * f64::from(planes.saturating_sub(1)));
         let epsilon = epsilon_m.map_or_else(uniform, f64::from);
         for (first, end) in self.sub_boxes() {
-            // Eq. 4-21: h_i = h hr_i. Eq. 4-22 prints the ratio for the height; table 5-4 fits planes, at least one. The
-            // last factor absorbs the rounding of a quotient that should be whole.
+            // Eq. 4-21: h_i = h hr_i. Eq. 4-22 prints the ratio for the height; table 5-4 fits planes, at least one.
+            // The last factor absorbs the rounding of a quotient that should be whole.
             let height_i = height * f64::from(end - first) / levels;
             let count = (height_i / (2.0 * epsilon) * (1.0 - 1e-9)).ceil().clamp(1.0, 4096.0);
             let boundary = |level: u32| height / 2.0 - height * f64::from(level) / levels;
@@ -124,7 +124,8 @@ mod tests {
     #[test]
     fn the_profile_counts_each_texel_in_its_level() {
         let mut profile = Profile::default();
-        // Levels of a box of height 1: 0.5..0.25, 0.25..0, 0..-0.25, -0.25..-0.5, each closed below; the top is closed above.
+        // Levels of a box of height 1: 0.5..0.25, 0.25..0, 0..-0.25, -0.25..-0.5, each closed below; the top is closed
+        // above.
         profile.collect(&[0.5, 0.25, 0.2, 0.0, -0.1, -0.5, -1.0e30, 0.6, -0.6], 1.0, 4);
         assert_eq!(profile.histogram, [2, 2, 1, 1]);
     }

@@ -15,7 +15,7 @@ pub struct DiffuseMap {
 
 impl DiffuseMap {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, lit: &LitReceiver, depth: &Arc<ImageView>) -> Result<Self, Error> {
         let diffuse = context.map("diffuse-map", LIGHT)?;
         let pass = lit
@@ -27,7 +27,7 @@ impl DiffuseMap {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
         lit.draw_into_map(frame, &self.pass, None)
     }

@@ -1,5 +1,5 @@
-//! Pass `illumination-volumes` (section 4.3): a refracted ray of one light at every vertex of the water. A volume is what
-//! lies between the three rays of a triangle.
+//! Pass `illumination-volumes` (section 4.3): a refracted ray of one light at every vertex of the water. A volume is
+//! what lies between the three rays of a triangle.
 
 use std::sync::Arc;
 
@@ -60,7 +60,7 @@ pub struct IlluminationVolumes {
 
 impl IlluminationVolumes {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, water: &WaterSurface, light: &Light, axes: Axes) -> Result<Self, Error> {
         let vertex_count = water.grid.vertex_count();
         let size_bytes = u64::from(vertex_count) * std::mem::size_of::<Ray>() as u64;
@@ -96,7 +96,7 @@ impl IlluminationVolumes {
     /// Refracts the light at every water vertex.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.compute(&self.pass, |dispatch| {
             dispatch.constants(&self.constants).threads(self.constants.vertex_count, 1, 1);

@@ -58,7 +58,7 @@ pub struct SmartSlicing {
 
 impl LevelMap {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         slicing: Slicing,

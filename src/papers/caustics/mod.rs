@@ -71,7 +71,7 @@ pub use self::parameters::{Parameters, SmartParameters, SmartPlacement, Variant,
 pub use self::receiver::ReceiverInput;
 pub use self::water_map::WaterMap;
 
-/// What a device must have for this paper, beyond the baseline of the Vulkan layer.
+/// Features that a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Float, Feature::DepthStencil32];
 
 /// The paper under one variant.
@@ -102,7 +102,7 @@ impl Caustics {
     /// Makes every resource and pass; `label` goes before the names of the resources.
     ///
     /// # Errors
-    /// What the Vulkan layer answers. The caller has validated `parameters`, and every receiver has a vertex.
+    /// Errors of the Vulkan layer. The caller has validated `parameters`, and every receiver has a vertex.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -165,7 +165,7 @@ impl Caustics {
     /// vertices and rasterisation cost alone. It spoils the maps. The stencil method has none.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let floors: Vec<_> = match &self.technique {
             Technique::LevelMap(LevelMap { receivers, .. }) => {
@@ -187,7 +187,8 @@ impl Caustics {
         Some(smart.depth_profile.histogram())
     }
 
-    /// The planes of each receiver under each light, as the last recorded frame placed them; none for the stencil method.
+    /// The planes of each receiver under each light, as the last recorded frame placed them; none for the stencil
+    /// method.
     pub fn plane_counts(&self) -> Vec<usize> {
         self.lit_receivers.iter().map(|lit| lit.cells.len()).collect()
     }

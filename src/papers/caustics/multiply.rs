@@ -16,7 +16,7 @@ pub struct Multiply {
 
 impl Multiply {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         volumes: &IlluminationVolumes,
@@ -36,7 +36,7 @@ impl Multiply {
     /// Multiplies the slice of one plane.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, plane: usize) -> Result<(), Error> {
         frame.graphics(&self.passes[plane], |draw| {
             draw.constants(&self.constants).vertices(3);

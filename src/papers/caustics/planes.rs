@@ -21,7 +21,7 @@ pub fn slice(height: f64, count: u32, cells: &mut Vec<Cell>) {
 /// Adds the cells between two heights; `on_top` says that `top` is the box's own, which belongs to the cell under it.
 pub fn slice_between(top: f64, bottom: f64, count: u32, on_top: bool, cells: &mut Vec<Cell>) {
     // The ends are given, not computed, so that neighbouring pieces share them bit for bit.
-    let at = |share: f64| top + (bottom - top) * share;
+    let at = |fraction: f64| top + (bottom - top) * fraction;
     let boundary = |i: u32| (if i == count { bottom } else { at(f64::from(i) / f64::from(count)) }) as f32;
     cells.extend((0..count).map(|i| Cell {
         plane: at((f64::from(i) + 0.5) / f64::from(count)) as f32,

@@ -17,7 +17,7 @@ pub struct PositionDiffuseMap {
 
 impl PositionDiffuseMap {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, lit: &LitReceiver) -> Result<Self, Error> {
         let position = context.map("position-map", POSITION)?;
         let diffuse = context.map("diffuse-map", LIGHT)?;
@@ -32,7 +32,7 @@ impl PositionDiffuseMap {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
         lit.draw_into_map(frame, &self.pass, None)
     }

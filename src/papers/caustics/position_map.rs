@@ -17,7 +17,7 @@ pub struct PositionMap {
 
 impl PositionMap {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, lit: &LitReceiver) -> Result<Self, Error> {
         let position = context.map("position-map", POSITION)?;
         let depth = context.map("position-depth", DEPTH)?;
@@ -30,7 +30,7 @@ impl PositionMap {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
         lit.draw_into_map(frame, &self.pass, None)
     }

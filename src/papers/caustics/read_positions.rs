@@ -13,7 +13,7 @@ pub struct ReadPositions {
 
 impl ReadPositions {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, position_map: &Arc<ImageView>) -> Result<Self, Error> {
         let size_bytes = 4 * u64::from(context.parameters.map_size).pow(2);
         let desc = BufferDesc::new(context.name("position-readback"), size_bytes).location(Location::Readback);
@@ -24,7 +24,7 @@ impl ReadPositions {
     /// Waits for the heights of the position map, metres of box space, row by row.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<&Buffer, Error> {
         frame.copy(&self.pass)?;
         frame.wait_for(&self.pass)?;

@@ -46,7 +46,7 @@ host_block! {
     }
 }
 
-/// What a caller puts into the water: a mesh in world space and its colour.
+/// An object that a caller puts into the water: a mesh in world space and its colour.
 #[derive(Debug, Clone)]
 pub struct ReceiverInput {
     pub mesh: Mesh,
@@ -66,7 +66,7 @@ pub struct Receiver {
 
 impl Receiver {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, input: &ReceiverInput) -> Result<Self, Error> {
         let mesh = &input.mesh;
         let vertices: Vec<Vertex> = mesh
@@ -139,7 +139,7 @@ impl LitReceiver {
     /// Draws the whole receiver, or what lies in one cell, by a [`LitReceiver::map_pass`].
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn draw_into_map(&self, frame: &mut Frame<'_>, pass: &Pass, within: Option<&Cell>) -> Result<(), Error> {
         let half = (self.aligned.extent.y / 2.0) as f32;
         let constants = MapConstants {

@@ -1,5 +1,5 @@
-//! Pass `receivers` (section 3.2): the receivers under the viewer's camera with ambient light, and the surface that is seen
-//! in each pixel, for the stencil method.
+//! Pass `receivers` (section 3.2): the receivers under the viewer's camera with ambient light, and the surface that is
+//! seen in each pixel, for the stencil method.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ pub struct Receivers {
 
 impl Receivers {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, receivers: &[Arc<Receiver>], underwater: &Underwater) -> Result<Self, Error> {
         let image = |name: &str, format| context.image(name, format, COLOR_MAP)?.view();
         let position = image("surface-position", vk::Format::R32G32B32A32_SFLOAT)?;
@@ -67,7 +67,7 @@ impl Receivers {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.passes.iter().try_for_each(|(pass, receiver)| {
             let constants = ReceiverConstants { albedo: receiver.albedo.to_array(), _pad: 0.0, ambient: self.ambient };

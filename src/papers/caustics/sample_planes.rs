@@ -1,5 +1,5 @@
-//! Pass `sample-planes` (sections 4.2.1 and 5.2.1): each receiver's box, aligned with the light and sliced uniformly: what the
-//! level map calls its reference planes.
+//! Pass `sample-planes` (sections 4.2.1 and 5.2.1): each receiver's box, aligned with the light and sliced uniformly:
+//! what the level map calls its reference planes.
 
 use std::sync::Arc;
 

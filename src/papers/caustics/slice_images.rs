@@ -1,5 +1,5 @@
-//! Pass `slice-images` (section 5.2.1, figures 5-2 and 5-3): for every sample plane an image of the diffuse light on the
-//! receiver within the plane's cell.
+//! Pass `slice-images` (section 5.2.1, figures 5-2 and 5-3): for every sample plane an image of the diffuse light on
+//! the receiver within the plane's cell.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub struct SliceImages {
 
 impl SliceImages {
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Limit`] for more planes than an array has layers.
+    /// Errors of the Vulkan layer; [`Error::Limit`] for more planes than an array has layers.
     pub fn new(context: Context<'_>, lit: &LitReceiver) -> Result<Self, Error> {
         let planes = context.parameters.planes;
         let depth = context.map("slice-depth", DEPTH)?;
@@ -37,7 +37,7 @@ impl SliceImages {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, lit: &LitReceiver) -> Result<(), Error> {
         let mut each = self.passes.iter().zip(&lit.cells);
         each.try_for_each(|(pass, cell)| lit.draw_into_map(frame, pass, Some(cell)))

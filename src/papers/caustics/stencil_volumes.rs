@@ -1,6 +1,7 @@
-//! Pass `stencil-volumes` (section 3.2, Iwasaki et al.; the thesis has one sentence on it): each illumination volume is held
-//! by a closed prism, counted in the stencil buffer against the depth of what is seen, then drawn where the count is not
-//! zero, adding its light. It knows no occlusion: a surface in the shadow of another is lit as if nothing stood before it.
+//! Pass `stencil-volumes` (section 3.2, Iwasaki et al.; the thesis has one sentence on it): each illumination volume is
+//! held by a closed prism, counted in the stencil buffer against the depth of what is seen, then drawn where the count
+//! is not zero, adding its light. It knows no occlusion: a surface in the shadow of another is lit as if nothing stood
+//! before it.
 
 use ash::vk;
 
@@ -40,7 +41,7 @@ pub struct StencilVolumes {
 
 impl StencilVolumes {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         water: &WaterSurface,
@@ -83,7 +84,7 @@ impl StencilVolumes {
     /// The volumes one after the other: a draw that counts, a draw that lights.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, volumes: &IlluminationVolumes) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             for volume in 0..volumes.index_count / 3 {

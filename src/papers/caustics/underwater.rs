@@ -18,12 +18,13 @@ host_block! {
     }
 }
 
-/// What the view from above needs to see beyond the picture's edges, where the waves turn its rays outwards.
+/// Widening of the picture's angle, for the view from above needs to see beyond its edges, where waves turn rays
+/// outwards.
 const WIDENING: f32 = 1.4;
 
-/// The camera of the underwater textures. From above it stands where the refracted ray of the picture's middle comes from, so
-/// that what hides what under water is, but for the waves, what the viewer sees; farther by the refraction index, as an
-/// object under water seems nearer.
+/// The camera of the underwater textures. From above it stands where the refracted ray of the picture's middle comes
+/// from, so that what hides what under water is, but for the waves, what the viewer sees; farther by the refraction
+/// index, as an object under water seems nearer.
 fn underwater_camera(parameters: &Parameters) -> Camera {
     let camera = parameters.camera;
     let forward = (camera.target - camera.eye).normalize();
@@ -32,12 +33,12 @@ fn underwater_camera(parameters: &Parameters) -> Camera {
     }
     let level = LEVEL_M as f32;
     let n = parameters.refraction_index;
-    let way = (level - camera.eye.y) / forward.y;
-    let entry = camera.eye + forward * way;
+    let t = (level - camera.eye.y) / forward.y;
+    let entry = camera.eye + forward * t;
     let sin2_refracted = (1.0 - forward.y * forward.y) / (n * n);
     let refracted = (forward / n + Vec3::Y * (-forward.y / n - (1.0 - sin2_refracted).sqrt())).normalize();
     Camera {
-        eye: entry - refracted * (way * n),
+        eye: entry - refracted * (t * n),
         target: entry + refracted,
         vertical_fov_rad: 2.0 * ((camera.vertical_fov_rad / 2.0).tan() / n * WIDENING).atan(),
         far_m: camera.far_m * n,

@@ -1,4 +1,5 @@
-//! Pass `view`: the finished picture, which is the cast seen through the water's surface from above (chapter 1), or plainly from below.
+//! Pass `view`: the finished picture, which is the cast seen through the water's surface from above (chapter 1), or
+//! plainly from below.
 
 use std::sync::Arc;
 
@@ -120,7 +121,7 @@ impl View {
     /// Draws the picture from the cast.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             match self.constants {

@@ -1,5 +1,5 @@
-//! The volumetric method (section 5.2.1, after Iwasaki et al.): a slice image of the receiver for every sample plane, each
-//! multiplied by a caustics map of its own.
+//! The volumetric method (section 5.2.1, after Iwasaki et al.): a slice image of the receiver for every sample plane,
+//! each multiplied by a caustics map of its own.
 
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ pub struct ReceiverPasses {
 
 impl Volumetric {
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Limit`] for more planes than an array has layers.
+    /// Errors of the Vulkan layer; [`Error::Limit`] for more planes than an array has layers.
     pub fn new(
         context: Context<'_>,
         lit_receivers: &[LitReceiver],

@@ -58,8 +58,8 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A mesh of about `triangles` triangles, twice as many cells along z as along x where that divides (10,000 are 50 x
-    /// 100 cells), over the footprint of `boxes` under `light`s and a margin.
+    /// A mesh of about `triangles` triangles, twice as many cells along z as along x where that divides (10,000 are 50
+    /// x 100 cells), over the footprint of `boxes` under `light`s and a margin.
     pub fn over(boxes: &[(ReceiverBox, Light)], parameters: &Parameters) -> Self {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let mut deepest = LEVEL_M;
@@ -71,11 +71,12 @@ impl Grid {
                 deepest = deepest.min(corner.y);
             }
         }
-        // A wave of slope s turns a ray by about s (1 - 1/n): what it moves the footprint's edge by.
-        let turn = f64::from(parameters.steepest_slope()) * (1.0 - 1.0 / f64::from(parameters.refraction_index));
-        let mut margin = (high - low) * MARGIN + DVec2::splat(turn.min(1.0) * (LEVEL_M - deepest));
+        // A wave of slope s deviates a ray by about s (1 - 1/n), and moves the edge of the footprint by as much.
+        let deviation = f64::from(parameters.steepest_slope()) * (1.0 - 1.0 / f64::from(parameters.refraction_index));
+        let mut margin = (high - low) * MARGIN + DVec2::splat(deviation.min(1.0) * (LEVEL_M - deepest));
         if let Some(map) = &parameters.water_map {
-            // A map may lie above or below the level as a whole: a slanting ray then enters beside its place at the level.
+            // A map may lie above or below the level as a whole: a slanting ray then enters beside its place at the
+            // level.
             let (low_m, high_m) = map.range_m();
             margin += DVec2::splat(f64::from(low_m.abs().max(high_m.abs())));
         }
@@ -136,8 +137,8 @@ fn entry_point(light: &Light, target: DVec3, receiver: &ReceiverBox, refraction_
             DVec2::new(entry.x, entry.z)
         }
         Light::Point { position, .. } => {
-            // Fermat: between the foot of the light and the foot of the target the entry point has equal optical slopes;
-            // the difference is monotonic, so bisection finds it.
+            // Fermat: between the foot of the light and the foot of the target the entry point has equal optical
+            // slopes; the difference is monotonic, so bisection finds it.
             let position = position.as_dvec3();
             let (from, to) = (DVec2::new(position.x, position.z), DVec2::new(target.x, target.z));
             let (above, below) = (position.y - LEVEL_M, LEVEL_M - target.y);

@@ -6,12 +6,12 @@ use glam::DVec2;
 
 use crate::scene::HeightMap;
 
-/// A still surface. Its middle lies over the middle of the receivers, its columns run along +X and its rows along +Z, at
-/// the map's own spacing; heights are metres about the water's level.
+/// A still surface. Its middle lies over the middle of the receivers, its columns run along +X and its rows along +Z,
+/// at the map's own spacing; heights are metres about the water's level.
 ///
-/// It is the bicubic spline through the samples. A caustic's brightness follows the curvature of the water: this surface
-/// has a continuous one, while Catmull-Rom's jumps from cell to cell, and would show the map's cells in the light. Beyond
-/// the border it levels off within two samples.
+/// It is the bicubic spline through the samples. A caustic's brightness follows the curvature of the water: this
+/// surface has a continuous one, while Catmull-Rom's jumps from cell to cell, and would show the map's cells in the
+/// light. Beyond the border it levels off within two samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WaterMap {
     name: String,
@@ -76,8 +76,9 @@ fn samples(map: &HeightMap) -> Vec<f32> {
     places.map(|(column, row)| map.height_m(column, row)).collect()
 }
 
-/// Replaces the samples at `places` by the coefficients c of the B-spline through them: (c[i-1] + 4 c[i] + c[i+1]) / 6 is
-/// the sample i, and c goes on beyond both ends as at the ends. Gauss's elimination of a system with three diagonals.
+/// Replaces the samples at `places` by the coefficients c of the B-spline through them: (c[i-1] + 4 c[i] + c[i+1]) / 6
+/// is the sample i, and c goes on beyond both ends as at the ends. Gauss's elimination of a system with three
+/// diagonals.
 fn interpolate(values: &mut [f32], places: impl Iterator<Item = usize> + Clone, line: &mut Vec<(usize, f64, f64)>) {
     let last = places.clone().last();
     line.clear();

@@ -1,4 +1,5 @@
-//! Pass `water-surface` (section 5.2): vertices of the water's mesh in the shape of a sum of sine waves or of a height map.
+//! Pass `water-surface` (section 5.2): vertices of the water's mesh in the shape of a sum of sine waves or of a height
+//! map.
 
 use std::sync::Arc;
 
@@ -24,7 +25,7 @@ host_block! {
 }
 
 host_block! {
-    /// Where a height map lies: x and z of its node (columns / 2, rows / 2), spacing, samples along x and z.
+    /// Placement of a height map: x and z of its node (columns / 2, rows / 2), spacing, samples along x and z.
     pub struct MapBlock {
         node: [f32; 2],
         spacing: [f32; 2],
@@ -56,7 +57,7 @@ host_block! {
     }
 }
 
-/// What gives the water its shape, on the device.
+/// Shape of the water on the device.
 pub enum Shape {
     Waves { list: Arc<Buffer>, count: u32 },
     Map { coefficients: Arc<Buffer>, place: MapBlock },
@@ -118,7 +119,7 @@ impl WaterSurface {
     /// Uploads shape and indices; `middle` is where the middle of a height map lies, x and z in metres.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, grid: Grid, middle: DVec2) -> Result<Self, Error> {
         let shape = Shape::new(context, middle)?;
         let size_bytes = u64::from(grid.vertex_count()) * u64::from(VERTEX_FLOATS) * 4;
@@ -143,7 +144,7 @@ impl WaterSurface {
     /// Evaluates the surface at `time_s`; a height map stands still.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
         let Grid { corner, cell, columns, rows } = self.grid;
         let (corner, cell) = (corner.as_vec2().to_array(), cell.as_vec2().to_array());

@@ -31,7 +31,7 @@ impl AccumulateDepths {
     /// `instanced` splats are quads without a geometry stage.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, vertices: &Arc<Buffer>, instanced: bool) -> Result<Self, Error> {
         let parameters = context.parameters;
         let sums = context.grid_target("accumulated-depths")?;
@@ -63,7 +63,7 @@ impl AccumulateDepths {
     /// Draws the accepted points, which the vertex buffer holds.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
         self.draw(frame, &self.pass, accepted)
     }
@@ -71,7 +71,7 @@ impl AccumulateDepths {
     /// Draws them with an empty fragment stage. It changes no texture.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record_floor(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
         self.draw(frame, &self.floor, accepted)
     }

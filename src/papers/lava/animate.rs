@@ -38,7 +38,7 @@ pub struct Animate {
 
 impl Animate {
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Limit`] for more particles than a texture holds.
+    /// Errors of the Vulkan layer; [`Error::Limit`] for more particles than a texture holds.
     pub fn new(context: Context<'_>, particles: &Particles) -> Result<Self, Error> {
         let Context { shaders, parameters, .. } = context;
         let (width, height) = Particles::texture_size(particles.positions.len() as u32);
@@ -75,7 +75,7 @@ impl Animate {
     /// Moves the particles one step.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let pass = if self.steps == 0 { &self.first } else { &self.ping_pong[self.steps as usize % 2] };
         frame.graphics(pass, |draw| {

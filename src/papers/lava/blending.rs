@@ -29,7 +29,7 @@ pub struct Blending {
 
 impl Blending {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, splats: &Splats, visibility: &Visibility, rock: &Rock) -> Result<Self, Error> {
         let parameters = context.parameters;
         let sums = context.target("accumulated-colors", FLOATS, parameters.width, parameters.height)?;
@@ -49,7 +49,7 @@ impl Blending {
     /// Draws the splats; the rock has drifted `drift_m` along x.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, splats: &Splats, drift_m: f32) -> Result<(), Error> {
         let constants = ShadingConstants { drift_m: [drift_m, 0.0], mode: self.shading.mode() };
         frame.graphics(&self.pass, |draw| {

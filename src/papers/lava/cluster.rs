@@ -28,7 +28,7 @@ pub struct Cluster {
 
 impl Cluster {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, positions: &Buffer, particle_count: usize) -> Result<Self, Error> {
         let vertices = (0..context.parameters.clusters())
             .map(|k| host_vertices(context, &format!("cluster-{k}"), particle_count as u64))
@@ -41,7 +41,7 @@ impl Cluster {
     /// Sorts the positions that were read back into the vertex buffers.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>, positions: &Buffer) -> Result<(), Error> {
         let Cluster { info, clusters, vertices, particle_count } = self;
         frame.host(info, || {
@@ -107,11 +107,11 @@ impl Clusters {
     }
 }
 
-/// A vertex buffer that the host fills, with the capacity for `count` points. It begins as zeros, so that all of it may be
-/// bound however few are drawn.
+/// A vertex buffer that the host fills, with the capacity for `count` points. It begins as zeros, so that all of it may
+/// be bound however few are drawn.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn host_vertices(context: Context<'_>, name: &str, count: u64) -> Result<Arc<Buffer>, Error> {
     let desc = BufferDesc::new(context.name(name), count * size_of::<Point>() as u64)
         .usage(vk::BufferUsageFlags::VERTEX_BUFFER)

@@ -59,7 +59,7 @@ pub struct Density {
 
 impl Density {
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Limit`] for a grid or a point size (eq. 6.1) beyond the device's.
+    /// Errors of the Vulkan layer; [`Error::Limit`] for a grid or a point size (eq. 6.1) beyond the device's.
     pub fn new(context: Context<'_>, cluster_vertices: &[Arc<Buffer>]) -> Result<Self, Error> {
         let Context { shaders, parameters, .. } = context;
         check_point_size(context)?;
@@ -95,7 +95,7 @@ impl Density {
     /// Draws the particles of one cluster, which its vertex buffer holds.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(
         &self,
         frame: &mut Frame<'_>,
@@ -109,7 +109,7 @@ impl Density {
     /// Draws them with an empty fragment stage. It changes no texture.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record_floor(
         &self,
         frame: &mut Frame<'_>,

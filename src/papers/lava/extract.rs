@@ -27,7 +27,7 @@ struct Grid {
 
 impl Extract {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, densities: &Buffer) -> Result<Self, Error> {
         let parameters = context.parameters;
         let [x, _, z] = parameters.density;
@@ -56,7 +56,7 @@ impl Extract {
     /// Adds the accepted points of one cluster's planes.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>, densities: &Buffer, planes: &GridPlanes) -> Result<(), Error> {
         let Extract { info, vertices, grid, accepted, range } = self;
         frame.host(info, || {

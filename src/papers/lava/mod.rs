@@ -10,7 +10,7 @@
 //!   └─► visibility ─► blending ─► normalisation                                   (stage three, chapter 7)
 //! ```
 //!
-//! Where there are polygon objects, `objects` draws them into the picture after the thesis's last pass.
+//! Polygon objects, if there are any, are drawn by `objects` into the picture after the thesis's last pass.
 
 mod accumulate_depths;
 mod animate;
@@ -59,17 +59,17 @@ use crate::measure::{Paper, Target};
 use crate::scene::Mesh;
 
 pub use self::cluster::{Clusters, Point};
-pub use self::parameters::{CAMERAS, Parameters, Preset, Shading, Variant};
+pub use self::parameters::{CAMERAS, Parameters, Shading, Variant};
 pub use self::rock::Rock;
 pub use self::splats::depth_range_m;
 pub use self::start::Particles;
 
-/// What a device must have for this paper, beyond the baseline of the Vulkan layer. Without a geometry stage the splats
-/// are instanced quads, and [`Paper::warnings`] says so.
+/// Features that a device must have for this paper, beyond the baseline of the Vulkan layer. Without a geometry stage
+/// the splats are instanced quads, and [`Paper::warnings`] says so.
 pub const NEEDS: [Feature; 2] = [Feature::BlendRgba32Float, Feature::LargePoints];
 
-/// Each pass that draws points or splats, with the pass of the same vertices and primitives that has an empty fragment stage:
-/// what it costs at least. The splats of stage three are the same twice.
+/// Each pass that draws points or splats, with the pass of the same vertices and primitives that has an empty fragment
+/// stage: what it costs at least. The splats of stage three are the same twice.
 pub const FLOORS: [(&str, &str); 4] = [
     ("density", "density-floor"),
     ("accumulate-depths", "accumulate-depths-floor"),
@@ -122,7 +122,7 @@ impl Animation {
     /// Moves the particles one step, reads them back and clusters them.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.animate.record(frame)?;
         let positions = self.read_positions.record(frame, self.animate.current())?;
@@ -135,7 +135,7 @@ impl Isosurface {
     /// vertex buffers.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>, clusters: &[Vec<Point>]) -> Result<(), Error> {
         self.extract.clear();
         for (k, (particles, planes)) in clusters.iter().zip(&self.planes).enumerate() {
@@ -153,7 +153,7 @@ impl Splatting {
     /// Draws the surface; the rock has drifted `drift_m` along x.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
         self.visibility.record(frame, &self.splats)?;
         self.blending.record(frame, &self.splats, drift_m)?;
@@ -171,7 +171,7 @@ impl Paper for Lava {
     /// the picture depends on the number alone.
     ///
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Pass`] for a frame before the last without a restart between them.
+    /// Errors of the Vulkan layer; [`Error::Pass`] for a frame before the last without a restart between them.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         let steps = self.animation.steps();
         if number < steps {
@@ -208,7 +208,7 @@ impl Paper for Lava {
         if self.animation.steps() > 0 && self.isosurface.accepted().is_empty() {
             let [lowest, highest] = self.isosurface.density_range();
             warnings.push(format!(
-                "no grid point was accepted, so the surface is flat: --rho is {} and the densities are {lowest} to \
+                "no grid point was accepted, so the surface is flat: `rho` is {} and the densities are {lowest} to \
                  {highest}",
                 self.parameters.rho()
             ));
@@ -240,7 +240,7 @@ impl Lava {
     /// simulation space, metres.
     ///
     /// # Errors
-    /// What the Vulkan layer answers. The caller has validated `parameters` and `rock`; there is at least one particle.
+    /// Errors of the Vulkan layer. The caller has validated `parameters` and `rock`; there is at least one particle.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -269,11 +269,11 @@ impl Lava {
         Ok(Lava { parameters, animation, isosurface, splatting, objects, points, lacks_geometry_stage })
     }
 
-    /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what their
-    /// vertices and primitives cost alone. It changes no texture.
+    /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what
+    /// their vertices and primitives cost alone. It changes no texture.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record_floors(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let Isosurface { planes, density, extract, accumulate_depths, .. } = &self.isosurface;
         for (k, (particles, planes)) in self.animation.clusters().iter().zip(planes).enumerate() {
@@ -309,7 +309,7 @@ impl Lava {
 
 impl Animation {
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Limit`] for more particles than a texture holds.
+    /// Errors of the Vulkan layer; [`Error::Limit`] for more particles than a texture holds.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -326,7 +326,7 @@ impl Animation {
     /// Moves the particles one step.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn animate(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.animate.record(frame)
     }
@@ -391,11 +391,11 @@ impl Isosurface {
 }
 
 impl Splatting {
-    /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats are
-    /// quads without a geometry stage.
+    /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats
+    /// are quads without a geometry stage.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,

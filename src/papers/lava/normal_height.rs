@@ -24,7 +24,7 @@ pub struct NormalHeight {
 
 impl NormalHeight {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, accumulated_depths: &Arc<ImageView>) -> Result<Self, Error> {
         let parameters = context.parameters;
         let surface = context.grid_target("normal-height")?;
@@ -42,7 +42,7 @@ impl NormalHeight {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.constants(&self.constants).vertices(3);

@@ -16,7 +16,7 @@ pub struct Normalisation {
 
 impl Normalisation {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, accumulated_colors: &Arc<ImageView>) -> Result<Self, Error> {
         let (width, height) = (context.parameters.width, context.parameters.height);
         // The values are those of the display already.
@@ -30,7 +30,7 @@ impl Normalisation {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.vertices(3);

@@ -1,5 +1,5 @@
-//! Pass `objects`: polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture without objects is
-//! the thesis's own.
+//! Pass `objects`: polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture
+//! without objects is the thesis's own.
 
 use ash::vk;
 
@@ -35,7 +35,7 @@ impl Objects {
     /// Draws over the picture what of `meshes`, metres in the simulation space, is nearer than the lava and each other.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         meshes: &[Mesh],
@@ -77,7 +77,7 @@ impl Objects {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.passes.iter().try_for_each(|(pass, count)| {
             frame.graphics(pass, |draw| {

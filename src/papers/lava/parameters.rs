@@ -1,8 +1,13 @@
-//! What a user can set, under the thesis's own words.
+//! Numbers that a user can set, under the thesis's own words.
+
+use std::ffi::OsStr;
 
 use glam::Vec3;
+use serde_json::Value as Json;
 
-use crate::measure::{ParameterError, components};
+use crate::field;
+use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one};
+use crate::measure::{ParameterError, config};
 use crate::scene::Camera;
 
 /// The methods that are compared: the thesis has one.
@@ -20,43 +25,7 @@ impl crate::measure::Variant for Variant {
     }
 }
 
-/// A configuration that the thesis names.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Preset {
-    /// Chapter 8: figures 8.1 to 8.4, and the 20 frames a second.
-    Results,
-    /// Figures 5.1, 5.2 and 6.2: 65,536 particles, a finer grid.
-    Fig62,
-    /// Figure 8.5: `Results` with four splat sizes, of which the two smallest leave holes.
-    Fig85,
-}
-
-impl Preset {
-    pub const ALL: [Preset; 3] = [Preset::Results, Preset::Fig62, Preset::Fig85];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Preset::Results => "results",
-            Preset::Fig62 => "fig-6.2",
-            Preset::Fig85 => "fig-8.5",
-        }
-    }
-
-    /// Its configurations: four for figure 8.5, in the order of the figure, else one.
-    pub fn configurations(self) -> Vec<Parameters> {
-        match self {
-            Preset::Results => vec![Parameters::default()],
-            Preset::Fig62 => {
-                vec![Parameters { particles: 65_536, radius_m: 0.1, density: [512, 32, 128], ..Parameters::default() }]
-            }
-            Preset::Fig85 => [0.001875, 0.004375, 0.008125, 0.020625]
-                .map(|splat_radius_m| Parameters { splat_radius_m, ..Parameters::default() })
-                .to_vec(),
-        }
-    }
-}
-
-/// What the splats are coloured by: the lava, or one of the parts that figures 4.2, 4.3, 6.3, 6.4 and 7.3 show.
+/// Colour of the splats: the lava, or one of the parts that figures 4.2, 4.3, 6.3, 6.4 and 7.3 show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
     /// Colour times rock: the finished picture.
@@ -73,28 +42,27 @@ pub enum Shading {
     Particles,
 }
 
+impl Choice for Shading {
+    const ALL: &'static [Self] =
+        &[Shading::Lava, Shading::Color, Shading::Rock, Shading::Normals, Shading::Heights, Shading::Particles];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("lava", "Colour times rock: the finished picture"),
+        ("color", "The calculated colour alone"),
+        ("rock", "The rock texture alone"),
+        ("normals", "The normals of the surface as colours"),
+        ("heights", "The heights of the surface as grey"),
+        ("particles", "No surface: every particle as a point"),
+    ];
+}
+
 impl Shading {
-    pub const ALL: [Shading; 6] =
-        [Shading::Lava, Shading::Color, Shading::Rock, Shading::Normals, Shading::Heights, Shading::Particles];
-
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Shading::Lava => "lava",
-            Shading::Color => "color",
-            Shading::Rock => "rock",
-            Shading::Normals => "normals",
-            Shading::Heights => "heights",
-            Shading::Particles => "particles",
-        }
-    }
-
-    /// As `lava/blending.frag` numbers it; particles are drawn over its picture.
+    /// Its number in `lava/blending.frag`; particles are drawn over its picture.
     pub(super) fn mode(self) -> u32 {
         self as u32
     }
 }
 
-/// Every number of a configuration. [`Parameters::validate`] checks the ranges given here.
+/// Every number of a configuration, in the ranges of [`Parameters::declared`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     /// Size of the simulation space along x (the flow), y (up) and z in metres, each above 0 and at most 1000.
@@ -111,7 +79,7 @@ pub struct Parameters {
     pub splats: [u32; 2],
     /// Radius of a splat in metres, above 0, at most the shortest side of the space.
     pub splat_radius_m: f32,
-    /// How far behind the nearest a fragment is blended in metres (eq. 7.1), above 0 and at most 1000.
+    /// Depth behind the nearest splat within which a fragment is blended, metres (eq. 7.1), above 0 and at most 1000.
     pub epsilon_m: f32,
     /// Distance from the borders in metres over which the height sinks to 0, 0 to 1000.
     pub border_m: f32,
@@ -171,71 +139,186 @@ const fn camera(eye: Vec3, target: Vec3) -> Camera {
     Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.75, near_m: 0.05, far_m: 20.0 }
 }
 
-/// Above 0 and at most `highest`; not for NaN.
-fn is_positive(value: f32, highest: f32) -> bool {
-    value > 0.0 && value <= highest
+/// A camera by the name of its figure, or by eye and target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct View(Camera);
+
+impl Value for View {
+    const SHAPE: Shape = Shape { placeholder: "FIGURE|EYE,TARGET", ..EyeAndTarget::SHAPE };
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        let text = one(texts)?;
+        if let Some((_, camera)) = CAMERAS.iter().find(|(name, _)| *name == text) {
+            return Ok(View(*camera));
+        }
+        let figures = CAMERAS.map(|(name, _)| name).join(", ");
+        let place = EyeAndTarget::parse(texts).map_err(|e| format!("{figures}, or eye and target: {e}"))?;
+        Ok(View(Camera { eye: place.eye, target: place.target, ..CAMERAS[0].1 }))
+    }
+
+    fn text(&self) -> String {
+        let Camera { eye, target, .. } = self.0;
+        let figure = CAMERAS.iter().find(|(_, camera)| *camera == self.0);
+        figure.map_or_else(|| EyeAndTarget { eye, target }.text(), |(name, _)| (*name).to_owned())
+    }
+
+    fn json(&self) -> Json {
+        config::camera(&self.0)
+    }
 }
 
+const SPACE: Field<Parameters, Extents<f32, 3>> =
+    Field { get: |p| Extents(p.space_m.to_array()), set: |p, space| p.space_m = Vec3::from(space.0) };
+const DENSITY: Field<Parameters, Extents<u32, 3>> =
+    Field { get: |p| Extents(p.density), set: |p, density| p.density = density.0 };
+const SPLATS: Field<Parameters, Extents<u32, 2>> =
+    Field { get: |p| Extents(p.splats), set: |p, splats| p.splats = splats.0 };
+const CAMERA: Field<Parameters, View> = Field { get: |p| View(p.camera), set: |p, view| p.camera = view.0 };
+const SIZE: Field<Parameters, Size> = Field {
+    get: |p| Size { width: p.width, height: p.height },
+    set: |p, size| (p.width, p.height) = (size.width, size.height),
+};
+
 impl Parameters {
+    /// The numbers of figures 5.1, 5.2 and 6.2.
+    pub fn of_figure_6_2() -> Self {
+        Parameters { particles: 65_536, radius_m: 0.1, density: [512, 32, 128], ..Parameters::default() }
+    }
+
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Parameters>> {
+        let up_to_1000 = Range::above(0.0).to(1000.0);
+        vec![
+            Parameter::new("space", SPACE)
+                .placeholder("XxYxZ")
+                .range(up_to_1000)
+                .unit("metres")
+                .help("Sides of the simulation space along x (the flow), y (up) and z")
+                .section("5.1")
+                .cost(Cost::Buffers),
+            Parameter::new("particles", field!(Parameters.particles))
+                .range(Range::from(1.0).to(16_777_216.0))
+                .help("Number of particles")
+                .section("5.1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("radius", field!(Parameters.radius_m))
+                .range(Range::above(0.0))
+                .unit("metres")
+                .help("Effective radius h of a particle, at most the shortest side of the space")
+                .section("eq. 6.2")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("density", DENSITY)
+                .placeholder("XxYxZ")
+                .range(Range::from(1.0))
+                .help("Grid points along x, grid planes along y, grid points along z; 67108864 in all at most")
+                .section("6.1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("rho", field!(Parameters.rho))
+                .range(Range::above(0.0))
+                .help("Density that a grid point must reach to be accepted")
+                .section("6.2")
+                .default_text("the particles' mean density")
+                .unrecorded(),
+            Parameter::new("splats", SPLATS)
+                .placeholder("XxZ")
+                .range(Range::from(1.0))
+                .help("Splats along x and z; 16777216 in all at most")
+                .section("7.1")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("splat-radius", field!(Parameters.splat_radius_m))
+                .range(Range::above(0.0))
+                .unit("metres")
+                .help("Radius of a splat, at most the shortest side of the space")
+                .section("7.1")
+                .everyday(),
+            Parameter::new("epsilon", field!(Parameters.epsilon_m))
+                .range(up_to_1000)
+                .unit("metres")
+                .help("Depth behind the nearest splat within which another one is blended")
+                .section("eq. 7.1"),
+            Parameter::new("border", field!(Parameters.border_m))
+                .range(Range::from(0.0).to(1000.0))
+                .unit("metres")
+                .help("Distance from the borders over which the surface falls off")
+                .section("6.4"),
+            Parameter::new("speed", field!(Parameters.speed_m_s))
+                .range(Range::from(0.0).to(1000.0))
+                .unit("metres per second")
+                .help("Mean speed of the flow")
+                .section("5.1")
+                .cost(Cost::Buffers),
+            Parameter::new("color", field!(Parameters.color))
+                .placeholder("R,G,B")
+                .range(Range::from(0.0).to(1000.0))
+                .help("The constant orange as the display takes it: red, green, blue")
+                .section("7.2"),
+            Parameter::new("rock-tile", field!(Parameters.rock_tile_m))
+                .range(up_to_1000)
+                .unit("metres")
+                .help("Side of the square that the rock covers once")
+                .section("7.2"),
+            Parameter::new("shading", field!(Parameters.shading))
+                .help("Colour of the splats, or the particles in their place")
+                .cost(Cost::Pipelines)
+                .everyday(),
+            Parameter::new("geometry-stage", field!(Parameters.geometry_stage))
+                .help("Splats by a geometry stage, as in the thesis, or as instanced quads")
+                .section("7.1")
+                .cost(Cost::Pipelines),
+            Parameter::new("camera", CAMERA)
+                .help("Camera: fig-8.1, fig-8.2, fig-8.3, fig-8.4, or eye and target x,y,z,x,y,z in metres")
+                .everyday(),
+            Parameter::new("size", SIZE)
+                .range(Range::from(1.0))
+                .unit("pixel")
+                .help("Size of the picture")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("seed", field!(Parameters.seed))
+                .help("Seed of the particles")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("time-step", field!(Parameters.time_step_s))
+                .range(Range::from(0.0).to(1000.0))
+                .unit("seconds")
+                .help("Simulated time between two frames")
+                .default_text("1/30"),
+        ]
+    }
+
     /// Checks every range.
     ///
     /// # Errors
     /// The first parameter outside its range.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        let space = self.space_m;
-        let good = space.to_array().into_iter().all(|side| is_positive(side, 1000.0));
-        let sides = space.to_array().map(|c| c.to_string()).join("x");
-        ParameterError::check(good, "--space", sides, "each side must be above 0 and at most 1000 metres")?;
-        let shortest = space.min_element();
-        let within = format!("must be above 0 and at most {shortest} metres, the shortest side of the space");
-
-        let good = (1..=16_777_216).contains(&self.particles);
-        ParameterError::check(good, "--particles", self.particles, "must be 1 to 16777216")?;
-        ParameterError::check(is_positive(self.radius_m, shortest), "--radius", self.radius_m, &within)?;
+        parameter::check(&Self::declared(), self)?;
+        let shortest = self.space_m.min_element();
+        for (name, radius_m) in [("radius", self.radius_m), ("splat-radius", self.splat_radius_m)] {
+            let range = format!("must be above 0 and at most {shortest} metres, the shortest side of the space");
+            ParameterError::check(radius_m <= shortest, name, radius_m, &range)?;
+        }
         let points = self.density.map(u64::from).into_iter().try_fold(1u64, u64::checked_mul);
         ParameterError::check(
-            points.is_some_and(|points| (1..=67_108_864).contains(&points)),
-            "--density",
-            self.density.map(|n| n.to_string()).join("x"),
-            "needs at least 1 grid point along x, y and z and at most 67108864 in all",
+            points.is_some_and(|points| points <= 67_108_864),
+            "density",
+            Extents(self.density).text(),
+            "must have at most 67108864 grid points in all",
         )?;
         let rho = self.rho();
         let range = "must be above 0; the default is the mean density of the particles";
-        ParameterError::check(is_positive(rho, f32::MAX), "--rho", rho, range)?;
-        let splats = u64::from(self.splats[0]) * u64::from(self.splats[1]);
+        ParameterError::check(rho > 0.0 && rho.is_finite(), "rho", rho, range)?;
         ParameterError::check(
-            (1..=16_777_216).contains(&splats),
-            "--splats",
-            self.splats.map(|n| n.to_string()).join("x"),
-            "needs at least 1 splat along x and z and at most 16777216 in all",
+            u64::from(self.splats[0]) * u64::from(self.splats[1]) <= 16_777_216,
+            "splats",
+            Extents(self.splats).text(),
+            "must be at most 16777216 in all",
         )?;
-        ParameterError::check(
-            is_positive(self.splat_radius_m, shortest),
-            "--splat-radius",
-            self.splat_radius_m,
-            &within,
-        )?;
-        let metres = "must be above 0 and at most 1000 metres";
-        ParameterError::check(is_positive(self.epsilon_m, 1000.0), "--epsilon", self.epsilon_m, metres)?;
-        ParameterError::check(
-            (0.0..=1000.0).contains(&self.border_m),
-            "--border",
-            self.border_m,
-            "must be 0 to 1000 metres",
-        )?;
-        let good = (0.0..=1000.0).contains(&self.speed_m_s);
-        ParameterError::check(good, "--speed", self.speed_m_s, "must be 0 to 1000 metres per second")?;
-        let good = self.color.to_array().into_iter().all(|c| (0.0..=1000.0).contains(&c));
-        ParameterError::check(
-            good,
-            "--color",
-            components(self.color),
-            "each of red, green and blue must be 0 to 1000",
-        )?;
-        ParameterError::check(is_positive(self.rock_tile_m, 1000.0), "--rock-tile", self.rock_tile_m, metres)?;
-        let good = (0.0..=1000.0).contains(&self.time_step_s);
-        ParameterError::check(good, "--time-step", self.time_step_s, "must be 0 to 1000 seconds")?;
-        ParameterError::check_size(self.width, self.height)?;
         ParameterError::check_camera(&self.camera)
     }
 

@@ -26,7 +26,7 @@ impl ParticlePoints {
     /// Draws over the picture.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         animate: &Animate,
@@ -52,7 +52,7 @@ impl ParticlePoints {
     /// Draws the particles of the state with this index.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
         frame.graphics(&self.passes[state], |draw| {
             draw.constants(&self.constants).vertices(self.count);

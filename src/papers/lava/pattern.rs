@@ -66,7 +66,7 @@ impl Noise {
         sum / (0..count).map(weight).sum::<f32>()
     }
 
-    /// How much farther the second nearest seed point is than the nearest, in lattice cells: 0 on the border of a plate.
+    /// Distance of the second nearest seed point less that of the nearest, lattice cells: 0 on the border of a plate.
     fn border(&self, [x, y]: [f32; 2], period: u32, layer: u32) -> f32 {
         let (x, y) = (x * period as f32, y * period as f32);
         let (i, j) = (x.floor() as i32, y.floor() as i32);

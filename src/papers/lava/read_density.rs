@@ -15,7 +15,7 @@ pub struct ReadDensity {
 
 impl ReadDensity {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, layers: &[Arc<ImageView>]) -> Result<Self, Error> {
         let [x, _, z] = context.parameters.density;
         let bytes = 16 * u64::from(x) * u64::from(z);
@@ -28,7 +28,7 @@ impl ReadDensity {
     /// Waits for the densities of one cluster.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, cluster: usize) -> Result<&Buffer, Error> {
         frame.copy(&self.passes[cluster])?;
         frame.wait_for(&self.passes[cluster])?;

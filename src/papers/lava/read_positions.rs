@@ -16,7 +16,7 @@ pub struct ReadPositions {
 
 impl ReadPositions {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, states: &[State; 2]) -> Result<Self, Error> {
         let texture = &states[0].positions;
         let bytes = 16 * u64::from(texture.width()) * u64::from(texture.height());
@@ -29,7 +29,7 @@ impl ReadPositions {
     /// Waits for the positions of the state with this index.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, state: usize) -> Result<&Buffer, Error> {
         frame.copy(&self.passes[state])?;
         frame.wait_for(&self.passes[state])?;

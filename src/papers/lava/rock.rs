@@ -30,7 +30,7 @@ impl Rock {
             return Ok(());
         }
         Err(ParameterError {
-            name: "--rock",
+            name: "rock",
             value: format!("{}x{}", self.width, self.height),
             range: "must have 2 to 4096 texels a side".to_owned(),
         })
@@ -40,7 +40,7 @@ impl Rock {
     /// that a filter finds its neighbours across the seam.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub(super) fn load(&self, context: Context<'_>) -> Result<Arc<ImageView>, Error> {
         let image = context.target("rock", vk::Format::R8G8B8A8_UNORM, self.width + 2, self.height + 2)?;
         let wrapped = |at: u32, count: u32| (at + count - 1) % count;

@@ -1,25 +1,29 @@
-//! The experiments of the `lava` paper: what a user set up, what a run says of itself, the figures.
+//! A user's set-up, its scene, and the results of its runs.
 
 use std::borrow::Cow;
 use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
+use super::experiments::{self, Options};
+use crate::field;
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::image::read_png;
 use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
-use crate::measure::config::{self, entries};
+use crate::measure::config::entries;
+use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
+use crate::measure::parameter::{self, Cost, Parameter};
 use crate::measure::statistics::median;
-use crate::measure::study::{Identity, Metrics, Study};
+use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
 use crate::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Shading, Variant};
 use crate::scene::{Mesh, MeshSource};
 
-/// What a user set up.
-#[derive(Debug, Clone)]
+/// A user's choice of everything.
+#[derive(Debug, Clone, Default)]
 pub struct Setup {
     pub parameters: Parameters,
     /// PNG of the rock texture; the built-in one without.
@@ -38,8 +42,8 @@ impl Setup {
         self.parameters.validate()?;
         match (self.objects.first(), self.parameters.shading) {
             (Some(object), Shading::Particles) => {
-                let problem = "particles are points, without a surface that could hide it; choose another --shading";
-                Err(Error::Input(format!("--object {object}: {problem}")))
+                let problem = "particles are points, without a surface that could hide it; choose another `shading`";
+                Err(Error::Input(format!("`object` {object}: {problem}")))
             }
             _ => Ok(()),
         }
@@ -93,27 +97,9 @@ impl Study for Setup {
     }
 
     fn config(&self, _: &Scene, _: &Lava) -> Map<String, Value> {
-        let p = &self.parameters;
-        entries([
-            ("space", json!(p.space_m.to_array())),
-            ("particles", json!(p.particles)),
-            ("radius", json!(p.radius_m)),
-            ("density", json!(p.density)),
-            ("rho", json!(p.rho())),
-            ("splats", json!(p.splats)),
-            ("splat_radius", json!(p.splat_radius_m)),
-            ("epsilon", json!(p.epsilon_m)),
-            ("border", json!(p.border_m)),
-            ("speed", json!(p.speed_m_s)),
-            ("color", json!(p.color.to_array())),
-            ("rock", json!(self.rock.as_ref().map(|path| path.display().to_string()))),
-            ("rock_tile", json!(p.rock_tile_m)),
-            ("object", json!(self.objects.iter().map(ToString::to_string).collect::<Vec<_>>())),
-            ("shading", json!(p.shading.as_str())),
-            ("geometry_stage", json!(p.geometry_stage)),
-            ("camera", config::camera(&p.camera)),
-            ("time_step", json!(p.time_step_s)),
-        ])
+        let mut config = parameter::config(&Self::parameters(), self);
+        config.insert("rho".to_owned(), json!(self.parameters.rho()));
+        config
     }
 
     fn summary(&self) -> String {
@@ -129,10 +115,79 @@ impl Study for Setup {
         let mut metrics = Vec::with_capacity(measured.len());
         for (built, measurement) in measured {
             let mut results = results(&self.parameters, &built.paper, measurement);
-            results.extend(entries(super::experiments::floors::measure(machine, &built.paper)?));
+            results.extend(entries(experiments::floors::measure(machine, &built.paper)?));
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }
         Ok(metrics)
+    }
+}
+
+impl Declared for Setup {
+    const ABOUT: &'static str = "Lava: particles to density to isosurface to splats (Unnthorsson), pass by pass";
+    const BENCHED: &'static [Variant] = &[Variant::Paper];
+    const RENDERED: Variant = Variant::Paper;
+
+    type Options = Options;
+
+    fn parameters() -> Vec<Parameter<Self>> {
+        let numbers = Parameters::declared().into_iter();
+        let scene = [
+            Parameter::new("rock", field!(Setup.rock))
+                .help("Picture of the rock that is laid over the lava, PNG, at least 2 x 2 texels")
+                .section("7.2")
+                .default_text("the shipped one")
+                .cost(Cost::Buffers),
+            Parameter::new("object", field!(Setup.objects))
+                .help(
+                    "Polygon mesh in the simulation space, metres: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF \
+                     or GLB file",
+                )
+                .cost(Cost::Buffers)
+                .everyday(),
+        ];
+        numbers.map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters)).chain(scene).collect()
+    }
+
+    fn options() -> Vec<Parameter<Options>> {
+        experiments::options()
+    }
+
+    fn presets() -> Vec<Preset<Self>> {
+        vec![
+            Preset {
+                name: "results",
+                help: "Chapter 8: the pictures and the 20 frames a second",
+                variant: None,
+                setup: Setup::default,
+            },
+            Preset {
+                name: "fig-6.2",
+                help: "Figures 5.1, 5.2 and 6.2: 65,536 particles, a finer grid",
+                variant: None,
+                setup: || Setup { parameters: Parameters::of_figure_6_2(), ..Setup::default() },
+            },
+            Preset {
+                name: "fig-8.5",
+                help: "Figure 8.5 at its smallest splats, which leave holes; `splat-radius` names its others",
+                variant: None,
+                setup: || {
+                    let parameters = Parameters { splat_radius_m: 0.001875, ..Parameters::default() };
+                    Setup { parameters, ..Setup::default() }
+                },
+            },
+        ]
+    }
+
+    fn experiments() -> Vec<Experiment<Self>> {
+        experiments::all()
+    }
+
+    fn quick() -> Self {
+        Setup::default()
+    }
+
+    fn preset_mut(&mut self) -> &mut Option<String> {
+        &mut self.preset
     }
 }
 

@@ -22,15 +22,15 @@ host_block! {
 host_block! {
     pub(super) struct SceneBlock {
         view_projection: [f32; 16],
-        glow: [f32; 4],
-        space_m: [f32; 3],
+        glow: [f32; 3],
         splat_radius_m: f32,
+        space_m: [f32; 3],
+        epsilon_m: f32,
         columns: [f32; 2],
         rock_texels: [f32; 2],
-        epsilon_m: f32,
         depth_per_m: f32,
         rock_tile_m: f32,
-        _pad: f32,
+        _pad: [f32; 2],
     }
 }
 
@@ -45,11 +45,11 @@ pub struct Splats {
 }
 
 impl Splats {
-    /// Splats on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` ones are quads
-    /// without a geometry stage.
+    /// Splats on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` ones are
+    /// quads without a geometry stage.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
         normal_height: &Arc<ImageView>,
@@ -100,7 +100,7 @@ pub struct SplatsFloor {
 
 impl SplatsFloor {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, splats: &Splats, target: &Arc<ImageView>) -> Result<Self, Error> {
         let pass = splats.pass(FLOORS[2].1, "7.1", EMPTY).color(target, Load::Keep, Blend::Masked);
         Ok(SplatsFloor { pass: pass.build(context.shaders)? })
@@ -109,7 +109,7 @@ impl SplatsFloor {
     /// Draws them. It changes no texture.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, splats: &Splats) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| splats.draw(draw))
     }
@@ -136,14 +136,14 @@ fn scene(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -
     let view_projection = camera.projection(parameters.aspect()) * camera.view();
     SceneBlock {
         view_projection: view_projection.to_cols_array(),
-        glow: parameters.color.extend(0.0).to_array(),
-        space_m: parameters.space_m.to_array(),
+        glow: parameters.color.to_array(),
         splat_radius_m: parameters.splat_radius_m,
+        space_m: parameters.space_m.to_array(),
+        epsilon_m: parameters.epsilon_m,
         columns: [normal_height.width() as f32, normal_height.height() as f32],
         rock_texels: [rock.width as f32, rock.height as f32],
-        epsilon_m: parameters.epsilon_m,
         depth_per_m: 1.0 / depth_range_m(parameters),
         rock_tile_m: parameters.rock_tile_m,
-        _pad: 0.0,
+        _pad: [0.0; 2],
     }
 }

@@ -43,7 +43,7 @@ impl<'a> Context<'a> {
     /// A buffer that holds these bytes.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn upload(&self, name: &str, usage: vk::BufferUsageFlags, bytes: &[u8]) -> Result<Arc<Buffer>, Error> {
         upload(self.device(), &self.name(name), usage, bytes)
     }

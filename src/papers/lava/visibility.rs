@@ -15,7 +15,7 @@ pub struct Visibility {
 
 impl Visibility {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, splats: &Splats) -> Result<Self, Error> {
         let depth = context.target("visibility", DEPTH, context.parameters.width, context.parameters.height)?;
         let pass = splats
@@ -26,7 +26,7 @@ impl Visibility {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, splats: &Splats) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| splats.draw(draw))
     }

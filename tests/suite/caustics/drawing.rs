@@ -87,7 +87,7 @@ pub fn planes_drawn(device: &Arc<Device>, parameters: &Parameters, receivers: &[
     paper.plane_counts()
 }
 
-/// The values of a target, those of 8-bit ones as shares of 1.
+/// The values of a target, those of 8-bit ones as fractions of 1.
 fn read(device: &Arc<Device>, target: &Target) -> Vec<f32> {
     match read_target(device, target).unwrap().samples() {
         Samples::F32(values) => values.clone(),

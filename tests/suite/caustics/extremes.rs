@@ -56,8 +56,8 @@ fn a_receiver_that_sticks_out_of_the_water_is_lit_below_it_alone() {
             let size = parameters.map_size as usize;
             let (mut above, mut lit_below) = (0, 0);
             for (texel, &height) in drawing.target("position-map").iter().enumerate().filter(|(_, h)| **h > -1e29) {
-                let share = |i: usize| (i as f64 + 0.5) / size as f64 - 0.5;
-                let (x, z) = (share(texel % size) * frame.width, share(texel / size) * frame.depth);
+                let fraction = |i: usize| (i as f64 + 0.5) / size as f64 - 0.5;
+                let (x, z) = (fraction(texel % size) * frame.width, fraction(texel / size) * frame.depth);
                 let world_y = frame.to_world(DVec3::new(x, f64::from(height), z)).y;
                 let caustics = drawing.target("caustics-map")[texel];
                 if world_y > unsure_m {

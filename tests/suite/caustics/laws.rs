@@ -73,8 +73,8 @@ fn flat_murky_water_absorbs_along_the_refracted_ray() {
             let distance_m = f64::from(parameters.water_depth_m) / v.y;
             let expected =
                 flat_water_intensity(oracle.light.direction_at(DVec3::ZERO), oracle.medium, distance_m).unwrap();
-            // Overhead the floor lies at the centre of its cell, and d is one number. Otherwise the plane lies up to half
-            // a cell from it, and within a triangle, where the exponential is interpolated, d varies.
+            // Overhead the floor lies at the centre of its cell, and d is one number. Otherwise the plane lies up to
+            // half a cell from it, and within a triangle, where the exponential is interpolated, d varies.
             let (half_cell_m, variation_m) = if light == OVERHEAD {
                 (0.0, 0.0)
             } else {

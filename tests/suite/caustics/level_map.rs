@@ -147,9 +147,9 @@ pub fn assert_meets(found: &[f32], map: &CausticsMap, case: &str) {
         let expected = map.intensity[texel];
         worst = worst.max((f64::from(found) - expected).abs() / expected.max(0.1));
     }
-    let share = f64::from(excluded) / found.len() as f64;
-    println!("{case}: {excluded} texels excluded ({:.2} %), the others off by {worst:.1e} at most", 100.0 * share);
-    assert!(share <= 0.02 && worst <= 1e-4, "{case}: {excluded} texels excluded, the others off by {worst:e}");
+    let fraction = f64::from(excluded) / found.len() as f64;
+    println!("{case}: {excluded} texels excluded ({:.2} %), the others off by {worst:.1e} at most", 100.0 * fraction);
+    assert!(fraction <= 0.02 && worst <= 1e-4, "{case}: {excluded} texels excluded, the others off by {worst:e}");
     assert!(map.intensity.iter().filter(|i| **i > 0.0).count() > found.len() / 4, "{case}: little is lit");
 }
 

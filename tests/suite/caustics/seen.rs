@@ -1,4 +1,4 @@
-//! What a camera's rays hit first, in double precision.
+//! Points that a camera's rays hit first, in double precision.
 
 use fumarole::papers::caustics::{Parameters, ReceiverInput};
 use glam::{DMat4, DVec3, Vec3};
@@ -26,8 +26,8 @@ pub fn first_hits(parameters: &Parameters, receivers: &[ReceiverInput]) -> Vec<O
     let (width, height) = (parameters.width, parameters.height);
     (0..width * height)
         .map(|pixel| {
-            let share = |i: u32, of: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(of) - 1.0;
-            let (x, y) = (share(pixel % width, width), share(pixel / width, height));
+            let fraction = |i: u32, of: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(of) - 1.0;
+            let (x, y) = (fraction(pixel % width, width), fraction(pixel / width, height));
             let eye = camera.eye.as_dvec3();
             let ray = (inverse.project_point3(DVec3::new(x, y, 0.5)) - eye).normalize();
             let hits = receivers.iter().filter_map(|receiver| hit(receiver, eye, ray));
@@ -45,12 +45,12 @@ fn hit(receiver: &ReceiverInput, eye: DVec3, ray: DVec3) -> Option<(f64, Surface
         let (ab, ac, from_a) = (b - a, c - a, eye - a);
         let normal = ray.cross(ac);
         let determinant = ab.dot(normal);
-        let share_b = from_a.dot(normal) / determinant;
-        let share_c = ray.dot(from_a.cross(ab)) / determinant;
+        let weight_b = from_a.dot(normal) / determinant;
+        let weight_c = ray.dot(from_a.cross(ab)) / determinant;
         let distance = ac.dot(from_a.cross(ab)) / determinant;
-        let shares = [1.0 - share_b - share_c, share_b, share_c];
-        (distance > 0.0 && shares.iter().all(|&share| share >= 0.0)).then(|| {
-            let normal: DVec3 = (0..3).map(|i| at(&mesh.normals, corners[i]) * shares[i]).sum();
+        let weights = [1.0 - weight_b - weight_c, weight_b, weight_c];
+        (distance > 0.0 && weights.iter().all(|&fraction| fraction >= 0.0)).then(|| {
+            let normal: DVec3 = (0..3).map(|i| at(&mesh.normals, corners[i]) * weights[i]).sum();
             let surface = Surface {
                 position: eye + ray * distance,
                 normal: normal.normalize(),

@@ -50,7 +50,7 @@ fn the_profile_counts_the_texels_of_the_position_map() {
     });
 }
 
-/// Where the planes stand shows in what they light: the maps meet the oracle's, drawn with its own planes.
+/// The heights of the planes show in what they light: the maps meet the oracle's, drawn with its own planes.
 #[test]
 fn planes_stand_where_the_oracle_places_them() {
     gpu_test(|device| {

@@ -37,7 +37,8 @@ fn close_camera() -> Camera {
     }
 }
 
-/// What the device found in the pixels that show a receiver: the surface, and the light on it but for the ambient light.
+/// Values that the device found in the pixels that show a receiver: the surface, and the light on it but for the
+/// ambient light.
 fn lit_surfaces(drawing: &Drawing, ambient: Vec3) -> Vec<(Surface, DVec3)> {
     surfaces_with_light(drawing, drawing, ambient)
 }
@@ -58,7 +59,7 @@ fn surfaces_with_light(surfaces: &Drawing, lit: &Drawing, ambient: Vec3) -> Vec<
         .collect()
 }
 
-/// Largest error of `found` as a share of the whole colour.
+/// Largest error of `found` as a fraction of the whole colour.
 fn error_of(found: DVec3, expected: DVec3, surface: &Surface, ambient: Vec3) -> f64 {
     let color = expected + ambient.as_dvec3() * surface.albedo;
     ((found - expected).abs() / color.max(DVec3::splat(1e-2))).max_element()
@@ -129,8 +130,8 @@ fn every_pixel_has_the_light_of_the_volumes_around_it() {
     });
 }
 
-/// Under flat and clear water I_c is one number everywhere: a pixel that two volumes light would have it twice, one that
-/// no volume lights would be dark.
+/// Under flat and clear water I_c is one number everywhere: a pixel that two volumes light would have it twice, one
+/// that no volume lights would be dark.
 #[test]
 fn flat_clear_water_lights_every_pixel_alike_and_once() {
     gpu_test(|device| {
@@ -200,7 +201,7 @@ fn no_surface_stands_in_anothers_shadow() {
     });
 }
 
-/// Where nothing is hidden from the light the methods draw one picture, but for the level map's texels and planes, which
+/// If nothing is hidden from the light the methods draw one picture, but for the level map's texels and planes, which
 /// the foci of strong waves are as thin as.
 #[test]
 fn the_floor_looks_as_the_level_map_draws_it() {

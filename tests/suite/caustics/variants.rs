@@ -83,7 +83,8 @@ fn the_passes_are_those_of_the_thesis() {
             passes(Variant::Volumetric, true),
             with_water(&[("sample-planes", 1), ("slice-images", 9)], &volumetric)
         );
-        // Overhead, so that the light sees the sphere's upper half: with eight gaps of epsilon between nine planes, four.
+        // Overhead, so that the light sees the sphere's upper half: with eight gaps of epsilon between nine planes,
+        // four.
         let parameters = parameters(OVERHEAD);
         let smart = Drawing::of(device, Variant::LevelMapSmart, &parameters, &[sphere()]);
         let smart: Vec<_> = smart.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();

@@ -5,12 +5,12 @@ use glam::{DVec2, DVec3};
 
 use super::oracle::Oracle;
 
-/// What lights a point.
+/// Light at a point.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sum {
     /// I_c under a light of unit intensity, over the volumes that contain the point.
     pub intensity: f64,
-    /// Whether the point lies so near to a volume's side that rounding decides.
+    /// True where the point lies so near to a volume's side that rounding decides.
     pub is_at_side: bool,
 }
 
@@ -40,12 +40,12 @@ pub fn light_at(oracle: &Oracle, point: DVec3, band_m: f64) -> Sum {
 }
 
 fn distance_to_segment(point: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let share = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-    point.distance(a.lerp(b, share))
+    let fraction = ((point - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+    point.distance(a.lerp(b, fraction))
 }
 
 fn barycentric(point: DVec2, [a, b, c]: [DVec2; 3]) -> [f64; 3] {
     let twice_area = (b - a).perp_dot(c - a);
-    let (share_b, share_c) = ((point - a).perp_dot(c - a) / twice_area, (b - a).perp_dot(point - a) / twice_area);
-    [1.0 - share_b - share_c, share_b, share_c]
+    let (weight_b, weight_c) = ((point - a).perp_dot(c - a) / twice_area, (b - a).perp_dot(point - a) / twice_area);
+    [1.0 - weight_b - weight_c, weight_b, weight_c]
 }

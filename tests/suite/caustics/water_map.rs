@@ -1,5 +1,5 @@
-//! Water in the shape of a height map: its surface and light against the oracle, its picture against that of the waves it
-//! is sampled from, and a lens whose focus is known.
+//! Water in the shape of a height map: its surface and light against the oracle, its picture against that of the waves
+//! it is sampled from, and a lens whose focus is known.
 
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -97,7 +97,8 @@ fn sampled_waves(parameters: &Parameters) -> WaterMap {
 fn a_map_of_the_waves_gives_the_waves_picture() {
     gpu_test(|device| {
         let swell = WaveParameters { count: 6, amplitude_m: 0.06, wavelength_m: 2.0 };
-        // The mesh's extent follows the steepest slope that the surface may have, so that its triangles differ: fine ones.
+        // The mesh's extent follows the steepest slope that the surface may have, so that its triangles differ: fine
+        // ones.
         let below = Parameters { waves: swell, water_triangles: 4000, ..parameters(OBLIQUE) };
         let above = Parameters { camera: Parameters::camera_above(below.water_depth_m), ..below.clone() };
         let receivers = [teapot(), floor()];
@@ -181,9 +182,9 @@ fn spot_radius_m(device: &Arc<Device>, lens: &WaterMap, depth_m: f64) -> f64 {
     (moment / flux).sqrt() * f64::from(SIDE_M) / 200.0
 }
 
-/// A spherical cap of radius R focuses rays near its axis n R / (n - 1) = 4 R below its vertex. By Snell's law those that
-/// enter at this lens's rim, 0.15 R from the axis, meet it 0.6 % nearer; so the light is narrowest up to that much above
-/// the focus. Before and behind it the light is a cone, whose tip two planes tell.
+/// A spherical cap of radius R focuses rays near its axis n R / (n - 1) = 4 R below its vertex. By Snell's law those
+/// that enter at this lens's rim, 0.15 R from the axis, meet it 0.6 % nearer; so the light is narrowest up to that much
+/// above the focus. Before and behind it the light is a cone, whose tip two planes tell.
 #[test]
 fn a_spherical_cap_focuses_four_radii_below_its_vertex() {
     gpu_test(|device| {

@@ -89,8 +89,11 @@ fn the_accepted_points_are_those_that_reach_rho() {
                 }
                 assert_eq!(found.contains(&key(grid.place(index))), *density > rho, "{index:?}: {density}");
             }
-            let share = found.len() as f64 / expected.len() as f64;
-            assert!(share > 0.1 && share < 0.9 && close_calls < 10, "{share} accepted, {close_calls} close calls");
+            let fraction = found.len() as f64 / expected.len() as f64;
+            assert!(
+                fraction > 0.1 && fraction < 0.9 && close_calls < 10,
+                "{fraction} accepted, {close_calls} close calls"
+            );
         }
     });
 }

@@ -54,7 +54,7 @@ impl<'a> HeightField<'a> {
         row(k) * (1.0 - t) + row(k + 1.0) * t
     }
 
-    /// Where the ray through a pixel meets the field from above, by steps of 2 mm through the space.
+    /// Intersection of the ray through a pixel with the field from above, by steps of 2 mm through the space.
     fn met(&self, column: u32, row: u32) -> Option<Vec3> {
         let Parameters { width, height, space_m, camera, .. } = self.parameters;
         let x = (column as f32 + 0.5) / *width as f32 * 2.0 - 1.0;
@@ -80,7 +80,7 @@ impl<'a> HeightField<'a> {
         None
     }
 
-    /// Whether a place is inside the border, at least a column away from it.
+    /// True for a place inside the border, at least a column away from it.
     fn is_inside(&self, place: Vec3) -> bool {
         let margin = self.parameters.border_m + 0.04;
         let from_border = place.min(self.parameters.space_m - place);

@@ -1,7 +1,8 @@
-//! What the paper refuses.
+//! Refusals of the paper.
 
 use fumarole::gpu::Error;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Preset, Rock};
+use fumarole::measure::study::Declared;
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, setup::Setup};
 use fumarole::scene::Camera;
 use glam::Vec3;
 
@@ -12,33 +13,33 @@ use crate::common::gpu_test;
 fn parameters_outside_their_range_are_named() {
     let good = parameters();
     assert_eq!(good.validate(), Ok(()));
-    for preset in Preset::ALL {
-        assert!(preset.configurations().iter().all(|p| p.validate().is_ok()), "{}", preset.as_str());
+    for preset in Setup::presets() {
+        assert_eq!((preset.setup)().parameters.validate(), Ok(()), "{}", preset.name);
     }
     let nan = f32::NAN;
     let cases = [
-        ("--space", Parameters { space_m: Vec3::new(4.0, 0.0, 1.0), ..good.clone() }),
-        ("--space", Parameters { space_m: Vec3::new(4.0, nan, 1.0), ..good.clone() }),
-        ("--particles", Parameters { particles: 0, ..good.clone() }),
-        ("--radius", Parameters { radius_m: 0.0, ..good.clone() }),
-        ("--radius", Parameters { radius_m: 1.01, ..good.clone() }),
-        ("--radius", Parameters { radius_m: nan, ..good.clone() }),
-        ("--density", Parameters { density: [0, 4, 4], ..good.clone() }),
-        ("--density", Parameters { density: [u32::MAX; 3], ..good.clone() }),
-        ("--rho", Parameters { rho: Some(0.0), ..good.clone() }),
-        ("--rho", Parameters { rho: Some(nan), ..good.clone() }),
-        ("--rho", Parameters { rho: Some(f32::INFINITY), ..good.clone() }),
-        ("--splats", Parameters { splats: [0, 150], ..good.clone() }),
-        ("--splats", Parameters { splats: [u32::MAX; 2], ..good.clone() }),
-        ("--splat-radius", Parameters { splat_radius_m: -0.1, ..good.clone() }),
-        ("--epsilon", Parameters { epsilon_m: 0.0, ..good.clone() }),
-        ("--border", Parameters { border_m: nan, ..good.clone() }),
-        ("--speed", Parameters { speed_m_s: -1.0, ..good.clone() }),
-        ("--color", Parameters { color: Vec3::new(1.0, nan, 0.0), ..good.clone() }),
-        ("--rock-tile", Parameters { rock_tile_m: 0.0, ..good.clone() }),
-        ("--time-step", Parameters { time_step_s: f32::INFINITY, ..good.clone() }),
-        ("--size", Parameters { width: 0, ..good.clone() }),
-        ("--camera", Parameters { camera: Camera { eye: Vec3::NAN, ..good.camera }, ..good.clone() }),
+        ("space", Parameters { space_m: Vec3::new(4.0, 0.0, 1.0), ..good.clone() }),
+        ("space", Parameters { space_m: Vec3::new(4.0, nan, 1.0), ..good.clone() }),
+        ("particles", Parameters { particles: 0, ..good.clone() }),
+        ("radius", Parameters { radius_m: 0.0, ..good.clone() }),
+        ("radius", Parameters { radius_m: 1.01, ..good.clone() }),
+        ("radius", Parameters { radius_m: nan, ..good.clone() }),
+        ("density", Parameters { density: [0, 4, 4], ..good.clone() }),
+        ("density", Parameters { density: [u32::MAX; 3], ..good.clone() }),
+        ("rho", Parameters { rho: Some(0.0), ..good.clone() }),
+        ("rho", Parameters { rho: Some(nan), ..good.clone() }),
+        ("rho", Parameters { rho: Some(f32::INFINITY), ..good.clone() }),
+        ("splats", Parameters { splats: [0, 150], ..good.clone() }),
+        ("splats", Parameters { splats: [u32::MAX; 2], ..good.clone() }),
+        ("splat-radius", Parameters { splat_radius_m: -0.1, ..good.clone() }),
+        ("epsilon", Parameters { epsilon_m: 0.0, ..good.clone() }),
+        ("border", Parameters { border_m: nan, ..good.clone() }),
+        ("speed", Parameters { speed_m_s: -1.0, ..good.clone() }),
+        ("color", Parameters { color: Vec3::new(1.0, nan, 0.0), ..good.clone() }),
+        ("rock-tile", Parameters { rock_tile_m: 0.0, ..good.clone() }),
+        ("time-step", Parameters { time_step_s: f32::INFINITY, ..good.clone() }),
+        ("size", Parameters { width: 0, ..good.clone() }),
+        ("camera", Parameters { camera: Camera { eye: Vec3::NAN, ..good.camera }, ..good.clone() }),
     ];
     for (name, parameters) in cases {
         let error = parameters.validate().expect_err(name);
@@ -52,7 +53,7 @@ fn rocks_that_are_no_textures_are_refused() {
     assert_eq!(rock(2, 3, 6).validate(), Ok(()));
     for bad in [rock(1, 1, 1), rock(0, 0, 0), rock(1, 64, 64), rock(5000, 2, 10_000), rock(4, 4, 15)] {
         let error = bad.validate().unwrap_err().to_string();
-        assert!(error.starts_with("--rock ") && error.contains("2 to 4096"), "{error}");
+        assert!(error.starts_with("rock ") && error.contains("2 to 4096"), "{error}");
     }
 }
 

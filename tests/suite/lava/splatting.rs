@@ -95,8 +95,8 @@ fn the_front_blends_and_the_back_does_not() {
             // Every eleventh: the oracle asks every splat.
             for (at, (found, depth)) in sums.iter().zip(&depths).enumerate().step_by(11) {
                 let (column, row) = (at as u32 % size[0], at as u32 / size[0]);
-                let height_share = |center: DVec3| center.y / surface.space.y;
-                let Some(pixel) = splats.pixel(column, row, height_share) else {
+                let height_fraction = |center: DVec3| center.y / surface.space.y;
+                let Some(pixel) = splats.pixel(column, row, height_fraction) else {
                     // A rim just outside the pixel's centre may be drawn all the same, with the least weight.
                     assert!(found[3] <= 0.012, "{column} {row}: {found:?}");
                     continue;

@@ -87,22 +87,22 @@ fn the_surface_sinks_and_turns_up_towards_the_borders() {
         let grid = grid(&parameters);
         // One plane at half the height, accepted everywhere.
         assert_eq!(lava.isosurface().accepted().len(), 40 * 24);
-        let share = |i: usize, k: usize| {
+        let fraction = |i: usize, k: usize| {
             let place = grid.place([i, 0, k]);
             let sides = [place.x, 2.0 - place.x, place.z, f64::from(1.2f32) - place.z];
             (sides.into_iter().fold(f64::INFINITY, f64::min) / f64::from(0.2f32)).min(1.0)
         };
         for (texel, found) in found.iter().enumerate() {
             let (i, k) = (texel % 40, texel / 40);
-            assert!((f64::from(found[3]) - 0.5 * share(i, k)).abs() < 1e-5, "{i} {k}: {found:?}");
+            assert!((f64::from(found[3]) - 0.5 * fraction(i, k)).abs() < 1e-5, "{i} {k}: {found:?}");
         }
-        // Across the middle, cells of 0.05 m: at the foot the slope is 2.5 and the normal's share of it small, then it
+        // Across the middle, cells of 0.05 m: at the foot the slope is 2.5 and the normal's fraction of it small, then it
         // follows the slope, above it the surface is level.
         let normals: Vec<DVec3> = (0..24).map(|k| Vec3::from_slice(&found[k * 40 + 20]).as_dvec3()).collect();
         for (k, normal) in normals.iter().enumerate() {
             let (before, after) = (k.saturating_sub(1), (k + 1).min(23));
-            let slope = 0.5 * (share(20, after) - share(20, before)) / (0.05 * (after - before) as f64);
-            let expected = DVec3::Y.lerp(DVec3::new(0.0, 1.0, -slope).normalize(), share(20, k)).normalize();
+            let slope = 0.5 * (fraction(20, after) - fraction(20, before)) / (0.05 * (after - before) as f64);
+            let expected = DVec3::Y.lerp(DVec3::new(0.0, 1.0, -slope).normalize(), fraction(20, k)).normalize();
             assert!(normal.distance(expected) < 1e-4, "{k}: {normal} {expected}");
         }
         assert!(normals[0].y > 0.98 && normals[2].y < 0.8 && normals[12].y > 0.9999, "{normals:?}");

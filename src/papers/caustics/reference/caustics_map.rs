@@ -21,13 +21,13 @@ pub struct CausticsMap {
     /// cos θ_t as the mean weighted by intensity, so that I_c cos θ_t is the flux per area of the map; 1 without light.
     pub cos_refracted: Vec<f64>,
     /// Texels that single precision or snapped vertices may decide differently: the centre lies within
-    /// [`EDGE_BAND_TEXELS`] of an edge of an accepted intersection triangle, inside a sliver of one, at an outline of the
-    /// receiver, or its surface lies at a cell's boundary.
+    /// [`EDGE_BAND_TEXELS`] of an edge of an accepted intersection triangle, inside a sliver of one, at an outline of
+    /// the receiver, or its surface lies at a cell's boundary.
     pub excluded: Vec<bool>,
 }
 
-/// Draws the intersection triangles of every plane additively and keeps a texel where the position map's height lies in the
-/// plane's cell (4.4, 4.5, figure 4-15).
+/// Draws the intersection triangles of every plane additively and keeps a texel where the position map's height lies in
+/// the plane's cell (4.4, 4.5, figure 4-15).
 pub fn caustics_map(
     receiver: &ReceiverBox,
     cells: &[Cell],
@@ -73,8 +73,9 @@ pub fn combine(intensity: &[f64], diffuse_map: &[DVec3]) -> Vec<DVec3> {
     lit.map(|(&intensity, &diffuse)| diffuse * intensity).collect()
 }
 
-/// The volumetric method's combined map (5.2.1): for every plane a slice image of the receiver within its cell, multiplied by
-/// the plane's own caustics map, and the slices put together nearest to the light first. `None` on the background.
+/// The volumetric method's combined map (5.2.1): for every plane a slice image of the receiver within its cell,
+/// multiplied by the plane's own caustics map, and the slices put together nearest to the light first. `None` on the
+/// background.
 pub fn volumetric(
     receiver: &ReceiverBox,
     cells: &[Cell],
@@ -140,7 +141,7 @@ fn interpolate(corners: [f64; 3], weights: [f64; 3]) -> f64 {
     corners.iter().zip(weights).map(|(c, w)| c * w).sum()
 }
 
-/// Whether the texel's coverage, or the cell that accepts it, may be decided either way.
+/// True where the texel's coverage, or the cell that accepts it, may be decided either way.
 fn is_uncertain(positions: &PositionMap, texel: usize, cells: &[Cell], tolerance_m: f64) -> bool {
     let Some([low, high]) = positions.y_range[texel] else {
         return false;
@@ -239,8 +240,8 @@ mod tests {
                 let drawing = Drawing::new(&object, light);
                 let map = drawing.caustics(&place_planes(drawing.receiver.height, 9));
                 let excluded = map.excluded.iter().filter(|&&e| e).count();
-                let share = excluded as f64 / map.excluded.len() as f64;
-                assert!(share > 0.0 && share < 0.02, "{share}");
+                let fraction = excluded as f64 / map.excluded.len() as f64;
+                assert!(fraction > 0.0 && fraction < 0.02, "{fraction}");
                 let outline = drawing.positions.at_outline.iter().zip(&map.excluded);
                 assert!(outline.into_iter().all(|(&at, &excluded)| excluded || !at));
                 assert!(map.intensity.iter().all(|i| i.is_finite() && *i >= 0.0));

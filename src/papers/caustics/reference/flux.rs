@@ -5,14 +5,14 @@ use crate::papers::caustics::reference::{
 };
 use glam::{DVec2, DVec3};
 
-/// What eq. 4-18 gives under flat water for parallel light of unit `direction` at a point `distance_m` below the water
-/// along the refracted ray; `None` for light that does not come from above.
+/// Intensity by eq. 4-18 under flat water for parallel light of unit `direction` at a point `distance_m` below the
+/// water along the refracted ray; `None` for light that does not come from above.
 ///
 /// All refracted rays are parallel to T = -V, so cos θ_t = 1 and every intersection triangle is its water triangle
-/// projected along T onto a plane perpendicular to it: A_d = A_w cos θ_T, with θ_T the angle of refraction at the water.
-/// Hence I_c = (cos θ_i / cos θ_T) e^(-K d), the same everywhere for K = 0 whatever the receiver's shape or slope. For
-/// K > 0 a map interpolates the exponential between a triangle's corners and takes d at the reference plane: if d varies
-/// by Δ within a triangle it lies at most a share e^(KΔ)(KΔ)²/8 above the value at the plane.
+/// projected along T onto a plane perpendicular to it: A_d = A_w cos θ_T, with θ_T the angle of refraction at the
+/// water. Hence I_c = (cos θ_i / cos θ_T) e^(-K d), the same everywhere for K = 0 whatever the receiver's shape or
+/// slope. For K > 0 a map interpolates the exponential between a triangle's corners and takes d at the reference plane:
+/// if d varies by Δ within a triangle it lies at most a fraction e^(KΔ)(KΔ)²/8 above the value at the plane.
 pub fn flat_water_intensity(direction: DVec3, medium: Medium, distance_m: f64) -> Option<f64> {
     let refracted = refract(direction, DVec3::Y, AIR, medium.refraction_index)?;
     Some(direction.y / refracted.y * (-medium.absorption_per_m * distance_m).exp())
@@ -25,14 +25,14 @@ pub fn flux_through_water(volumes: &[IlluminationVolume]) -> f64 {
 }
 
 /// The part of that flux that falls within the box's width and depth at the plane y = `plane` of box space, before
-/// absorption: each volume's flux times the share of its intersection triangle inside.
+/// absorption: each volume's flux times the fraction of its intersection triangle inside.
 pub fn flux_reaching_box(volumes: &[IlluminationVolume], receiver: &ReceiverBox, plane: f64) -> f64 {
     let half = DVec2::new(receiver.width, receiver.depth) / 2.0;
     let reaching = |volume| {
         let hit = intersection_triangle(volume, receiver, plane)?;
         let corners = hit.corners.map(|p| DVec2::new(p.x, p.z));
-        let share = area(&clip(&corners, half)) / area(&corners);
-        share.is_finite().then(|| flux(volume) * share)
+        let fraction = area(&clip(&corners, half)) / area(&corners);
+        fraction.is_finite().then(|| flux(volume) * fraction)
     };
     volumes.iter().filter_map(reaching).sum()
 }

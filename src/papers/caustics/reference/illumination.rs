@@ -16,7 +16,7 @@ pub struct IlluminationVolume {
     pub area_m2: f64,
 }
 
-/// Where an illumination volume pierces a plane of a receiver's box.
+/// Intersection of an illumination volume with a plane of a receiver's box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intersection {
     /// Corners in box space, in metres; y is the plane's.
@@ -27,9 +27,9 @@ pub struct Intersection {
     pub cos_refracted: [f64; 3],
 }
 
-/// The illumination volumes of all water triangles in their order (4.3). Each vertex refracts its own incident ray at its own
-/// normal (eq. 2-8). Left out are triangles without area and those that turn away from the light: where the face or a
-/// vertex normal does not face the incident ray nothing passes.
+/// The illumination volumes of all water triangles in their order (4.3). Each vertex refracts its own incident ray at
+/// its own normal (eq. 2-8). Left out are triangles without area and those that turn away from the light: where the
+/// face or a vertex normal does not face the incident ray nothing passes.
 ///
 /// # Panics
 /// On an index beyond the water's vertices.
@@ -76,9 +76,9 @@ pub fn intersection_triangle(volume: &IlluminationVolume, receiver: &ReceiverBox
 }
 
 /// I_c at the three corners of an intersection triangle under a light of unit intensity:
-/// I_c = (A_w cos θ_i) / (A_d cos θ_t) e^(-K d) (eq. 4-16 to 4-18), flux per area perpendicular to the beam. Cosines and
-/// d are per corner, A_w and A_d (m², in the plane) per triangle; between the corners it is interpolated linearly. It is
-/// not clamped. `None` where the triangle has no area, or so little that the quotient is not finite.
+/// I_c = (A_w cos θ_i) / (A_d cos θ_t) e^(-K d) (eq. 4-16 to 4-18), flux per area perpendicular to the beam. Cosines
+/// and d are per corner, A_w and A_d (m², in the plane) per triangle; between the corners it is interpolated linearly.
+/// It is not clamped. `None` where the triangle has no area, or so little that the quotient is not finite.
 pub fn intensity(volume: &IlluminationVolume, hit: &Intersection, absorption_per_m: f64) -> Option<[f64; 3]> {
     let [a, b, c] = hit.corners;
     let area_m2 = (b - a).cross(c - a).length() / 2.0;

@@ -15,13 +15,13 @@ pub struct Cell {
     pub lower: f64,
     /// Highest height; accepted only by the cell on top of the box.
     pub upper: f64,
-    /// Whether `upper` is the top of the box, and accepted.
+    /// True where `upper` is the top of the box, and accepted.
     pub is_top: bool,
 }
 
 impl Cell {
-    /// Whether a surface at height `y` belongs to this plane: lower <= y < upper, on top lower <= y <= upper (4.4, with
-    /// ε half a cell, eq. 4-15). Neighbours share one boundary value, so exactly one cell accepts a height.
+    /// True for a surface at height `y` that belongs to this plane: lower <= y < upper, on top lower <= y <= upper
+    /// (4.4, with ε half a cell, eq. 4-15). Neighbours share one boundary value, so exactly one cell accepts a height.
     pub fn accepts(&self, y: f64) -> bool {
         self.lower <= y && (y < self.upper || (self.is_top && y == self.upper))
     }
@@ -66,9 +66,9 @@ pub fn smart_sub_boxes(histogram: &[u32]) -> Vec<Range<usize>> {
     sub_boxes
 }
 
-/// Places planes in the sub-boxes alone, each accepting its own cell: h_i = h r_i (eq. 4-21) with r_i the share of the
-/// `levels`, and n_i = max(1, ceil(h_i / 2ε)) planes (eq. 4-22, read with the height instead of its ratio and as planes,
-/// which is what Table 5-4 shows). `epsilon` is above 0, in metres.
+/// Places planes in the sub-boxes alone, each accepting its own cell: h_i = h r_i (eq. 4-21) with r_i the fraction of the
+/// `levels`, and n_i = max(1, ceil(h_i / 2ε)) planes (eq. 4-22, read with the height instead of its ratio and as
+/// planes, which is what Table 5-4 shows). `epsilon` is above 0, in metres.
 pub fn smart_planes(height: f64, levels: usize, sub_boxes: &[Range<usize>], epsilon: f64) -> Vec<Cell> {
     let place = |sub_box: &Range<usize>| {
         let sub_height = height * sub_box.len() as f64 / levels as f64;
@@ -192,7 +192,7 @@ mod tests {
         assert!(!cells[3].is_top);
     }
 
-    /// How many planes one run of `valid` of 100 levels gets.
+    /// Number of planes that one run of `valid` of 100 levels gets.
     fn smart_count(valid: usize, specified: usize) -> usize {
         let epsilon = uniform_epsilon(1.0, specified);
         smart_planes(1.0, 100, from_ref(&(0..valid)), epsilon).len()

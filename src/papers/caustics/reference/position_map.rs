@@ -24,12 +24,12 @@ pub struct PositionMap {
     pub normals: Vec<DVec3>,
     /// Lowest and highest height found within [`EDGE_BAND_TEXELS`] of the centre; `None` where nothing is covered.
     pub y_range: Vec<Option<[f64; 2]>>,
-    /// Whether surface and background meet within [`EDGE_BAND_TEXELS`] of the centre, so that either is right.
+    /// True where surface and background meet within [`EDGE_BAND_TEXELS`] of the centre, so that either is right.
     pub at_outline: Vec<bool>,
 }
 
-/// Draws the receiver along -V in orthographic projection over the box's width and depth and keeps the surface nearest to
-/// the light, from either side of a triangle (eq. 4-10 to 4-13). The map has `resolution` texels a side.
+/// Draws the receiver along -V in orthographic projection over the box's width and depth and keeps the surface nearest
+/// to the light, from either side of a triangle (eq. 4-10 to 4-13). The map has `resolution` texels a side.
 pub fn position_map(receiver: &ReceiverBox, triangles: &[ReceiverTriangle], resolution: usize) -> PositionMap {
     let everything = |_: f64| true;
     let surfaces = nearest_surfaces(receiver, triangles, resolution, DVec2::ZERO, everything);

@@ -6,7 +6,7 @@ use glam::DVec2;
 pub(super) struct TexelTriangle {
     /// Corners in the order that makes the area positive.
     corners: [DVec2; 3],
-    /// Where each of the caller's corners stands in `corners`.
+    /// Index in `corners` of each of the caller's corners.
     order: [usize; 3],
     double_area: f64,
 }
@@ -25,8 +25,8 @@ impl TexelTriangle {
         }
     }
 
-    /// Barycentric weights of the caller's corners where the triangle covers `point`. Of two triangles on either side of
-    /// an edge exactly one covers a point on it.
+    /// Barycentric weights of the caller's corners where the triangle covers `point`. Of two triangles on either side
+    /// of an edge exactly one covers a point on it.
     pub(super) fn weights(&self, point: DVec2) -> Option<[f64; 3]> {
         let [a, b, c] = self.corners;
         let sides = [(b, c), (c, a), (a, b)].map(|(p, q)| (edge(p, q, point), precedes(p, q)));
@@ -69,7 +69,8 @@ impl TexelTriangle {
     }
 }
 
-/// Twice the signed area of (p, q, point); exactly opposite for (q, p, point), so that neighbours agree on a shared edge.
+/// Twice the signed area of (p, q, point); exactly opposite for (q, p, point), so that neighbours agree on a shared
+/// edge.
 fn edge(p: DVec2, q: DVec2, point: DVec2) -> f64 {
     if precedes(p, q) { (q - p).perp_dot(point - p) } else { -((p - q).perp_dot(point - q)) }
 }

@@ -3,7 +3,7 @@
 use crate::papers::caustics::reference::{Medium, ReferenceLight};
 use glam::{DVec2, DVec3};
 
-/// The share of the diagonal by which the height exceeds the tight box, half of it on either side.
+/// The fraction of the diagonal by which the height exceeds the tight box, half of it on either side.
 const HEIGHT_PADDING: f64 = 1e-3;
 /// Rounding of a single-precision height, relative to the coordinates that it is computed from.
 const HEIGHT_ROUNDING: f64 = 1e-6;
@@ -28,8 +28,9 @@ pub struct ReceiverBox {
     pub depth: f64,
 }
 
-/// Aligns the box of a receiver with `light` refracted at flat water (V = -T, eq. 4-1 to 4-3). A point light is aimed at
-/// `world_box_center`. The thesis takes a random N: here N is +Z, or +X where |V·Z| > 0.99; U = normalize(N x V), W = U x V.
+/// Aligns the box of a receiver with `light` refracted at flat water (V = -T, eq. 4-1 to 4-3). A point light is aimed
+/// at `world_box_center`. The thesis takes a random N: here N is +Z, or +X where |V·Z| > 0.99; U = normalize(N x V), W
+/// = U x V.
 ///
 /// `positions` are the receiver's vertices in the world. `None` without positions or with a light that does not come
 /// from above.
@@ -78,8 +79,8 @@ impl ReceiverBox {
     /// A point of box space in texels of a map with `resolution` texels a side: (column, row), 0 at the first texel's
     /// outer edge. Not finite where the box has no width or depth.
     pub fn to_texels(&self, point: DVec3, resolution: usize) -> DVec2 {
-        let share = DVec2::new(point.x / self.width, point.z / self.depth);
-        (share + 0.5) * resolution as f64
+        let fraction = DVec2::new(point.x / self.width, point.z / self.depth);
+        (fraction + 0.5) * resolution as f64
     }
 
     /// Area of one texel of a map with `texels` texels in all, in m².
@@ -87,7 +88,7 @@ impl ReceiverBox {
         self.width * self.depth / texels as f64
     }
 
-    /// How far a height computed in single precision may be off, in metres.
+    /// Error bound of a height computed in single precision, metres.
     pub fn height_tolerance_m(&self) -> f64 {
         let size = DVec3::new(self.width, self.height, self.depth).length();
         HEIGHT_ROUNDING * (size + self.center.length())

@@ -50,8 +50,8 @@ pub fn wave_vertex(waves: &[Wave], water_level_m: f64, x: f64, z: f64, time_s: f
     WaterVertex { position: DVec3::new(x, height, z), normal: DVec3::new(-slope.x, 1.0, -slope.y).normalize() }
 }
 
-/// The bicubic spline through the samples of a height map: their tensor product B-spline, whose coefficients go on beyond
-/// the border as at the border.
+/// The bicubic spline through the samples of a height map: their tensor product B-spline, whose coefficients go on
+/// beyond the border as at the border.
 #[derive(Clone, Debug)]
 pub struct HeightField {
     /// Row by row, metres above the water's level.
@@ -66,8 +66,8 @@ impl HeightField {
     /// middle of the map at x and z of `middle`. At least one row of at least one sample.
     pub fn through(heights: &[f64], columns: usize, spacing_m: DVec2, middle: DVec2) -> Self {
         let mut field = HeightField { coefficients: heights.to_vec(), columns, spacing_m, middle };
-        // What a sample lacks is added to its coefficient until nothing is lacking: with weights of 4/9 at a coefficient's
-        // own sample what lacks shrinks by 8/9 at least.
+        // What a sample lacks is added to its coefficient until nothing is lacking: with weights of 4/9 at a
+        // coefficient's own sample what lacks shrinks by 8/9 at least.
         for _ in 0..400 {
             let lacking = |(sample, height): (usize, &f64)| {
                 height - field.height_and_slope(DVec2::new((sample % columns) as f64, (sample / columns) as f64)).0
@@ -133,8 +133,8 @@ pub fn spherical_cap_vertex(radius_m: f64, vertex: DVec3, x: f64, z: f64) -> Opt
     })
 }
 
-/// How far below its vertex a spherical cap focuses parallel light from overhead, for rays near the axis: n R / (n - 1),
-/// which is 4 R for n = 4/3.
+/// Depth below its vertex at which a spherical cap focuses parallel light from overhead, for rays near the axis: n R /
+/// (n - 1), which is 4 R for n = 4/3.
 pub fn spherical_cap_focus(radius_m: f64, refraction_index: f64) -> f64 {
     refraction_index * radius_m / (refraction_index - AIR)
 }
@@ -237,8 +237,8 @@ mod tests {
         let (radius, vertex) = (0.5, DVec3::new(1.0, 0.2, -1.0));
         let focus = spherical_cap_focus(radius, WATER.refraction_index);
         assert!((focus - 4.0 * radius).abs() < 1e-12);
-        for (share, tolerance) in [(1e-3, 1e-5), (0.02, 1e-3)] {
-            let offset = radius * share;
+        for (fraction, tolerance) in [(1e-3, 1e-5), (0.02, 1e-3)] {
+            let offset = radius * fraction;
             let cap = spherical_cap_vertex(radius, vertex, vertex.x + offset, vertex.z).unwrap();
             let ray = refract(-DVec3::Y, cap.normal, AIR, WATER.refraction_index).unwrap();
             let crossing = cap.position.y - offset * ray.y / ray.x;

@@ -6,9 +6,10 @@ use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::build;
 use crate::measure::machine::Machine;
+use crate::measure::parameter::Given;
 use crate::measure::picture;
 use crate::measure::study::Study;
-use crate::papers::lava::{CAMERAS, Parameters, Preset, Shading, Variant};
+use crate::papers::lava::{CAMERAS, Parameters, Shading, Variant};
 
 /// A part of a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,25 +26,28 @@ enum Part {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure {
     pub name: &'static str,
-    preset: Preset,
+    pub help: &'static str,
     /// Each with what its file is called after the figure; nothing for a figure of one part.
     parts: &'static [(&'static str, Part)],
 }
 
-const fn figure(name: &'static str, preset: Preset, parts: &'static [(&'static str, Part)]) -> Figure {
-    Figure { name, preset, parts }
+const fn figure(name: &'static str, help: &'static str, parts: &'static [(&'static str, Part)]) -> Figure {
+    Figure { name, help, parts }
 }
 
 /// In the thesis's order.
 pub const FIGURES: [Figure; 16] = {
     use Part::{Shaded, Splats, Texture};
-    use Preset::{Fig62, Results};
     const PICTURE: &[(&str, Part)] = &[("", Shaded(Shading::Lava))];
     [
-        figure("fig-4.1", Results, &[("-position", Texture("positions")), ("-velocity", Texture("velocities"))]),
+        figure(
+            "fig-4.1",
+            "Figure 4.1: the position and the velocity texture",
+            &[("-position", Texture("positions")), ("-velocity", Texture("velocities"))],
+        ),
         figure(
             "fig-4.2",
-            Results,
+            "Figure 4.2: the density texture, the normal/height texture, the heights as colour",
             &[
                 ("a-density", Texture("density")),
                 ("b-normal-height", Texture("normal-height")),
@@ -52,7 +56,7 @@ pub const FIGURES: [Figure; 16] = {
         ),
         figure(
             "fig-4.3",
-            Results,
+            "Figure 4.3: the depth texture, the calculated colour and the rock, the lava",
             &[
                 ("a-depth", Texture("visibility")),
                 ("b-color", Shaded(Shading::Color)),
@@ -60,21 +64,29 @@ pub const FIGURES: [Figure; 16] = {
                 ("c-lava", Shaded(Shading::Lava)),
             ],
         ),
-        figure("fig-5.1", Fig62, &[("", Texture("positions"))]),
-        figure("fig-5.2", Fig62, &[("", Shaded(Shading::Particles))]),
-        figure("fig-6.2", Fig62, &[("", Texture("density"))]),
-        figure("fig-6.3", Results, &[("", Texture("normal-height"))]),
-        figure("fig-6.4", Results, &[("-normals", Shaded(Shading::Normals)), ("-heights", Shaded(Shading::Heights))]),
-        figure("fig-7.1", Results, &[("", Texture("visibility"))]),
-        figure("fig-7.2", Results, &[("", Shaded(Shading::Rock))]),
-        figure("fig-7.3", Results, &[("-color", Shaded(Shading::Color)), ("-lava", Shaded(Shading::Lava))]),
-        figure("fig-8.1", Results, PICTURE),
-        figure("fig-8.2", Results, PICTURE),
-        figure("fig-8.3", Results, PICTURE),
-        figure("fig-8.4", Results, PICTURE),
+        figure("fig-5.1", "Figure 5.1: the texture of 65,536 particles", &[("", Texture("positions"))]),
+        figure("fig-5.2", "Figure 5.2: the particles as points", &[("", Shaded(Shading::Particles))]),
+        figure("fig-6.2", "Figure 6.2: a density texture", &[("", Texture("density"))]),
+        figure("fig-6.3", "Figure 6.3: the normal/height texture", &[("", Texture("normal-height"))]),
+        figure(
+            "fig-6.4",
+            "Figure 6.4: normals and heights on the lava's surface",
+            &[("-normals", Shaded(Shading::Normals)), ("-heights", Shaded(Shading::Heights))],
+        ),
+        figure("fig-7.1", "Figure 7.1: the depth texture of the visibility pass", &[("", Texture("visibility"))]),
+        figure("fig-7.2", "Figure 7.2: the rock texture on the surface", &[("", Shaded(Shading::Rock))]),
+        figure(
+            "fig-7.3",
+            "Figure 7.3: the calculated colours, and with the rock",
+            &[("-color", Shaded(Shading::Color)), ("-lava", Shaded(Shading::Lava))],
+        ),
+        figure("fig-8.1", "Figure 8.1: the lava from the side", PICTURE),
+        figure("fig-8.2", "Figure 8.2: the lava, second camera", PICTURE),
+        figure("fig-8.3", "Figure 8.3: the lava, third camera", PICTURE),
+        figure("fig-8.4", "Figure 8.4: the lava, fourth camera", PICTURE),
         figure(
             "fig-8.5",
-            Preset::Fig85,
+            "Figure 8.5: four splat sizes",
             &[
                 ("-0.001875", Splats(0.001875)),
                 ("-0.004375", Splats(0.004375)),
@@ -85,7 +97,7 @@ pub const FIGURES: [Figure; 16] = {
     ]
 };
 
-/// What a part looks like.
+/// A drawn part.
 pub enum Drawn {
     Picture(Rgba8),
     /// A texture, scaled to be looked at.
@@ -96,26 +108,26 @@ pub enum Drawn {
 pub struct Drawing {
     /// Each with what its file is called.
     pub parts: Vec<(&'static str, Drawn)>,
-    /// What makes it doubtful, one line each.
+    /// Doubts about the frame, one line each.
     pub warnings: Vec<String>,
 }
 
 impl Figure {
-    /// The figure of that name.
-    pub fn named(name: &str) -> Option<Figure> {
-        FIGURES.into_iter().find(|figure| figure.name == name)
-    }
-
-    /// The numbers that the figure is made with; its own camera for the figures of chapter 8.
-    pub fn parameters(&self) -> Parameters {
-        let mut parameters = self.preset.configurations().swap_remove(0);
-        if let Some((_, camera)) = CAMERAS.iter().find(|(name, _)| *name == self.name) {
-            parameters.camera = *camera;
+    /// Takes the figure's numbers where the user gave none; its own camera for the figures of chapter 8.
+    pub fn set_up(&self, setup: &mut Setup, given: &Given) {
+        let p = &mut setup.parameters;
+        if ["fig-5.1", "fig-5.2", "fig-6.2"].contains(&self.name) {
+            let figure = Parameters::of_figure_6_2();
+            set_unless(given.has("particles"), &mut p.particles, figure.particles);
+            set_unless(given.has("radius"), &mut p.radius_m, figure.radius_m);
+            set_unless(given.has("density"), &mut p.density, figure.density);
         }
-        parameters
+        if let Some((_, camera)) = CAMERAS.iter().find(|(name, _)| *name == self.name) {
+            set_unless(given.has("camera"), &mut p.camera, *camera);
+        }
     }
 
-    /// What each part is drawn from.
+    /// The set-up of each part.
     fn setups<'a>(&self, setup: &'a Setup) -> impl Iterator<Item = Setup> + use<'a> {
         self.parts.iter().map(move |(_, part)| {
             let mut setup = setup.clone();
@@ -165,8 +177,14 @@ impl Figure {
     }
 }
 
-/// A texture with its values where a picture shows them: several channels by the share of their largest value; of a depth,
-/// the background as far as the farthest surface.
+fn set_unless<T>(is_given: bool, value: &mut T, of_figure: T) {
+    if !is_given {
+        *value = of_figure;
+    }
+}
+
+/// A texture with its values where a picture shows them: several channels as fractions of their largest value; of a
+/// depth, the background as far as the farthest surface.
 fn visible(texture: Raster) -> Result<Raster, Error> {
     let (Shape::Image { layers, height, width, channels }, Samples::F32(values)) = (texture.shape(), texture.samples())
     else {

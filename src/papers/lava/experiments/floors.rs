@@ -1,9 +1,10 @@
-//! What each pass costs at least: the work that was counted, at the rates that the device was measured at.
+//! Least cost of each pass: the work that was counted, at the rates that the device was measured at.
 //!
-//! A pass that draws points or splats has the same points with an empty fragment stage, and the samples that pass at the
-//! rate at which the device adds to a float target (to a byte target where it writes depths). A full-screen pass has its
-//! pixels at the fill rate or its bytes at the copy bandwidth, whichever takes longer; copies and host work have their
-//! bytes. What a pass takes beyond is the arithmetic and the reads of its shaders, fragments that are discarded included.
+//! A pass that draws points or splats has the same points with an empty fragment stage, and the samples that pass at
+//! the rate at which the device adds to a float target (to a byte target where it writes depths). A full-screen pass
+//! has its pixels at the fill rate or its bytes at the copy bandwidth, whichever takes longer; copies and host work
+//! have their bytes. What a pass takes beyond is the arithmetic and the reads of its shaders, fragments that are
+//! discarded included.
 
 use serde_json::{Map, Value, json};
 
@@ -19,7 +20,7 @@ use crate::report::record::{Pass, PassKind, Run};
 /// `float_blend_gpix_s`. Absent without time stamps.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Errors of the Vulkan layer.
 pub fn measure(machine: &mut Machine, paper: &Lava) -> Result<[(&'static str, Value); 2], Error> {
     const SAMPLES: usize = 3;
     let mut times: [Vec<f64>; FLOORS.len()] = Default::default();

@@ -1,6 +1,128 @@
-//! The tables and figures of the `lava` paper, with the paper's own numbers.
+//! The thesis's figures, its frame rate, and growth of the method's times.
 
 pub mod figures;
 pub mod floors;
-pub mod results;
-pub mod scaling;
+mod results;
+mod scaling;
+
+use self::figures::{Drawing, Drawn, FIGURES};
+use self::scaling::Axis;
+use super::setup::Setup;
+use crate::field;
+use crate::measure::experiment::{self, Experiment};
+use crate::measure::parameter::{Parameter, Range};
+use crate::measure::sweep::Point;
+use crate::measure::{Error, bench};
+
+type Context<'a> = experiment::Context<'a, Setup>;
+
+/// Options of the experiments.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Frame of a figure.
+    frame: u32,
+}
+
+/// The options of the experiments.
+pub fn options() -> Vec<Parameter<Options>> {
+    vec![
+        Parameter::new("frame", field!(Options.frame))
+            .range(Range::from(0.0).to(100_000.0))
+            .help("Frame of a figure's pictures and textures"),
+    ]
+}
+
+/// Every experiment, in the thesis's order.
+pub fn all() -> Vec<Experiment<Setup>> {
+    let figures = FIGURES.map(|figure| Experiment {
+        name: figure.name,
+        help: figure.help,
+        options: &["frame"],
+        refuses: if figure.name == "fig-8.5" { REFUSED_BY_FIG_8_5 } else { REFUSED_BY_FIGURES },
+        run: draw,
+    });
+    let measured = |name, help, run| Experiment {
+        name,
+        help,
+        options: &[],
+        refuses: &[("frame", "this experiment measures frames from 0 on; give `frames`")],
+        run,
+    };
+    let others = [
+        measured("results", "Chapter 8: frames a second, beside the thesis's 20", results as fn(&mut Context<'_>) -> _),
+        measured("scaling", "Particles, splats and grid points against each pass's time, host work included", scaling),
+    ];
+    figures.into_iter().chain(others).collect()
+}
+
+const REFUSED_BY_FIGURES: &[(&str, &str)] = &[
+    ("json", "a figure is pictures; the experiment results has a record"),
+    ("csv", "a figure is pictures; the experiment results has rows"),
+    ("shading", "the figure's parts have their own; render takes any"),
+];
+const REFUSED_BY_FIG_8_5: &[(&str, &str)] = &[
+    ("json", "a figure is pictures; the experiment results has a record"),
+    ("csv", "a figure is pictures; the experiment results has rows"),
+    ("splat-radius", "the figure's parts have their own; render takes any"),
+];
+
+fn draw(context: &mut Context<'_>) -> Result<(), Error> {
+    let Some(figure) = FIGURES.iter().find(|figure| figure.name == context.name) else { return Ok(()) };
+    figure.set_up(&mut context.setup, &context.given);
+    figure.check(&context.setup)?;
+    let mut machine = context.open()?;
+    let Drawing { parts, warnings } = figure.draw(&mut machine, &context.setup, context.options.frame)?;
+    for (suffix, drawn) in parts {
+        let suffix = format!("{suffix}.png");
+        match drawn {
+            Drawn::Picture(picture) => context.picture(&suffix, &picture)?,
+            Drawn::Texture(texture) => context.drawing(&suffix, &texture)?,
+        }
+    }
+    for warning in warnings {
+        context.console.say(&format!("warning: {}", context.console.spell(&warning)));
+    }
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn results(context: &mut Context<'_>) -> Result<(), Error> {
+    let points = [Point::single(context.name, context.setup.clone())];
+    check(&points)?;
+    let mut machine = context.open()?;
+    let mut swept = context.sweep(&mut machine, &points)?;
+    for row in &mut swept.rows {
+        results::beside_the_thesis(&mut row.run);
+        results::note_floors(&mut row.run);
+    }
+    let runs: Vec<_> = swept.rows.into_iter().map(|row| row.run).collect();
+    let table = runs.iter().map(|run| results::render(run, context.console.style())).collect();
+    let plot = |run| results::plot(run).map(|svg| (".svg".to_owned(), svg));
+    let plots = runs.iter().map(plot).collect::<Result<Vec<_>, _>>()?;
+    context.publish_runs(&machine, runs, table, &plots)?;
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok(()), Err)
+}
+
+fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
+    let points: Vec<_> = Axis::ALL.iter().flat_map(|axis| axis.points(&context.setup)).collect();
+    check(&points)?;
+    let mut machine = context.open()?;
+    let swept = context.sweep(&mut machine, &points)?;
+    let table = scaling::table(&swept.rows);
+    let mut plots = Vec::new();
+    for axis in Axis::ALL {
+        if let Some(svg) = scaling::plot(&swept.rows, axis)? {
+            plots.push((format!("-{}.svg", axis.as_str().replace(' ', "-")), svg));
+        }
+    }
+    context.save(&context.file("-exponents.csv"), table.csv().as_bytes())?;
+    let runs = swept.rows.into_iter().map(|row| row.run).collect();
+    context.publish_runs(&machine, runs, table.render(context.console.style()), &plots)?;
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok(()), Err)
+}
+
+/// Checks every point's input before the first is measured.
+fn check(points: &[Point<Setup>]) -> Result<(), Error> {
+    points.iter().try_for_each(|point| bench::load(&point.study).map(drop))
+}

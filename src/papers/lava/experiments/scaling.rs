@@ -1,17 +1,16 @@
-//! Where each pass's time goes as particles, splats and grid grow: times of all passes, and the exponent with which each
+//! Times of all passes as particles, splats and grid grow, and the exponent with which each
 //! grows.
 
 use serde_json::json;
 
 use super::super::setup::Setup;
 use crate::measure::Error;
-use crate::measure::bench;
 use crate::measure::result_table::ResultTable;
 use crate::measure::sweep::{Point, Row};
 use crate::papers::lava::Variant;
 use crate::report::plot::{LineChart, Scale, Series};
 
-/// What grows.
+/// A quantity that grows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     Particles,
@@ -30,8 +29,8 @@ impl Axis {
         }
     }
 
-    /// The setups of this axis, the rest as in `setup`: 10^4 to 10^6 particles, 1/9 to 4 times the splats, 1/8 to 8 times
-    /// the grid points. Where particles are added, their radius shrinks so that as many overlap as before.
+    /// The setups of this axis, the rest as in `setup`: 10^4 to 10^6 particles, 1/9 to 4 times the splats, 1/8 to 8
+    /// times the grid points. Where particles are added, their radius shrinks so that as many overlap as before.
     pub fn points(self, setup: &Setup) -> Vec<Point<Setup>> {
         let p = &setup.parameters;
         let point = |count: f64, change: &dyn Fn(&mut Setup)| {
@@ -49,9 +48,9 @@ impl Axis {
             Axis::Particles => [10_000, 31_623, 100_000, 316_228, 1_000_000]
                 .map(|particles: u32| {
                     point(f64::from(particles), &|study| {
-                        let share = f64::from(p.particles) / f64::from(particles);
+                        let fraction = f64::from(p.particles) / f64::from(particles);
                         study.parameters.particles = particles;
-                        study.parameters.radius_m = (f64::from(p.radius_m) * share.cbrt()) as f32;
+                        study.parameters.radius_m = (f64::from(p.radius_m) * fraction.cbrt()) as f32;
                     })
                 })
                 .into(),
@@ -74,14 +73,6 @@ impl Axis {
                 .into(),
         }
     }
-}
-
-/// Checks every point's input before the first is measured.
-///
-/// # Errors
-/// As [`bench::load`].
-pub fn check(points: &[Point<Setup>]) -> Result<(), Error> {
-    points.iter().try_for_each(|point| bench::load(&point.study).map(drop))
 }
 
 /// One pass's time along an axis.
@@ -112,7 +103,8 @@ fn curves(rows: &[&Row]) -> Vec<Curve> {
     curves
 }
 
-/// The exponent of growth: the slope of time over count in logarithms, by least squares. Absent with fewer than two points.
+/// The exponent of growth: the slope of time over count in logarithms, by least squares. Absent with fewer than two
+/// points.
 fn exponent(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<(f64, f64)> =
         points.iter().filter(|(x, y)| *x > 0.0 && *y > 0.0).map(|(x, y)| (x.ln(), y.ln())).collect();

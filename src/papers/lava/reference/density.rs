@@ -26,7 +26,7 @@ impl Grid {
         Grid { space: space.as_dvec3(), points: points.map(|n| n as usize) }
     }
 
-    /// Where a grid point lies: in the middle of its cell.
+    /// Position of a grid point, metres: the middle of its cell.
     pub fn place(&self, index: [usize; 3]) -> DVec3 {
         let along = |axis: usize| (index[axis] as f64 + 0.5) / self.points[axis] as f64 * self.space[axis];
         DVec3::new(along(0), along(1), along(2))

@@ -23,7 +23,7 @@ pub struct Splats {
     size: DVec2,
 }
 
-/// What blending leaves in a pixel.
+/// Result of blending in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pixel {
     /// Eye-space depth of the nearest splat.

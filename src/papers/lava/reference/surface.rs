@@ -42,7 +42,7 @@ impl Surface {
     pub fn from_sums(grid: &Grid, sums: &[[f64; 2]], border: f64) -> Self {
         let [columns, _, rows] = grid.points;
         let texels = || (0..rows).flat_map(|k| (0..columns).map(move |i| (i, k)));
-        let share = |i: usize, k: usize| {
+        let fraction = |i: usize, k: usize| {
             let place = grid.place([i, 0, k]);
             let distances = [place.x, grid.space.x - place.x, place.z, grid.space.z - place.z];
             let nearest = distances.into_iter().fold(f64::INFINITY, f64::min);
@@ -50,7 +50,7 @@ impl Surface {
         };
         let heights: Vec<f64> = texels()
             .zip(sums)
-            .map(|((i, k), [heights, weights])| if *weights > 0.0 { heights / weights * share(i, k) } else { 0.0 })
+            .map(|((i, k), [heights, weights])| if *weights > 0.0 { heights / weights * fraction(i, k) } else { 0.0 })
             .collect();
         let height = |i: usize, k: usize| heights[k * columns + i];
         let difference = |after: f64, before: f64, steps: usize, spacing: f64| {
@@ -62,7 +62,7 @@ impl Surface {
             let along_x = difference(height(right, k), height(left, k), right - left, grid.space.x / columns as f64);
             let along_z = difference(height(i, back), height(i, front), back - front, grid.space.z / rows as f64);
             let normal = DVec3::new(-along_x, 1.0, -along_z).normalize();
-            DVec3::Y.lerp(normal, share(i, k)).normalize()
+            DVec3::Y.lerp(normal, fraction(i, k)).normalize()
         };
         let normals = texels().map(normal).collect();
         Surface { space: grid.space, columns, rows, heights, normals }
