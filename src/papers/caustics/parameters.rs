@@ -207,7 +207,9 @@ impl Parameters {
                 .cost(Cost::Buffers)
                 .everyday(),
             Parameter::new("mrt", field!(Parameters.mrt))
-                .help("Position and diffuse map in one pass with two targets (figure 5-6), or in two passes (figure 5-5)")
+                .help(
+                    "Position and diffuse map in one pass with two targets (figure 5-6), or in two passes (figure 5-5)",
+                )
                 .section("5.2.3")
                 .cost(Cost::Pipelines),
             Parameter::new("levels", field!(Parameters.smart.levels))

@@ -7,17 +7,17 @@ use std::sync::Arc;
 use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
 use serde_json::{Map, Value as Json, json};
 
+use super::experiments::{self, Options};
+use crate::field;
 use crate::gpu::{self, Feature, Mode, ShaderLibrary};
 use crate::measure::Error;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
+use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::experiment::Experiment;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
 use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
-use super::experiments::{self, Options};
-use crate::field;
 use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
@@ -68,9 +68,7 @@ impl Value for View {
         match one(texts)? {
             "above" => Ok(View::Above),
             "below" => Ok(View::Below),
-            _ => {
-                EyeAndTarget::parse(texts).map(View::At).map_err(|e| format!("above, below, or eye and target: {e}"))
-            }
+            _ => EyeAndTarget::parse(texts).map(View::At).map_err(|e| format!("above, below, or eye and target: {e}")),
         }
     }
 
@@ -271,7 +269,8 @@ impl Declared for Setup {
                 )
                 .everyday(),
         ];
-        let numbers = Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
+        let numbers =
+            Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
         scene.into_iter().chain(numbers).chain(water_and_light).collect()
     }
 
@@ -285,7 +284,8 @@ impl Declared for Setup {
             help: "Table 5-1 and figure 5-10 at their last row: teapot, 101 planes, 512 x 512 maps",
             variant: None,
             setup: || {
-                let numbers = Parameters { planes: 101, map_size: 512, water_triangles: 10_000, ..Parameters::default() };
+                let numbers =
+                    Parameters { planes: 101, map_size: 512, water_triangles: 10_000, ..Parameters::default() };
                 Setup { parameters: numbers, ..Setup::default() }
             },
         }]

@@ -6,7 +6,9 @@ use glam::Vec3;
 use serde_json::Value as Json;
 
 use crate::field;
-use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one};
+use crate::measure::parameter::{
+    self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one,
+};
 use crate::measure::{ParameterError, config};
 use crate::scene::Camera;
 

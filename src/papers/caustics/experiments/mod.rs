@@ -85,17 +85,13 @@ pub fn all() -> Vec<Experiment<Setup>> {
         sweep("5-4", "Table 5-4: planes that smart slicing draws of those specified", planes),
         sweep("5-5", "Table 5-5: Luv difference (eq. 2-9) between normal and smart slicing", differences),
         sweep("memory", "Section 5.1: memory of the methods by number of planes", memory),
-        single(
-            "depth-profile",
-            "Figure 5-12 and the appendix's histograms: texels in each depth level",
-            |context| {
-                let (meshes, mut machine) = open(context)?;
-                let columns = &["mesh", "level", "texels"];
-                let rows = depth_profiles(context, &mut machine, &meshes)?;
-                let table = ResultTable { title: "Figure 5-12: texels in each depth level", columns, rows };
-                context.publish_table(&machine, &table)
-            },
-        ),
+        single("depth-profile", "Figure 5-12 and the appendix's histograms: texels in each depth level", |context| {
+            let (meshes, mut machine) = open(context)?;
+            let columns = &["mesh", "level", "texels"];
+            let rows = depth_profiles(context, &mut machine, &meshes)?;
+            let table = ResultTable { title: "Figure 5-12: texels in each depth level", columns, rows };
+            context.publish_table(&machine, &table)
+        }),
         single("5-13", "Figure 5-13: the picture by normal and by smart slicing", picture_pairs),
         sweep("appendix", "The appendix: three pictures, the curves and the histogram of every mesh given", appendix),
     ]

@@ -60,8 +60,7 @@ impl Ratios {
         let [level, smart, volumetric] = [Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric]
             .map(|variant| runs.iter().position(|run| run.variant == variant.as_str()));
         let pair = |base: Option<usize>, over: Option<usize>| Some((&runs[base?], &runs[over?]));
-        let against_volumetric =
-            pair(level, volumetric).and_then(|(level, other)| against_volumetric(level, other));
+        let against_volumetric = pair(level, volumetric).and_then(|(level, other)| against_volumetric(level, other));
         let against_normal = pair(level, smart).and_then(|(level, smart)| against_normal(level, smart));
         if let (Some(ratios), Some(at)) = (&against_volumetric, volumetric) {
             runs[at].results.extend(ratios.results());
