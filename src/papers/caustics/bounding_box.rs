@@ -33,8 +33,11 @@ impl BoundingBox {
 /// The axes that all boxes of one light share: V = -T, against the light refracted at flat water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axes {
+    /// Unit axis along the maps' columns.
     pub u: DVec3,
+    /// Unit axis against the refracted light.
     pub v: DVec3,
+    /// Unit axis along the maps' rows.
     pub w: DVec3,
 }
 
@@ -71,8 +74,11 @@ impl Axes {
 /// A receiver's box: its centre P0 along the axes, and its width along U, height along V and depth along W, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReceiverBox {
+    /// Shared with all boxes of the light.
     pub axes: Axes,
+    /// P0 along the axes, metres.
     pub center: DVec3,
+    /// Width along U, height along V, depth along W, metres.
     pub extent: DVec3,
 }
 

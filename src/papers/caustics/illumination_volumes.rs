@@ -46,7 +46,9 @@ host_block! {
 
 /// The pass of one light.
 pub struct IlluminationVolumes {
+    /// A [`Ray`] for each vertex of the water.
     pub rays: Arc<Buffer>,
+    /// Three a volume.
     pub index_count: u32,
     /// Axes of the light's boxes.
     pub axes: Axes,

@@ -22,6 +22,7 @@ use crate::gpu::{Error, ImageView};
 
 /// Passes of the variants `level-map` and `level-map-smart`.
 pub struct LevelMap {
+    /// Shared by all receivers.
     pub slicing: Slicing,
     /// One for each receiver under each light.
     pub receivers: Vec<ReceiverPasses>,
@@ -35,12 +36,17 @@ pub enum Slicing {
 
 /// Passes of one receiver under one light.
 pub struct ReceiverPasses {
+    /// Position and diffuse map.
     pub maps: ReceiverMaps,
     /// `None` for uniform planes.
     pub smart: Option<SmartSlicing>,
+    /// I_c of the receiver's planes.
     pub caustics_map: CausticsMap,
+    /// The same triangles with nothing shaded.
     pub caustics_map_floor: CausticsMapFloor,
+    /// I_c x I_d.
     pub combine: Combine,
+    /// The combined map on the receiver.
     pub cast: Cast,
 }
 
@@ -52,7 +58,9 @@ pub enum ReceiverMaps {
 
 /// Planes by the depth profile (sections 4.7.2 and 5.2.3).
 pub struct SmartSlicing {
+    /// Heights for the host.
     pub read_positions: ReadPositions,
+    /// Levels and the planes that follow from them.
     pub depth_profile: DepthProfile,
 }
 

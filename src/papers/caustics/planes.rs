@@ -3,6 +3,7 @@
 /// A plane and the heights along V from the box's centre that it accepts, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
+    /// Height of the plane.
     pub plane: f32,
     /// Lowest height accepted.
     pub lower: f32,

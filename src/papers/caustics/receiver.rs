@@ -49,6 +49,7 @@ host_block! {
 /// An object that a caller puts into the water: a mesh in world space and its colour.
 #[derive(Debug, Clone)]
 pub struct ReceiverInput {
+    /// World space, metres.
     pub mesh: Mesh,
     /// Diffuse reflectance, linear RGB, 0 to 1.
     pub albedo: Vec3,
@@ -56,9 +57,13 @@ pub struct ReceiverInput {
 
 /// A receiver's mesh on the device.
 pub struct Receiver {
+    /// A [`Vertex`] each.
     pub vertices: Arc<Buffer>,
+    /// Three a triangle.
     pub indices: Arc<Buffer>,
+    /// Length of the indices.
     pub index_count: u32,
+    /// Diffuse reflectance, linear RGB, 0 to 1.
     pub albedo: Vec3,
     /// World positions, for the boxes that are aligned anew in every frame.
     pub positions: Vec<Vec3>,
@@ -92,15 +97,19 @@ impl Receiver {
 
 /// A receiver under one light: its box, and its planes once they are sliced.
 pub struct LitReceiver {
+    /// The mesh, which all lights share.
     pub receiver: Arc<Receiver>,
     /// Index of the light.
     pub light: usize,
     /// Index of the receiver.
     pub index: usize,
+    /// Its box in the light's axes.
     pub aligned: ReceiverBox,
     /// Nearest to the light first.
     pub cells: Vec<Cell>,
+    /// Texels a side of its maps.
     pub map_size: u32,
+    /// K of eq. 4-17.
     pub absorption_per_m: f32,
 }
 

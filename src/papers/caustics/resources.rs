@@ -36,9 +36,11 @@ pub const COLOR_MAP: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
 /// Everything that passes are made from.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
+    /// Compiled shaders, and their device.
     pub shaders: &'a ShaderLibrary,
     /// Prefix of the resources' names.
     pub label: &'a str,
+    /// The configuration.
     pub parameters: &'a Parameters,
     /// A sampler that filters nothing.
     pub nearest: &'a Arc<Sampler>,

@@ -50,11 +50,15 @@ fn underwater_camera(parameters: &Parameters) -> Camera {
 pub struct Underwater {
     /// Linear RGB.
     pub color: Arc<ImageView>,
+    /// Depth, and the stencil where there is one.
     pub depth: Arc<ImageView>,
     /// The depth alone, without a stencil.
     pub fetched_depth: Arc<ImageView>,
+    /// World to clip space.
     pub view_projection: Mat4,
+    /// Of the camera, metres.
     pub eye: Vec3,
+    /// A [`CameraBlock`].
     pub camera: Arc<Buffer>,
 }
 

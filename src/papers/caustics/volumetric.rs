@@ -19,6 +19,7 @@ use crate::gpu::{Error, ImageView};
 
 /// Passes of the variant.
 pub struct Volumetric {
+    /// Shared by all receivers.
     pub sample_planes: SamplePlanes,
     /// One for each receiver under each light.
     pub receivers: Vec<ReceiverPasses>,
@@ -26,11 +27,17 @@ pub struct Volumetric {
 
 /// Passes of one receiver under one light.
 pub struct ReceiverPasses {
+    /// Diffuse light in each plane's cell.
     pub slice_images: SliceImages,
+    /// I_c of one plane after the other.
     pub caustics_map: CausticsMap,
+    /// The same triangles with nothing shaded.
     pub caustics_map_floor: CausticsMapFloor,
+    /// I_c into each slice.
     pub multiply: Multiply,
+    /// The slices put together.
     pub combine_slices: CombineSlices,
+    /// The combined map on the receiver.
     pub cast: Cast,
 }
 

@@ -22,7 +22,9 @@ pub struct Wave {
     pub vector: DVec2,
     /// rad/s, of deep water: omega = sqrt(g k).
     pub angular_frequency: f64,
+    /// Phase at the origin at time 0.
     pub phase_rad: f64,
+    /// Half the height from trough to crest.
     pub amplitude_m: f64,
 }
 
@@ -53,7 +55,9 @@ pub struct Grid {
     pub corner: DVec2,
     /// Cell size along x and z, metres.
     pub cell: DVec2,
+    /// Cells along x.
     pub columns: u32,
+    /// Cells along z.
     pub rows: u32,
 }
 

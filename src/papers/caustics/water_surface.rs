@@ -105,9 +105,13 @@ impl Shape {
 
 /// The pass, with the water on the device.
 pub struct WaterSurface {
+    /// The mesh.
     pub grid: Grid,
+    /// Positions and normals, row by row.
     pub vertices: Arc<Buffer>,
+    /// Three a triangle.
     pub indices: Arc<Buffer>,
+    /// Waves or a height map.
     pub shape: Shape,
     pass: Pass,
 }

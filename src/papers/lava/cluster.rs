@@ -13,6 +13,7 @@ use crate::host_block;
 host_block! {
     /// A point of a vertex buffer: a particle of a cluster, or an accepted grid point. Metres.
     pub struct Point {
+        /// In the simulation space.
         pub position: [f32; 3],
     }
 }

@@ -27,6 +27,7 @@ const NO_PLANE_M: f32 = 1.0e9;
 /// Four successive grid planes, the lowest first.
 #[derive(Debug, Clone, Copy)]
 pub struct GridPlanes {
+    /// Heights, metres; out of reach for planes that are not there.
     pub heights_m: [f32; 4],
     /// Planes that are there, 1 to 4.
     pub count: usize,

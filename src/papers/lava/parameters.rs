@@ -91,15 +91,19 @@ pub struct Parameters {
     pub color: Vec3,
     /// Side of the square that the rock texture covers once in metres, above 0 and at most 1000.
     pub rock_tile_m: f32,
+    /// Colour of the splats.
     pub shading: Shading,
     /// Splats by a geometry stage, as in the thesis; as instanced quads without it.
     pub geometry_stage: bool,
     /// Time between two frames in seconds, 0 to 1000.
     pub time_step_s: f32,
+    /// Seed of the particles.
     pub seed: u64,
+    /// The viewer, metres.
     pub camera: Camera,
-    /// Size of the picture in pixels, at least 1 x 1.
+    /// Width of the picture in pixels, at least 1.
     pub width: u32,
+    /// Height of the picture in pixels, at least 1.
     pub height: u32,
 }
 

@@ -12,7 +12,9 @@ use crate::measure::ParameterError;
 /// Texels of a rock, rows from the top, sRGB with an alpha that is ignored. It repeats in both directions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rock {
+    /// Texels a row, 2 to 4096.
     pub width: u32,
+    /// Rows, 2 to 4096.
     pub height: u32,
     /// `width` x `height`.
     pub texels: Vec<[u8; 4]>,

@@ -25,11 +25,13 @@ use crate::scene::{Mesh, MeshSource};
 /// A user's choice of everything.
 #[derive(Debug, Clone, Default)]
 pub struct Setup {
+    /// The numbers.
     pub parameters: Parameters,
     /// PNG of the rock texture; the built-in one without.
     pub rock: Option<PathBuf>,
     /// Polygon meshes in the simulation space, at their own size and place.
     pub objects: Vec<MeshSource>,
+    /// Name of the preset or experiment that they come from.
     pub preset: Option<String>,
 }
 
@@ -52,8 +54,11 @@ impl Setup {
 
 /// A setup with its particles placed, its rock decoded and its objects loaded.
 pub struct Scene {
+    /// As they start.
     pub particles: Particles,
+    /// The built-in one or that of a file.
     pub rock: Cow<'static, Rock>,
+    /// In the simulation space, metres.
     pub objects: Vec<Mesh>,
 }
 

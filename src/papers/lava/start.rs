@@ -8,6 +8,7 @@ use crate::scene::random::Random;
 /// Positions in metres inside the simulation space, and velocities in metres per second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Particles {
+    /// Metres.
     pub positions: Vec<Vec3>,
     /// As many as positions.
     pub velocities: Vec<Vec3>,

@@ -24,9 +24,11 @@ pub const EMPTY: &str = "common/empty.frag";
 /// Everything that passes are made from.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
+    /// Compiled shaders, and their device.
     pub shaders: &'a ShaderLibrary,
     /// Prefix of the resources' names.
     pub label: &'a str,
+    /// The configuration.
     pub parameters: &'a Parameters,
 }
 

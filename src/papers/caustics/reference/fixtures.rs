@@ -13,6 +13,7 @@ pub(super) const OVERHEAD: ReferenceLight = ReferenceLight::Parallel { direction
 pub(super) const OBLIQUE: ReferenceLight = ReferenceLight::Parallel { direction: DVec3::new(0.36, -0.8, 0.48) };
 
 pub(super) struct Receiver {
+    /// Its faces.
     pub(super) triangles: Vec<ReceiverTriangle>,
 }
 

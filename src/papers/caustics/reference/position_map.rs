@@ -69,7 +69,9 @@ pub fn diffuse_map(receiver: &ReceiverBox, map: &PositionMap, albedo: DVec3) -> 
 /// A point of a receiver's surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surface {
+    /// Height along V, metres.
     pub(super) y: f64,
+    /// Unit normal in box space.
     pub(super) normal: DVec3,
 }
 

@@ -25,7 +25,9 @@ enum Part {
 /// A figure of the thesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure {
+    /// Name on the command line.
     pub name: &'static str,
+    /// One line on it.
     pub help: &'static str,
     /// Each with what its file is called after the figure; nothing for a figure of one part.
     parts: &'static [(&'static str, Part)],

@@ -16,6 +16,7 @@ pub fn density(r: f64, h: f64) -> f64 {
 /// The grid of the densities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
+    /// Sides of the simulation space, metres.
     pub space: DVec3,
     /// Points along x, y (planes) and z.
     pub points: [usize; 3],

@@ -7,10 +7,15 @@ use super::density::Grid;
 /// Heights and normals in columns along x, row after row along z.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
+    /// Sides of the simulation space, metres.
     pub space: DVec3,
+    /// Texels along x.
     pub columns: usize,
+    /// Texels along z.
     pub rows: usize,
+    /// Metres, row by row.
     pub heights: Vec<f64>,
+    /// Unit normals, row by row.
     pub normals: Vec<DVec3>,
 }
 
