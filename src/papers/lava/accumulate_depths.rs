@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::FLOORS;
 use super::cluster::Point;
 use super::targets::{Context, EMPTY, ZERO};
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Blend, Buffer, Error, Frame, ImageView, Load, Pass, Topology};
 use crate::host_block;
 
@@ -19,8 +20,6 @@ host_block! {
 /// The pass.
 pub struct AccumulateDepths {
     pass: Pass,
-    /// The same splats with an empty fragment stage.
-    floor: Pass,
     instanced: bool,
     constants: DepthConstants,
     /// Sum of weighted heights in red, metres; sum of weights in alpha.
@@ -35,29 +34,26 @@ impl AccumulateDepths {
     pub fn new(context: Context<'_>, vertices: &Arc<Buffer>, instanced: bool) -> Result<Self, Error> {
         let parameters = context.parameters;
         let sums = context.grid_target("accumulated-depths")?;
-        let splats = |name, fragment| {
-            let splats = if instanced {
-                Pass::graphics(name, "6.3", "lava/depth-splat-quad.vert", fragment)
-                    .instances::<Point>(vertices)
-                    .topology(Topology::TriangleStrip)
-            } else {
-                Pass::graphics(name, "6.3", "lava/point.vert", fragment)
-                    .geometry("lava/depth-splat.geom")
-                    .vertices::<Point>(vertices)
-                    .topology(Topology::Points)
-            };
-            splats.constants::<DepthConstants>()
-        };
-        let pass = splats("accumulate-depths", "lava/accumulate-depths.frag")
+        let pass = splats("accumulate-depths", "lava/accumulate-depths.frag", vertices, instanced)
             .color(&sums, ZERO, Blend::Add)
             .build(context.shaders)?;
-        let floor = splats(FLOORS[1].1, EMPTY).color(&sums, Load::Keep, Blend::Masked).build(context.shaders)?;
         let constants = DepthConstants {
             space_m: [parameters.space_m.x, parameters.space_m.z],
             columns: [sums.width() as f32, sums.height() as f32],
             radius_m: parameters.radius_m,
         };
-        Ok(AccumulateDepths { pass, floor, instanced, constants, sums })
+        Ok(AccumulateDepths { pass, instanced, constants, sums })
+    }
+
+    /// The same splats with an empty fragment stage. It changes no texture.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn floor(&self, context: Context<'_>, vertices: &Arc<Buffer>) -> Result<Self, Error> {
+        let pass = splats(FLOORS[1].1, EMPTY, vertices, self.instanced)
+            .color(&self.sums, Load::Keep, Blend::Masked)
+            .build(context.shaders)?;
+        Ok(AccumulateDepths { pass, sums: self.sums.clone(), ..*self })
     }
 
     /// Draws the accepted points, which the vertex buffer holds.
@@ -65,20 +61,8 @@ impl AccumulateDepths {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
-        self.draw(frame, &self.pass, accepted)
-    }
-
-    /// Draws them with an empty fragment stage. It changes no texture.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record_floor(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
-        self.draw(frame, &self.floor, accepted)
-    }
-
-    fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, accepted: &[Point]) -> Result<(), Error> {
         let points = accepted.len() as u32;
-        frame.graphics(pass, |draw| {
+        frame.graphics(&self.pass, |draw| {
             draw.constants(&self.constants);
             if self.instanced {
                 draw.instances(4, points)
@@ -87,4 +71,18 @@ impl AccumulateDepths {
             };
         })
     }
+}
+
+fn splats(name: &'static str, fragment: &str, vertices: &Arc<Buffer>, instanced: bool) -> PassBuilder {
+    let splats = if instanced {
+        Pass::graphics(name, "6.3", "lava/depth-splat-quad.vert", fragment)
+            .instances::<Point>(vertices)
+            .topology(Topology::TriangleStrip)
+    } else {
+        Pass::graphics(name, "6.3", "lava/point.vert", fragment)
+            .geometry("lava/depth-splat.geom")
+            .vertices::<Point>(vertices)
+            .topology(Topology::Points)
+    };
+    splats.constants::<DepthConstants>()
 }

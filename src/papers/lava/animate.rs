@@ -95,6 +95,11 @@ impl Animate {
         self.steps
     }
 
+    /// Positions and velocities after the last step; the first state before any.
+    pub fn state(&self) -> &State {
+        &self.states[self.current()]
+    }
+
     /// Index of the state that the last step wrote; the first before any.
     pub fn current(&self) -> usize {
         (self.steps.saturating_sub(1) % 2) as usize

@@ -21,7 +21,8 @@ host_block! {
 /// The pass, with the vertex buffers that it fills.
 pub struct Cluster {
     info: Arc<PassInfo>,
-    clusters: Clusters,
+    /// The particles of the last frame's clusters.
+    pub clusters: Clusters,
     /// One vertex buffer a cluster, each with the capacity for every particle; lowest cluster first.
     pub vertices: Vec<Arc<Buffer>>,
     particle_count: usize,
@@ -57,11 +58,6 @@ impl Cluster {
             Ok(())
         })
     }
-
-    /// The particles of the last frame's clusters, lowest cluster first.
-    pub fn particles(&self) -> &[Vec<Point>] {
-        &self.clusters.particles
-    }
 }
 
 /// The heights that a cluster takes particles from: y_i1 - h to y_i4 + h, both included.
@@ -75,7 +71,8 @@ struct Band {
 pub struct Clusters {
     space_m: Vec3,
     bands: Vec<Band>,
-    particles: Vec<Vec<Point>>,
+    /// Lowest cluster first.
+    pub particles: Vec<Vec<Point>>,
 }
 
 impl Clusters {

@@ -7,6 +7,7 @@ use super::FLOORS;
 use super::cluster::Point;
 use super::parameters::Parameters;
 use super::targets::{Context, EMPTY, FLOATS, ZERO};
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Blend, Buffer, Error, Frame, Image, ImageView, Load, Pass, Topology};
 use crate::host_block;
 
@@ -49,8 +50,6 @@ impl GridPlanes {
 pub struct Density {
     /// One for each cluster.
     passes: Vec<Pass>,
-    /// The same points with an empty fragment stage.
-    floors: Vec<Pass>,
     constants: DensityConstants,
     /// A layer for each cluster, a component for each of its planes.
     pub density: Arc<ImageView>,
@@ -68,19 +67,8 @@ impl Density {
         let desc = context.desc("density", FLOATS, x, z).layers(parameters.clusters());
         let image = Image::new(context.device(), desc)?;
         let layers = (0..parameters.clusters()).map(|k| image.layer(k)).collect::<Result<Vec<_>, _>>()?;
-        let each = |name, fragment, load, blend| -> Result<Vec<Pass>, Error> {
-            let first = Pass::graphics(name, "6.1", "lava/density.vert", fragment)
-                .vertices::<Point>(&cluster_vertices[0])
-                .topology(Topology::Points)
-                .constants::<DensityConstants>()
-                .color(&layers[0], load, blend)
-                .build(shaders)?;
-            let others = cluster_vertices.iter().zip(&layers).skip(1);
-            let others = others.map(|(v, layer)| first.rebind().vertices(v).color(0, layer, load).build(shaders));
-            std::iter::once(Ok(first.clone())).chain(others).collect()
-        };
-        let passes = each("density", "lava/density.frag", ZERO, Blend::Add)?;
-        let floors = each(FLOORS[0].1, EMPTY, Load::Keep, Blend::Masked)?;
+        let begin = points("density", "lava/density.frag", cluster_vertices).color(&layers[0], ZERO, Blend::Add);
+        let passes = each(context, begin, ZERO, cluster_vertices, &layers)?;
         let constants = DensityConstants {
             plane_heights_m: [0.0; 4],
             space_m: parameters.space_m.to_array(),
@@ -90,7 +78,18 @@ impl Density {
             // Eq. 6.2 at r = 0, with h to the first power as it is printed.
             peak: 405.0 / (748.0 * PI * parameters.radius_m),
         };
-        Ok(Density { passes, floors, constants, density: image.view()?, layers })
+        Ok(Density { passes, constants, density: image.view()?, layers })
+    }
+
+    /// The same points with an empty fragment stage. It changes no texture.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn floor(&self, context: Context<'_>, cluster_vertices: &[Arc<Buffer>]) -> Result<Self, Error> {
+        let (layers, density) = (self.layers.clone(), self.density.clone());
+        let begin = points(FLOORS[0].1, EMPTY, cluster_vertices).color(&layers[0], Load::Keep, Blend::Masked);
+        let passes = each(context, begin, Load::Keep, cluster_vertices, &layers)?;
+        Ok(Density { passes, layers, density, ..*self })
     }
 
     /// Draws the particles of one cluster, which its vertex buffer holds.
@@ -104,29 +103,31 @@ impl Density {
         planes: &GridPlanes,
         particles: &[Point],
     ) -> Result<(), Error> {
-        self.draw(frame, &self.passes[cluster], planes, particles)
-    }
-
-    /// Draws them with an empty fragment stage. It changes no texture.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record_floor(
-        &self,
-        frame: &mut Frame<'_>,
-        cluster: usize,
-        planes: &GridPlanes,
-        particles: &[Point],
-    ) -> Result<(), Error> {
-        self.draw(frame, &self.floors[cluster], planes, particles)
-    }
-
-    fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, planes: &GridPlanes, particles: &[Point]) -> Result<(), Error> {
         let constants = DensityConstants { plane_heights_m: planes.heights_m, ..self.constants };
-        frame.graphics(pass, |draw| {
+        frame.graphics(&self.passes[cluster], |draw| {
             draw.constants(&constants).vertices(particles.len() as u32);
         })
     }
+}
+
+fn points(name: &'static str, fragment: &str, cluster_vertices: &[Arc<Buffer>]) -> PassBuilder {
+    Pass::graphics(name, "6.1", "lava/density.vert", fragment)
+        .vertices::<Point>(&cluster_vertices[0])
+        .topology(Topology::Points)
+        .constants::<DensityConstants>()
+}
+
+/// One pass for each cluster, by the pipeline of the first.
+fn each(
+    context: Context<'_>,
+    first: PassBuilder,
+    load: Load,
+    cluster_vertices: &[Arc<Buffer>],
+    layers: &[Arc<ImageView>],
+) -> Result<Vec<Pass>, Error> {
+    let first = first.build(context.shaders)?;
+    let each = cluster_vertices.iter().zip(layers);
+    each.map(|(v, layer)| first.rebind().vertices(v).color(0, layer, load).build(context.shaders)).collect()
 }
 
 /// A point beyond the device's size would be clamped in silence.

@@ -13,8 +13,10 @@ pub struct Extract {
     /// The accepted grid points; capacity for all.
     pub vertices: Arc<Buffer>,
     grid: Grid,
-    accepted: Vec<Point>,
-    range: [f32; 2],
+    /// The grid points that the last frame accepted, metres.
+    pub accepted: Vec<Point>,
+    /// Lowest and highest density at a grid point in the last frame.
+    pub density_range: [f32; 2],
 }
 
 /// Grid points of a plane, and the density that they must reach.
@@ -43,14 +45,14 @@ impl Extract {
                 rho: parameters.rho(),
             },
             accepted: Vec::with_capacity(points as usize),
-            range: [0.0; 2],
+            density_range: [0.0; 2],
         })
     }
 
     /// Forgets the points of the last frame.
     pub fn clear(&mut self) {
         self.accepted.clear();
-        self.range = [f32::INFINITY, f32::NEG_INFINITY];
+        self.density_range = [f32::INFINITY, f32::NEG_INFINITY];
     }
 
     /// Adds the accepted points of one cluster's planes.
@@ -58,25 +60,15 @@ impl Extract {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>, densities: &Buffer, planes: &GridPlanes) -> Result<(), Error> {
-        let Extract { info, vertices, grid, accepted, range } = self;
+        let Extract { info, vertices, grid, accepted, density_range } = self;
         frame.host(info, || {
             let before = accepted.len();
             densities.read(densities.size_bytes(), |bytes| {
-                grid.extract(bytemuck::cast_slice(bytes), planes, accepted, range);
+                grid.extract(bytemuck::cast_slice(bytes), planes, accepted, density_range);
             })?;
             let offset_bytes = (before * size_of::<Point>()) as u64;
             vertices.write(offset_bytes, bytemuck::cast_slice(&accepted[before..]))
         })
-    }
-
-    /// The grid points that the last frame accepted, metres.
-    pub fn accepted(&self) -> &[Point] {
-        &self.accepted
-    }
-
-    /// Lowest and highest density at a grid point in the last frame.
-    pub fn density_range(&self) -> [f32; 2] {
-        self.range
     }
 }
 

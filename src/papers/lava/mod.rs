@@ -51,13 +51,14 @@ use self::objects::Objects;
 use self::particles::ParticlePoints;
 use self::read_density::ReadDensity;
 use self::read_positions::ReadPositions;
-use self::splats::{Splats, SplatsFloor};
-use self::targets::Context;
+use self::splats::Splats;
+use self::targets::{Context, EMPTY};
 use self::visibility::Visibility;
-use crate::gpu::{Buffer, Error, Feature, Frame, ImageView, ShaderLibrary};
+use crate::gpu::{Blend, Buffer, Error, Feature, Frame, ImageView, Load, Pass, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::Mesh;
 
+pub use self::animate::State;
 pub use self::cluster::{Clusters, Point};
 pub use self::parameters::{CAMERAS, Parameters, Shading, Variant};
 pub use self::rock::Rock;
@@ -80,9 +81,12 @@ pub const FLOORS: [(&str, &str); 4] = [
 /// The paper with its resources.
 pub struct Lava {
     parameters: Parameters,
-    animation: Animation,
-    isosurface: Isosurface,
-    splatting: Splatting,
+    /// Stage one.
+    pub animation: Animation,
+    /// Stage two.
+    pub isosurface: Isosurface,
+    /// Stage three.
+    pub splatting: Splatting,
     /// `None` without polygon objects.
     objects: Option<Objects>,
     /// `None` but for a picture of particles instead of the surface.
@@ -92,9 +96,11 @@ pub struct Lava {
 
 /// Stage one (chapter 5): the particles move on the device, are read back and sorted into clusters on the host.
 pub struct Animation {
-    animate: Animate,
+    /// The particles' textures.
+    pub animate: Animate,
     read_positions: ReadPositions,
-    cluster: Cluster,
+    /// The particles of each cluster.
+    pub cluster: Cluster,
 }
 
 /// Stage two (chapter 6): the density of every cluster's four grid planes, the accepted grid points, and from them the
@@ -102,20 +108,29 @@ pub struct Animation {
 pub struct Isosurface {
     /// Of each cluster.
     planes: Vec<GridPlanes>,
-    density: Density,
+    /// Densities at the grid points.
+    pub density: Density,
+    density_floor: Density,
     read_density: ReadDensity,
-    extract: Extract,
-    accumulate_depths: AccumulateDepths,
-    normal_height: NormalHeight,
+    /// The accepted grid points.
+    pub extract: Extract,
+    /// Sums of eq. 6.3.
+    pub accumulate_depths: AccumulateDepths,
+    accumulate_depths_floor: AccumulateDepths,
+    /// The surface.
+    pub normal_height: NormalHeight,
 }
 
 /// Stage three (chapter 7): the surface as splats, blended and normalised.
 pub struct Splatting {
     splats: Splats,
-    visibility: Visibility,
-    blending: Blending,
-    normalisation: Normalisation,
-    floor: SplatsFloor,
+    /// Depths of eq. 7.1.
+    pub visibility: Visibility,
+    /// Sums of eq. 7.2.
+    pub blending: Blending,
+    /// The picture.
+    pub normalisation: Normalisation,
+    splats_floor: Pass,
 }
 
 impl Animation {
@@ -143,7 +158,7 @@ impl Isosurface {
             let densities = self.read_density.record(frame, k)?;
             self.extract.record(frame, densities, planes)?;
         }
-        let isosurface = self.extract.accepted();
+        let isosurface = &self.extract.accepted;
         self.accumulate_depths.record(frame, isosurface)?;
         self.normal_height.record(frame)
     }
@@ -173,7 +188,7 @@ impl Paper for Lava {
     /// # Errors
     /// Errors of the Vulkan layer; [`Error::Pass`] for a frame before the last without a restart between them.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        let steps = self.animation.steps();
+        let steps = self.animation.animate.steps();
         if number < steps {
             let problem = format!("frame {number} comes before frame {steps}, the next; restart the paper first");
             return Err(Error::Pass { pass: "animate".into(), problem });
@@ -182,7 +197,7 @@ impl Paper for Lava {
             self.animation.animate.record(frame)?;
         }
         self.animation.record(frame)?;
-        self.isosurface.record(frame, self.animation.clusters())?;
+        self.isosurface.record(frame, &self.animation.cluster.clusters.particles)?;
         self.splatting.record(frame, self.drift_m(number))?;
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
     }
@@ -205,8 +220,8 @@ impl Paper for Lava {
                     .to_owned(),
             );
         }
-        if self.animation.steps() > 0 && self.isosurface.accepted().is_empty() {
-            let [lowest, highest] = self.isosurface.density_range();
+        if self.animation.animate.steps() > 0 && self.isosurface.extract.accepted.is_empty() {
+            let [lowest, highest] = self.isosurface.extract.density_range;
             warnings.push(format!(
                 "no grid point was accepted, so the surface is flat: `rho` is {} and the densities are {lowest} to \
                  {highest}",
@@ -217,20 +232,20 @@ impl Paper for Lava {
     }
 
     fn picture(&self) -> &Arc<ImageView> {
-        self.splatting.picture()
+        &self.splatting.normalisation.picture
     }
 
     fn targets(&self) -> Vec<Target> {
-        let [positions, velocities] = self.animation.state();
+        let State { positions, velocities } = self.animation.animate.state();
         vec![
             Target::image("positions", positions),
             Target::image("velocities", velocities),
-            Target::image("density", self.isosurface.density()),
-            Target::image("accumulated-depths", self.isosurface.accumulated_depths()),
-            Target::image("normal-height", self.isosurface.normal_height()),
-            Target::image("visibility", self.splatting.visibility()),
-            Target::image("accumulated-colors", self.splatting.accumulated_colors()),
-            Target::image("picture", self.splatting.picture()),
+            Target::image("density", &self.isosurface.density.density),
+            Target::image("accumulated-depths", &self.isosurface.accumulate_depths.sums),
+            Target::image("normal-height", &self.isosurface.normal_height.surface),
+            Target::image("visibility", &self.splatting.visibility.depth),
+            Target::image("accumulated-colors", &self.splatting.blending.sums),
+            Target::image("picture", &self.splatting.normalisation.picture),
         ]
     }
 }
@@ -254,7 +269,7 @@ impl Lava {
         let instanced = !(parameters.geometry_stage && has_geometry_stage);
         let animation = Animation::new(shaders, label, parameters, particles)?;
         let isosurface = Isosurface::new(context, &animation.cluster.vertices, instanced)?;
-        let splatting = Splatting::new(shaders, label, parameters, isosurface.normal_height(), rock, instanced)?;
+        let splatting = Splatting::new(shaders, label, parameters, &isosurface.normal_height.surface, rock, instanced)?;
         let Splatting { splats, visibility, normalisation, .. } = &splatting;
         let objects = match objects {
             [] => None,
@@ -275,27 +290,12 @@ impl Lava {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record_floors(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let Isosurface { planes, density, extract, accumulate_depths, .. } = &self.isosurface;
-        for (k, (particles, planes)) in self.animation.clusters().iter().zip(planes).enumerate() {
-            density.record_floor(frame, k, planes, particles)?;
+        let Isosurface { planes, density_floor, extract, accumulate_depths_floor, .. } = &self.isosurface;
+        for (k, (particles, planes)) in self.animation.cluster.clusters.particles.iter().zip(planes).enumerate() {
+            density_floor.record(frame, k, planes, particles)?;
         }
-        accumulate_depths.record_floor(frame, extract.accepted())?;
-        self.splatting.floor.record(frame, &self.splatting.splats)
-    }
-
-    /// Stage one.
-    pub fn animation(&self) -> &Animation {
-        &self.animation
-    }
-
-    /// Stage two.
-    pub fn isosurface(&self) -> &Isosurface {
-        &self.isosurface
-    }
-
-    /// Stage three.
-    pub fn splatting(&self) -> &Splatting {
-        &self.splatting
+        accumulate_depths_floor.record(frame, &extract.accepted)?;
+        frame.graphics(&self.splatting.splats_floor, |draw| self.splatting.splats.draw(draw))
     }
 
     /// Distance that the rock has drifted in frame `number`, metres: as far as the mean particle.
@@ -322,71 +322,28 @@ impl Animation {
         let cluster = Cluster::new(context, &read_positions.readback, particles.positions.len())?;
         Ok(Animation { animate, read_positions, cluster })
     }
-
-    /// Moves the particles one step.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn animate(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.animate.record(frame)
-    }
-
-    /// Back to the start.
-    pub fn restart(&mut self) {
-        self.animate.restart();
-    }
-
-    /// Steps since the start.
-    pub fn steps(&self) -> u32 {
-        self.animate.steps()
-    }
-
-    /// The particles of the last frame's clusters, lowest cluster first.
-    pub fn clusters(&self) -> &[Vec<Point>] {
-        self.cluster.particles()
-    }
-
-    /// Positions and velocities after the last step; the first state before any.
-    pub fn state(&self) -> [&Arc<ImageView>; 2] {
-        let state = &self.animate.states[self.animate.current()];
-        [&state.positions, &state.velocities]
-    }
 }
 
 impl Isosurface {
     fn new(context: Context<'_>, cluster_vertices: &[Arc<Buffer>], instanced: bool) -> Result<Self, Error> {
         let density = Density::new(context, cluster_vertices)?;
+        let density_floor = density.floor(context, cluster_vertices)?;
         let read_density = ReadDensity::new(context, &density.layers)?;
         let extract = Extract::new(context, &read_density.readback)?;
         let accumulate_depths = AccumulateDepths::new(context, &extract.vertices, instanced)?;
+        let accumulate_depths_floor = accumulate_depths.floor(context, &extract.vertices)?;
         let normal_height = NormalHeight::new(context, &accumulate_depths.sums)?;
         let planes = GridPlanes::all(context.parameters);
-        Ok(Isosurface { planes, density, read_density, extract, accumulate_depths, normal_height })
-    }
-
-    /// The grid points that the last frame accepted, metres.
-    pub fn accepted(&self) -> &[Point] {
-        self.extract.accepted()
-    }
-
-    /// Lowest and highest density at a grid point in the last frame.
-    pub fn density_range(&self) -> [f32; 2] {
-        self.extract.density_range()
-    }
-
-    /// A layer for each cluster, a component for each of its planes.
-    pub fn density(&self) -> &Arc<ImageView> {
-        &self.density.density
-    }
-
-    /// Sum of weighted heights in red, sum of weights in alpha.
-    pub fn accumulated_depths(&self) -> &Arc<ImageView> {
-        &self.accumulate_depths.sums
-    }
-
-    /// Normals in RGB, heights in metres in alpha.
-    pub fn normal_height(&self) -> &Arc<ImageView> {
-        &self.normal_height.surface
+        Ok(Isosurface {
+            planes,
+            density,
+            density_floor,
+            read_density,
+            extract,
+            accumulate_depths,
+            accumulate_depths_floor,
+            normal_height,
+        })
     }
 }
 
@@ -409,22 +366,8 @@ impl Splatting {
         let visibility = Visibility::new(context, &splats)?;
         let blending = Blending::new(context, &splats, &visibility, rock)?;
         let normalisation = Normalisation::new(context, &blending.sums)?;
-        let floor = SplatsFloor::new(context, &splats, &blending.sums)?;
-        Ok(Splatting { splats, visibility, blending, normalisation, floor })
-    }
-
-    /// Eye-space depth of the nearest splat plus epsilon (eq. 7.1), as a fraction of [`depth_range_m`].
-    pub fn visibility(&self) -> &Arc<ImageView> {
-        &self.visibility.depth
-    }
-
-    /// Weighted colours, sum of weights in alpha.
-    pub fn accumulated_colors(&self) -> &Arc<ImageView> {
-        &self.blending.sums
-    }
-
-    /// 8-bit sRGB, though its format does not say so.
-    pub fn picture(&self) -> &Arc<ImageView> {
-        &self.normalisation.picture
+        let splats_floor =
+            splats.pass(FLOORS[2].1, "7.1", EMPTY).color(&blending.sums, Load::Keep, Blend::Masked).build(shaders)?;
+        Ok(Splatting { splats, visibility, blending, normalisation, splats_floor })
     }
 }

@@ -213,8 +213,8 @@ fn results(parameters: &Parameters, paper: &Lava, measurement: &Measurement) -> 
     let frame_ms = median(&measurement.frame_ms);
     entries([
         ("frames_per_s", json!(frame_ms.map(|ms| 1e3 / ms))),
-        ("accepted_grid_points", json!(paper.isosurface().accepted().len())),
-        ("density_range", json!(paper.isosurface().density_range())),
+        ("accepted_grid_points", json!(paper.isosurface.extract.accepted.len())),
+        ("density_range", json!(paper.isosurface.extract.density_range)),
         ("particles_per_s", rate(particles, &["animate", "cluster", "density"])),
         ("grid_points_per_s", rate(grid_points, &["density", "extract"])),
         ("splats_per_s", rate(splats, &["visibility", "blending"])),

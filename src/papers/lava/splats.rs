@@ -4,12 +4,11 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::FLOORS;
 use super::parameters::Parameters;
 use super::rock::Rock;
-use super::targets::{Context, EMPTY};
+use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
-use crate::gpu::{Blend, Buffer, Draw, Error, Frame, ImageView, Load, Pass, Topology};
+use crate::gpu::{Buffer, Draw, Error, ImageView, Pass, Topology};
 use crate::host_block;
 
 host_block! {
@@ -90,28 +89,6 @@ impl Splats {
         } else {
             draw.vertices(self.count)
         };
-    }
-}
-
-/// The splats with an empty fragment stage, as the last pass of [`FLOORS`].
-pub struct SplatsFloor {
-    pass: Pass,
-}
-
-impl SplatsFloor {
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, splats: &Splats, target: &Arc<ImageView>) -> Result<Self, Error> {
-        let pass = splats.pass(FLOORS[2].1, "7.1", EMPTY).color(target, Load::Keep, Blend::Masked);
-        Ok(SplatsFloor { pass: pass.build(context.shaders)? })
-    }
-
-    /// Draws them. It changes no texture.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, splats: &Splats) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| splats.draw(draw))
     }
 }
 

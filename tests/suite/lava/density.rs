@@ -27,7 +27,7 @@ fn every_cluster_holds_the_particles_that_reach_its_planes() {
             let particles = clamped(device, &lava, &parameters);
             let heights: Vec<f64> = particles.iter().map(|p| p.y).collect();
             let expected = clusters(&heights, &grid(&parameters).planes(), f64::from(parameters.radius_m));
-            let found = lava.animation().clusters();
+            let found = &lava.animation.cluster.clusters.particles;
             assert_eq!(found.len(), expected.len());
             let mut members = 0;
             for (found, expected) in found.iter().zip(&expected) {
@@ -58,7 +58,7 @@ fn densities_are_the_sum_over_all_particles() {
             assert!(worst < 1e-4, "{worst:e}");
             let highest = expected.iter().copied().fold(0.0, f64::max);
             assert!(highest > 2.0 * peak, "particles overlap: {highest}");
-            let range = lava.isosurface().density_range().map(f64::from);
+            let range = lava.isosurface.extract.density_range.map(f64::from);
             assert!((range[1] - highest).abs() < 1e-4 * highest, "{range:?}");
         }
     });
@@ -78,7 +78,7 @@ fn the_accepted_points_are_those_that_reach_rho() {
                 assert!((index - index.round()).abs().max_element() < 1e-4, "{p} is no grid point");
                 index.round().as_ivec3().to_array()
             };
-            let accepted = lava.isosurface().accepted();
+            let accepted = &lava.isosurface.extract.accepted;
             let found: BTreeSet<_> = accepted.iter().map(|p| key(Vec3::from_array(p.position).as_dvec3())).collect();
             assert_eq!(found.len(), accepted.len(), "no point twice");
             let mut close_calls = 0;

@@ -59,7 +59,7 @@ fn picture(device: &Arc<Device>, parameters: &Parameters, objects: &[Mesh]) -> (
     let particles = Particles::seeded(parameters);
     let mut lava = Lava::new(&shaders(device), "test", parameters, &particles, Rock::built_in(), objects).unwrap();
     let passes = draw(device, &mut lava, 0).passes;
-    assert_eq!(lava.isosurface().accepted().len(), 40 * 24);
+    assert_eq!(lava.isosurface.extract.accepted.len(), 40 * 24);
     (texels(device, lava.picture()), passes.iter().map(|p| p.info.name).collect())
 }
 

@@ -36,7 +36,7 @@ struct HeightField<'a> {
 
 impl<'a> HeightField<'a> {
     fn new(device: &Arc<Device>, lava: &Lava, parameters: &'a Parameters) -> Self {
-        let texture: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
+        let texture: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
         let camera = &parameters.camera;
         let to_world = (camera.projection(parameters.aspect()) * camera.view()).inverse();
         HeightField { parameters, heights: texture.iter().map(|t| t[3]).collect(), to_world }
@@ -89,7 +89,7 @@ impl<'a> HeightField<'a> {
 
     /// Pixels that meet the field and those of them without weight: inside the border, and on its slope.
     fn holes(&self, device: &Arc<Device>, lava: &Lava) -> [(u32, u32); 2] {
-        let sums: Vec<[f32; 4]> = texels(device, lava.splatting().accumulated_colors());
+        let sums: Vec<[f32; 4]> = texels(device, &lava.splatting.blending.sums);
         let mut counts = [(0, 0); 2];
         for (at, sums) in (0..).zip(&sums) {
             let Some(place) = self.met(at % self.parameters.width, at / self.parameters.width) else { continue };

@@ -51,7 +51,7 @@ pub fn texels<T: Pod>(device: &Arc<Device>, view: &Arc<ImageView>) -> Vec<T> {
 
 /// Particles in the last frame's clusters, from the position texture: inside the space, as `cluster` takes them.
 pub fn clamped(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<DVec3> {
-    let positions: Vec<[f32; 4]> = texels(device, lava.animation().state()[0]);
+    let positions: Vec<[f32; 4]> = texels(device, &lava.animation.animate.state().positions);
     let places = positions.iter().take(parameters.particles as usize);
     places.map(|&[x, y, z, _]| Vec3::new(x, y, z).clamp(Vec3::ZERO, parameters.space_m).as_dvec3()).collect()
 }
@@ -62,7 +62,7 @@ pub fn grid(parameters: &Parameters) -> Grid {
 
 /// The texture of densities in the order of [`Grid::indices`].
 pub fn densities(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<f64> {
-    let layers: Vec<[f32; 4]> = texels(device, lava.isosurface().density());
+    let layers: Vec<[f32; 4]> = texels(device, &lava.isosurface.density.density);
     let [columns, _, rows] = parameters.density.map(|n| n as usize);
     let at = |[i, j, k]: [usize; 3]| layers[(j / 4) * columns * rows + k * columns + i][j % 4];
     grid(parameters).indices().map(|index| f64::from(at(index))).collect()

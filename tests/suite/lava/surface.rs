@@ -16,10 +16,10 @@ fn heights_and_normals_follow_from_the_accepted_points() {
             let mut lava = lava(device, &parameters);
             draw(device, &mut lava, 0);
             let accepted: Vec<DVec3> =
-                lava.isosurface().accepted().iter().map(|p| Vec3::from_array(p.position).as_dvec3()).collect();
+                lava.isosurface.extract.accepted.iter().map(|p| Vec3::from_array(p.position).as_dvec3()).collect();
             let grid = grid(&parameters);
             let expected = Surface::sums(&grid, &accepted, f64::from(parameters.radius_m));
-            let found: Vec<[f32; 4]> = texels(device, lava.isosurface().accumulated_depths());
+            let found: Vec<[f32; 4]> = texels(device, &lava.isosurface.accumulate_depths.sums);
             assert_eq!(found.len(), expected.len());
             for (found, [heights, weights]) in found.iter().zip(&expected) {
                 let off = (f64::from(found[0]) - heights).abs() + (f64::from(found[3]) - weights).abs();
@@ -28,7 +28,7 @@ fn heights_and_normals_follow_from_the_accepted_points() {
             // From the sums of the device, so that one rounding does not count twice.
             let sums: Vec<[f64; 2]> = found.iter().map(|s| [f64::from(s[0]), f64::from(s[3])]).collect();
             let surface = Surface::from_sums(&grid, &sums, f64::from(border_m));
-            let found: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
+            let found: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
             for (texel, found) in found.iter().enumerate() {
                 let normal = Vec3::from_slice(found).as_dvec3();
                 assert!(normal.distance(surface.normals[texel]) < 1e-4, "{texel}: {normal}");
@@ -59,7 +59,7 @@ fn a_known_height_field_comes_out() {
         let particles = Particles { positions, velocities: vec![Vec3::X; 200] };
         let mut lava = lava_of(device, &parameters, &particles);
         draw(device, &mut lava, 0);
-        let found: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
+        let found: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
         let height = |i: usize, k: usize| grid.place([0, plane(i, k), 0]).y;
         for ((i, k), texel) in columns().zip(&found) {
             assert!((f64::from(texel[3]) - height(i, k)).abs() < 1e-6, "{i} {k}: {texel:?}");
@@ -83,10 +83,10 @@ fn the_surface_sinks_and_turns_up_towards_the_borders() {
         let parameters = Parameters { density: [40, 1, 24], radius_m: 0.3, rho: Some(1e-6), ..parameters() };
         let mut lava = lava(device, &parameters);
         draw(device, &mut lava, 0);
-        let found: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
+        let found: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
         let grid = grid(&parameters);
         // One plane at half the height, accepted everywhere.
-        assert_eq!(lava.isosurface().accepted().len(), 40 * 24);
+        assert_eq!(lava.isosurface.extract.accepted.len(), 40 * 24);
         let fraction = |i: usize, k: usize| {
             let place = grid.place([i, 0, k]);
             let sides = [place.x, 2.0 - place.x, place.z, f64::from(1.2f32) - place.z];
@@ -116,9 +116,9 @@ fn a_threshold_that_nothing_reaches_leaves_the_ground_and_a_warning() {
         let mut lava = lava(device, &parameters);
         assert_eq!(lava.warnings(), Vec::<String>::new());
         draw(device, &mut lava, 0);
-        let found: Vec<[f32; 4]> = texels(device, lava.isosurface().normal_height());
+        let found: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
         assert!(found.iter().all(|t| *t == [0.0, 1.0, 0.0, 0.0]));
-        let [lowest, highest] = lava.isosurface().density_range();
+        let [lowest, highest] = lava.isosurface.extract.density_range;
         assert!(lowest >= 0.0 && highest > 10.0 * lowest);
         let warnings = lava.warnings();
         let [warning] = &warnings[..] else { panic!("{warnings:?}") };
