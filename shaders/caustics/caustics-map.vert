@@ -1,7 +1,7 @@
 #version 450
 
-// Intersections of the rays of the illumination volumes with one reference plane (section 4.4, figure 4-15 step 2.1). The same for every
-// variant, so that their times differ by method alone.
+// Intersections of the rays of the illumination volumes with one reference plane (section 4.4, figure 4-15 step 2.1). The same for
+// every variant, so that their times differ by method alone.
 
 layout(location = 0) in vec3 origin;
 layout(location = 1) in float enters;

@@ -1,6 +1,6 @@
 #version 450
 
-// What the illumination volumes need of the surface that is seen, and its ambient light (eq. 4-19).
+// Surface that is seen, as the illumination volumes need it, and its ambient light (eq. 4-19).
 
 layout(location = 0) in vec3 world;
 layout(location = 1) in vec3 world_normal;

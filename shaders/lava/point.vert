@@ -1,6 +1,6 @@
 #version 450
 
-// An accepted grid point on its way to the geometry stage.
+// An accepted grid point, handed to the geometry stage.
 
 layout(location = 0) in vec3 position;
 

@@ -1,6 +1,6 @@
 #version 450
 
-// A splat's place on its way to the geometry stage (section 7.1).
+// Position of a splat, handed to the geometry stage (section 7.1).
 
 layout(location = 0) in vec2 place;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::bounding_box::BoundingBox;
 use super::cast::Cast;
 use super::caustics_map::CausticsMap;
-use super::caustics_map_floor::CausticsMapFloor;
+use super::caustics_map_floor::caustics_map_floor;
 use super::combine::Combine;
 use super::depth_profile::DepthProfile;
 use super::diffuse_map::DiffuseMap;
@@ -18,7 +18,7 @@ use super::reference_planes::ReferencePlanes;
 use super::resources::Context;
 use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Error, ImageView};
+use crate::gpu::{Error, ImageView, Pass};
 
 /// Passes of the variants `level-map` and `level-map-smart`.
 pub struct LevelMap {
@@ -43,7 +43,7 @@ pub struct ReceiverPasses {
     /// I_c of the receiver's planes.
     pub caustics_map: CausticsMap,
     /// The same triangles with nothing shaded.
-    pub caustics_map_floor: CausticsMapFloor,
+    pub caustics_map_floor: Pass,
     /// I_c x I_d.
     pub combine: Combine,
     /// The combined map on the receiver.
@@ -92,7 +92,7 @@ impl LevelMap {
                 }),
             };
             let caustics_map = CausticsMap::of_level_map(context, volumes, water, maps.position())?;
-            let caustics_map_floor = CausticsMapFloor::new(context, volumes, water, &caustics_map)?;
+            let caustics_map_floor = caustics_map_floor(context, volumes, water, &caustics_map)?;
             let combine = Combine::new(context, volumes, &caustics_map.map, maps.diffuse())?;
             let cast = Cast::new(context, lit, &combine.map, maps.position(), underwater)?;
             Ok(ReceiverPasses { maps, smart, caustics_map, caustics_map_floor, combine, cast })

@@ -51,6 +51,7 @@ use ash::vk;
 use glam::{DVec2, DVec3};
 
 use self::bounding_box::{Axes, BoundingBox};
+use self::caustics_map::draw_planes;
 use self::illumination_volumes::{IlluminationVolumes, RAY_FLOATS};
 use self::level_map::{LevelMap, ReceiverMaps, Slicing, SmartSlicing};
 use self::receiver::{LitReceiver, Receiver};
@@ -63,7 +64,7 @@ use self::view::View;
 use self::volumetric::Volumetric;
 use self::water::Grid;
 use self::water_surface::{VERTEX_FLOATS, WaterSurface};
-use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
+use crate::gpu::{Error, Feature, Frame, ImageView, Pass, Sampler, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::Bounds;
 
@@ -167,17 +168,15 @@ impl Caustics {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let floors: Vec<_> = match &self.technique {
-            Technique::LevelMap(LevelMap { receivers, .. }) => {
-                receivers.iter().map(|r| &r.caustics_map_floor).collect()
-            }
-            Technique::Volumetric(Volumetric { receivers, .. }) => {
-                receivers.iter().map(|r| &r.caustics_map_floor).collect()
-            }
+        let floors: Vec<&Pass> = match &self.technique {
+            Technique::LevelMap(variant) => variant.receivers.iter().map(|r| &r.caustics_map_floor).collect(),
+            Technique::Volumetric(variant) => variant.receivers.iter().map(|r| &r.caustics_map_floor).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
         let mut each = floors.iter().zip(&self.lit_receivers);
-        each.try_for_each(|(floor, lit)| floor.record(frame, lit, &self.illumination_volumes[lit.light]))
+        each.try_for_each(|(floor, lit)| {
+            draw_planes(frame, floor, lit, &lit.cells, &self.illumination_volumes[lit.light])
+        })
     }
 
     /// Texels in each depth level of the first receiver under the first light, after a frame of smart slicing.
@@ -200,8 +199,8 @@ impl Caustics {
     /// The maps of each receiver under light `light` that `--dump` knows.
     fn map_targets(&self, light: usize) -> Vec<Target> {
         let maps: Vec<_> = match &self.technique {
-            Technique::LevelMap(LevelMap { receivers, .. }) => receivers.iter().map(|r| r.targets()).collect(),
-            Technique::Volumetric(Volumetric { receivers, .. }) => receivers.iter().map(|r| r.targets()).collect(),
+            Technique::LevelMap(variant) => variant.receivers.iter().map(|r| r.targets()).collect(),
+            Technique::Volumetric(variant) => variant.receivers.iter().map(|r| r.targets()).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
         let of_light = self.lit_receivers.iter().zip(maps).filter(|(lit, _)| lit.light == light);

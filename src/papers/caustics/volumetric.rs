@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::cast::Cast;
 use super::caustics_map::CausticsMap;
-use super::caustics_map_floor::CausticsMapFloor;
+use super::caustics_map_floor::caustics_map_floor;
 use super::combine_slices::CombineSlices;
 use super::illumination_volumes::IlluminationVolumes;
 use super::multiply::Multiply;
@@ -15,7 +15,7 @@ use super::sample_planes::SamplePlanes;
 use super::slice_images::SliceImages;
 use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Error, ImageView};
+use crate::gpu::{Error, ImageView, Pass};
 
 /// Passes of the variant.
 pub struct Volumetric {
@@ -32,7 +32,7 @@ pub struct ReceiverPasses {
     /// I_c of one plane after the other.
     pub caustics_map: CausticsMap,
     /// The same triangles with nothing shaded.
-    pub caustics_map_floor: CausticsMapFloor,
+    pub caustics_map_floor: Pass,
     /// I_c into each slice.
     pub multiply: Multiply,
     /// The slices put together.
@@ -54,7 +54,7 @@ impl Volumetric {
         let passes = |lit: &LitReceiver| {
             let volumes = &volumes[lit.light];
             let caustics_map = CausticsMap::of_sample_plane(context, volumes, water)?;
-            let caustics_map_floor = CausticsMapFloor::new(context, volumes, water, &caustics_map)?;
+            let caustics_map_floor = caustics_map_floor(context, volumes, water, &caustics_map)?;
             let slice_images = SliceImages::new(context, lit)?;
             let multiply = Multiply::new(context, volumes, &caustics_map.map, &slice_images.slices)?;
             let combine_slices = CombineSlices::new(context, &slice_images.illumination_map)?;
