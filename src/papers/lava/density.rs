@@ -61,7 +61,7 @@ impl Density {
     /// # Errors
     /// Errors of the Vulkan layer; [`Error::Limit`] for a grid or a point size (eq. 6.1) beyond the device's.
     pub fn new(context: Context<'_>, cluster_vertices: &[Arc<Buffer>]) -> Result<Self, Error> {
-        let Context { shaders, parameters, .. } = context;
+        let parameters = context.parameters;
         check_point_size(context)?;
         let [x, _, z] = parameters.density;
         let desc = context.desc("density", FLOATS, x, z).layers(parameters.clusters());
