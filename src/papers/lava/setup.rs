@@ -173,7 +173,7 @@ impl Declared for Setup {
             },
             Preset {
                 name: "fig-8.5",
-                help: "Figure 8.5 at its smallest splats, which leave holes; `splat-radius` names its others",
+                help: "Figure 8.5 at its smallest splats, which leave holes; other radii make its other parts",
                 variant: None,
                 setup: || {
                     let parameters = Parameters { splat_radius_m: 0.001875, ..Parameters::default() };
