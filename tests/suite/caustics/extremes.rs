@@ -156,7 +156,7 @@ fn what_goes_beyond_the_edge_is_refused() {
     assert_eq!(lit_by(Vec3::new(0.0, BRIGHTEST, 1.0)).validate(), Ok(()));
     for intensity in [BRIGHTEST.next_up(), -f32::MIN_POSITIVE, f32::INFINITY, f32::NAN] {
         let error = lit_by(Vec3::new(1.0, 1.0, intensity)).validate().unwrap_err();
-        assert_eq!(error.to_string(), "--light 0,-1,0: must have an intensity of 0 to 64");
+        assert_eq!(error.to_string(), "light 0,-1,0: must have an intensity of 0 to 64");
     }
     let ink = |absorption_per_m| Parameters { absorption_per_m, ..parameters(OVERHEAD) };
     assert_eq!(ink(INK_PER_M).validate(), Ok(()));

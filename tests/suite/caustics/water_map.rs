@@ -218,12 +218,12 @@ fn a_map_beyond_its_range_is_refused_with_its_name() {
     let refused = |map: WaterMap, light: Light| under(map, parameters(light)).validate().unwrap_err().to_string();
     let high = map(UVec2::splat(3), DVec2::ONE, |_| 195.0);
     let error = refused(high, OVERHEAD);
-    assert!(error.starts_with("--water-map test: its heights are 195 to 195 m"), "{error}");
+    assert!(error.starts_with("water-map test: its heights are 195 to 195 m"), "{error}");
     let steep = map(UVec2::splat(3), DVec2::splat(0.01), |p| 20.0 * p.x);
     let error = refused(steep, OVERHEAD);
-    assert!(error.starts_with("--water-map test: its slopes may reach"), "{error}");
+    assert!(error.starts_with("water-map test: its slopes may reach"), "{error}");
     let low_light = Light::Point { position: Vec3::new(0.0, 0.5, 0.0), intensity: Vec3::ONE };
     let error = refused(map(UVec2::splat(3), DVec2::ONE, |_| 1.0), low_light);
-    assert_eq!(error, "--point-light 0,0.5,0: must lie above the water");
+    assert_eq!(error, "point-light 0,0.5,0: must lie above the water");
     assert_eq!(under(uneven(), parameters(OVERHEAD)).validate(), Ok(()));
 }

@@ -122,6 +122,6 @@ fn a_threshold_that_nothing_reaches_leaves_the_ground_and_a_warning() {
         assert!(lowest >= 0.0 && highest > 10.0 * lowest);
         let warnings = lava.warnings();
         let [warning] = &warnings[..] else { panic!("{warnings:?}") };
-        assert!(warning.contains(&format!("{lowest} to {highest}")) && warning.contains("--rho"), "{warning}");
+        assert!(warning.contains(&format!("{lowest} to {highest}")) && warning.contains("`rho`"), "{warning}");
     });
 }
