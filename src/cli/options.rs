@@ -91,13 +91,6 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Sets `target` where a value was typed, which wins over a preset or default.
-pub fn set<T>(target: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *target = value;
-    }
-}
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum CompilerWord {
     Glslang,
