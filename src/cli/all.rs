@@ -8,7 +8,6 @@ use super::bench;
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
-use super::paper::{PaperArgs, benched};
 use super::spelling;
 use super::watch::{interrupted, watched};
 use crate::measure::bench::{Bench, load};
@@ -69,10 +68,6 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)
-}
-
-fn measure<P: PaperArgs>(machine: &mut Machine, output: &OutputArgs, measured: &mut Measured) -> Result<(), Failure> {
-    measure_quick(&P::quick(), &benched::<P>(), machine, output, measured)
 }
 
 struct All<'a> {

@@ -2,12 +2,9 @@
 
 use std::path::Path;
 
-use clap::Args;
-
 use super::failure::Failure;
 use super::options::{CommonArgs, MeasureArgs, OutputArgs};
 use super::outcome;
-use super::paper::{PaperArgs, VariantOf, VariantWord, benched, chosen, variant_words};
 use super::processes;
 use super::spelling;
 use super::watch::watched;
@@ -19,29 +16,9 @@ use crate::report::Record;
 use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
 
-#[derive(Debug, Clone, Args)]
-pub struct BenchArgs<P: PaperArgs> {
-    #[arg(
-        long,
-        help = format!("Variants to measure, comma-separated, or all [default: that of a preset made for one, or {}]", P::BENCHED),
-        value_delimiter = ',',
-        value_parser = variant_words::<VariantOf<P>>()
-    )]
-    variant: Vec<VariantWord<VariantOf<P>>>,
-    #[command(flatten)]
-    scene: P,
-    #[command(flatten)]
-    common: CommonArgs,
-}
-
 /// Frames and repetitions of a bench that names none.
 const FRAMES: u32 = 10;
 const REPEAT: u32 = 3;
-
-pub fn run<P: PaperArgs>(arguments: &BenchArgs<P>) -> Result<(), Failure> {
-    let variants = chosen(&arguments.variant, &arguments.scene, benched::<P>);
-    publish(&arguments.common, &variants, || arguments.scene.resolve())
-}
 
 /// Measures `variants` of a study, or has fresh processes measure them, and publishes the record.
 pub fn publish<S: Study>(

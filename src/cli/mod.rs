@@ -5,12 +5,10 @@ mod bench;
 mod compare;
 mod declared;
 mod devices;
-mod experiment;
 mod failure;
 mod options;
 mod outcome;
 mod page;
-mod paper;
 mod passes;
 mod processes;
 mod render;
@@ -25,7 +23,6 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
 pub use self::page::options_table;
-use self::paper::PaperCommand;
 use crate::measure::study::{Declared, Visitor};
 use crate::papers;
 

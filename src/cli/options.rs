@@ -1,10 +1,8 @@
 //! Options that every paper has, as they were typed.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::{Args, Parser, ValueEnum};
-use glam::Vec3;
 
 use super::failure::Failure;
 use crate::gpu::Compiler;
@@ -35,48 +33,6 @@ impl CommonArgs {
         }
         Plain::parse_from(["fumarole"]).arguments
     }
-}
-
-/// `--size 800x600` and its like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Size {
-    /// Pixels, at least 1.
-    pub width: u32,
-    /// Pixels, at least 1.
-    pub height: u32,
-}
-
-pub fn parse_size(text: &str) -> Result<Size, String> {
-    let [width, height] = parse_extents(text).map_err(|e| format!("{e}; give a width and a height, as 800x600"))?;
-    Ok(Size { width, height })
-}
-
-/// A number that is neither NaN nor infinite.
-pub fn parse_finite(text: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("{text:?} is not a finite number")),
-    }
-}
-
-/// Comma-separated numbers, exactly `N` of them.
-pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f32; N], String> {
-    let values = text.split(',').map(|part| parse_finite(part.trim())).collect::<Result<Vec<_>, _>>()?;
-    let count = values.len();
-    values.try_into().map_err(|_| format!("{N} comma-separated numbers are needed, {count} are given"))
-}
-
-/// A camera's eye and its target, `x,y,z,x,y,z`.
-pub fn parse_eye_and_target(text: &str) -> Result<[Vec3; 2], String> {
-    parse_numbers(text).map(|[ex, ey, ez, tx, ty, tz]| [Vec3::new(ex, ey, ez), Vec3::new(tx, ty, tz)])
-}
-
-/// `100x24x24` and its like: exactly `N` numbers.
-pub fn parse_extents<T: FromStr, const N: usize>(text: &str) -> Result<[T; N], String> {
-    let number = |part: &str| part.trim().parse::<T>().map_err(|_| format!("{part:?} is not such a number"));
-    let values = text.split(['x', 'X']).map(number).collect::<Result<Vec<_>, _>>()?;
-    let count = values.len();
-    values.try_into().map_err(|_| format!("{N} numbers with an x between them are needed, {count} are given"))
 }
 
 /// Parses `5%` or `0.05` as a fraction.

@@ -1,12 +1,10 @@
 //! `passes`: the pass table of a variant, as one recorded frame shows it.
 
-use clap::Args;
 use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::options::MachineArgs;
 use super::outcome;
-use super::paper::{PaperArgs, VariantOf, VariantWord, chosen, variant_words};
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Mode, PassInfo};
 use crate::measure::bench::build;
@@ -15,30 +13,11 @@ use crate::measure::study::Study;
 use crate::measure::{Kind, Paper, Target, Variant};
 use crate::report::table::{Align, Table};
 
-#[derive(Debug, Clone, Args)]
-pub struct PassesArgs<P: PaperArgs> {
-    /// Variants to list, comma-separated, or all [default: that of a preset made for one, or all]
-    #[arg(long, value_delimiter = ',', value_parser = variant_words::<VariantOf<P>>())]
-    variant: Vec<VariantWord<VariantOf<P>>>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
-    #[command(flatten)]
-    scene: P,
-    #[command(flatten)]
-    machine: MachineArgs,
-}
-
 struct Listed {
     paper: &'static str,
     variant: &'static str,
     passes: Vec<(std::sync::Arc<PassInfo>, u32)>,
     targets: Vec<Target>,
-}
-
-pub fn run<P: PaperArgs>(arguments: &PassesArgs<P>) -> Result<(), Failure> {
-    let variants = chosen(&arguments.variant, &arguments.scene, || VariantOf::<P>::ALL.to_vec());
-    list(&arguments.scene.resolve()?, &variants, &arguments.machine, arguments.json)
 }
 
 /// Prints the pass tables of `variants`.

@@ -7,7 +7,6 @@ use clap::Args;
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
-use super::paper::{PaperArgs, VariantOf, variant_word};
 use super::watch::{interrupted, progress_bar};
 use crate::image;
 use crate::measure::bench::build;
@@ -15,20 +14,6 @@ use crate::measure::machine::Machine;
 use crate::measure::picture;
 use crate::measure::study::Study;
 use crate::measure::{Paper, Variant};
-
-#[derive(Debug, Clone, Args)]
-pub struct RenderArgs<P: PaperArgs> {
-    #[arg(
-        long,
-        help = format!("Variant to render [default: the preset's if it has one, or {}]", P::RENDERED),
-        value_parser = variant_word::<VariantOf<P>>()
-    )]
-    variant: Option<VariantOf<P>>,
-    #[command(flatten)]
-    scene: P,
-    #[command(flatten)]
-    picture: PictureArgs,
-}
 
 /// Frames to draw, and their files.
 #[derive(Debug, Clone, Args)]
@@ -83,11 +68,6 @@ fn parse_dump(text: &str) -> Result<Dump, String> {
         }
         _ => Err("give a target and a file, as caustics-map=map.exr".to_owned()),
     }
-}
-
-pub fn run<P: PaperArgs>(arguments: &RenderArgs<P>) -> Result<(), Failure> {
-    let variant = arguments.variant.unwrap_or_else(|| arguments.scene.rendered());
-    draw(variant, &arguments.picture, || arguments.scene.resolve())
 }
 
 /// Draws the frames, and writes their pictures and targets.
