@@ -3,7 +3,6 @@
 #[cfg(test)]
 mod layout;
 
-
 use crate::measure::study::Visitor;
 
 /// The list of papers: a new one is one line below.
