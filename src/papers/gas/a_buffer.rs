@@ -17,12 +17,15 @@ const SECTION_LINK: u32 = 1 << 31;
 
 /// The lists of the pixels of a band.
 pub struct ABuffer {
+    /// Rows and slots.
     pub capacity: Capacity,
     /// Of each pixel, the first fragment or section of its list.
     pub heads: Arc<Buffer>,
-    /// Of each fragment, a [`LinkBlock`], a [`SurfaceBlock`] and a [`ColorBlock`].
+    /// Of each fragment, a [`LinkBlock`].
     pub links: Arc<Buffer>,
+    /// Of each fragment, a [`SurfaceBlock`].
     pub surfaces: Arc<Buffer>,
+    /// Of each fragment, a [`ColorBlock`].
     pub colors: Arc<Buffer>,
     /// Of each pixel, a [`PixelBlock`].
     pub pixels: Arc<Buffer>,

@@ -110,7 +110,9 @@ host_block! {
 host_block! {
     /// Three vertices and the object that they belong to.
     pub struct TriangleBlock {
+        /// Indices of its corners.
         pub vertices: [u32; 3],
+        /// Index of the object.
         pub object: u32,
     }
 }
@@ -118,9 +120,13 @@ host_block! {
 host_block! {
     /// The part of a fragment by which its list is walked, as `lists.glsl` describes it.
     pub struct LinkBlock {
+        /// The fragment or section after it.
         pub next: u32,
+        /// Bit 4 row + column of a sub-pixel, rows from the top.
         pub mask: u32,
+        /// Depth of its nearest corner.
         pub near_m: f32,
+        /// Depth of its farthest corner.
         pub far_m: f32,
     }
 }
@@ -128,9 +134,13 @@ host_block! {
 host_block! {
     /// The part of a fragment that is the surface's.
     pub struct SurfaceBlock {
+        /// Octahedral, 16 bits each way.
         pub normal: u32,
+        /// Index of the object.
         pub object: u32,
+        /// Index among the triangles of all objects.
         pub triangle: u32,
+        /// Area of the triangle inside the pixel, pixels.
         pub coverage: f32,
     }
 }
@@ -138,7 +148,9 @@ host_block! {
 host_block! {
     /// The colour and the opacity of a fragment.
     pub struct ColorBlock {
+        /// Half floats, linear RGB.
         pub red_green: u32,
+        /// A half float, and the opacity in steps of 1/65535.
         pub blue_opacity: u32,
     }
 }
@@ -149,6 +161,7 @@ host_block! {
         near_m: f32,
         far_m: f32,
         increments: f32,
+        /// The fragment after it.
         pub next: u32,
         color: [f32; 3],
         transparency: f32,
@@ -161,6 +174,7 @@ host_block! {
         first_section: u32,
         section_count: u32,
         end_m: f32,
+        /// Of the density, along the pixel's ray.
         pub evaluations: u32,
     }
 }
@@ -168,9 +182,13 @@ host_block! {
 host_block! {
     /// The fragments and sections that the last band wanted, and the most that any band before it did.
     pub struct CountersBlock {
+        /// Fragments that the last band wanted.
         pub fragment_count: u32,
+        /// Sections that it wanted.
         pub section_count: u32,
+        /// Most fragments that a band before it wanted.
         pub most_fragments: u32,
+        /// Most sections that a band before it wanted.
         pub most_sections: u32,
     }
 }
@@ -181,6 +199,7 @@ pub const OFFSET_SIZE: usize = 64;
 /// The use that a variant makes of the scene's volumes.
 #[derive(Debug, Clone, Copy)]
 pub struct GasUse {
+    /// Volumes that are marched; 0 without gas.
     pub volume_count: usize,
     /// `light-attenuation` runs.
     pub has_attenuations: bool,

@@ -16,8 +16,11 @@ const HEAP_DIVISOR: u64 = 16;
 /// Rows that are done at once (the paper does one), and the slots of their fragments and sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Capacity {
+    /// Rows of the picture.
     pub rows: u32,
+    /// Slots of fragments.
     pub fragments: u32,
+    /// Slots of sections.
     pub sections: u32,
 }
 

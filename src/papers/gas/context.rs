@@ -10,9 +10,11 @@ use crate::gpu::{Buffer, BufferDesc, Error, Image, ImageDesc, ImageView, ShaderL
 /// Shaders, label and parameters of one configuration.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
+    /// Shaders, and the device.
     pub shaders: &'a ShaderLibrary,
     /// Goes before the names of the resources.
     pub label: &'a str,
+    /// Numbers of the configuration.
     pub parameters: &'a Parameters,
 }
 

@@ -14,6 +14,7 @@ host_block! {
     }
 }
 
+/// The pass `density-table`.
 pub struct DensityTable {
     /// Densities: a table a volume, `table_size` entries along each axis, x fastest.
     pub densities: Arc<Buffer>,

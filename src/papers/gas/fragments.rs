@@ -6,6 +6,7 @@ use super::context::Context;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Error, Feature, Frame, Pass, Topology};
 
+/// The pass `fragments`.
 pub struct Fragments {
     pass: Pass,
     vertex_count: u32,

@@ -8,6 +8,7 @@ use super::context::Context;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 
+/// The pass `light-attenuation`.
 pub struct LightAttenuation {
     /// The fraction of each light that the gas takes, 0 to 1: for each fragment, each light's.
     pub attenuations: Arc<Buffer>,

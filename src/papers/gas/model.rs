@@ -72,6 +72,7 @@ pub struct Front {
 /// A density function with its place in the solid texture's space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidTexture {
+    /// The function of the turbulence there.
     pub function: DensityFunction,
     /// The density's factor, 0 to 1,000,000.
     pub opaque: f32,
@@ -95,6 +96,7 @@ pub struct HenyeyGreenstein {
 /// A solid full of gas, or a solid (hypertexture) object rendered as a volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Volume {
+    /// The solid that bounds it.
     pub shape: Shape,
     /// Metres.
     pub center: Vec3,
@@ -104,11 +106,13 @@ pub struct Volume {
     pub falloff: f32,
     /// A solid, with normals and opacity = 1 - (1 - density)^(c step).
     pub is_solid: bool,
+    /// Its density.
     pub texture: SolidTexture,
     /// tau of a gas or c of a solid, per metre, 0 to 1,000,000.
     pub tau_per_m: f32,
     /// Linear RGB, 0 to 1.
     pub albedo: Vec3,
+    /// The two functions whose sum scatters light.
     pub phase: [HenyeyGreenstein; 2],
 }
 
@@ -131,7 +135,9 @@ pub struct Checker {
 /// Phong's highlight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Highlight {
+    /// At least 0.
     pub strength: f32,
+    /// Above 0.
     pub exponent: f32,
 }
 
@@ -144,7 +150,9 @@ pub struct Object {
     pub color: Vec3,
     /// 0 to 1.
     pub opacity: f32,
+    /// Squares of a second colour.
     pub checker: Option<Checker>,
+    /// Its highlight, 0 for none.
     pub highlight: Highlight,
     /// Triangles are seen from behind as well.
     pub is_two_sided: bool,

@@ -13,6 +13,7 @@ use super::scene_buffers::SceneBuffers;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, Error, Frame, ImageView, Pass};
 
+/// The pass `resolve`.
 pub struct Resolve {
     /// Linear RGB, and the opacity of all fragments together.
     pub radiance: Arc<ImageView>,

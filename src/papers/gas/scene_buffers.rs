@@ -16,13 +16,21 @@ const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 
 /// Buffers of the scene, by the names the shaders give them.
 pub struct SceneBuffers {
+    /// One [`FrameBlock`].
     pub frame: Arc<Buffer>,
+    /// Volumes and the solid textures of surfaces, [`VolumeBlock`]s.
     pub volumes: Arc<Buffer>,
+    /// [`LightBlock`]s.
     pub lights: Arc<Buffer>,
+    /// The random table of the fog's front, floats.
     pub offsets: Arc<Buffer>,
+    /// Vertices of all objects, [`VertexBlock`]s.
     pub vertices: Arc<Buffer>,
+    /// Triangles of all objects, [`TriangleBlock`]s.
     pub triangles: Arc<Buffer>,
+    /// [`ObjectBlock`]s.
     pub objects: Arc<Buffer>,
+    /// Triangles of all objects.
     pub triangle_count: u32,
     /// The objects without their meshes.
     objects_without_meshes: Vec<Object>,

@@ -26,11 +26,13 @@ use crate::scene::{Light, MeshSource};
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
+    /// The numbers.
     pub parameters: Parameters,
     /// The scene whose surfaces there are.
     pub scene: Preset,
     /// Polygon meshes that stand in the scene beside its own surfaces, at their own size.
     pub objects: Vec<MeshSource>,
+    /// The preset, as the record names it.
     pub preset: Option<String>,
     /// Volumes beside the scene's.
     placements: Vec<Placement>,
@@ -126,6 +128,7 @@ impl Default for Setup {
 
 /// A setup with its surfaces.
 pub struct Scene {
+    /// Surfaces of the scene and of the user.
     pub objects: Vec<Object>,
 }
 

@@ -28,6 +28,7 @@ host_block! {
     }
 }
 
+/// The pass `shadow-table`.
 pub struct ShadowTable {
     /// Sums of density times metres: a table a volume and light, `table_size` entries along each axis, x fastest.
     pub sums: Arc<Buffer>,

@@ -6,6 +6,7 @@ use super::context::Context;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Error, Frame, Pass};
 
+/// The pass `sort`.
 pub struct Sort {
     pass: Pass,
 }

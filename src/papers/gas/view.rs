@@ -7,6 +7,7 @@ use ash::vk;
 use super::context::Context;
 use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass};
 
+/// The pass `view`.
 pub struct View {
     /// 8-bit sRGB.
     pub picture: Arc<ImageView>,

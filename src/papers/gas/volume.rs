@@ -10,6 +10,7 @@ use super::parameters::Variant;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 
+/// The pass `volume`.
 pub struct VolumeMarch {
     /// Sections of gas, [`SectionBlock`]s in the slots that `sort` reserved.
     pub sections: Arc<Buffer>,

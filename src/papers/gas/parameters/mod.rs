@@ -72,6 +72,7 @@ pub struct Parameters {
     pub first_frame: u32,
     /// Frames of the scene from one frame to the next; 0 holds the first.
     pub frame_step: u32,
+    /// Of noise, jitter and the fog's random table.
     pub seed: u64,
     /// Footprints by a geometry stage, where the device has one; else by the vertex stage.
     pub geometry_stage: bool,
@@ -80,6 +81,7 @@ pub struct Parameters {
     pub list_bytes: Option<u64>,
     /// Size of the picture in pixels.
     pub width: u32,
+    /// Rows of pixels.
     pub height: u32,
 }
 

@@ -18,9 +18,11 @@ use crate::papers::gas::scenes;
 /// The solid of one more volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
+    /// The solid.
     pub shape: Shape,
     /// Metres.
     pub center: Vec3,
+    /// Metres, above 0.
     pub half_extent_m: Vec3,
 }
 

@@ -26,12 +26,14 @@ pub enum Sampling {
 pub struct Gas {
     /// Premultiplied, linear RGB.
     pub color: DVec3,
+    /// Of all gas on the ray, 0 to 1.
     pub transparency: f64,
 }
 
 /// The rays of one scene frame.
 pub struct Rays<'a> {
     parameters: &'a Parameters,
+    /// The densities of the frame.
     pub medium: Medium,
     number: u32,
 }

@@ -37,7 +37,9 @@ pub enum Preset {
 /// A scene with its numbers.
 #[derive(Debug, Clone)]
 pub struct Scene {
+    /// Its numbers.
     pub parameters: Parameters,
+    /// Its surfaces.
     pub objects: Vec<Object>,
 }
 
