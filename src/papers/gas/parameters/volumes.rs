@@ -124,37 +124,32 @@ impl<T: Value> Value for OfVolumes<T> {
     }
 }
 
-/// The values that `get` finds.
-fn read<T>(volumes: &[Volume], get: impl Fn(&Volume) -> Option<T>) -> OfVolumes<T> {
-    OfVolumes(volumes.iter().filter_map(get).collect())
-}
-
-/// Sets one value in all volumes.
-fn write<T: Copy>(volumes: &mut [Volume], values: &OfVolumes<T>, set: impl Fn(&mut Volume, T)) {
-    if let Some(&value) = values.0.first() {
-        volumes.iter_mut().for_each(|volume| set(volume, value));
-    }
-}
-
-/// The field of a number that an expression finds in some volumes.
-macro_rules! number {
-    ($volume:ident => $number:expr) => {
+/// The field of what one function reads from some volumes and another writes to all.
+macro_rules! of_volumes {
+    ($get:expr, $set:expr) => {
         Field {
-            get: |volumes: &Vec<Volume>| {
-                read(volumes, |volume| {
-                    let $volume = &mut volume.clone();
-                    let number: Option<&mut _> = $number;
-                    number.copied()
-                })
-            },
-            set: |volumes, values| {
-                write(volumes, &values, |$volume, value| {
-                    if let Some(number) = $number {
-                        *number = value;
-                    }
-                })
+            get: |volumes: &Vec<Volume>| OfVolumes(volumes.iter().filter_map($get).collect()),
+            set: |volumes, OfVolumes(values)| {
+                let set: fn(&mut Volume, _) = $set;
+                values.first().into_iter().for_each(|value| volumes.iter_mut().for_each(|v| set(v, *value)));
             },
         }
+    };
+}
+
+/// The field of a number that a function finds in some volumes.
+macro_rules! number {
+    ($find:expr) => {
+        of_volumes!(
+            |volume| {
+                let find: fn(&mut Volume) -> Option<&mut _> = $find;
+                find(&mut volume.clone()).copied()
+            },
+            |volume, value| {
+                let find: fn(&mut Volume) -> Option<&mut _> = $find;
+                find(volume).into_iter().for_each(|number| *number = value);
+            }
+        )
     };
 }
 
@@ -179,92 +174,79 @@ fn front(volume: &mut Volume) -> Option<&mut Front> {
     }
 }
 
-const FRONT: Field<Vec<Volume>, OfVolumes<[f32; 5]>> = Field {
-    get: |volumes| {
-        read(volumes, |volume| {
-            let numbers = |f: &mut Front| [f.x_m, f.per_frame_m, f.depth_m, f.turbulence_m, f.table_m];
-            front(&mut volume.clone()).map(numbers)
-        })
-    },
-    set: |volumes, values| {
-        write(volumes, &values, |volume, [x_m, per_frame_m, depth_m, turbulence_m, table_m]| {
-            if let Some(front) = front(volume) {
-                *front = Front { x_m, per_frame_m, depth_m, turbulence_m, table_m, ..*front };
-            }
-        });
-    },
-};
+const FRONT: Field<Vec<Volume>, OfVolumes<[f32; 5]>> = of_volumes!(
+    |volume| front(&mut volume.clone()).map(|f| [f.x_m, f.per_frame_m, f.depth_m, f.turbulence_m, f.table_m]),
+    |volume, [x_m, per_frame_m, depth_m, turbulence_m, table_m]: [f32; 5]| {
+        if let Some(front) = front(volume) {
+            *front = Front { x_m, per_frame_m, depth_m, turbulence_m, table_m, ..*front };
+        }
+    }
+);
 
-const HYPERTEXTURE: Field<Vec<Volume>, OfVolumes<[f32; 2]>> = Field {
-    get: |volumes| {
-        read(volumes, |volume| match volume.texture.function {
-            DensityFunction::Hypertexture { amplitude, softness } => Some([amplitude, softness]),
-            _ => None,
-        })
+const HYPERTEXTURE: Field<Vec<Volume>, OfVolumes<[f32; 2]>> = of_volumes!(
+    |volume| match volume.texture.function {
+        DensityFunction::Hypertexture { amplitude, softness } => Some([amplitude, softness]),
+        _ => None,
     },
-    set: |volumes, values| {
-        write(volumes, &values, |volume, [noise, soft]| {
-            if let DensityFunction::Hypertexture { amplitude, softness } = &mut volume.texture.function {
-                (*amplitude, *softness) = (noise, soft);
-            }
-        });
-    },
-};
+    |volume, [amplitude, softness]: [f32; 2]| {
+        if matches!(volume.texture.function, DensityFunction::Hypertexture { .. }) {
+            volume.texture.function = DensityFunction::Hypertexture { amplitude, softness };
+        }
+    }
+);
 
 const ALBEDO: Field<Vec<Volume>, OfVolumes<f32>> = Field {
     get: |volumes| OfVolumes(volumes.iter().flat_map(|volume| volume.albedo.to_array()).collect()),
-    set: |volumes, values| write(volumes, &values, |volume, albedo| volume.albedo = Vec3::splat(albedo)),
+    ..of_volumes!(|_| None, |volume, albedo| volume.albedo = Vec3::splat(albedo))
 };
 
 /// Solids have normals instead.
-const PHASE: Field<Vec<Volume>, OfVolumes<[f32; 4]>> = Field {
-    get: |volumes| {
-        let numbers = |[first, second]: [HenyeyGreenstein; 2]| [first.weight, first.g, second.weight, second.g];
-        read(volumes, |volume| (!volume.is_solid).then(|| numbers(volume.phase)))
+const PHASE: Field<Vec<Volume>, OfVolumes<[f32; 4]>> = of_volumes!(
+    |volume| {
+        let [first, second] = volume.phase;
+        (!volume.is_solid).then_some([first.weight, first.g, second.weight, second.g])
     },
-    set: |volumes, values| {
-        write(volumes, &values, |volume, [w0, g0, w1, g1]| {
-            volume.phase = [HenyeyGreenstein { weight: w0, g: g0 }, HenyeyGreenstein { weight: w1, g: g1 }];
-        });
-    },
-};
+    |volume, [w0, g0, w1, g1]: [f32; 4]| {
+        volume.phase = [HenyeyGreenstein { weight: w0, g: g0 }, HenyeyGreenstein { weight: w1, g: g1 }];
+    }
+);
 
 /// The numbers of the gases, once.
 pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
     let scene = "the scene's";
     let figure = "the figure's";
     let parameters = vec![
-        Parameter::new("density", number!(v => Some(&mut v.texture.function)))
+        Parameter::new("density", number!(|v| Some(&mut v.texture.function)))
             .help("Density function of all volumes")
             .default_text(scene)
             .everyday(),
-        Parameter::new("opaque", number!(v => Some(&mut v.texture.opaque)))
+        Parameter::new("opaque", number!(|v| Some(&mut v.texture.opaque)))
             .range(Range::from(0.0).to(1e6))
             .help("Factor of all volumes' density (the paper's opaque)")
             .default_text(scene),
-        Parameter::new("power", number!(v => Some(&mut v.texture.power)))
+        Parameter::new("power", number!(|v| Some(&mut v.texture.power)))
             .range(Range::above(0.0).to(100.0))
             .help("Exponent of all volumes' density")
             .default_text(scene),
-        Parameter::new("texture-scale", number!(v => Some(&mut v.texture.scale_per_m)))
+        Parameter::new("texture-scale", number!(|v| Some(&mut v.texture.scale_per_m)))
             .range(Range::from(1e-4).to(1e4))
             .unit("per metre")
             .help("Texture units a metre of all volumes")
             .default_text(scene),
-        Parameter::new("frequency", number!(v => clouds(v)))
+        Parameter::new("frequency", number!(clouds))
             .range(Range::from(-1e4).to(1e4))
             .help("Of clouds: frequency of the sine wave")
             .default_text("4"),
-        Parameter::new("down", number!(v => swirl(v).map(|swirl| &mut swirl.along_per_frame)))
+        Parameter::new("down", number!(|v| swirl(v).map(|swirl| &mut swirl.along_per_frame)))
             .range(Range::from(-1e4).to(1e4))
             .unit("texture units a frame")
             .help("Of fog and steam: motion along the helix (DOWN)")
             .default_text(figure),
-        Parameter::new("swirl-frames", number!(v => swirl(v).map(|swirl| &mut swirl.frames)))
+        Parameter::new("swirl-frames", number!(|v| swirl(v).map(|swirl| &mut swirl.frames)))
             .range(Range::from(0.0).to(1e4))
             .help("Of fog and steam: frames of one revolution of the helix (SWIRL_FRAMES), 0 for none")
             .default_text(figure),
-        Parameter::new("ellipse", number!(v => swirl(v).map(|swirl| &mut swirl.ellipse)))
+        Parameter::new("ellipse", number!(|v| swirl(v).map(|swirl| &mut swirl.ellipse)))
             .range(Range::from(-1e4).to(1e4))
             .unit("texture units")
             .placeholder("F,F")
@@ -278,7 +260,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
                  thickest (above 0), metres by which a turbulence of 1 moves it, and a random number of 1; each",
             )
             .default_text("figure 7's"),
-        Parameter::new("full-fog", number!(v => front(v).map(|front| &mut front.full_frames)))
+        Parameter::new("full-fog", number!(|v| front(v).map(|front| &mut front.full_frames)))
             .range(Range::from(0.0).to(1e6))
             .unit("frames")
             .help("Of fog: until it is at its thickest (FULL_FOG); 0 for at once")
@@ -290,7 +272,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
                  which it turns dense, above 0 and at most 1",
             )
             .default_text("1.4,0.16"),
-        Parameter::new("tau", number!(v => Some(&mut v.tau_per_m)))
+        Parameter::new("tau", number!(|v| Some(&mut v.tau_per_m)))
             .range(Range::from(0.0).to(1e6))
             .unit("per metre")
             .help("Optical depth of density 1 of all volumes")
@@ -299,7 +281,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
             .range(Range::from(0.0).to(1.0))
             .help("Albedo of all volumes")
             .default_text(scene),
-        Parameter::new("falloff", number!(v => Some(&mut v.falloff)))
+        Parameter::new("falloff", number!(|v| Some(&mut v.falloff)))
             .range(Range::from(0.0).to(1.0))
             .help("Fraction of the distance from the boundary to the middle over which all volumes fade")
             .default_text(scene),
