@@ -255,11 +255,12 @@ impl Declared for Setup {
         let lights = [
             Parameter::new("light", field!(Setup.parallel_lights))
                 .help("Direction of light from infinity; takes the place of the scene's lights")
+                .default_text("the scene's")
                 .cost(Cost::Buffers)
                 .unrecorded(),
             Parameter::new("point-light", field!(Setup.point_lights))
-                .unit("metres")
-                .help("Position of a point light; takes the place of the scene's lights")
+                .help("Position of a point light in metres; takes the place of the scene's lights")
+                .default_text("the scene's")
                 .cost(Cost::Buffers)
                 .unrecorded(),
         ];

@@ -230,8 +230,8 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
             .default_text(scene),
         Parameter::new("texture-scale", number!(|v| Some(&mut v.texture.scale_per_m)))
             .range(Range::from(1e-4).to(1e4))
-            .unit("per metre")
-            .help("Texture units a metre of all volumes")
+            .unit("texture units a metre")
+            .help("Scale of all volumes' solid texture")
             .default_text(scene),
         Parameter::new("frequency", number!(clouds))
             .range(Range::from(-1e4).to(1e4))
@@ -257,7 +257,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
             .placeholder("X,STEP,DEPTH,T,R")
             .help(
                 "Of fog: the front's x in metres at frame 0, metres a frame, metres behind it until the fog is \
-                 thickest (above 0), metres by which a turbulence of 1 moves it, and a random number of 1; each",
+                 thickest (above 0), metres by which a turbulence of 1 moves it, and a random number of 1",
             )
             .default_text("figure 7's"),
         Parameter::new("full-fog", number!(|v| front(v).map(|front| &mut front.full_frames)))
