@@ -177,39 +177,30 @@ impl Gas {
 
 impl Paper for Gas {
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        let Passes {
-            lists,
-            empty_lists,
-            fragments,
-            sort,
-            density_table,
-            shadow_table,
-            volume,
-            light_attenuation,
-            resolve,
-            view: _,
-        } = &self.passes;
+        let (passes, capacity) = (&self.passes, self.passes.lists.capacity);
         let gas = GasUse {
-            volume_count: if volume.is_some() { self.parameters.volumes.len() } else { 0 },
-            has_attenuations: light_attenuation.is_some(),
+            volume_count: if passes.volume.is_some() { self.parameters.volumes.len() } else { 0 },
+            has_attenuations: passes.light_attenuation.is_some(),
         };
-        self.scene.write(&self.parameters, self.parameters.scene_frame(number), gas, lists.capacity)?;
-        for band in Band::all(self.parameters.width, self.parameters.height, lists.capacity.rows) {
-            empty_lists.record(frame, band)?;
-            fragments.record(frame, band)?;
-            sort.record(frame, band)?;
+        self.scene.write(&self.parameters, self.parameters.scene_frame(number), gas, capacity)?;
+        for band in Band::all(self.parameters.width, self.parameters.height, capacity.rows) {
+            passes.empty_lists.record(frame, band)?;
+            passes.fragments.record(frame, band)?;
+            passes.sort.record(frame, band)?;
             // All bands look up the same tables.
-            if let (Some(densities), Some(shadows), true) = (density_table, shadow_table, band.is_first()) {
+            if let (Some(densities), Some(shadows), true) =
+                (&passes.density_table, &passes.shadow_table, band.is_first())
+            {
                 densities.record(frame)?;
                 shadows.record(frame)?;
             }
-            if let Some(volume) = volume {
+            if let Some(volume) = &passes.volume {
                 volume.record(frame, band)?;
             }
-            if let Some(light_attenuation) = light_attenuation {
+            if let Some(light_attenuation) = &passes.light_attenuation {
                 light_attenuation.record(frame, band)?;
             }
-            resolve.record(frame, band)?;
+            passes.resolve.record(frame, band)?;
         }
         Ok(())
     }
