@@ -309,10 +309,16 @@ impl Parameters {
             row("edge", p!(edge), LENGTH, "solid and melting: divided until no edge is longer", "")
                 .unit("diagonals")
                 .cost(Cost::Buffers),
-            row("source", p!(sources), R::from(-1e3).to(1e3), "Heat source in the scaled object's space", "3.3")
-                .default_text("the lowest vertex, melting the highest")
-                .cost(Cost::Buffers)
-                .everyday(),
+            row(
+                "source",
+                p!(sources),
+                R::from(-1e3).to(1e3),
+                "Heat source in the scaled object's space, up to 16",
+                "3.3",
+            )
+            .default_text("the lowest vertex, melting the highest")
+            .cost(Cost::Buffers)
+            .everyday(),
             row("psi", p!(psi), R::above(0.0).to(100.0), "Heat index of the squared distance", "3.3")
                 .cost(Cost::Buffers),
             row("speed", p!(speed_per_s), R::above(0.0).to(10.0), "Growth of the boundary's radius", "3.3")
@@ -331,7 +337,7 @@ impl Parameters {
             row("spread", p!(spread), FRACTION, "x, a block's share of its neighbours' rotation", "3.5.2"),
             row("omega", p!(omega), FRACTION, "melting: longest edge", "table 6.1").unit("mean edges"),
             row("chi", p!(chi), R::from(2.0).to(1e3), "melting: longest over shortest edge", "table 6.1"),
-            row("upsilon", p!(upsilon), FRACTION, "melting: share of a violation folded in a tick", "table 6.1"),
+            row("upsilon", p!(upsilon), FRACTION, "melting: fraction of a violation folded in a tick", "table 6.1"),
             row("floor", p!(floor), R::from(-10.0).to(1.0), "melting: height that nothing sinks below", "")
                 .unit("diagonals")
                 .default_text("the object's base"),
@@ -339,10 +345,10 @@ impl Parameters {
                 "retire-at",
                 p!(retire_at),
                 R::from(0.0).below(1.0),
-                "solid: share of L at which a vertex retires",
+                "solid: fraction of L at which a vertex retires",
                 "5.5",
             ),
-            row("blocks", BLOCKS, R::from(1.0).to(256.0), "Blocks along x, y and z", "3.5.1")
+            row("blocks", BLOCKS, R::from(1.0).to(256.0), "Blocks along x, y and z, 1048576 in all at most", "3.5.1")
                 .placeholder("XxYxZ")
                 .cost(Cost::Buffers)
                 .everyday(),

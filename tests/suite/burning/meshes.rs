@@ -159,7 +159,7 @@ fn several_sources_burn_from_the_nearest() {
 fn more_triangles_than_the_device_binds_are_refused() {
     let parameters = Parameters { levels: Some(5), ..Parameters::default() };
     let error = Model::new(&shapes::cuboid(), Variant::Shell, &parameters, 100_000).err().unwrap().to_string();
-    assert!(error.contains("--levels 5"), "{error}");
+    assert!(error.contains("`levels` 5"), "{error}");
 }
 
 #[test]
