@@ -17,7 +17,7 @@ pub fn record(record: &Record, style: Style) -> String {
 }
 
 /// One run: its name, the table of passes in the paper's order, the frame, what the passes leave unaccounted, and the
-/// warnings. Times are `median ± MAD` in milliseconds; `share` is the pass's GPU and host time as a part of the median
+/// warnings. Times are `median ± MAD` in milliseconds; `fraction` is the pass's GPU and host time over the median
 /// frame. Columns that no pass has are left out; a time that was not measured is a dash.
 pub fn run(run: &Run, style: Style) -> String {
     let mut text = title(run, style);
@@ -53,7 +53,7 @@ fn passes(run: &Run) -> Table {
         ("calls", Align::Right),
         ("submission", Align::Right),
         ("gpu ms", Align::Right),
-        ("share", Align::Right),
+        ("fraction", Align::Right),
         ("host ms", Align::Right),
         ("wait ms", Align::Right),
     ]);
@@ -78,7 +78,7 @@ fn passes(run: &Run) -> Table {
             pass.calls.to_string(),
             pass.submission.filter(|_| submissions).map_or_else(String::new, |index| index.to_string()),
             gpu(pass),
-            share(pass, run).map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
+            fraction(pass, run).map_or_else(String::new, |fraction| format!("{:.1} %", 100.0 * fraction)),
             host(pass),
             wait(pass),
         ]);
@@ -86,7 +86,7 @@ fn passes(run: &Run) -> Table {
     table
 }
 
-fn share(pass: &Pass, run: &Run) -> Option<f64> {
+fn fraction(pass: &Pass, run: &Run) -> Option<f64> {
     let times = [&pass.gpu_ms, &pass.host_ms];
     let known: Vec<f64> = times.into_iter().flatten().map(|time| time.median).collect();
     let frame_ms = run.frame_ms.as_ref()?.median;
@@ -108,7 +108,8 @@ fn frame(run: &Run, style: Style) -> String {
     if frame.median > 0.0 {
         let _ = write!(text, ", {:.1} frames/s", 1000.0 / frame.median);
     }
-    let rest = [("unaccounted", run.unaccounted_ms), ("overlap", run.overlap_ms), ("stamp floor", run.stamp_floor_ms)];
+    let rest =
+        [("unaccounted", run.unaccounted_ms), ("overlap", run.overlap_ms), ("timestamp floor", run.stamp_floor_ms)];
     for (name, value) in rest {
         if let Some(value) = value {
             let _ = write!(text, "; {name} {} ms", milliseconds(value));
@@ -158,7 +159,7 @@ mod tests {
         assert_eq!(
             line("frame"),
             "frame 5.000 ± 1.000 ms (min 4.000, max 6.000), 200.0 frames/s; unaccounted 2.500 ms; overlap 0.100 ms; \
-             stamp floor 0.010 ms"
+             timestamp floor 0.010 ms"
         );
         assert_eq!(line("warning"), "warning: LP_NUM_THREADS is not set");
         assert!(!text.contains("submission"), "one submission only\n{text}");

@@ -242,7 +242,7 @@ impl PassKind {
 
 /// Raw samples and what they come to. A summary has at least one sample; no samples are an absent summary.
 ///
-/// Made by `experiment::statistics::summarize`, which defines the percentiles and the MAD.
+/// Made by `measure::statistics::summarize`, which defines the percentiles and the MAD.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// In the order of measurement.

@@ -4,10 +4,10 @@ use anstyle::{AnsiColor, Effects};
 pub use comfy_table::CellAlignment as Align;
 use comfy_table::{ColumnConstraint, presets};
 
-/// How text for people is decorated.
+/// Decoration of text for people.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// Whether ANSI colours may be used.
+    /// ANSI colours may be used.
     pub color: bool,
 }
 
