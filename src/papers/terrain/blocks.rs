@@ -223,9 +223,10 @@ impl LightBlock {
         // A level map has one tint: over a range of nothing, rounding would choose it.
         let rounding_m = 1e-3 * lowest_m.abs().max(1.0);
         // Of a map that goes once round the outermost columns repeat others.
-        let (shape, repeated) = scene.grounds.first().map_or((Shape::new(2, 2), 0), |ground| {
-            (ground.shape, if ground.closes { REPEATED } else { 0 })
-        });
+        let (shape, repeated) = scene
+            .grounds
+            .first()
+            .map_or((Shape::new(2, 2), 0), |ground| (ground.shape, if ground.closes { REPEATED } else { 0 }));
         let columns = if repeated > 0 { shape.width - 2 * repeated } else { shape.width - 1 };
         LightBlock {
             corner_direction: rays.corner.as_vec3(),

@@ -277,7 +277,8 @@ impl Declared for Setup {
                 .help("Picture over the first map in place of the colour ramp, PNG, north up")
                 .cost(Cost::Buffers),
         ];
-        let numbers = Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
+        let numbers =
+            Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
         maps.into_iter().map(|p| p.group("Terrain")).chain(scene).chain(numbers).collect()
     }
 

@@ -74,8 +74,11 @@ impl Build<'_> {
         let pass = match self.stage {
             Stage::Compute => Pass::compute(name, section, &format!("terrain/{program}.comp")).with(name, target),
             Stage::Fragment => {
-                Pass::graphics(name, section, "common/fullscreen.vert", &format!("terrain/{program}.frag"))
-                    .color(target, load, Blend::Replace)
+                Pass::graphics(name, section, "common/fullscreen.vert", &format!("terrain/{program}.frag")).color(
+                    target,
+                    load,
+                    Blend::Replace,
+                )
             }
         };
         let pass = resources.iter().fold(pass, |pass, (name, resource)| pass.with(name, resource.clone()));

@@ -99,10 +99,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         name,
         help,
         options: &["variant"],
-        refuses: &[
-            ("json", "a figure is a picture; `1` has a record"),
-            ("csv", "a figure is a picture; `1` has rows"),
-        ],
+        refuses: &[("json", "a figure is a picture; `1` has a record"), ("csv", "a figure is a picture; `1` has rows")],
         run,
     };
     vec![
