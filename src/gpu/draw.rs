@@ -12,8 +12,8 @@ use super::error::Error;
 use super::pass::{Body, DrawBounds, DrawCounts, Inner};
 use super::pass_builder::PassDesc;
 
-/// What draws and dispatches have in common: the pass, its constants, and the first command that was refused.
-struct Commands<'a> {
+/// The common part of draws and dispatches: the pass, its constants, and the first command that was refused.
+struct BodyCommands<'a> {
     device: &'a Device,
     raw: vk::CommandBuffer,
     inner: &'a Inner,
@@ -22,9 +22,9 @@ struct Commands<'a> {
     refused: Option<Error>,
 }
 
-impl<'a> Commands<'a> {
+impl<'a> BodyCommands<'a> {
     fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner) -> Self {
-        Commands { device, raw, inner, has_constants: false, calls: 0, refused: None }
+        BodyCommands { device, raw, inner, has_constants: false, calls: 0, refused: None }
     }
 
     fn desc(&self) -> &'a PassDesc {
@@ -72,13 +72,13 @@ impl<'a> Commands<'a> {
 
 /// The draws of one pass.
 pub struct Draw<'a> {
-    commands: Commands<'a>,
+    commands: BodyCommands<'a>,
     bounds: DrawBounds,
 }
 
 impl<'a> Draw<'a> {
     pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, bounds: DrawBounds) -> Self {
-        Draw { commands: Commands::new(device, raw, inner), bounds }
+        Draw { commands: BodyCommands::new(device, raw, inner), bounds }
     }
 
     /// The number of draws, or the first error.
@@ -124,7 +124,7 @@ impl<'a> Draw<'a> {
     fn draw(&mut self, first: u32, vertices: u32, instances: u32) -> &mut Self {
         let end = u64::from(first) + u64::from(vertices);
         if self.is_ready(DrawCounts { vertices: end, instances: instances.into(), indices: 0 }) {
-            let Commands { device, raw, .. } = self.commands;
+            let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: inside the pass's render pass, with pipeline, set and buffers bound and the constants set; vertices
             // and instances lie inside what is bound.
             unsafe { device.raw.cmd_draw(raw, vertices, instances, first, 0) };
@@ -136,7 +136,7 @@ impl<'a> Draw<'a> {
     pub fn indices(&mut self, count: u32) -> &mut Self {
         // Vertices that indices name beyond the buffer are not fetched: robust buffer access is on.
         if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: count.into() }) {
-            let Commands { device, raw, .. } = self.commands;
+            let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: as for `draw`; the indices lie inside the bound buffer.
             unsafe { device.raw.cmd_draw_indexed(raw, count, 1, 0, 0, 0) };
         }
@@ -151,7 +151,7 @@ impl<'a> Draw<'a> {
         };
         if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
             let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
-            let Commands { device, raw, .. } = self.commands;
+            let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: as for `draw`; the buffer holds one command, which the kernel before the pass has kept inside what
             // is bound and which the pass's barrier made visible.
             unsafe { device.raw.cmd_draw_indexed_indirect(raw, clamp.clamped.raw, 0, 1, stride) };
@@ -169,13 +169,13 @@ impl<'a> Draw<'a> {
 
 /// The dispatches of one pass.
 pub struct Dispatch<'a> {
-    commands: Commands<'a>,
+    commands: BodyCommands<'a>,
     local_size: [u32; 3],
 }
 
 impl<'a> Dispatch<'a> {
     pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, local_size: [u32; 3]) -> Self {
-        Dispatch { commands: Commands::new(device, raw, inner), local_size }
+        Dispatch { commands: BodyCommands::new(device, raw, inner), local_size }
     }
 
     /// The number of dispatches, or the first error.
@@ -201,7 +201,7 @@ impl<'a> Dispatch<'a> {
             self.commands.refused.get_or_insert(error);
         }
         if self.commands.is_ready() {
-            let Commands { device, raw, .. } = self.commands;
+            let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: recording outside a render pass, with pipeline and set bound and the constants set; the device takes
             // so many workgroups.
             unsafe { device.raw.cmd_dispatch(raw, groups[0], groups[1], groups[2]) };

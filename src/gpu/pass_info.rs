@@ -7,13 +7,18 @@ use super::shader::Compiler;
 /// The part of the machine that a pass keeps busy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PassKind {
+    /// Draws.
     Graphics,
+    /// Dispatches.
     Compute,
+    /// Copies.
     Transfer,
+    /// Work of the processor.
     Host,
 }
 
 impl PassKind {
+    /// The name that records and tables use.
     pub fn as_str(self) -> &'static str {
         match self {
             PassKind::Graphics => "graphics",
@@ -31,6 +36,7 @@ pub struct PassInfo {
     pub name: &'static str,
     /// Section of the paper.
     pub section: &'static str,
+    /// Graphics, compute, transfer or host.
     pub kind: PassKind,
     /// Paths under `shaders/`, in the order of the stages.
     pub shaders: Vec<String>,

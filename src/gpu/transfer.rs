@@ -17,7 +17,7 @@ use super::pass_check;
 /// Makes a device buffer that holds `bytes`.
 ///
 /// # Errors
-/// As [`Buffer::new`]; what Vulkan answers.
+/// As [`Buffer::new`]; any error of Vulkan.
 pub fn upload(
     device: &Arc<Device>,
     name: &str,
@@ -39,7 +39,7 @@ pub fn upload(
 /// Copies buffers, each into one of its own size at least, in one submission.
 ///
 /// # Errors
-/// [`Error::ReadBeforeWrite`] when nothing has written a source; what Vulkan answers.
+/// [`Error::ReadBeforeWrite`] when nothing has written a source; any error of Vulkan.
 pub fn copy_buffers(device: &Arc<Device>, pairs: &[(&Arc<Buffer>, &Arc<Buffer>)]) -> Result<(), Error> {
     let uses: Vec<Use> = pairs.iter().flat_map(|&(from, to)| copy_uses(&from.into(), to)).collect();
     for &(from, to) in pairs {
@@ -59,7 +59,7 @@ const CHUNK_BYTES: u64 = 8 << 20;
 /// `fill` writes rows, tightly packed, from the given one on into the bytes it is handed.
 ///
 /// # Errors
-/// [`Error::Limit`] when the rectangle is larger than the view; what Vulkan answers.
+/// [`Error::Limit`] when the rectangle is larger than the view; any error of Vulkan.
 pub fn upload_rows(
     device: &Arc<Device>,
     view: &Arc<ImageView>,
@@ -100,7 +100,7 @@ pub fn upload_rows(
 /// one format. The rest of `to` keeps what it holds.
 ///
 /// # Errors
-/// [`Error::Limit`] when the rectangle is larger than a view; what Vulkan answers.
+/// [`Error::Limit`] when the rectangle is larger than a view; any error of Vulkan.
 pub fn copy_rectangle(
     device: &Arc<Device>,
     from: &Arc<ImageView>,
@@ -210,7 +210,7 @@ fn subresource(view: &ImageView) -> vk::ImageSubresourceLayers {
 /// Reads a buffer back.
 ///
 /// # Errors
-/// [`Error::ReadBeforeWrite`] when no pass has written it; what Vulkan answers.
+/// [`Error::ReadBeforeWrite`] when no pass has written it; any error of Vulkan.
 pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>, Error> {
     read(device, buffer.into(), buffer.size_bytes())
 }
@@ -218,7 +218,7 @@ pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>
 /// Reads the texels of a view back: layers, then rows, then columns, tightly packed.
 ///
 /// # Errors
-/// [`Error::ReadBeforeWrite`] when no pass has written it; what Vulkan answers.
+/// [`Error::ReadBeforeWrite`] when no pass has written it; any error of Vulkan.
 pub fn read_image(device: &Arc<Device>, view: &Arc<ImageView>) -> Result<Vec<u8>, Error> {
     let layer_count = view.layers.end - view.layers.start;
     let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(layer_count);
