@@ -8,7 +8,7 @@ use fumarole::papers::terrain::{Base, Collider, Inputs, Interpolation, MapInput,
 use fumarole::scene::random::Random;
 use glam::{DVec2, DVec3};
 
-use super::land::{alone, volcano};
+use super::maps::{alone, volcano};
 use super::world::{Relief, World, random_map};
 
 /// Steps along a segment.
@@ -41,28 +41,28 @@ fn segments_touch_where_small_steps_do() {
             DVec3::new((x - 0.5) * 14_000.0, y * high, (z - 0.5) * 14_000.0)
         };
         let (a, b) = (place(3000.0), place(200.0));
-        let is_inside = |part: f64| {
-            let p = a.lerp(b, part);
+        let is_inside = |t: f64| {
+            let p = a.lerp(b, t);
             p.y <= height_m(p.x, p.z)
         };
-        let step = (0..=STEPS).map(|i| f64::from(i) / f64::from(STEPS)).find(|&part| is_inside(part));
+        let step = (0..=STEPS).map(|i| f64::from(i) / f64::from(STEPS)).find(|&t| is_inside(t));
         let contact = collider.segment(a, b);
         let slack = 2.0 / f64::from(STEPS);
         match (step, contact) {
-            (Some(part), Some(contact)) => {
+            (Some(t), Some(contact)) => {
                 met += 1;
                 // Steps may pass a ridge that the collider meets, never the other way round.
-                assert!(contact.t.unwrap() <= part + 1e-5, "{a} to {b}: {} after {part}", contact.t.unwrap());
+                assert!(contact.t.unwrap() <= t + 1e-5, "{a} to {b}: {} after {t}", contact.t.unwrap());
                 let p = a.lerp(b, contact.t.unwrap());
                 let is_wall = contact.normal.y.abs() < 1e-6;
                 assert!(is_wall || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m || contact.t.unwrap() == 0.0);
-                assert!(contact.t.unwrap() >= part - slack || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m);
+                assert!(contact.t.unwrap() >= t - slack || (p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m);
             }
             (None, Some(contact)) => {
                 let p = contact.point;
                 assert!((p.y - height_m(p.x, p.z)).abs() < 1e-3 * spacing_m, "{a} to {b}: {contact:?}");
             }
-            (Some(part), None) => panic!("{a} to {b}: nothing is met, but the ground at {part}"),
+            (Some(t), None) => panic!("{a} to {b}: nothing is met, but the ground at {t}"),
             (None, None) => {}
         }
     }
@@ -98,7 +98,7 @@ fn place(world: &World, random: &mut Random, reach: f64) -> DVec3 {
     world.point(DVec2::new(1.4 * u - 0.2, 1.4 * v - 0.2), h * reach * world.top_m())
 }
 
-/// The oracle looks at every cell. Where it ends elsewhere, the contact must be as near to the ground as single precision
+/// The oracle tries every cell. Where it ends elsewhere, the contact must be as near to the ground as single precision
 /// is, or the segment must have passed as near to a silhouette.
 #[test]
 fn segments_meet_what_brute_force_meets_on_every_surface() {
@@ -207,17 +207,17 @@ fn spheres_touch_closed_and_united_maps() {
         let collider = collider(&world);
         for number in 0..60 {
             let u = if number % 2 == 0 { 1.0 } else { f64::from(random.unit()) };
-            let share = DVec2::new(u, f64::from(random.unit()));
-            let center = world.point(share, world.top_m() * f64::from(random.range(0.7, 1.5)));
+            let fraction = DVec2::new(u, f64::from(random.unit()));
+            let center = world.point(fraction, world.top_m() * f64::from(random.range(0.7, 1.5)));
             let expected = world.terrain.sphere(world.moved(center), 1e6).unwrap();
             let touch = collider.sphere(center, 1e6).unwrap();
             let off_m = (touch.distance_m - expected.distance_m).abs();
-            assert!(off_m <= 2e-6 * world.cell_m(), "{}: {share}: {touch:?}, not {expected:?}", world.name);
+            assert!(off_m <= 2e-6 * world.cell_m(), "{}: {fraction}: {touch:?}, not {expected:?}", world.name);
         }
     }
 }
 
-/// Of a million cells a sphere and a segment look at few: the levels above answer for the rest.
+/// Of a million cells a sphere and a segment try few: the levels above answer for the rest.
 #[test]
 fn the_pyramid_leaves_nearly_all_cells_out() {
     let maps = alone(volcano(1025));

@@ -17,7 +17,7 @@ pub struct Drawing {
     pub hits: Vec<Hit>,
     /// x, y, z, and the height above the base in metres.
     pub normals: Vec<[f32; 4]>,
-    /// What is left of the sunlight; empty where the variant has no such target.
+    /// The maps' shadow, 1 in the sunlight; empty where the variant has no such target.
     pub sunlit: Vec<f32>,
 }
 
@@ -31,7 +31,7 @@ impl Drawing {
     }
 }
 
-/// Draws one land from one place after the other.
+/// Draws one terrain from one place after the other.
 pub struct Painter {
     device: Arc<Device>,
     paper: Terrain,

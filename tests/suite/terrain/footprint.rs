@@ -16,7 +16,7 @@ use crate::common::gpu_test;
 
 /// Places along a ray at which it is compared with its footprint.
 const PLACES: u32 = 60;
-/// A share of a cell for what single precision costs.
+/// A fraction of a cell for what single precision costs.
 const HAIR: f64 = 1e-3;
 
 /// Lowest and highest height above the base that interpolation on a level can make within a texel of a place; none outside

@@ -13,7 +13,7 @@ use fumarole::scene::{Camera, HeightMap, Samples, shapes};
 use glam::{DVec2, DVec3, Mat4, Vec3};
 
 use super::drawing::{Drawing, Painter, differing};
-use super::land::map;
+use super::maps::map;
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
@@ -21,7 +21,7 @@ const BASES: [Base; 3] =
     [Base::Plane, Base::Cylinder { radius_m: 900.0 }, Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 }];
 const SIZE: (u32, u32) = (48, 36);
 
-/// How far a last piece of a ray, which is judged at its ends alone, may have gone astray, cells.
+/// The most by which a last piece of a ray, which is judged at its ends alone, goes astray, cells.
 const HAIR_CELLS: f64 = 0.05;
 
 /// Rays to the sun start a texel away from what is seen. Lifted by a hair they must be free where the device sees the sun, and
@@ -86,7 +86,7 @@ const SUNLIGHT: DVec3 = DVec3::new(2.0, 1.88, 1.7);
 const SKYLIGHT: DVec3 = DVec3::new(0.55 * 0.45, 0.68 * 0.45, 0.9 * 0.45);
 const HAZE: DVec3 = DVec3::new(0.42, 0.53, 0.66);
 
-/// A land of one grey, so that all that is seen is light: Lambert's of the sun, half of the sky's on a wall, and haze.
+/// A terrain of one grey, so that all that is seen is light: Lambert's of the sun, half of the sky's on a wall, and haze.
 #[test]
 fn a_grey_land_shows_the_light_alone() {
     gpu_test(|device| {
@@ -128,7 +128,7 @@ fn a_grey_land_shows_the_light_alone() {
                         }
                         seen += 1;
                     }
-                    assert!(seen > 300, "{base:?} {variant:?}: only {seen} pixels of land");
+                    assert!(seen > 300, "{base:?} {variant:?}: only {seen} pixels of terrain");
                 }
             }
         }

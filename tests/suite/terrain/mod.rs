@@ -3,8 +3,8 @@
 mod collisions;
 mod drawing;
 mod footprint;
-mod land;
 mod light;
+mod maps;
 mod oracle;
 mod pictures;
 mod pyramids;

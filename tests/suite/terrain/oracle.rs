@@ -11,7 +11,7 @@ use fumarole::scene::random::Random;
 use glam::{DVec2, DVec3, Vec3};
 
 use super::drawing::Painter;
-use super::land::adversaries;
+use super::maps::adversaries;
 use super::verdict::{Judge, Tally};
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
@@ -21,7 +21,7 @@ const VARIANTS: [Variant; 3] = [Variant::Cpu, Variant::GpuCompute, Variant::GpuF
 const STANDS: [Stand; 7] =
     [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Under, Stand::Down, Stand::Up, Stand::Far(4.0)];
 
-/// What one variant, by one compiler's binaries, did over many pictures.
+/// The tally of one variant, by one compiler's binaries, over many pictures.
 struct Trial {
     variant: Variant,
     compiler: Compiler,
@@ -49,10 +49,10 @@ impl<'a> Trials<'a> {
     /// Looks at a world from stands by chance.
     fn draw(&mut self, world: &World, stands: &[Stand], random: &mut Random) {
         let cameras: Vec<_> = stands.iter().map(|&s| (world.camera(s, random), format!("{s:?}"))).collect();
-        self.look(world, &cameras, THOUSANDTH);
+        self.compare(world, &cameras, THOUSANDTH);
     }
 
-    fn look(&mut self, world: &World, cameras: &[(Camera, String)], tolerance_cells: f64) {
+    fn compare(&mut self, world: &World, cameras: &[(Camera, String)], tolerance_cells: f64) {
         let Trials { device, trials, size } = self;
         let judge = |(camera, stand): &(Camera, String)| {
             (*camera, stand.clone(), Judge::new(world, &Rays::new(camera, size.0, size.1), *size, tolerance_cells))
@@ -222,7 +222,7 @@ fn maps_once_round_close_at_their_seam() {
     });
 }
 
-/// What the other compiler made of the same shaders, on every base and interpolation.
+/// The other compiler's binaries of the same shaders, on every base and interpolation.
 #[test]
 fn naga_s_binaries_meet_the_oracle() {
     gpu_test(|device| {
@@ -245,7 +245,7 @@ fn naga_s_binaries_meet_the_oracle() {
     });
 }
 
-/// Pictures of few pixels, of much land.
+/// Pictures of few pixels, of much terrain.
 #[test]
 fn large_maps() {
     gpu_test(|device| {
@@ -321,16 +321,19 @@ fn rays_along_the_grid() {
             let down = Camera { eye: Vec3::Y * (side + height), target: Vec3::ZERO, up: Vec3::NEG_Z, ..camera };
             let level = Vec3::Y * 0.8 * height;
             let mut cameras = vec![(down, "over a node".to_owned())];
-            cameras.extend([Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z].map(|way| {
-                (Camera { eye: level - side * way, target: level, ..camera }, format!("along the grid to {way}"))
+            cameras.extend([Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z].map(|direction| {
+                (
+                    Camera { eye: level - side * direction, target: level, ..camera },
+                    format!("along the grid to {direction}"),
+                )
             }));
-            trials.look(&world, &cameras, THOUSANDTH);
+            trials.compare(&world, &cameras, THOUSANDTH);
             trials.assert([true, true, true, true, false]);
         }
     });
 }
 
-/// Whether the eye is in the ground or not is a matter of its last bits; what it sees must be one or the other.
+/// An eye is in the ground or not by its last bits; its picture must be one or the other.
 #[test]
 fn a_camera_on_the_surface() {
     gpu_test(|device| {
@@ -358,13 +361,13 @@ fn a_camera_a_thousand_maps_away() {
             let world = World::alone("far", Base::Plane, Interpolation::Bilinear, None, map);
             let camera = world.camera(Stand::Far(1000.0), &mut random);
             let cameras = [(camera, "a thousand sides away".to_owned())];
-            trials.look(&world, &cameras, 1000.0 * 61.0 / f64::from(1 << 21));
+            trials.compare(&world, &cameras, 1000.0 * 61.0 / f64::from(1 << 21));
         }
         trials.assert_none_wrong();
     });
 }
 
-/// What the judge takes for granted.
+/// The judge's premises.
 #[test]
 fn rays_are_those_of_a_pinhole_camera() {
     let camera = Camera {

@@ -7,7 +7,7 @@ use fumarole::measure::Variant as _;
 use fumarole::papers::terrain::{Lod, Parameters, Variant, View};
 
 use super::drawing::Drawing;
-use super::land::{alone, volcano};
+use super::maps::{alone, volcano};
 use crate::common::gpu_test;
 
 /// Tight: the same Mesa draws the same picture, another one rounds differently here and there.

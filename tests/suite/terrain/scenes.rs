@@ -1,4 +1,4 @@
-//! What stands in a scene beside one map, and cameras in odd places.
+//! Scenes of more than one map, and cameras in odd places.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use fumarole::scene::{Camera, Mesh, Samples, shapes};
 use glam::{DVec2, Mat4, Vec3};
 
 use super::drawing::Drawing;
-use super::land::{alone, map, volcano};
+use super::maps::{alone, map, volcano};
 use super::variants::{assert_agree, small};
 use crate::common::gpu_test;
 
@@ -163,8 +163,8 @@ fn objects_and_terrain_hide_each_other() {
             let Some(camera) = camera_of(&without) else { panic!("no ground is seen") };
             let radius = 30.0 * camera / ground;
             let expected = std::f32::consts::PI * radius * radius;
-            let share = changed.len() as f32 / expected;
-            assert!((0.9..1.1).contains(&share), "{variant:?}: {} pixels, {expected} expected", changed.len());
+            let fraction = changed.len() as f32 / expected;
+            assert!((0.9..1.1).contains(&fraction), "{variant:?}: {} pixels, {expected} expected", changed.len());
             assert!(
                 changed.iter().all(|i| ((i % 160) as f32 - 79.5).hypot((i / 160) as f32 - 59.5) < radius * 1.1 + 1.0)
             );

@@ -1,4 +1,4 @@
-//! The variants see the same land.
+//! The variants see the same terrain.
 
 use fumarole::gpu::Compiler;
 use fumarole::measure::Variant as _;
@@ -8,7 +8,7 @@ use fumarole::scene::shapes;
 use glam::{Mat4, Vec3};
 
 use super::drawing::{Drawing, Painter, differing};
-use super::land::{adversaries, alone, volcano};
+use super::maps::{adversaries, alone, volcano};
 use crate::common::gpu_test;
 
 pub fn small(view: View, lod: Lod) -> Parameters {

@@ -1,4 +1,4 @@
-//! Whether what the device found is a first hit, judged by the oracle.
+//! The oracle's verdict on the device's hits: first hits or not.
 //!
 //! Single precision moves a ray by a hair, so a hit is judged backwards: the place that the device gives must be on the
 //! surface that it names, and the ray must not have been in the solid before; both to a thousandth of a cell. Where the
@@ -15,8 +15,8 @@ use super::world::World;
 
 const FAR: [f64; 2] = [0.0, f64::INFINITY];
 
-/// What the oracle sees through one pixel.
-struct Look {
+/// The oracle's ray through one pixel.
+struct OracleRay {
     ray: Ray,
     /// Metres along the ray for a metre of depth.
     stretch: f64,
@@ -26,11 +26,11 @@ struct Look {
 /// The oracle's picture.
 pub struct Judge<'a> {
     world: &'a World,
-    looks: Vec<Look>,
+    oracle_rays: Vec<OracleRay>,
     tolerance_m: f64,
 }
 
-/// How a picture did.
+/// The tally of a picture.
 #[derive(Debug, Default, Clone)]
 pub struct Tally {
     pub rays: usize,
@@ -40,9 +40,9 @@ pub struct Tally {
     pub seen: [usize; 5],
     /// The largest distance from the surface that was named, cells.
     pub residual_cells: f64,
-    /// What was wrong with the first few rays that were.
+    /// The faults of the first few rays that had one.
     pub wrong: Vec<String>,
-    /// What those saw that ended elsewhere.
+    /// The hits of those rays that ended elsewhere.
     pub hairs: Vec<String>,
 }
 
@@ -62,25 +62,25 @@ impl Tally {
 impl<'a> Judge<'a> {
     /// `tolerance_cells` is a thousandth, or what single precision leaves at a great distance.
     pub fn new(world: &'a World, rays: &Rays, (width, height): (u32, u32), tolerance_cells: f64) -> Self {
-        let look = |pixel: u32| {
+        let oracle = |pixel: u32| {
             let (x, y) = (f64::from(pixel % width), f64::from(pixel / width));
             let direction = rays.corner + x * rays.across + y * rays.down;
             let ray = Ray::new(world.moved(rays.eye), world.turned(direction));
-            Look { ray, stretch: direction.length(), expected: world.terrain.first_hit(&ray, FAR) }
+            OracleRay { ray, stretch: direction.length(), expected: world.terrain.first_hit(&ray, FAR) }
         };
-        let looks = (0..width * height).into_par_iter().map(look).collect();
-        Judge { world, looks, tolerance_m: tolerance_cells * world.cell_m() }
+        let oracle_rays = (0..width * height).into_par_iter().map(oracle).collect();
+        Judge { world, oracle_rays, tolerance_m: tolerance_cells * world.cell_m() }
     }
 
     pub fn tally(&self, drawing: &Drawing) -> Tally {
-        assert_eq!(self.looks.len(), drawing.hits.len());
-        let pixels = self.looks.par_iter().zip(&drawing.hits).zip(&drawing.normals).enumerate();
-        let one = |(pixel, ((look, hit), normal)): (usize, ((&Look, &Hit), &[f32; 4]))| {
+        assert_eq!(self.oracle_rays.len(), drawing.hits.len());
+        let pixels = self.oracle_rays.par_iter().zip(&drawing.hits).zip(&drawing.normals).enumerate();
+        let one = |(pixel, ((oracle, hit), normal)): (usize, ((&OracleRay, &Hit), &[f32; 4]))| {
             let mut tally = Tally { rays: 1, ..Tally::default() };
             tally.seen[kind(hit.surface)] = 1;
-            let expected = look.expected.map(|e| (e.part, e.map, e.t / look.stretch));
+            let expected = oracle.expected.map(|e| (e.part, e.map, e.t / oracle.stretch));
             let say = |what: &str| format!("pixel {pixel}: {what}; {hit:?} where the oracle has {expected:?}");
-            match self.verdict(look, hit, *normal) {
+            match self.verdict(oracle, hit, *normal) {
                 Ok((true, residual_m)) => tally.residual_cells = residual_m / self.world.cell_m(),
                 Ok((false, _)) => {
                     tally.elsewhere = 1;
@@ -97,18 +97,18 @@ impl<'a> Judge<'a> {
         pixels.map(one).reduce(Tally::default, sum)
     }
 
-    /// Whether the hit is the oracle's, and how far it is from the surface that it names; the reason why it is no hit.
-    fn verdict(&self, look: &Look, hit: &Hit, normal: [f32; 4]) -> Result<(bool, f64), String> {
+    /// True of the oracle's own hit, with the distance from the surface that it names; the reason why it is no hit.
+    fn verdict(&self, oracle: &OracleRay, hit: &Hit, normal: [f32; 4]) -> Result<(bool, f64), String> {
         let terrain = &self.world.terrain;
         if hit.surface == Surface::Sky {
             if hit.depth_m != NO_DEPTH {
                 return Err("a sky with a depth".to_owned());
             }
-            self.assert_free(look, f64::INFINITY)?;
-            return Ok((look.expected.is_none(), 0.0));
+            self.assert_free(oracle, f64::INFINITY)?;
+            return Ok((oracle.expected.is_none(), 0.0));
         }
-        let t = f64::from(hit.depth_m) * look.stretch;
-        let point = look.ray.at(t);
+        let t = f64::from(hit.depth_m) * oracle.stretch;
+        let point = oracle.ray.at(t);
         let map = terrain.maps.get(hit.map as usize).ok_or("no such map")?;
         // At the seam of a whole turn the device's own side counts.
         let repeated = if map.closes { 2.0 } else { 0.0 };
@@ -133,16 +133,16 @@ impl<'a> Judge<'a> {
         if residual_m > self.tolerance_m || around.h < -self.tolerance_m && !is_start {
             return Err(format!("{:.2e} of a cell off the surface", residual_m / self.world.cell_m()));
         }
-        self.assert_free(look, t)?;
-        let is_same = look.expected.is_some_and(|expected| self.is_same(look, &expected, hit, t));
+        self.assert_free(oracle, t)?;
+        let is_same = oracle.expected.is_some_and(|expected| self.is_same(oracle, &expected, hit, t));
         if is_same && !is_seam && hit.surface != Surface::Inside && !is_start {
-            self.assert_normal(look, hit, map, &around, normal)?;
+            self.assert_normal(oracle, hit, map, &around, normal)?;
         }
         Ok((is_same, residual_m))
     }
 
-    /// Whether a hit that stands the test is on the oracle's part, and no farther along the ray than the angle explains.
-    fn is_same(&self, look: &Look, expected: &Expected, hit: &Hit, t: f64) -> bool {
+    /// True where a hit that stands the test is on the oracle's surface, and no farther along the ray than the angle explains.
+    fn is_same(&self, oracle: &OracleRay, expected: &Expected, hit: &Hit, t: f64) -> bool {
         let is_start = hit.depth_m == 0.0;
         let is_part = match expected.part {
             Part::Inside => is_start,
@@ -150,30 +150,30 @@ impl<'a> Judge<'a> {
             Part::Wall => kind(hit.surface) == 3 && expected.map == Some(hit.map as usize),
             Part::Base => hit.surface == Surface::Base,
         };
-        let cosine = expected.normal.dot(look.ray.direction).abs().max(1e-2);
+        let cosine = expected.normal.dot(oracle.ray.direction).abs().max(1e-2);
         is_part && (t - expected.t).abs() <= 2.0 * self.tolerance_m / cosine
     }
 
     /// The ray is nowhere before `end` deeper in the solid than the tolerance.
-    fn assert_free(&self, look: &Look, end: f64) -> Result<(), String> {
+    fn assert_free(&self, oracle: &OracleRay, end: f64) -> Result<(), String> {
         let terrain = &self.world.terrain;
-        let mut next = look.expected.map(|hit| hit.t);
+        let mut next = oracle.expected.map(|hit| hit.t);
         while let Some(mut t) = next.filter(|t| *t < end) {
             loop {
-                let depth_m = self.depth_m(look.ray.at(t));
+                let depth_m = self.depth_m(oracle.ray.at(t));
                 if depth_m > self.tolerance_m {
                     let cells = depth_m / self.world.cell_m();
-                    return Err(format!("{cells:.2e} of a cell deep in the solid {t} m on its way"));
+                    return Err(format!("{cells:.2e} of a cell deep in the solid {t} m along it"));
                 }
                 t += 0.5 * self.tolerance_m;
                 if t >= end {
                     return Ok(());
                 }
-                if !terrain.is_solid(look.ray.at(t)) {
+                if !terrain.is_solid(oracle.ray.at(t)) {
                     break;
                 }
             }
-            next = terrain.first_hit(&look.ray, [t, end]).map(|hit| hit.t);
+            next = terrain.first_hit(&oracle.ray, [t, end]).map(|hit| hit.t);
         }
         Ok(())
     }
@@ -191,7 +191,7 @@ impl<'a> Judge<'a> {
     /// height of the surface above the base.
     fn assert_normal(
         &self,
-        look: &Look,
+        oracle: &OracleRay,
         hit: &Hit,
         map: &Grid,
         around: &Around,
@@ -205,7 +205,7 @@ impl<'a> Judge<'a> {
         if !is_wall && (f64::from(height_m) - around.h).abs() > self.tolerance_m * steepness {
             return Err(format!("its height is {height_m} m and not {} m", around.h));
         }
-        let expected: Vec<DVec3> = match (hit.surface, look.expected) {
+        let expected: Vec<DVec3> = match (hit.surface, oracle.expected) {
             (Surface::Terrain, _) => around.places.iter().map(|&uv| terrain.surface_normal(map, uv)).collect(),
             (_, Some(expected)) => vec![expected.normal],
             _ => vec![],
@@ -230,7 +230,7 @@ fn kind(surface: Surface) -> usize {
     }
 }
 
-/// How a point lies to a map.
+/// The place of a point beside a map.
 struct Around {
     /// Above the base, metres.
     h: f64,

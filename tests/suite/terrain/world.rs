@@ -9,7 +9,7 @@ use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, HeightMap, Samples};
 use glam::{DQuat, DVec2, DVec3, Vec2Swizzles, Vec3};
 
-/// What both are given.
+/// The input of both.
 pub struct World {
     pub name: String,
     pub base: Base,
@@ -69,9 +69,9 @@ impl World {
         self.turned(point + DVec3::Y * radius_m(self.base))
     }
 
-    /// The world's point at a share of the first map's sides, at a height above the base.
-    pub fn point(&self, share: DVec2, h: f64) -> DVec3 {
-        let p = self.terrain.base.point(Place { uv: self.uv(share), h });
+    /// The world's point at a fraction of the first map's sides, at a height above the base.
+    pub fn point(&self, fraction: DVec2, h: f64) -> DVec3 {
+        let p = self.terrain.base.point(Place { uv: self.uv(fraction), h });
         let back = match self.base {
             Base::Plane => DQuat::from_rotation_y(self.turn_rad) * p,
             Base::Cylinder { .. } => DVec3::new(-p.z, p.x, p.y),
@@ -80,14 +80,14 @@ impl World {
         back - DVec3::Y * radius_m(self.base)
     }
 
-    fn uv(&self, share: DVec2) -> [f64; 2] {
+    fn uv(&self, fraction: DVec2) -> [f64; 2] {
         let map = &self.terrain.maps[0];
-        [0, 1].map(|axis| map.origin[axis] + share[axis] * (map.end()[axis] - map.origin[axis]))
+        [0, 1].map(|axis| map.origin[axis] + fraction[axis] * (map.end()[axis] - map.origin[axis]))
     }
 
-    /// The first map's height above the base at a share of its sides.
-    pub fn height_m(&self, share: DVec2) -> f64 {
-        self.terrain.height_above_base(&self.terrain.maps[0], self.uv(share)).max(0.0)
+    /// The first map's height above the base at a fraction of its sides.
+    pub fn height_m(&self, fraction: DVec2) -> f64 {
+        self.terrain.height_above_base(&self.terrain.maps[0], self.uv(fraction)).max(0.0)
     }
 
     /// The side of the smallest cell, metres.
@@ -109,17 +109,17 @@ impl World {
 
     /// A camera of a kind, placed by chance.
     pub fn camera(&self, stand: Stand, random: &mut Random) -> Camera {
-        let share =
+        let fraction =
             |random: &mut Random, low, high| DVec2::new(random.range(low, high).into(), random.range(low, high).into());
-        let inside = share(random, 0.1, 0.9);
-        let aim = share(random, 0.2, 0.8);
+        let inside = fraction(random, 0.1, 0.9);
+        let aim = fraction(random, 0.2, 0.8);
         let (cell_m, side_m) = (self.cell_m(), self.side_m());
         let top_m = self.top_m();
         let aimed = self.point(aim, self.height_m(aim));
         let part = f64::from(random.range(0.2, 0.8));
         let mut fov_rad = random.range(0.6, 1.4);
         let (eye, target) = match stand {
-            Stand::Above => (self.point(share(random, -0.2, 1.2), top_m + part * side_m), aimed),
+            Stand::Above => (self.point(fraction(random, -0.2, 1.2), top_m + part * side_m), aimed),
             Stand::Beside => {
                 let outside = DVec2::new(-0.1 - 0.3 * part, f64::from(random.range(0.0, 1.0)));
                 let outside = if random.unit() < 0.5 { outside } else { DVec2::ONE - outside.yx() };
@@ -158,7 +158,7 @@ impl World {
     }
 }
 
-/// Where a camera stands.
+/// The place of a camera.
 #[derive(Debug, Clone, Copy)]
 pub enum Stand {
     Above,
@@ -237,7 +237,7 @@ fn grid(base: Base, input: &MapInput) -> Grid {
     }
 }
 
-/// How the heights of a map lie.
+/// The kind of a map's heights.
 #[derive(Debug, Clone, Copy)]
 pub enum Relief {
     /// Every sample by chance.
@@ -255,7 +255,7 @@ pub fn random_map(random: &mut Random, relief: Relief, (width, height): (u32, u3
     let amplitude_m = amplitude_cells * spacing_m as f32;
     let waves: Vec<[f32; 3]> =
         (0..5).map(|_| [random.range(0.05, 0.9), random.range(-0.9, 0.9), random.range(0.0, 6.3)]).collect();
-    let mut share = |column: u32, row: u32| {
+    let mut fraction = |column: u32, row: u32| {
         let wave = |[u, v, phase]: &[f32; 3]| (u * column as f32 + v * row as f32 + phase).sin();
         let smooth = 0.5 + 0.1 * waves.iter().map(wave).sum::<f32>();
         match relief {
@@ -265,7 +265,7 @@ pub fn random_map(random: &mut Random, relief: Relief, (width, height): (u32, u3
         }
     };
     let shares: Vec<f32> =
-        (0..height).flat_map(|row| (0..width).map(move |column| (column, row))).map(|(c, r)| share(c, r)).collect();
+        (0..height).flat_map(|row| (0..width).map(move |column| (column, row))).map(|(c, r)| fraction(c, r)).collect();
     let origin_m = random.range(-2000.0, 4000.0).round();
     let samples = if random.unit() < 0.5 {
         let values = shares.iter().map(|s| (s * 60_000.0) as u16 + 2000).collect();

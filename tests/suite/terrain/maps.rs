@@ -10,7 +10,7 @@ use glam::DVec2;
 /// Metres of the volcano from side to side.
 const EXTENT_M: f64 = 12_000.0;
 
-/// A cone with a crater, gullies and some roughness, the same land at every number of samples a side.
+/// A cone with a crater, gullies and some roughness, the same terrain at every number of samples a side.
 pub fn volcano(side: u32) -> HeightMap {
     let height = |column: u32, row: u32| {
         let at = |i: u32| (i as f32 / (side - 1) as f32 - 0.5) * 2.0;
