@@ -1,5 +1,7 @@
 //! `devices`: what is there, and what each paper finds on it.
 
+use std::convert::Infallible;
+
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -7,11 +9,8 @@ use super::failure::Failure;
 use super::outcome;
 use crate::gpu::physical::BASELINE;
 use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
-use crate::measure::study::Study;
-use crate::papers::{
-    burning::setup as burning, caustics::setup as caustics, gas::setup as gas, lava::setup as lava,
-    terrain::setup as terrain,
-};
+use crate::measure::study::{Declared, Visitor};
+use crate::papers;
 
 #[derive(Debug, Clone, Args)]
 pub struct DevicesArgs {
@@ -21,13 +20,22 @@ pub struct DevicesArgs {
 }
 
 /// Features that each paper needs beyond the baseline.
-const PAPERS: [(&str, &[Feature]); 5] = [
-    (lava::Setup::PAPER, lava::Setup::NEEDS),
-    (gas::Setup::PAPER, gas::Setup::NEEDS),
-    (caustics::Setup::PAPER, caustics::Setup::NEEDS),
-    (burning::Setup::PAPER, burning::Setup::NEEDS),
-    (terrain::Setup::PAPER, terrain::Setup::NEEDS),
-];
+struct Needs(Vec<(&'static str, &'static [Feature])>);
+
+impl Visitor for Needs {
+    type Error = Infallible;
+
+    fn visit<S: Declared>(&mut self) -> Result<(), Infallible> {
+        self.0.push((S::PAPER, S::NEEDS));
+        Ok(())
+    }
+}
+
+fn needs_of_papers() -> Vec<(&'static str, &'static [Feature])> {
+    let mut needs = Needs(Vec::new());
+    let Ok(()) = papers::each(&mut needs);
+    needs.0
+}
 
 pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
     let instance = Instance::new(false)?;
@@ -46,7 +54,7 @@ pub fn run(arguments: &DevicesArgs) -> Result<(), Failure> {
 fn json_of(device: &PhysicalDevice) -> Value {
     let features: serde_json::Map<String, Value> =
         Feature::ALL.iter().map(|&f| (f.as_str().to_owned(), json!(device.has(f)))).collect();
-    let papers: serde_json::Map<String, Value> = PAPERS
+    let papers: serde_json::Map<String, Value> = needs_of_papers()
         .iter()
         .map(|(name, needs)| {
             let lacks = device.lacks(needs);
@@ -89,7 +97,7 @@ fn text_of(device: &PhysicalDevice) -> String {
     if !lacks.is_empty() {
         lines.push(format!("  lacks    {}", lacks.join(", ")));
     }
-    for (name, needs) in PAPERS {
+    for (name, needs) in needs_of_papers() {
         let missing = device.lacks(needs);
         let verdict = if missing.is_empty() {
             style.green("capable")

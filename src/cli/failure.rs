@@ -85,10 +85,8 @@ impl From<Error> for Failure {
         match error {
             Error::Gpu(error) => error.into(),
             Error::Image(error) => error.into(),
-            Error::Parameter(error) if !error.name.starts_with("--") => Failure::Input(format!("--{error}")),
-            Error::Scene(_) | Error::Parameter(_) | Error::Output(_) | Error::Input(_) => {
-                Failure::Input(error.to_string())
-            }
+            Error::Parameter(error) => Failure::Input(format!("--{error}")),
+            Error::Scene(_) | Error::Output(_) | Error::Input(_) => Failure::Input(error.to_string()),
             Error::Plot(_) | Error::Interrupted => Failure::Running(error.to_string()),
         }
     }

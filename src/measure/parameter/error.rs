@@ -8,7 +8,7 @@ use crate::scene::Camera;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{name} {value}: {range}")]
 pub struct ParameterError {
-    /// Its name, without the spelling of an option. (Papers that are not declared yet give the option itself.)
+    /// Its name, without the spelling of an option.
     pub name: &'static str,
     /// As it was typed.
     pub value: String,
