@@ -47,8 +47,11 @@ enum Command {
 /// The command with every paper below it, and what runs each.
 struct Papers {
     command: clap::Command,
-    run: Vec<(&'static str, fn(&ArgMatches) -> Result<(), Failure>)>,
+    run: Vec<(&'static str, Run)>,
 }
+
+/// Runs a paper's verb.
+type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 impl Visitor for Papers {
     type Error = Infallible;

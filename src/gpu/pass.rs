@@ -48,7 +48,7 @@ pub(crate) enum Body {
         clears: Vec<vk::ClearValue>,
         vertices: Option<BufferView>,
         indices: Option<BufferView>,
-        indirect: Option<ClampDraw>,
+        indirect: Option<Box<ClampDraw>>,
         bounds: DrawBounds,
     },
     Compute {

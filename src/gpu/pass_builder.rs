@@ -302,7 +302,7 @@ pub(super) fn finish(
                 clears: desc.targets.clear_values(),
                 vertices: desc.vertices.clone(),
                 indices: desc.indices.clone(),
-                indirect,
+                indirect: indirect.map(Box::new),
                 bounds,
             }
         }

@@ -62,7 +62,7 @@ impl VertexLayout {
         for input in inputs {
             let format = vertex_format(input.format);
             let bytes = (4 * input.format.components) as usize;
-            let fits = |offset: usize| offset % 4 == 0 && offset + bytes <= size_of::<T>() && input.count == 1;
+            let fits = |offset: usize| offset.is_multiple_of(4) && offset + bytes <= size_of::<T>() && input.count == 1;
             let field = T::fields().iter().find(|(name, at, size)| *name == input.name && *size == bytes && fits(*at));
             let Some(&(_, offset, _)) = field else {
                 return Err(Error::Pass {

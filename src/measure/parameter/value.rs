@@ -32,7 +32,7 @@ pub struct Shape {
 impl Shape {
     /// A single value without any of the rest.
     pub const fn single(placeholder: &'static str) -> Self {
-        let plain = Shape {
+        Shape {
             placeholder,
             is_flag: false,
             is_list: false,
@@ -40,8 +40,7 @@ impl Shape {
             is_several: false,
             is_signed: false,
             choices: &[],
-        };
-        plain
+        }
     }
 }
 

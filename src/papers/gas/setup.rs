@@ -122,7 +122,9 @@ impl Setup {
 
 impl Default for Setup {
     fn default() -> Self {
-        Setup { preset: None, ..Setup::of(Preset::Fig8) }
+        let mut setup = Setup::of(Preset::Fig8);
+        setup.preset = None;
+        setup
     }
 }
 
