@@ -1,4 +1,4 @@
-//! What the papers' tests of layouts share: host structs against the blocks of buffers that hold them. Push constants and
+//! Checks that the papers' tests of layouts share: host structs against the blocks of buffers that hold them. Push constants and
 //! vertices are checked whenever their pass is built; buffers are made of bytes, so tests check them.
 
 use crate::shader_build::{Block, EMBEDDED, HostBlock, Interface};

@@ -13,7 +13,7 @@ macro_rules! papers {
         /// Shows every paper to `visitor`, in the order of the list.
         ///
         /// # Errors
-        /// What ends the visits.
+        /// The error that ends the visits.
         pub fn each<V: Visitor>(visitor: &mut V) -> Result<(), V::Error> {
             $(visitor.visit::<$paper::setup::Setup>()?;)+
             Ok(())

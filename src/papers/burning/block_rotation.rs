@@ -8,7 +8,7 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 /// Makes the pass.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Those of the Vulkan layer.
 pub fn block_rotation(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<1>, Error> {
     let rotate = Pass::compute("block-rotation", "3.5.2", "burning/block-rotation.comp")
         .with("constants", &buffers.constants)

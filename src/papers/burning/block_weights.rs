@@ -8,7 +8,7 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 /// Makes the pass.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Those of the Vulkan layer.
 pub fn block_weights(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<2>, Error> {
     let step = |shader: &str| {
         Pass::compute("block-weights", "3.5.1", shader)

@@ -199,7 +199,7 @@ impl Buffers {
     /// Uploads the model and makes the state before the first tick.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -293,7 +293,7 @@ impl Buffers {
     /// Lets a restart bring back the contents of `buffer`, which a tick needs from the last one, at the start.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn keep(&mut self, shaders: &ShaderLibrary, buffer: &Arc<Buffer>) -> Result<(), Error> {
         let desc = BufferDesc::new(format!("{} at the start", buffer.name()), buffer.size_bytes());
         let start = Buffer::new(shaders.device(), desc)?;
@@ -305,7 +305,7 @@ impl Buffers {
     /// Makes the contents of the buffers the start.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn save(&self, device: &Arc<Device>) -> Result<(), Error> {
         let pairs: Vec<_> = self.start.iter().map(|(now, start)| (now, start)).collect();
         copy_buffers(device, &pairs)
@@ -314,7 +314,7 @@ impl Buffers {
     /// Back to the start.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn restore(&self, device: &Arc<Device>) -> Result<(), Error> {
         let pairs: Vec<_> = self.start.iter().map(|(now, start)| (start, now)).collect();
         copy_buffers(device, &pairs)

@@ -114,7 +114,7 @@ impl Draw {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.indices_indirect();

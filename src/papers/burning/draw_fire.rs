@@ -13,7 +13,7 @@ pub struct DrawFire {
 
 impl DrawFire {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, buffers: &Buffers, draw: &Draw, flames: &Flames) -> Result<Self, Error> {
         let pass = Pass::graphics("draw-fire", "3.6", "burning/draw-fire.vert", "burning/draw-fire.frag")
             .with("constants", &buffers.constants)
@@ -28,7 +28,7 @@ impl DrawFire {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.instances(4, self.particle_count);

@@ -14,7 +14,7 @@ pub struct DrawWire {
 
 impl DrawWire {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, buffers: &Buffers, draw: &Draw, model: &Model) -> Result<Self, Error> {
         let pass = Pass::graphics("draw-wire", "4.4.1", "burning/wire.vert", "burning/wire.frag")
             .with("view", &draw.view)
@@ -30,7 +30,7 @@ impl DrawWire {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.vertices(self.vertices);

@@ -73,7 +73,7 @@ impl Flames {
     /// `None` where there is neither fire nor smoke. A restart puts all flames out.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -135,7 +135,7 @@ impl Flames {
     /// Advances the particles by the tick that writes the state of index `tick`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
         self.steps.record(frame, tick)
     }

@@ -8,7 +8,7 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 /// Makes the pass.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Those of the Vulkan layer.
 pub fn heat_boundary(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<3>, Error> {
     let step = |shader: &str| {
         Pass::compute("heat-boundary", "3.3", shader)

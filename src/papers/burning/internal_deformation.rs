@@ -28,7 +28,7 @@ pub struct InternalDeformation {
 
 impl InternalDeformation {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         variant: Variant,
@@ -86,7 +86,7 @@ impl InternalDeformation {
     /// Records slice `slice` of the tick that writes the state of index `tick`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: usize, slice: u32) -> Result<(), Error> {
         if let Some(base_points) = &self.base_points
             && slice == 0

@@ -16,14 +16,14 @@ impl Loading {
     /// Keeps on the host the contents of the buffers that never change.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(device: &Arc<Device>, buffers: &Buffers) -> Result<Self, Error> {
         let copies = buffers.unchanging().into_iter().map(|buffer| copy(device, buffer)).collect::<Result<_, _>>()?;
         Ok(Loading { copies })
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.copies.iter().try_for_each(|copy| frame.copy(copy))
     }

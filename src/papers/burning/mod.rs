@@ -103,7 +103,7 @@ impl Burning {
     /// Makes every resource and pass and burns up to the first frame; `label` goes before the names of the resources.
     ///
     /// # Errors
-    /// What the Vulkan layer answers. The caller has validated `parameters` and `mesh`.
+    /// Those of the Vulkan layer. The caller has validated `parameters` and `mesh`.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -184,7 +184,7 @@ impl Burning {
     /// Records one tick of the simulation passes alone.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn tick(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let end = (self.ticks() + 1) * u64::from(self.parameters.time_division);
         self.simulate(frame, end, None)
@@ -260,7 +260,7 @@ impl Burning {
     /// The counts of the device up to the last frame.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn counts(&self) -> Result<Counts, Error> {
         let bytes = read_buffer(&self.device, &self.buffers.clock)?;
         Ok(bytemuck::pod_read_unaligned(&bytes[..size_of::<Counts>()]))
@@ -280,7 +280,7 @@ impl Paper for Burning {
     /// compacts and shades after the last; one without draws the last one's again.
     ///
     /// # Errors
-    /// What the Vulkan layer answers; [`Error::Pass`] for a frame before the last without a restart between them.
+    /// Those of the Vulkan layer; [`Error::Pass`] for a frame before the last without a restart between them.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         if number < self.next_frame {
             let problem =

@@ -12,7 +12,7 @@ pub struct Normals {
 
 impl Normals {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<Self, Error> {
         let pass = Pass::compute("normals", "B", "burning/normals.comp")
             .with("constants", &buffers.constants)
@@ -32,7 +32,7 @@ impl Normals {
     }
 
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.compute(&self.pass, |dispatch| {
             dispatch.threads(self.draw_vertices, 1, 1);

@@ -21,7 +21,7 @@ pub fn old<'a>(name: &'static str, [even, odd]: &'a [Arc<Buffer>; 2]) -> Swapped
 /// One pass for each ping-pong index, with one pipeline.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Those of the Vulkan layer.
 pub fn build(shaders: &ShaderLibrary, pass: PassBuilder, swapped: &[Swapped<'_>]) -> Result<[Pass; 2], Error> {
     let even = swapped.iter().fold(pass, |pass, &(name, [buffer, _])| pass.with(name, buffer)).build(shaders)?;
     if swapped.is_empty() {
@@ -47,7 +47,7 @@ impl<const STEPS: usize> PingPong<STEPS> {
     /// Records the steps of the tick that writes the buffers of index `tick`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
         self.passes[tick].iter().zip(self.threads).try_for_each(|(pass, threads)| {
             frame.compute(pass, |dispatch| {

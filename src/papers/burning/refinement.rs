@@ -87,7 +87,7 @@ impl Refinement {
     /// Splits what the areas of this tick ask for.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         let mut dispatch_level = |level: u32, threads: u32| {
             let constants = Dispatch { level, points: self.points };

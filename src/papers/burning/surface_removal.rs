@@ -48,7 +48,7 @@ pub struct SurfaceRemoval {
 
 impl SurfaceRemoval {
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
@@ -109,7 +109,7 @@ impl SurfaceRemoval {
     /// Marks what the tick that writes the state of index `tick` has consumed.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn mark(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
         if !self.removes {
             return Ok(());
@@ -123,7 +123,7 @@ impl SurfaceRemoval {
     /// Makes the stream and its draw's parameters after the tick that wrote the state of index `tick`.
     ///
     /// # Errors
-    /// What the Vulkan layer answers.
+    /// Those of the Vulkan layer.
     pub fn compact(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
         let [_, count, scan, write] = &self.steps[tick];
         let over_all = |frame: &mut Frame<'_>, step: &Pass| {

@@ -8,7 +8,7 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 /// Makes the pass.
 ///
 /// # Errors
-/// What the Vulkan layer answers.
+/// Those of the Vulkan layer.
 pub fn vertex_mapping(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<1>, Error> {
     let map = Pass::compute("vertex-mapping", "3.5.3", "burning/vertex-mapping.comp")
         .with("constants", &buffers.constants)

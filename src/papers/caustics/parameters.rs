@@ -1,4 +1,4 @@
-//! What a user can set, under the thesis's own words.
+//! Numbers that a user can set, under the thesis's own words.
 
 use std::f32::consts::PI;
 
@@ -324,7 +324,7 @@ impl Parameters {
         }
     }
 
-    /// Whether the camera looks through the water's surface.
+    /// True when the camera looks through the water's surface.
     pub fn is_seen_from_above(&self) -> bool {
         self.camera.eye.y > self.crest_m()
     }

@@ -51,7 +51,7 @@ pub struct Setup {
     pub view: View,
 }
 
-/// Where the camera stands.
+/// Place of the camera.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum View {
     /// Above the water, through its surface.
@@ -358,7 +358,7 @@ pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Opti
 }
 
 impl Setup {
-    /// What to say when the light that reaches the receivers passes water beyond the border of a height map.
+    /// The warning when the light that reaches the receivers passes water beyond the border of a height map.
     fn small_map(&self, paper: &Caustics) -> Option<String> {
         let map = self.parameters.water_map.as_ref()?;
         let (map_m, mesh_m) = (map.extent_m(), paper.grid().extent_m());

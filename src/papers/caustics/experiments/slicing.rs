@@ -1,4 +1,4 @@
-//! What smart slicing does, without times: the planes it needs (table 5-4), what it changes in the picture (table 5-5,
+//! Smart slicing without times: the planes it needs (table 5-4), what it changes in the picture (table 5-5,
 //! figure 5-13), the depth profiles (figure 5-12), and the memory of the methods (section 5.1).
 
 use serde_json::json;
@@ -216,7 +216,7 @@ pub fn memory(
     })
 }
 
-/// Whether a method keeps the resource for its own light: its maps and their depth, the stencil method's images of what is
+/// True for a resource that a method keeps for its own light: its maps and their depth, the stencil method's images of what is
 /// seen. The cast's target, the water and the receivers are all methods' alike.
 fn is_map(resource: &str) -> bool {
     let is_depth = resource.ends_with("-depth") && resource != "underwater-depth";

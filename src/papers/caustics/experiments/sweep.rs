@@ -16,7 +16,7 @@ use crate::report::record::{ExperimentRow, Run};
 use crate::report::table::{Align, Style, Table, interval, number};
 use crate::scene::MeshSource;
 
-/// What a sweep compares.
+/// The methods that a sweep compares.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
     pub title: &'static str,
