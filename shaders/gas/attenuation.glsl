@@ -28,7 +28,7 @@ void main() {
     bool is_shown_through = false; // by the fragment before, which it intersects
     uint f = fragment_at(heads[list_of(pixel)]);
     while (f != NONE) {
-        Link link = links[f];
+        Link link = link_at(f);
         link.next = fragment_at(link.next);
         Surface surface = surfaces[f];
         if ((link.mask & ~covered) != 0u || is_shown_through) {
@@ -44,7 +44,7 @@ void main() {
             }
             is_shown_through = false;
             if (link.next != NONE) {
-                Link next = links[link.next];
+                Link next = link_at(link.next);
                 is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u
                     && fraction_behind(link, next) > 0.0;
             }

@@ -5,12 +5,18 @@ layout(set = 0, binding = 7, std430) readonly buffer Heads {
 };
 
 layout(set = 0, binding = 8, std430) readonly buffer Links {
-    Link links[];
+    uvec4 links[]; // each a Link
 };
 
 layout(set = 0, binding = 13, std430) readonly buffer Sections {
     Section sections[];
 };
+
+// Read as one vector: a load for each member made `resolve` a fifth slower on lavapipe.
+Link link_at(uint fragment) {
+    uvec4 link = links[fragment];
+    return Link(link.x, link.y, uintBitsToFloat(link.z), uintBitsToFloat(link.w));
+}
 
 // The node itself, or the fragment after the sections that begin with it.
 uint fragment_at(uint node) {

@@ -23,11 +23,11 @@ layout(set = 0, binding = 6, std430) readonly buffer Objects {
 #include "gas/nodes.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
-    Surface surfaces[];
+    uvec4 surfaces[]; // each a Surface
 };
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
-    Color colors[];
+    uvec2 colors[]; // each a Color
 };
 
 layout(set = 0, binding = 14, std430) readonly buffer Attenuations {
@@ -38,11 +38,26 @@ layout(set = 0, binding = 17, rgba32f) uniform writeonly image2D radiance;
 
 const uint FULL = 0xffffffffu;
 
+// Read as vectors, as links are.
+Surface surface_at(uint fragment) {
+    uvec4 surface = surfaces[fragment];
+    return Surface(surface.x, surface.y, surface.z, uintBitsToFloat(surface.w));
+}
+
+Color color_at(uint fragment) {
+    uvec2 color = colors[fragment];
+    return Color(color.x, color.y);
+}
+
+uint object_of(uint fragment) {
+    return surfaces[fragment].y;
+}
+
 // Light that a fragment sends to the eye, per opacity. The highlight is Phong's.
 vec3 shaded(uint f, vec3 ray) {
-    Surface surface = surfaces[f];
-    vec3 albedo = color_of(colors[f]);
-    vec3 point = frame.eye + ray * mean_depth(links[f]);
+    Surface surface = surface_at(f);
+    vec3 albedo = color_of(color_at(f));
+    vec3 point = frame.eye + ray * mean_depth(link_at(f));
     vec3 direction = normalize(ray);
     vec3 normal = unpack_normal(surface.normal);
     normal = dot(normal, ray) > 0.0 ? -normal : normal;
@@ -93,7 +108,7 @@ void main() {
                 transmittance *= gas.transparency;
                 node = gas.next;
             } else {
-                link = links[node];
+                link = link_at(node);
                 if ((link.mask & bit) != 0u) {
                     break;
                 }
@@ -107,15 +122,15 @@ void main() {
             float fraction = 0.0;
             uint behind = fragment_at(link.next);
             if (behind != NONE) {
-                Link next = links[behind];
-                float shown = fraction_behind(link, next) * opacity_of(colors[behind]);
-                if (shown > 0.0 && surfaces[behind].object != surfaces[node].object) {
+                Link next = link_at(behind);
+                float shown = fraction_behind(link, next) * opacity_of(color_at(behind));
+                if (shown > 0.0 && object_of(behind) != object_of(node)) {
                     bool is_there = (next.mask & bit) != 0u;
                     fraction = is_there ? shown : 0.0;
                     group &= is_there ? next.mask : ~next.mask;
                 }
             }
-            float taken = transmittance * opacity_of(colors[node]);
+            float taken = transmittance * opacity_of(color_at(node));
             uint count = fraction > 0.0 ? 2u : 1u;
             for (uint i = 0u;; i++) {
                 float weight = i == 0u ? 1.0 - fraction : fraction;
@@ -124,7 +139,7 @@ void main() {
                     break;
                 }
             }
-            transmittance *= 1.0 - opacity_of(colors[node]);
+            transmittance *= 1.0 - opacity_of(color_at(node));
             node = link.next;
         }
         if (node == NONE || transmittance <= 0.0) {
