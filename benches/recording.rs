@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use fumarole::gpu::Mode;
 use fumarole::measure::bench::{build, load};
 use fumarole::measure::machine::{Machine, MachineOptions};
-use fumarole::measure::study::{Declared, Visitor};
+use fumarole::measure::study::{Study, Visitor};
 use fumarole::measure::{Error, Paper, Variant};
 use fumarole::papers;
 
@@ -30,7 +30,7 @@ struct Recording<'a>(&'a mut Criterion);
 impl Visitor for Recording<'_> {
     type Error = Error;
 
-    fn visit<S: Declared>(&mut self) -> Result<(), Error> {
+    fn visit<S: Study>(&mut self) -> Result<(), Error> {
         let mut setup = S::default();
         for parameter in S::parameters() {
             for (_, value) in small(S::PAPER).iter().filter(|(name, _)| *name == parameter.name) {

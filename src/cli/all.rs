@@ -14,7 +14,7 @@ use crate::measure::bench::{Bench, load};
 use crate::measure::limits;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Schedule;
-use crate::measure::study::{Declared, Study, Visitor};
+use crate::measure::study::{Study, Visitor};
 use crate::papers;
 use crate::report::Record;
 use crate::report::record::{Limits, Run};
@@ -79,7 +79,7 @@ struct All<'a> {
 impl Visitor for All<'_> {
     type Error = Failure;
 
-    fn visit<S: Declared>(&mut self) -> Result<(), Failure> {
+    fn visit<S: Study>(&mut self) -> Result<(), Failure> {
         measure_quick(&S::quick(), S::BENCHED, self.machine, self.output, self.measured)
     }
 }

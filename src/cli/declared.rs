@@ -14,7 +14,7 @@ use super::render::PictureArgs;
 use super::{bench, passes, render, spelling};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
-use crate::measure::study::{Declared, Preset};
+use crate::measure::study::{Preset, Study};
 use crate::measure::{Error, Variant};
 
 /// Options of all papers that the short help lists.
@@ -22,7 +22,7 @@ const EVERYDAY: [&str; 12] =
     ["variant", "preset", "name", "list", "counts", "frame", "dump", "device", "frames", "json", "image", "quiet"];
 
 /// The command of a paper with all its verbs.
-pub fn command<S: Declared>() -> Command {
+pub fn command<S: Study>() -> Command {
     Command::new(S::PAPER)
         .about(S::ABOUT)
         .subcommand_required(true)
@@ -34,14 +34,14 @@ pub fn command<S: Declared>() -> Command {
         .subcommands(S::verbs().iter().map(own_command))
 }
 
-fn passes_command<S: Declared>() -> Command {
+fn passes_command<S: Study>() -> Command {
     let command = Command::new("passes")
         .arg(variant_list::<S>("Variants to list, comma-separated, or all", "that of a preset made for one, or all"))
         .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"));
     finish(MachineArgs::augment_args(with_scene::<S>(command)), "List the passes in the paper's order")
 }
 
-fn bench_command<S: Declared>() -> Command {
+fn bench_command<S: Study>() -> Command {
     let benched = S::BENCHED.iter().map(|v| v.as_str()).collect::<Vec<_>>().join(",");
     let default = format!("that of a preset made for one, or {benched}");
     let variants = variant_list::<S>("Variants to measure, comma-separated, or all", &default);
@@ -49,7 +49,7 @@ fn bench_command<S: Declared>() -> Command {
     finish(CommonArgs::augment_args(command), "Time one configuration in one or more variants, interleaved")
 }
 
-fn experiment_command<S: Declared>() -> Command {
+fn experiment_command<S: Study>() -> Command {
     let names = S::experiments().into_iter().map(|e| PossibleValue::new(e.name).help(e.help));
     let name = Arg::new("name").value_name("NAME").help("Table or figure of the paper").required_unless_present("list");
     let heeded: Vec<&str> = S::experiments().iter().flat_map(|e| e.options).copied().collect();
@@ -62,7 +62,7 @@ fn experiment_command<S: Declared>() -> Command {
     finish(command, "Reproduce one table or figure, ours beside the paper's")
 }
 
-fn render_command<S: Declared>() -> Command {
+fn render_command<S: Study>() -> Command {
     let rendered = S::RENDERED.as_str();
     let variant = Arg::new("variant")
         .long("variant")
@@ -74,7 +74,7 @@ fn render_command<S: Declared>() -> Command {
 }
 
 /// A verb that no other paper has, with the parameters and options that it heeds.
-fn own_command<S: Declared>(verb: &Experiment<S>) -> Command {
+fn own_command<S: Study>(verb: &Experiment<S>) -> Command {
     let heeded = |p: &Parameter<S>| !verb.refuses.iter().any(|(name, _)| *name == p.name);
     let scene: Vec<_> = S::parameters().into_iter().filter(heeded).collect();
     let own: Vec<_> = S::options().into_iter().filter(|o| verb.options.contains(&o.name)).collect();
@@ -112,13 +112,13 @@ fn finish(command: Command, about: &'static str) -> Command {
 }
 
 /// The command with the paper's parameters and presets as options.
-fn with_scene<S: Declared>(command: Command) -> Command {
+fn with_scene<S: Study>(command: Command) -> Command {
     let presets = S::presets();
     let command = if presets.is_empty() { command } else { command.arg(preset_option(&presets)) };
     command.args(options(&S::parameters(), &S::default()))
 }
 
-fn preset_option<S: Declared>(presets: &[Preset<S>]) -> Arg {
+fn preset_option<S: Study>(presets: &[Preset<S>]) -> Arg {
     let names = presets.iter().map(|preset| PossibleValue::new(preset.name).help(preset.help));
     Arg::new("preset")
         .long("preset")
@@ -128,7 +128,7 @@ fn preset_option<S: Declared>(presets: &[Preset<S>]) -> Arg {
         .help("Take the numbers of a figure or table; options given beside it win")
 }
 
-fn variant_list<S: Declared>(help: &str, default: &str) -> Arg {
+fn variant_list<S: Study>(help: &str, default: &str) -> Arg {
     Arg::new("variant")
         .long("variant")
         .value_name("VARIANT,..")
@@ -224,12 +224,12 @@ fn given(matches: &ArgMatches) -> Given {
 }
 
 /// A scene as it was typed.
-struct Typed<'a, S: Declared> {
+struct Typed<'a, S: Study> {
     matches: &'a ArgMatches,
     preset: Option<Preset<S>>,
 }
 
-impl<'a, S: Declared> Typed<'a, S> {
+impl<'a, S: Study> Typed<'a, S> {
     fn new(matches: &'a ArgMatches) -> Self {
         let name = matches.try_get_one::<String>("preset").ok().flatten();
         let preset = name.and_then(|name| S::presets().into_iter().find(|preset| preset.name == name));
@@ -263,7 +263,7 @@ impl<'a, S: Declared> Typed<'a, S> {
 }
 
 /// Runs the verb that was typed.
-pub fn run<S: Declared>(matches: &ArgMatches) -> Result<(), Failure> {
+pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     let Some((verb, matches)) = matches.subcommand() else { return Ok(()) };
     let typed = Typed::<S>::new(matches);
     match verb {
@@ -286,7 +286,7 @@ pub fn run<S: Declared>(matches: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-fn experiment<S: Declared>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
+fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
     let experiments = S::experiments();
     let name = matches.get_one::<String>("name").filter(|_| !matches.get_flag("list"));
     let Some(experiment) = name.and_then(|name| experiments.iter().find(|e| e.name == name)) else {
@@ -312,7 +312,7 @@ fn experiment<S: Declared>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result
     Ok(context.run(experiment)?)
 }
 
-fn own_verb<S: Declared>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
+fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<(), Failure> {
     let Some(verb) = S::verbs().into_iter().find(|verb| verb.name == name) else { return Ok(()) };
     let mut options = S::Options::default();
     read(matches, &S::options(), &mut options)?;

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::outcome;
 use crate::gpu::physical::BASELINE;
 use crate::gpu::{Error, Feature, Instance, PhysicalDevice};
-use crate::measure::study::{Declared, Visitor};
+use crate::measure::study::{Study, Visitor};
 use crate::papers;
 
 #[derive(Debug, Clone, Args)]
@@ -25,7 +25,7 @@ struct Needs(Vec<(&'static str, &'static [Feature])>);
 impl Visitor for Needs {
     type Error = Infallible;
 
-    fn visit<S: Declared>(&mut self) -> Result<(), Infallible> {
+    fn visit<S: Study>(&mut self) -> Result<(), Infallible> {
         self.0.push((S::PAPER, S::NEEDS));
         Ok(())
     }

@@ -23,7 +23,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
 pub use self::page::options_table;
-use crate::measure::study::{Declared, Visitor};
+use crate::measure::study::{Study, Visitor};
 use crate::papers;
 
 /// Rendering papers on Vulkan, pass by pass, every pass measured.
@@ -56,7 +56,7 @@ type Run = fn(&ArgMatches) -> Result<(), Failure>;
 impl Visitor for Papers {
     type Error = Infallible;
 
-    fn visit<S: Declared>(&mut self) -> Result<(), Infallible> {
+    fn visit<S: Study>(&mut self) -> Result<(), Infallible> {
         self.command = std::mem::take(&mut self.command).subcommand(declared::command::<S>());
         self.run.push((S::PAPER, declared::run::<S>));
         Ok(())
@@ -84,12 +84,12 @@ pub fn umbrella() -> ExitCode {
 }
 
 /// Runs a paper's own binary.
-pub fn binary<S: Declared>() -> ExitCode {
+pub fn binary<S: Study>() -> ExitCode {
     ExitCode::from(paper_from::<S>(std::env::args_os()))
 }
 
 /// Runs a paper with `arguments`, the first of which is the program's name, and gives the exit code.
-pub fn paper_from<S: Declared>(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+pub fn paper_from<S: Study>(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let command = declared::command::<S>().version(env!("CARGO_PKG_VERSION")).propagate_version(true);
     spelling::learn(&command);
     let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());

@@ -2,10 +2,10 @@
 
 use super::spelling;
 use crate::measure::parameter::Parameter;
-use crate::measure::study::Declared;
+use crate::measure::study::Study;
 
 /// Rows of option, default and meaning, in Markdown: presets, and every parameter in the order of its declaration.
-pub fn options_table<S: Declared>() -> String {
+pub fn options_table<S: Study>() -> String {
     let mut table = "| option | default | meaning |\n| --- | --- | --- |\n".to_owned();
     let presets = S::presets();
     if !presets.is_empty() {

@@ -10,7 +10,7 @@ use super::machine::{Machine, MachineOptions};
 use super::measure::{Schedule, Watch};
 use super::parameter::Given;
 use super::result_table::ResultTable;
-use super::study::{Declared, Preset};
+use super::study::{Preset, Study};
 use super::sweep::{Plan, Point, Swept};
 use crate::image::{self, Raster, Rgba8};
 use crate::report::output::{check_writable, write};
@@ -20,12 +20,12 @@ use crate::report::table::Style;
 use crate::report::{Record, csv, json as writer};
 
 /// One table or figure of a paper.
-pub struct Experiment<S: Declared> {
+pub struct Experiment<S: Study> {
     /// The paper's own name for it: `5-1`.
     pub name: &'static str,
     /// One line for help and lists.
     pub help: &'static str,
-    /// Names among [`Declared::options`] that it heeds; the others are refused.
+    /// Names among [`Study::options`] that it heeds; the others are refused.
     pub options: &'static [&'static str],
     /// Names of parameters and options that it does not heed, each with the reason. Names in backticks are options.
     pub refuses: &'static [(&'static str, &'static str)],
@@ -95,7 +95,7 @@ impl MeasureOptions {
 }
 
 /// An experiment that runs: what a user set up, and where its results go.
-pub struct Context<'a, S: Declared> {
+pub struct Context<'a, S: Study> {
     /// [`Experiment::name`].
     pub name: &'static str,
     /// The preset that was named.
@@ -116,7 +116,7 @@ pub struct Context<'a, S: Declared> {
     pub console: &'a dyn Console,
 }
 
-impl<S: Declared> Context<'_, S> {
+impl<S: Study> Context<'_, S> {
     /// Runs an experiment once its options and files are checked.
     ///
     /// # Errors
@@ -149,7 +149,7 @@ impl<S: Declared> Context<'_, S> {
     /// The parameters that were given, over the numbers of another set-up.
     ///
     /// # Errors
-    /// As [`Declared::resolve`].
+    /// As [`Study::resolve`].
     pub fn over(&self, mut setup: S) -> Result<S, Error> {
         let parameters = S::parameters();
         let given = parameters.iter().filter(|parameter| self.given.has(parameter.name));

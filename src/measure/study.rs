@@ -11,10 +11,19 @@ use super::parameter::{Given, Parameter};
 use crate::gpu::{self, Feature, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 
-/// One paper as a user set it up.
-pub trait Study {
+/// One paper as a user set it up: it declares its parameters, presets and experiments, from which the command line
+/// follows, and makes what is measured.
+pub trait Study: Clone + Default + 'static {
     /// The paper's name on the command line and in the record.
     const PAPER: &'static str;
+    /// One line on the paper.
+    const ABOUT: &'static str;
+    /// Variants of a bench that names none.
+    const BENCHED: &'static [Self::Variant] = Self::Variant::ALL;
+    /// The variant of a picture that names neither one nor a preset.
+    const RENDERED: Self::Variant = Self::Variant::ALL[0];
+    /// Frames and repetitions at each point of an experiment that names none.
+    const EXPERIMENT_FRAMES: (u32, u32) = (3, 3);
     /// Features that a device must have, beyond the baseline of the Vulkan layer.
     const NEEDS: &'static [Feature] = &[];
 
@@ -22,6 +31,8 @@ pub trait Study {
     /// The input, loaded and placed.
     type Scene;
     type Paper: Paper;
+    /// The options of its experiments and own verbs, beside the parameters.
+    type Options: Default + 'static;
 
     /// Checks the parameters and loads the input.
     ///
@@ -59,27 +70,9 @@ pub trait Study {
         &self,
         _machine: &mut Machine,
         measured: &mut [(Built<Self>, Measurement)],
-    ) -> Result<Vec<Metrics>, Error>
-    where
-        Self: Sized,
-    {
+    ) -> Result<Vec<Metrics>, Error> {
         Ok(measured.iter().map(|_| Metrics::default()).collect())
     }
-}
-
-/// A study that declares its parameters, presets and experiments; the command line follows from them.
-pub trait Declared: Study + Clone + Default + 'static {
-    /// One line on the paper.
-    const ABOUT: &'static str;
-    /// Variants of a bench that names none.
-    const BENCHED: &'static [Self::Variant] = Self::Variant::ALL;
-    /// The variant of a picture that names neither one nor a preset.
-    const RENDERED: Self::Variant = Self::Variant::ALL[0];
-    /// Frames and repetitions at each point of an experiment that names none.
-    const EXPERIMENT_FRAMES: (u32, u32) = (3, 3);
-
-    /// The options of its experiments and own verbs, beside the parameters.
-    type Options: Default + 'static;
 
     /// Every parameter, once, in the order in which values are set.
     fn parameters() -> Vec<Parameter<Self>>;
@@ -102,7 +95,7 @@ pub trait Declared: Study + Clone + Default + 'static {
         Vec::new()
     }
 
-    /// The setup that the main job measures, in the variants of [`Declared::BENCHED`].
+    /// The setup that the main job measures, in the variants of [`Study::BENCHED`].
     fn quick() -> Self {
         Self::default()
     }
@@ -137,7 +130,7 @@ pub struct Preset<S: Study> {
     pub setup: fn() -> S,
 }
 
-impl<S: Declared> Preset<S> {
+impl<S: Study> Preset<S> {
     /// Its numbers, under its name.
     pub fn setup(&self) -> S {
         let mut setup = (self.setup)();
@@ -152,7 +145,7 @@ pub trait Visitor {
 
     /// # Errors
     /// The error that ends the visits.
-    fn visit<S: Declared>(&mut self) -> Result<(), Self::Error>;
+    fn visit<S: Study>(&mut self) -> Result<(), Self::Error>;
 }
 
 /// Parameters that every configuration has.

@@ -9,7 +9,7 @@ use fumarole::gpu::{
 };
 use fumarole::measure::experiment::{Context, Experiment};
 use fumarole::measure::parameter::{self, Parameter, Range};
-use fumarole::measure::study::{Declared, Identity, Study};
+use fumarole::measure::study::{Identity, Study};
 use fumarole::measure::{Error, Paper, Target, Variant, bench, result_table::ResultTable};
 use fumarole::{field, host_block};
 use serde_json::{Map, Value, json};
@@ -106,9 +106,7 @@ impl Study for Setup {
     fn identity(&self) -> Identity {
         Identity { preset: self.preset.clone(), width: COLUMNS, height: 16, seed: 1 }
     }
-}
 
-impl Declared for Setup {
     const ABOUT: &'static str = "Ripples on a line of columns";
     type Options = ();
 

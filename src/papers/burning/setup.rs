@@ -19,7 +19,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
-use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper as _};
 use crate::scene::{Mesh, MeshSource};
 
@@ -188,9 +188,7 @@ impl Study for Setup {
         });
         metrics.collect()
     }
-}
 
-impl Declared for Setup {
     const ABOUT: &'static str =
         "Burning: heat, deformation, consumption and melting of meshes (Amarasinghe), pass by pass";
     const BENCHED: &'static [Variant] = &[Variant::Shell];

@@ -17,7 +17,7 @@ use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
-use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
@@ -204,9 +204,7 @@ impl Study for Setup {
         }
         config
     }
-}
 
-impl Declared for Setup {
     const ABOUT: &'static str = "Refractive water caustics with level maps (Tipprasert), pass by pass";
     // The stencil method takes seconds a frame without a GPU.
     const BENCHED: &'static [Variant] = &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric];

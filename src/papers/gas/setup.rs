@@ -17,7 +17,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
-use crate::measure::study::{self, Declared, Identity, Metrics, Study};
+use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant};
@@ -222,9 +222,7 @@ impl Study for Setup {
         }
         Ok(metrics)
     }
-}
 
-impl Declared for Setup {
     const ABOUT: &'static str =
         "Gas: A-buffer surfaces and volume-traced gases in one picture (Ebert, Parent), pass by pass";
     // Tracing shadows from every sample takes many times as long.

@@ -18,7 +18,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Parameter};
 use crate::measure::statistics::median;
-use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Shading, Variant};
 use crate::scene::{Mesh, MeshSource};
 
@@ -125,9 +125,7 @@ impl Study for Setup {
         }
         Ok(metrics)
     }
-}
 
-impl Declared for Setup {
     const ABOUT: &'static str = "Lava: particles to density to isosurface to splats (Unnthorsson), pass by pass";
     const BENCHED: &'static [Variant] = &[Variant::Paper];
     const RENDERED: Variant = Variant::Paper;

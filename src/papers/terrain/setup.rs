@@ -17,7 +17,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
-use crate::measure::study::{Declared, Identity, Metrics, Preset, Study};
+use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
     Drape, Inputs, Interpolation, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View,
@@ -212,9 +212,7 @@ impl Study for Setup {
         }
         Ok(metrics)
     }
-}
 
-impl Declared for Setup {
     const ABOUT: &'static str = "The volcano paper's terrain, ray-cast from a shape texture (Vyatkin), pass by pass";
     const BENCHED: &'static [Variant] = <Variant as crate::measure::Variant>::ALL;
     const RENDERED: Variant = Variant::GpuCompute;

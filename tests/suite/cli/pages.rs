@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use fumarole::cli::options_table;
-use fumarole::measure::study::{Declared, Visitor};
+use fumarole::measure::study::{Study, Visitor};
 use fumarole::papers;
 
 const BEGIN: &str = "<!-- options -->\n";
@@ -15,7 +15,7 @@ struct Pages;
 impl Visitor for Pages {
     type Error = String;
 
-    fn visit<S: Declared>(&mut self) -> Result<(), String> {
+    fn visit<S: Study>(&mut self) -> Result<(), String> {
         let path = PathBuf::from(format!("{}/docs/{}.md", env!("CARGO_MANIFEST_DIR"), S::PAPER));
         let page = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         let (head, rest) = page.split_once(BEGIN).ok_or(format!("{} has no {BEGIN:?}", path.display()))?;

@@ -1,7 +1,7 @@
 //! Refusals of the paper.
 
 use fumarole::gpu::Error;
-use fumarole::measure::study::Declared;
+use fumarole::measure::study::Study;
 use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, setup::Setup};
 use fumarole::scene::Camera;
 use glam::Vec3;
