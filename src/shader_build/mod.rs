@@ -1,4 +1,4 @@
-//! GLSL 4.50 to SPIR-V 1.5 by glslang and by naga: includes, line numbers, reflection.
+//! GLSL 4.50 to SPIR-V, 1.5 by glslang and 1.4 by naga: includes, line numbers, reflection.
 //!
 //! The build script compiles every shader with [`compile_dir`] and embeds the binaries as [`EMBEDDED`];
 //! `--shader-dir` calls the same function at run time. Layouts are built from the [`Interface`] of
@@ -54,6 +54,7 @@ mod agreement;
 mod embedded;
 mod error;
 mod exceptions;
+mod explicit_layout;
 mod glslang;
 mod include;
 mod interface;

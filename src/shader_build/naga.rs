@@ -9,7 +9,7 @@ use ::naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use ::naga::valid::{ValidationFlags, Validator};
 use ::naga::{Module, ShaderStage, TypeInner};
 
-use super::{Diagnostic, Stage};
+use super::{Diagnostic, Stage, explicit_layout};
 
 const DO_WHILE: &str = "naga's `continue` skips the condition of a do-while loop; use `while` or `for`";
 
@@ -20,7 +20,7 @@ const MISCOMPILED: &[(&str, &str)] = &[
     ("do{", DO_WHILE),
 ];
 
-/// Compiles flattened GLSL 4.50 to SPIR-V 1.5, adding nothing that the source does not say.
+/// Compiles flattened GLSL 4.50 to SPIR-V 1.4, adding nothing that the source does not say.
 pub fn compile(stage: Stage, text: &str) -> Result<Vec<u32>, Diagnostic> {
     let shader_stage = match stage {
         Stage::Vertex => ShaderStage::Vertex,
@@ -54,8 +54,9 @@ fn translate(shader_stage: ShaderStage, text: &str) -> Result<Vec<u32>, Diagnost
             }
         })?;
     let pipeline = PipelineOptions { shader_stage, entry_point: "main".to_owned() };
-    spv::write_vec(&module, &info, &writer_options(), Some(&pipeline))
-        .map_err(|error| Diagnostic::without_line(&describe_chain(&error)))
+    let words = spv::write_vec(&module, &info, &writer_options(), Some(&pipeline))
+        .map_err(|error| Diagnostic::without_line(&describe_chain(&error)))?;
+    explicit_layout::strip(&words).map_err(|problem| Diagnostic::without_line(&problem))
 }
 
 /// Refuses what naga accepts and translates wrongly.
@@ -84,7 +85,8 @@ fn refuse_miscompiled(module: &Module, text: &str) -> Result<(), Diagnostic> {
 /// guard divisions, which glslang does not, so that a comparison of the two would compare these.
 fn writer_options() -> spv::Options<'static> {
     spv::Options {
-        lang_version: (1, 5),
+        // The first with `OpCopyLogical`, and the last of which layers do not forbid layouts outside of buffers.
+        lang_version: (1, 4),
         flags: WriterFlags::DEBUG,
         // With an empty map this means: keep the sets and bindings of the source.
         fake_missing_bindings: true,
