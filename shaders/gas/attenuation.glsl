@@ -35,12 +35,12 @@ void main() {
             vec3 point = frame.eye + ray * mean_depth(link);
             vec3 normal = unpack_normal(surface.normal);
             normal = dot(normal, ray) > 0.0 ? -normal : normal;
-            for (uint l = 0u; l < frame.light_count; l++) {
+            for (uint l = 0u; l < counts.lights; l++) {
                 float depth = 0.0;
                 if (dot(normal, ray_to_light(l, point).direction) > 0.0) {
                     depth = optical_depth_to(l, point);
                 }
-                attenuations[f * frame.light_count + l] = 1.0 - exp(-depth);
+                attenuations[f * counts.lights + l] = 1.0 - exp(-depth);
             }
             is_shown_through = false;
             if (link.next != NONE) {

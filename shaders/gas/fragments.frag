@@ -8,6 +8,7 @@
 // by light-attenuation.
 
 #include "gas/frame.glsl"
+#include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/mesh.glsl"
 #include "gas/volume.glsl"

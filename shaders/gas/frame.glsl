@@ -9,20 +9,16 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec3 ray_per_column; // change of a ray's direction from one pixel to the next on its right
     float number; // of the scene's frame, a whole number
     vec3 ray_per_row; // and to the one below
-    float pixel_size; // octaves of turbulence go on while their scale exceeds it, texture units
-    vec3 to_column; // a point's offset from the eye times this, over its depth, is its column from the picture's middle
     float shadow_threshold; // density below which no shadow of the gas on itself is computed
-    vec3 to_row; // the same for rows
+    vec3 to_column; // a point's offset from the eye times this, over its depth, is its column from the picture's middle
     float early_end; // transparency below which the tracing of a pixel ends
-    vec3 ambient; // linear RGB
-    uint has_attenuations; // 1 where light-attenuation runs, else 0
-    vec3 background; // linear RGB
-    uint light_count;
-    uvec2 size; // of the picture, pixels
-    uint volume_count;
+    vec3 to_row; // the same for rows
     uint fragment_capacity; // slots of the fragments' buffers
+    vec3 ambient; // linear RGB
     uint section_capacity;
+    vec3 background; // linear RGB
     uint table_size; // entries of the tables along each axis
+    uvec2 size; // of the picture, pixels
     uint noise_seed;
 } frame;
 

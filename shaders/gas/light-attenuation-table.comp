@@ -3,6 +3,7 @@
 // What the gas takes of the light that falls on surfaces, read from the table.
 
 #include "gas/frame.glsl"
+#include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/volume.glsl"
 #include "gas/light.glsl"

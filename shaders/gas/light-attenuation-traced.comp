@@ -3,6 +3,7 @@
 // What the gas takes of the light that falls on surfaces, traced from their points.
 
 #include "gas/frame.glsl"
+#include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/volume.glsl"
 #include "gas/density.glsl"

@@ -71,7 +71,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     bool is_in[MAX_VOLUMES];
     float previous[MAX_VOLUMES]; // densities, for the normals of solids
     bool has_solid = false;
-    for (uint v = 0u; v < frame.volume_count; v++) {
+    for (uint v = 0u; v < counts.volumes; v++) {
         previous[v] = 0.0;
         is_in[v] = segments[v].x <= middle && middle <= segments[v].y;
         if (is_in[v]) {
@@ -98,7 +98,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         float aboves[MAX_VOLUMES];
         float extinction = 0.0;
         float densest = 0.0;
-        for (uint v = 0u; v < frame.volume_count; v++) {
+        for (uint v = 0u; v < counts.volumes; v++) {
             densities[v] = 0.0;
             if (is_in[v]) {
                 // At the point, and for a solid in two directions orthogonal to the ray.
@@ -122,12 +122,12 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         }
         if (extinction > 0.0 && !is_entry) {
             vec3 emission = vec3(0.0);
-            for (uint l = 0u; l < frame.light_count; l++) {
+            for (uint l = 0u; l < counts.lights; l++) {
                 LightRay to_light = ray_to_light(l, point);
                 // For patchy gas, shadows are not computed where it is thinner than a threshold.
                 float depth = densest >= frame.shadow_threshold ? optical_depth_to(l, point) : 0.0;
                 vec3 light = irradiance(l, to_light.distance_m) * exp(-depth);
-                for (uint v = 0u; v < frame.volume_count; v++) {
+                for (uint v = 0u; v < counts.volumes; v++) {
                     if (densities[v] > 0.0) {
                         float response = PI * phase(v, dot(to_light.direction, direction));
                         if (volumes[v].is_solid != 0u) {
@@ -143,14 +143,14 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                     }
                 }
             }
-            for (uint v = 0u; v < frame.volume_count; v++) {
+            for (uint v = 0u; v < counts.volumes; v++) {
                 emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * frame.ambient;
             }
             float passed = exp(-extinction * increment);
             color += emission / extinction * (transparency * (1.0 - passed));
             transparency *= passed;
         }
-        for (uint v = 0u; v < frame.volume_count; v++) {
+        for (uint v = 0u; v < counts.volumes; v++) {
             previous[v] = densities[v];
         }
         previous_m = at_m;
@@ -192,7 +192,7 @@ void main() {
     float end = reserved.end_m;
     vec2 segments[MAX_VOLUMES];
     float depth = 1.0e30;
-    for (uint v = 0u; v < frame.volume_count; v++) {
+    for (uint v = 0u; v < counts.volumes; v++) {
         segments[v] = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
         if (segments[v].x < segments[v].y) {
             depth = min(depth, segments[v].x);
@@ -218,7 +218,7 @@ void main() {
         }
         bool has_gas = false;
         bool has_more = false;
-        for (uint v = 0u; v < frame.volume_count; v++) {
+        for (uint v = 0u; v < counts.volumes; v++) {
             if (segments[v].x < segments[v].y && segments[v].y > depth) {
                 has_more = true;
                 if (segments[v].x > depth) {

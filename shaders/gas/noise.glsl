@@ -24,18 +24,19 @@ float noise(vec3 p) {
     return mix(mix(x00, x10, s.y), mix(x01, x11, s.y), s.z);
 }
 
-// Noise, or turbulence: octaves while the scale exceeds pixel_size, which is a constant of the scene, so that the gas
-// is the same from everywhere.
+// Noise, or turbulence: its octaves are the scene's, so that the gas is the same from everywhere.
 float fractal(vec3 p, bool is_noise) {
     float sum = 0.0;
     float frequency = 1.0;
-    for (float scale = 1.0; scale > frame.pixel_size; scale *= 0.5) {
+    float scale = 1.0;
+    for (uint octave = 0u; octave < counts.octaves; octave++) {
         float value = noise(p * frequency);
         if (is_noise) {
             return value;
         }
         sum += abs(value) * scale;
         frequency *= 2.0;
+        scale *= 0.5;
     }
     return sum;
 }

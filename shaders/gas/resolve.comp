@@ -11,6 +11,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gas/frame.glsl"
+#include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
@@ -64,13 +65,13 @@ vec3 shaded(uint f, vec3 ray) {
     float strength = objects[surface.object].highlight_strength;
     float exponent = objects[surface.object].highlight_exponent;
     vec3 sum = albedo * frame.ambient;
-    for (uint l = 0u; l < frame.light_count; l++) {
+    for (uint l = 0u; l < counts.lights; l++) {
         LightRay to_light = ray_to_light(l, point);
         float facing = dot(normal, to_light.direction);
         if (facing > 0.0) {
             vec3 light = irradiance(l, to_light.distance_m);
-            if (frame.has_attenuations != 0u) {
-                light *= 1.0 - attenuations[f * frame.light_count + l];
+            if (counts.attenuations != 0u) {
+                light *= 1.0 - attenuations[f * counts.lights + l];
             }
             float mirrored = max(dot(reflect(direction, normal), to_light.direction), 0.0);
             sum += light * (albedo * facing + strength * pow(mirrored, exponent));

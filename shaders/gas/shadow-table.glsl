@@ -11,7 +11,7 @@ float table_value(uint v, uint l, vec3 point) {
     vec3 position = clamp(q, 0.0, 1.0) * float(n - 1u);
     uvec3 low = min(uvec3(position), uvec3(n - 2u));
     vec3 t = position - vec3(low);
-    uint first = (v * frame.light_count + l) * n * n * n + (low.z * n + low.y) * n + low.x;
+    uint first = (v * counts.lights + l) * n * n * n + (low.z * n + low.y) * n + low.x;
     uint up = first + n * n;
     float s00 = mix(shadow_tables[first], shadow_tables[first + 1u], t.x);
     float s10 = mix(shadow_tables[first + n], shadow_tables[first + n + 1u], t.x);
@@ -23,7 +23,7 @@ float table_value(uint v, uint l, vec3 point) {
 float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
-    for (uint v = 0u; v < frame.volume_count; v++) {
+    for (uint v = 0u; v < counts.volumes; v++) {
         vec2 segment = intersect(bounds_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
         if (segment.x <= segment.y) {
             sum += volumes[v].tau_per_m * table_value(v, l, point + to_light.direction * segment.x);

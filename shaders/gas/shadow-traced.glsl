@@ -5,7 +5,7 @@
 float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
-    for (uint v = 0u; v < frame.volume_count; v++) {
+    for (uint v = 0u; v < counts.volumes; v++) {
         vec2 segment = intersect(volume_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
         float length_m = segment.y - segment.x;
         if (length_m <= 0.0) {

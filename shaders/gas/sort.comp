@@ -8,6 +8,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gas/frame.glsl"
+#include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/volume.glsl"
 #include "gas/lists.glsl"
@@ -125,7 +126,7 @@ void main() {
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
     vec2 extent = vec2(1.0e30, 0.0);
     uint cuts = 0u;
-    for (uint v = 0u; v < frame.volume_count; v++) {
+    for (uint v = 0u; v < counts.volumes; v++) {
         vec2 segment = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
         if (segment.x < segment.y) {
             extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));

@@ -3,6 +3,7 @@
 // The gas of each pixel, shadows from the table.
 
 #include "gas/frame.glsl"
+#include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/volume.glsl"
 #include "gas/density.glsl"

@@ -60,9 +60,13 @@ fn on_idle_device(body: impl FnOnce(&Arc<Device>)) {
     idle().push(device.clone());
 }
 
+/// The device that the tests run on, as [`choose`] takes it.
+pub fn wanted_device() -> String {
+    env::var(DEVICE_VARIABLE).unwrap_or_else(|_| DEFAULT_DEVICE.to_owned())
+}
+
 fn open_device() -> Result<Arc<Device>, Error> {
-    let wanted = env::var(DEVICE_VARIABLE).unwrap_or_else(|_| DEFAULT_DEVICE.to_owned());
     let instance = Instance::new(true)?;
-    let physical = choose(PhysicalDevice::enumerate(&instance)?, Some(&wanted), &[])?;
+    let physical = choose(PhysicalDevice::enumerate(&instance)?, Some(&wanted_device()), &[])?;
     Device::open(&instance, physical)
 }

@@ -19,21 +19,27 @@ host_block! {
         ray_per_column: [f32; 3],
         number: f32,
         ray_per_row: [f32; 3],
-        pixel_size: f32,
-        to_column: [f32; 3],
         shadow_threshold: f32,
-        to_row: [f32; 3],
+        to_column: [f32; 3],
         early_end: f32,
-        ambient: [f32; 3],
-        has_attenuations: u32,
-        background: [f32; 3],
-        light_count: u32,
-        size: [u32; 2],
-        volume_count: u32,
+        to_row: [f32; 3],
         fragment_capacity: u32,
+        ambient: [f32; 3],
         section_capacity: u32,
+        background: [f32; 3],
         table_size: u32,
+        size: [u32; 2],
         noise_seed: u32,
+    }
+}
+
+host_block! {
+    /// Bounds of loops, as `counts.glsl` describes them.
+    pub struct CountsBlock {
+        volumes: u32,
+        lights: u32,
+        octaves: u32,
+        attenuations: u32,
     }
 }
 
@@ -207,7 +213,7 @@ pub struct GasUse {
 
 impl FrameBlock {
     /// The block of scene frame `number`.
-    pub fn new(parameters: &Parameters, number: u32, gas: GasUse, capacity: Capacity) -> Self {
+    pub fn new(parameters: &Parameters, number: u32, capacity: Capacity) -> Self {
         let camera = &parameters.camera;
         let view = camera.view();
         let [right, up, back] = [0, 1, 2].map(|i| view.row(i).truncate());
@@ -221,21 +227,29 @@ impl FrameBlock {
             ray_per_column: (right * pixel).to_array(),
             number: number as f32,
             ray_per_row: (-up * pixel).to_array(),
-            pixel_size: parameters.pixel_size,
-            to_column: (right / pixel).to_array(),
             shadow_threshold: parameters.shadow_threshold,
-            to_row: (-up / pixel).to_array(),
+            to_column: (right / pixel).to_array(),
             early_end: parameters.early_end,
-            ambient: parameters.ambient.to_array(),
-            has_attenuations: gas.has_attenuations.into(),
-            background: parameters.background.to_array(),
-            light_count: parameters.lights.len() as u32,
-            size: [parameters.width, parameters.height],
-            volume_count: gas.volume_count as u32,
+            to_row: (-up / pixel).to_array(),
             fragment_capacity: capacity.fragments,
+            ambient: parameters.ambient.to_array(),
             section_capacity: capacity.sections,
+            background: parameters.background.to_array(),
             table_size: parameters.table_size,
+            size: [parameters.width, parameters.height],
             noise_seed: parameters.noise_seed(),
+        }
+    }
+}
+
+impl CountsBlock {
+    /// Of a variant that makes that use of the scene's volumes.
+    pub fn new(parameters: &Parameters, gas: GasUse) -> Self {
+        CountsBlock {
+            volumes: gas.volume_count as u32,
+            lights: parameters.lights.len() as u32,
+            octaves: parameters.octaves(),
+            attenuations: gas.has_attenuations.into(),
         }
     }
 }

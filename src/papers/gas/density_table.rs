@@ -31,6 +31,7 @@ impl DensityTable {
         let densities = context.table("density-table", volume_count.into())?;
         let pass = Pass::compute("density-table", "Shadow table", "gas/density-table.comp")
             .with("frame", &scene.frame)
+            .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Offsets", &scene.offsets)
             .with("DensityTables", &densities)

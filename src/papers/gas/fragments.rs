@@ -27,6 +27,7 @@ impl Fragments {
         };
         let pass = stages
             .with("frame", &scene.frame)
+            .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Offsets", &scene.offsets)
             .with("Vertices", &scene.vertices)

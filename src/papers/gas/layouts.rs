@@ -1,8 +1,8 @@
 //! Host structs against the blocks of buffers that hold them.
 
 use super::blocks::{
-    ColorBlock, CountersBlock, FrameBlock, LightBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock, SurfaceBlock,
-    TriangleBlock, VertexBlock, VolumeBlock,
+    ColorBlock, CountersBlock, CountsBlock, FrameBlock, LightBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock,
+    SurfaceBlock, TriangleBlock, VertexBlock, VolumeBlock,
 };
 use crate::papers::layout::{check_block, check_list};
 
@@ -21,5 +21,6 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<ColorBlock>("gas/fragments.frag", "Colors");
     check_list::<PixelBlock>("gas/sort.comp", "Pixels");
     check_list::<SectionBlock>("gas/volume-table.comp", "Sections");
+    check_block::<CountsBlock>("gas/resolve.comp", "counts");
     check_block::<CountersBlock>("gas/sort.comp", "Counters");
 }

@@ -35,6 +35,7 @@ impl LightAttenuation {
         };
         let pass = Pass::compute("light-attenuation", "Shadowing of the gas", shader)
             .with("frame", &scene.frame)
+            .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Lights", &scene.lights)
             .with("Heads", &lists.heads)

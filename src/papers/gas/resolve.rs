@@ -46,6 +46,7 @@ impl Resolve {
         };
         let pass = Pass::compute("resolve", "A-buffer", "gas/resolve.comp")
             .with("frame", &scene.frame)
+            .with("counts", &scene.counts)
             .with("Lights", &scene.lights)
             .with("Objects", &scene.objects)
             .with("Heads", &lists.heads)

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::blocks::{FrameBlock, GasUse, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets};
+use super::blocks::{
+    CountsBlock, FrameBlock, GasUse, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets,
+};
 use super::capacity::Capacity;
 use super::context::Context;
 use super::model::Object;
@@ -18,6 +20,8 @@ const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 pub struct SceneBuffers {
     /// One [`FrameBlock`].
     pub frame: Arc<Buffer>,
+    /// One [`CountsBlock`].
+    pub counts: Arc<Buffer>,
     /// Volumes and the solid textures of surfaces, [`VolumeBlock`]s.
     pub volumes: Arc<Buffer>,
     /// [`LightBlock`]s.
@@ -72,6 +76,7 @@ impl SceneBuffers {
         };
         Ok(SceneBuffers {
             frame: mapped("frame", size_of::<FrameBlock>(), vk::BufferUsageFlags::UNIFORM_BUFFER)?,
+            counts: mapped("counts", size_of::<CountsBlock>(), STORAGE)?,
             volumes: storage("volumes", bytemuck::cast_slice(&volumes))?,
             lights: storage("lights", bytemuck::cast_slice(&lights))?,
             offsets: storage("offsets", bytemuck::cast_slice(&offsets(parameters.seed)))?,
@@ -85,8 +90,9 @@ impl SceneBuffers {
 
     /// Writes the frame and the objects of the scene's frame `number`; the device is idle.
     pub fn write(&self, parameters: &Parameters, number: u32, gas: GasUse, capacity: Capacity) -> Result<(), Error> {
-        let block = FrameBlock::new(parameters, number, gas, capacity);
+        let block = FrameBlock::new(parameters, number, capacity);
         self.frame.write(0, bytemuck::bytes_of(&block))?;
+        self.counts.write(0, bytemuck::bytes_of(&CountsBlock::new(parameters, gas)))?;
         let mut textures = parameters.volumes.len()..;
         let mut blocks: Vec<ObjectBlock> = self
             .objects_without_meshes

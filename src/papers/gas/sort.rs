@@ -17,6 +17,7 @@ impl Sort {
     pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
         let pass = Pass::compute("sort", "A-buffer", "gas/sort.comp")
             .with("frame", &scene.frame)
+            .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Heads", &lists.heads)
             .with("Links", &lists.links)

@@ -37,6 +37,7 @@ impl VolumeMarch {
         };
         let mut pass = Pass::compute("volume", "Volume rendering", shader)
             .with("frame", &scene.frame)
+            .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Lights", &scene.lights)
             .with("Offsets", &scene.offsets)

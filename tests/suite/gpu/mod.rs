@@ -6,6 +6,7 @@ mod devices;
 mod first_pass;
 mod fixtures;
 mod indirect;
+mod memory;
 mod memory_model;
 mod misuse;
 mod misuse_passes;

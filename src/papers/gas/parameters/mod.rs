@@ -158,6 +158,12 @@ impl Parameters {
         self.first_frame.saturating_add(self.frame_step.saturating_mul(number))
     }
 
+    /// Octaves of turbulence, of scales 1, 1/2, 1/4, ...
+    pub fn octaves(&self) -> u32 {
+        let scales = std::iter::successors(Some(1.0_f32), |scale| Some(scale / 2.0));
+        scales.take_while(|&scale| scale > self.pixel_size).count() as u32
+    }
+
     /// Mixes the seed into the 32 bits that the lattice's hash takes.
     pub fn noise_seed(&self) -> u32 {
         (self.seed ^ (self.seed >> 32)) as u32

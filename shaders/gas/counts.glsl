@@ -1,0 +1,10 @@
+// Bounds of loops and conditions that are the same for all pixels. They stand in a storage buffer: where a condition
+// depends on uniform blocks and push constants alone, lavapipe compiles the shader anew with their values, and keeps
+// every copy.
+
+layout(set = 0, binding = 18, std430) readonly buffer Counts {
+    uint volumes;
+    uint lights;
+    uint octaves; // of turbulence
+    uint attenuations; // of a fragment for each light: 1 where light-attenuation runs, else 0
+} counts;

@@ -1,0 +1,117 @@
+//! Memory from frame to frame: lavapipe compiles a shader anew for the values of uniform blocks and push constants on
+//! which alone one of its conditions depends, and keeps every copy. Each variant runs in a process of its own, whose
+//! resident memory is nobody else's.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fs;
+use std::process::Command;
+
+use fumarole::gpu::physical::choose;
+use fumarole::gpu::{Compiler, Device, Instance, Mode, PhysicalDevice, Recorder, ShaderLibrary};
+use fumarole::measure::study::{Declared, Visitor};
+use fumarole::measure::{Error, Paper, Variant};
+use fumarole::papers::{self, gas};
+
+use crate::common::{beside_others, wanted_device};
+
+/// Paper, variant and parameters that the process is to run.
+const VARIABLE: &str = "FUMAROLE_TEST_MEMORY";
+/// Frames until pipelines, pools and the allocator have what they keep, and those that are looked at.
+const WARMUP: u32 = 40;
+const FRAMES: u32 = 300;
+/// Most that they may leave behind.
+const LIMIT_KB: i64 = 1024;
+
+#[test]
+fn gas_needs_no_more_memory_from_frame_to_frame() {
+    stays_flat::<gas::setup::Setup>("size=48x32 steps=12 table=16");
+}
+
+/// Fails where 300 frames of a variant leave 1 MB behind; `parameters` make its frames short.
+fn stays_flat<S: Declared>(parameters: &str) {
+    for variant in S::Variant::ALL {
+        let name = format!("{} {} {parameters}", S::PAPER, variant.as_str());
+        let grown_kb = beside_others(|| growth_kb(&name));
+        println!("{name}: {grown_kb} kB in {FRAMES} frames");
+        assert!(grown_kb < LIMIT_KB, "{name}: {grown_kb} kB in {FRAMES} frames");
+    }
+}
+
+/// What a process that runs [`frames_of_a_process`] says.
+fn growth_kb(name: &str) -> i64 {
+    let test = ["--exact", "gpu::memory::frames_of_a_process", "--ignored", "--nocapture"];
+    let program = env::current_exe().unwrap();
+    let output = Command::new(program).args(test).env(VARIABLE, name).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    let said = text.lines().find_map(|line| line.strip_prefix("grown kB: "));
+    let failure = || panic!("{name}: {text}{}", String::from_utf8_lossy(&output.stderr));
+    said.and_then(|kb| kb.parse().ok()).unwrap_or_else(failure)
+}
+
+/// Not a test by itself: the frames that the environment names.
+#[test]
+#[ignore = "a part of the tests above, in a process of its own"]
+fn frames_of_a_process() {
+    let Ok(wanted) = env::var(VARIABLE) else { return };
+    let words: Vec<&str> = wanted.split(' ').collect();
+    papers::each(&mut Run { paper: words[0], variant: words[1], parameters: &words[2..] }).unwrap();
+}
+
+struct Run<'a> {
+    paper: &'a str,
+    variant: &'a str,
+    parameters: &'a [&'a str],
+}
+
+impl Visitor for Run<'_> {
+    type Error = Error;
+
+    fn visit<S: Declared>(&mut self) -> Result<(), Error> {
+        if self.paper == S::PAPER {
+            let variant =
+                S::Variant::ALL.iter().find(|v| v.as_str() == self.variant).expect("the paper has the variant");
+            println!("\ngrown kB: {}", grown_kb::<S>(*variant, self.parameters)?);
+        }
+        Ok(())
+    }
+}
+
+/// Resident memory that the frames after the warm-up add to the process, of the main job's set-up.
+fn grown_kb<S: Declared>(variant: S::Variant, parameters: &[&str]) -> Result<i64, Error> {
+    let mut study = S::quick();
+    for parameter in parameters {
+        let (name, value) = parameter.split_once('=').expect("name=value");
+        let declared = S::parameters().into_iter().find(|p| p.name == name).expect("the paper has the parameter");
+        declared.set(&mut study, &[OsStr::new(value)]).expect("it is a value of it");
+    }
+    let scene = study.load()?;
+    // Without the validation layer, which keeps what it has seen.
+    let instance = Instance::new(false)?;
+    let physical = choose(PhysicalDevice::enumerate(&instance)?, Some(&wanted_device()), S::NEEDS)?;
+    let device = Device::open(&instance, physical)?;
+    let shaders = ShaderLibrary::new(&device, Compiler::Glslang, None)?;
+    let mut paper = study.make(&shaders, "test", &scene, variant)?;
+    let mut recorder = Recorder::new(&device)?;
+    loop {
+        paper.restart()?;
+        for number in 0..WARMUP {
+            recorder.run(Mode::Plain, |frame| paper.record(frame, number))?;
+        }
+        if paper.settle(&shaders)? {
+            break;
+        }
+    }
+    let before_kb = resident_kb();
+    for number in WARMUP..WARMUP + FRAMES {
+        recorder.run(Mode::Plain, |frame| paper.record(frame, number))?;
+    }
+    Ok(resident_kb() - before_kb)
+}
+
+/// Resident memory of this process.
+fn resident_kb() -> i64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    line.trim().trim_end_matches(" kB").trim().parse().unwrap()
+}
