@@ -9,7 +9,7 @@ use std::process::Command;
 
 use fumarole::gpu::physical::choose;
 use fumarole::gpu::{Compiler, Device, Instance, Mode, PhysicalDevice, Recorder, ShaderLibrary};
-use fumarole::measure::study::{Declared, Visitor};
+use fumarole::measure::study::{Study, Visitor};
 use fumarole::measure::{Error, Paper, Variant};
 use fumarole::papers::{self, gas};
 
@@ -29,7 +29,7 @@ fn gas_needs_no_more_memory_from_frame_to_frame() {
 }
 
 /// Fails where 300 frames of a variant leave 1 MB behind; `parameters` make its frames short.
-fn stays_flat<S: Declared>(parameters: &str) {
+fn stays_flat<S: Study>(parameters: &str) {
     for variant in S::Variant::ALL {
         let name = format!("{} {} {parameters}", S::PAPER, variant.as_str());
         let grown_kb = beside_others(|| growth_kb(&name));
@@ -67,7 +67,7 @@ struct Run<'a> {
 impl Visitor for Run<'_> {
     type Error = Error;
 
-    fn visit<S: Declared>(&mut self) -> Result<(), Error> {
+    fn visit<S: Study>(&mut self) -> Result<(), Error> {
         if self.paper == S::PAPER {
             let variant =
                 S::Variant::ALL.iter().find(|v| v.as_str() == self.variant).expect("the paper has the variant");
@@ -78,7 +78,7 @@ impl Visitor for Run<'_> {
 }
 
 /// Resident memory that the frames after the warm-up add to the process, of the main job's set-up.
-fn grown_kb<S: Declared>(variant: S::Variant, parameters: &[&str]) -> Result<i64, Error> {
+fn grown_kb<S: Study>(variant: S::Variant, parameters: &[&str]) -> Result<i64, Error> {
     let mut study = S::quick();
     for parameter in parameters {
         let (name, value) = parameter.split_once('=').expect("name=value");
