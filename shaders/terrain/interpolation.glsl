@@ -58,8 +58,8 @@ mat4 bezier(mat4 p) {
 // where it does not. Along a line the surface is of the sixth degree. Its Bezier points bound it, so the line is free up
 // to where their hull meets it; what is left is restricted and bounded anew. This approaches the first root from the near
 // side and misses none. The hull's lower edge may start at any point above, not only at the first.
-float touch(ivec2 cell, vec3 from, vec3 direction) {
-    mat4 values = values_around(0, cell);
+float touch(int shift, ivec2 cell, vec3 from, vec3 direction) {
+    mat4 values = values_around(shift, cell);
     float reference = values[1].y;
     for (int row = 0; row < 4; row++) {
         values[row] -= vec4(reference);
@@ -74,6 +74,7 @@ float touch(ivec2 cell, vec3 from, vec3 direction) {
                           above + 4.0 * rise - (c[1].w + 3.0 * c[2].z + c[3].y) / 5.0,
                           above + 5.0 * rise - 0.5 * (c[2].w + c[3].z), above + 6.0 * rise - c[3].w);
     float start = 0.0;
+    float tolerance = terrain.height_tolerance * exp2(float(shift));
     bool is_done = g[0] <= 0.0;
     for (int step = 0; step < 40 && !is_done; step++) {
         float free = 2.0;
@@ -94,7 +95,7 @@ float touch(ivec2 cell, vec3 from, vec3 direction) {
                 }
             }
             start += free * (1.0 - start);
-            is_done = g[0] <= terrain.height_tolerance;
+            is_done = g[0] <= tolerance;
         }
     }
     return start;
@@ -120,8 +121,8 @@ vec2 surface_slope(vec4 c, vec2 uv) {
 
 // The ray parameter, 0 to 1, at which a line from `from` along `direction` inside the cell first touches its surface; -1
 // where it does not. Along a line the surface is a quadratic.
-float touch(ivec2 cell, vec3 from, vec3 direction) {
-    vec4 corners = values_around(0, cell);
+float touch(int shift, ivec2 cell, vec3 from, vec3 direction) {
+    vec4 corners = values_around(shift, cell);
     float a = corners.x;
     float b = corners.y - a;
     float c = corners.z - a;

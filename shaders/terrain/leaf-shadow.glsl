@@ -5,5 +5,3 @@ int shadow_shift;
 int finest_shift(float depth_m) {
     return shadow_shift;
 }
-
-#include "terrain/footprint.glsl"

@@ -39,6 +39,26 @@ Local local_at(vec2 place, float height_m) {
     return local;
 }
 
+// The slope at a node of a level: that of the line through its neighbours, of the line to the only one at a border.
+vec2 slope_at_node(int shift, ivec2 node) {
+    ivec2 low = max(node - 1, ivec2(0));
+    ivec2 high = min(node + 1, last_texel(shift));
+    vec2 rise = vec2(highest_at(shift, ivec2(high.x, node.y)) - highest_at(shift, ivec2(low.x, node.y)),
+                     highest_at(shift, ivec2(node.x, high.y)) - highest_at(shift, ivec2(node.x, low.y)));
+    return rise / vec2(max(high - low, ivec2(1)));
+}
+
+// The slopes of a cell's nodes, interpolated: without the steps that those of a bilinear surface have at a cell's borders. The
+// paper's eq. 7 has those steps; where a cell is larger than a pixel they are seen.
+vec2 slope_between_nodes(int shift, vec2 place) {
+    vec4 cell = cell_at(shift, place);
+    ivec2 a = ivec2(cell.xy);
+    ivec2 b = min(a + 1, last_texel(shift));
+    vec2 north = mix(slope_at_node(shift, a), slope_at_node(shift, ivec2(b.x, a.y)), cell.z);
+    vec2 south = mix(slope_at_node(shift, ivec2(a.x, b.y)), slope_at_node(shift, b), cell.z);
+    return mix(north, south, cell.w);
+}
+
 vec4 normal_of(ivec2 pixel, vec4 hit) {
     read_map();
     int surface = int(hit.w) & 7;
@@ -48,7 +68,11 @@ vec4 normal_of(ivec2 pixel, vec4 hit) {
     vec3 direction = direction_of(vec2(pixel));
     vec3 normal = local.up;
     if (surface == TERRAIN) {
-        vec2 slope = slope_at(shift, hit.yz) * exp2(-float(shift)) * terrain.height_unit_m / local.spacing_m;
+        vec2 slope = slope_at(shift, hit.yz);
+        if (hit.x * map.pixel < terrain.node_normals_below) {
+            slope = slope_between_nodes(shift, hit.yz);
+        }
+        slope *= exp2(-float(shift)) * terrain.height_unit_m / local.spacing_m;
         normal = local.up - slope.x * local.east - slope.y * local.south;
     }
     if (surface == WALL_WEST || surface == WALL_EAST) {

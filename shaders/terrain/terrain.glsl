@@ -43,6 +43,7 @@ layout(set = 0, binding = 0, std140) uniform Terrain {
     vec2 shell_linear;
     vec2 base_squares; // the base as such a quadric
     vec2 base_linear;
+    float node_normals_below; // nodes that a pixel covers, below which normals are those between the nodes'
 } terrain;
 
 // Kinds of base, numbered as src/papers/terrain/blocks.rs does; 2 is an ellipsoid.
@@ -90,13 +91,6 @@ struct Clip {
     float near;
     float far;
     int surface;
-};
-
-// Where a last subsegment crosses the surface: t of 0 to 1 along what of it is over the map, -1 where it does not, and how
-// high above the surface its near end is.
-struct Crossing {
-    float t;
-    float above;
 };
 
 float surface_code(int surface, int shift, int segments) {

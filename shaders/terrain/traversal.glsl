@@ -8,6 +8,8 @@
 //
 // Before this file stand one for the base, one for the interpolation and one for where subdivision ends.
 
+#include "terrain/crossing.glsl"
+
 // A subsegment of one unit is intersected whatever it touches. Single precision counts them exactly.
 const int WHOLE = 1 << 23;
 
@@ -49,7 +51,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     }
     float rounding_nodes = terrain.rounding_nodes;
     float rounding_height = terrain.rounding_height;
-    Crossing crossing = Crossing(-1.0, 0.0);
+    float t = -1.0; // along what of the last subsegment is over the map
     int steps = 0;
     int at = 0;
     int units = first_units(ray, WHOLE);
@@ -77,9 +79,10 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
         if (is_last) {
             Clip clip = clip_to_map(subsegment);
             if (clip.near <= clip.far) {
-                crossing = crossing_of(point_on(subsegment, clip.near), point_on(subsegment, clip.far), subsegment.depth_m);
+                t = crossing_of(finest_shift(subsegment.depth_m), point_on(subsegment, clip.near),
+                                point_on(subsegment, clip.far));
             }
-            done = crossing.t >= 0.0;
+            done = t >= 0.0;
             if (!done) {
                 at += units;
                 units = at & -at;
@@ -87,10 +90,8 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
             }
         }
     }
-    if (crossing.t >= 0.0) {
+    if (t >= 0.0) {
         Clip clip = clip_to_map(subsegment);
-        vec3 near = point_on(subsegment, clip.near);
-        float t = refined(crossing, near, point_on(subsegment, clip.far), subsegment.depth_m);
         float fraction = mix(clip.near, clip.far, t);
         float depth_m = depth_at(ray, (float(at) + fraction * float(units)) / float(WHOLE));
         int surface = t > 0.0 ? TERRAIN : clip.surface;

@@ -5,7 +5,7 @@ use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use super::ground::{Ground, REPEATED};
 use super::interpolation::OVERSHOOT;
-use super::parameters::{Interpolation, Parameters};
+use super::parameters::{Interpolation, Normals, Parameters};
 use super::placement::Rays;
 use super::pyramid::Shape;
 use super::scene::Scene;
@@ -97,6 +97,8 @@ host_block! {
         pub base_squares: Vec2,
         /// Of the base's quadric.
         pub base_linear: Vec2,
+        /// Nodes that a pixel covers, below which normals are those between the nodes'.
+        pub node_normals_below: f32,
     }
 }
 
@@ -190,6 +192,11 @@ impl TerrainBlock {
             level_axis: UVec2::new(axis_u, axis_v).as_ivec2(),
             top_level: shape.top as i32,
             is_float: is_float.into(),
+            node_normals_below: match (parameters.normals, parameters.interpolation) {
+                (Normals::Surface, _) | (Normals::Auto, Interpolation::Bicubic) => 0.0,
+                (Normals::Auto, Interpolation::Bilinear) => 1.0,
+                (Normals::Nodes, _) => f32::MAX,
+            },
             ..Zeroable::zeroed()
         };
         let Some(curve) = &ground.curve else { return flat };
@@ -234,7 +241,7 @@ impl LightBlock {
             right_step: rays.across.as_vec3(),
             sky_strength: SKY,
             down_step: rays.down.as_vec3(),
-            extinction_per_m: parameters.haze_per_km / 1000.0,
+            extinction_per_m: parameters.extinction_per_km(&scene.extent) / 1000.0,
             to_sun: parameters.sun.direction(),
             lowest_m: lowest_m as f32,
             haze_color: HAZE,

@@ -12,7 +12,7 @@ use super::height_field::{Field, FieldWork, HeightField};
 use super::hit::{Hit, Surface};
 use super::nearest::{Nearest, Search};
 use super::normal::normal_of;
-use super::parameters::Parameters;
+use super::parameters::{Normals, Parameters};
 use super::placement::Rays;
 use super::pyramid::Texel;
 use super::ray_caster::{Footprint, RayCaster};
@@ -53,7 +53,8 @@ impl Collider {
     pub fn new(parameters: &Parameters, inputs: &Inputs<'_>) -> Self {
         let scene = Scene::new(parameters, inputs);
         let maps = scene.maps.iter().map(|map| HeightField::new(map, parameters.interpolation)).collect();
-        Collider { parameters: parameters.clone(), scene, maps }
+        let parameters = Parameters { normals: Normals::Surface, ..parameters.clone() };
+        Collider { parameters, scene, maps }
     }
 
     /// The first contact on the way from `a` to `b`, world, metres.

@@ -50,6 +50,24 @@ impl<T: Texel> Field<'_, T> {
         }
     }
 
+    /// The slopes of the nodes around a place of a level, interpolated: the change of the height over a texel along u and v,
+    /// without steps at the borders of cells.
+    pub fn slope_between_nodes(&self, shift: i32, place: Vec2) -> Vec2 {
+        let Cell { corner: a, uv } = self.cell(shift, place);
+        let b = (a + 1).min(self.last(shift));
+        let north = self.slope_at_node(shift, a).lerp(self.slope_at_node(shift, IVec2::new(b.x, a.y)), uv.x);
+        let south = self.slope_at_node(shift, IVec2::new(a.x, b.y)).lerp(self.slope_at_node(shift, b), uv.x);
+        north.lerp(south, uv.y)
+    }
+
+    /// Of the line through a node's neighbours, or to the only one at a border.
+    fn slope_at_node(&self, shift: i32, node: IVec2) -> Vec2 {
+        let (low, high) = ((node - 1).max(IVec2::ZERO), (node + 1).min(self.last(shift)));
+        let at = |column: i32, row: i32| self.value(Bound::Highest, shift, IVec2::new(column, row));
+        let rise = Vec2::new(at(high.x, node.y) - at(low.x, node.y), at(node.x, high.y) - at(node.x, low.y));
+        rise / (high - low).max(IVec2::ONE).as_vec2()
+    }
+
     /// A height that nothing which interpolation reads between two places exceeds; none where no map is. `shift` is that of the
     /// rectangle's extent; a coarser level answers where more than four texels of it are touched.
     pub fn highest_below(&self, low: Vec2, high: Vec2, shift: i32) -> Option<f32> {
@@ -79,26 +97,35 @@ impl<T: Texel> Field<'_, T> {
         })
     }
 
-    /// The ray parameter, 0 to 1 from `near` to `far`, at which a line over at most three cells of the data first meets the
-    /// surface. `tolerance` is how near a height counts as met where the root is approached.
-    pub fn intersect(&self, near: Vec3, far: Vec3, tolerance: f32) -> Option<f32> {
-        let whole = far - near;
-        let u = crossing(near.x, far.x);
-        let v = crossing(near.y, far.y);
+    /// The ray parameter, 0 to 1 from `near` to `far` in nodes, at which a line as short as a texel of a level first meets the
+    /// interpolated surface of that level. It crosses at most three cells. `tolerance` is how near a height counts as met where
+    /// the root is approached, on the data.
+    pub fn intersect(&self, shift: i32, near: Vec3, far: Vec3, tolerance: f32) -> Option<f32> {
+        // A coarser level's texel stands in the middle of the nodes that it covers.
+        let size = (-shift as f32).exp2();
+        let texel = |place: Vec3| (place.xy() * size + (0.5 * size - 0.5)).extend(place.z);
+        let near = texel(near);
+        let whole = texel(far) - near;
+        let u = crossing(near.x, near.x + whole.x);
+        let v = crossing(near.y, near.y + whole.y);
         let ends = [0.0, u.min(v), u.max(v), 1.0];
+        let last_cell = (self.last(shift) - 1).max(IVec2::ZERO);
         ends.windows(2).find_map(|ends| {
-            let size = ends[1] - ends[0];
-            if size <= 0.0 {
+            let length = ends[1] - ends[0];
+            if length <= 0.0 {
                 return None;
             }
-            let from = near + ends[0] * whole;
-            let Cell { corner, .. } = self.cell(0, (from + 0.5 * size * whole).xy());
-            let inside = Vec3::new(from.x - corner.x as f32, from.y - corner.y as f32, from.z);
+            let (from, moved) = (near + ends[0] * whole, length * whole);
+            let cell = (from + 0.5 * moved).xy().floor().as_ivec2().clamp(IVec2::ZERO, last_cell);
+            // Beyond the outermost texels' middles the surface stays as it is there.
+            let inside = |place: Vec3| (place.xy() - cell.as_vec2()).clamp(Vec2::ZERO, Vec2::ONE);
+            let first = inside(from);
+            let (from, direction) = (first.extend(from.z), (inside(from + moved) - first).extend(moved.z));
             let t = match self.interpolation {
-                Interpolation::Bilinear => touch_bilinear(self.corners(0, corner), inside, size * whole),
-                Interpolation::Bicubic => touch_bicubic(self.around(0, corner), inside, size * whole, tolerance),
+                Interpolation::Bilinear => touch_bilinear(self.corners(shift, cell), from, direction),
+                Interpolation::Bicubic => touch_bicubic(self.around(shift, cell), from, direction, tolerance / size),
             };
-            t.map(|t| ends[0] + t * size)
+            t.map(|t| ends[0] + t * length)
         })
     }
 

@@ -43,6 +43,7 @@ mod shadow;
 mod show;
 mod solid;
 mod stage;
+mod view;
 
 use std::sync::Arc;
 
@@ -63,7 +64,7 @@ use self::object_depth::ObjectDepth;
 use self::object_hits::ObjectHits;
 use self::object_shadow::object_shadow;
 use self::objects::{ObjectMesh, Objects};
-pub use self::parameters::{Base, Interpolation, Lod, Parameters, Sun, Variant, View};
+pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
 use self::scene::{DeviceScene, Scene};
@@ -188,6 +189,11 @@ impl Terrain {
     /// Sets the view of the next frames. The caller has validated it.
     pub fn set_view(&mut self, view: View) {
         self.parameters.view = view;
+    }
+
+    /// Extinction by haze, as it was set or as it suits the maps.
+    pub fn extinction_per_km(&self) -> f32 {
+        self.parameters.extinction_per_km(&self.scene.extent)
     }
 
     /// A [`Hit`] of each pixel, on the device.
@@ -320,7 +326,7 @@ impl Paper for Terrain {
             let voids = map.voids_filled();
             format!("`map` {number} of {of}: voids are filled from their neighbours: {voids}")
         };
-        maps.map(warning).collect()
+        maps.map(warning).chain(self.parameters.haze_warning(&self.scene.extent)).collect()
     }
 
     fn picture(&self) -> &Arc<ImageView> {

@@ -107,7 +107,8 @@ pub fn normal_of<T: Texel>(caster: &RayCaster<'_, T>, direction: Vec3, hit: &Hit
     let normal = match hit.surface {
         Surface::Sky | Surface::Base => local.up,
         Surface::Terrain => {
-            let slope = field.slope(shift, place);
+            let is_between = hit.depth_m * terrain.pixel_nodes < terrain.node_normals_below;
+            let slope = if is_between { field.slope_between_nodes(shift, place) } else { field.slope(shift, place) };
             let slope = slope * ((-shift as f32).exp2() * unit_m) / local.spacing_m;
             local.up - slope.x * local.east - slope.y * local.south
         }

@@ -1,13 +1,12 @@
 //! The numbers of a configuration.
 
 use std::f32::consts::FRAC_PI_4;
-use std::f64::consts::PI;
 use std::ffi::OsStr;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use serde_json::{Value as Json, json};
 
-use super::placement::{Extent, Placement};
+use super::placement::Placement;
 use crate::field;
 use crate::measure::parameter::{
     self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one, parse_finite, parse_numbers,
@@ -70,6 +69,26 @@ pub enum Interpolation {
 impl Choice for Interpolation {
     const ALL: &'static [Self] = &[Interpolation::Bilinear, Interpolation::Bicubic];
     const NAMES: &'static [(&'static str, &'static str)] = &[("bilinear", "Eq. 7"), ("bicubic", "Catmull-Rom")];
+}
+
+/// The normals of the terrain's surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Normals {
+    /// [`Normals::Nodes`] where the cells of a bilinear surface are larger than a pixel, [`Normals::Surface`] elsewhere.
+    Auto,
+    /// Interpolated between those of the samples, which follow from their neighbours.
+    Nodes,
+    /// Of the interpolated surface itself.
+    Surface,
+}
+
+impl Choice for Normals {
+    const ALL: &'static [Self] = &[Normals::Auto, Normals::Nodes, Normals::Surface];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("auto", "Nodes where a bilinear cell is larger than a pixel, surface elsewhere"),
+        ("nodes", "Interpolated between those of the samples, without steps from cell to cell"),
+        ("surface", "Of the interpolated surface itself"),
+    ];
 }
 
 /// The base surface P that heights are added to along its normal (eq. 5, 6).
@@ -200,6 +219,8 @@ pub struct Parameters {
     pub lod: Lod,
     /// The surface between the samples.
     pub interpolation: Interpolation,
+    /// The normals of the terrain's surface.
+    pub normals: Normals,
     /// The surface below the heights.
     pub base: Base,
     /// The height in the maps' own frame at which the base lies, metres; the lowest sample without one.
@@ -210,8 +231,8 @@ pub struct Parameters {
     pub sun: Sun,
     /// The terrain throws shadows on itself; adds the pass `shadow`.
     pub shadows: bool,
-    /// Extinction by haze per kilometre, 0 to 1000.
-    pub haze_per_km: f32,
+    /// Extinction by haze per kilometre, 0 to 1000; by the scene's size without one.
+    pub haze_per_km: Option<f32>,
     /// Size of the picture in pixels.
     pub width: u32,
     /// Rows of pixels.
@@ -236,12 +257,13 @@ impl Default for Parameters {
         Parameters {
             lod: Lod::Pixel,
             interpolation: Interpolation::Bilinear,
+            normals: Normals::Auto,
             base: Base::Plane,
             base_level_m: None,
             view: View::Side,
             sun: Sun { azimuth_rad: 300.0_f32.to_radians(), elevation_rad: 35.0_f32.to_radians() },
             shadows: false,
-            haze_per_km: 0.02,
+            haze_per_km: None,
             width: 800,
             height: 600,
         }
@@ -257,6 +279,9 @@ impl Parameters {
                 .section("3")
                 .cost(Cost::Pipelines)
                 .everyday(),
+            Parameter::new("normals", field!(Parameters.normals))
+                .help("Normals of the surface that is seen")
+                .section("4"),
             Parameter::new("base", field!(Parameters.base))
                 .help(
                     "Base surface that heights are added to: plane, earth (WGS84), ellipsoid:EQUATORIAL,POLAR or \
@@ -288,7 +313,8 @@ impl Parameters {
             Parameter::new("haze", field!(Parameters.haze_per_km))
                 .range(Range::from(0.0).to(1000.0))
                 .unit("per kilometre")
-                .help("Extinction by haze"),
+                .help("Extinction by haze")
+                .default_text("0.24 over the maps' longest side, or half of the eye's distance where that is longer"),
             Parameter::new("camera", field!(Parameters.view))
                 .help("Camera: side, top, or eye and target x,y,z,x,y,z in metres: east, up from the base, south")
                 .everyday(),
@@ -358,35 +384,5 @@ impl Parameters {
     /// Width over height of the picture.
     pub fn aspect(&self) -> f64 {
         f64::from(self.width) / f64::from(self.height)
-    }
-
-    /// The camera of [`Parameters::view`] for maps of this extent.
-    pub fn camera(&self, extent: &Extent) -> Camera {
-        let size = extent.high - extent.low;
-        let center = (extent.high + extent.low) / 2.0;
-        let reach = size.x.max(size.z);
-        let fov_rad = PI / 4.0;
-        let (eye, target, up) = match self.view {
-            View::Camera(camera) => return camera,
-            View::Side => {
-                // So near that of a broad map nine rays in ten meet it.
-                let eye = DVec3::new(center.x, extent.high.y + 0.109 * reach, center.z + 0.45 * reach);
-                let target = DVec3::new(center.x, extent.low.y, center.z + 0.1 * reach);
-                (eye, target, Vec3::Y)
-            }
-            View::Top => {
-                let needed = size.z.max(size.x / self.aspect());
-                let eye = DVec3::new(center.x, extent.high.y + 0.53 * needed / (fov_rad / 2.0).tan(), center.z);
-                (eye, DVec3::new(center.x, extent.low.y, center.z), Vec3::NEG_Z)
-            }
-        };
-        Camera {
-            eye: eye.as_vec3(),
-            target: target.as_vec3(),
-            up,
-            vertical_fov_rad: fov_rad as f32,
-            near_m: (reach * 1e-3).max(1e-3) as f32,
-            far_m: (reach * 1e3).max(1.0) as f32,
-        }
     }
 }

@@ -184,29 +184,9 @@ impl<T: Texel> RayCaster<'_, T> {
         }
         let near = segment.near.lerp(segment.far, clip.near);
         let far = segment.near.lerp(segment.far, clip.far);
-        let t = match self.footprint {
-            Footprint::Data => self.field.intersect(near, far, self.terrain.height_tolerance),
-            Footprint::Pixel | Footprint::Level(_) => {
-                self.intersect_footprint(near, far, self.finest_shift(segment.depth_m))
-            }
-        }?;
+        let shift = self.finest_shift(segment.depth_m);
+        let t = self.field.intersect(shift, near, far, self.terrain.height_tolerance)?;
         let surface = if t > 0.0 { Surface::Terrain } else { clip.surface };
         Some((clip.near + t * (clip.far - clip.near), surface))
-    }
-
-    fn intersect_footprint(&self, near: Vec3, far: Vec3, shift: i32) -> Option<f32> {
-        let above = |place: Vec3| place.z - self.field.height(shift, place.xy());
-        let first = above(near);
-        if first <= 0.0 {
-            return Some(0.0);
-        }
-        let last = above(far);
-        if last > 0.0 {
-            return None;
-        }
-        // Regula falsi, twice.
-        let guess = first / (first - last);
-        let amid = above(near.lerp(far, guess));
-        Some(if amid <= 0.0 { guess * first / (first - amid) } else { guess + (1.0 - guess) * amid / (amid - last) })
     }
 }

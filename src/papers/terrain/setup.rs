@@ -170,7 +170,7 @@ impl Study for Setup {
         }
     }
 
-    fn config(&self, scene: &Scene, _: &Terrain) -> Map<String, Json> {
+    fn config(&self, scene: &Scene, terrain: &Terrain) -> Map<String, Json> {
         let map = |(source, input): (&HeightMapSource, &MapInput)| {
             let Placement { center_m, turn_rad } = input.placement;
             json!({
@@ -182,7 +182,8 @@ impl Study for Setup {
         let maps: Vec<Json> = self.maps.iter().zip(&scene.maps).map(map).collect();
         let first = scene.maps.first().map(|input| input.map.width().max(input.map.height()));
         let mut config = parameter::config(&Self::parameters(), self);
-        config.extend(entries([("resolution", json!(first)), ("maps", json!(maps))]));
+        let haze = terrain.extinction_per_km();
+        config.extend(entries([("resolution", json!(first)), ("maps", json!(maps)), ("haze", json!(haze))]));
         config
     }
 

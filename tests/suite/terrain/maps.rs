@@ -4,6 +4,7 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use fumarole::papers::terrain::{MapInput, Placement};
+use fumarole::scene::random::Random;
 use fumarole::scene::{HeightMap, Samples};
 use glam::DVec2;
 
@@ -56,4 +57,31 @@ pub fn adversaries() -> Vec<(&'static str, HeightMap)> {
         ("two by two", steps(2, 2, &|column, row| (1000 * (column + row)) as u16)),
         ("ditch", floats(5, 90, &|column, row| if row == 44 { -40.0 } else { column as f32 })),
     ]
+}
+
+/// Ridges and gorges at every scale down to the cells, 100 m apart: octaves of noise folded at its middle, each rough where the
+/// one before is high.
+pub fn ridges(random: &mut Random, (width, height): (u32, u32), highest_m: f32) -> HeightMap {
+    let mut heights = vec![0.0_f32; (width * height) as usize];
+    let mut carried = vec![1.0_f32; heights.len()];
+    for octave in 0..6 {
+        let knots = 3 << octave;
+        let grid: Vec<f32> = (0..(knots + 2) * (knots + 2)).map(|_| random.unit()).collect();
+        for (index, (sum, carried)) in heights.iter_mut().zip(&mut carried).enumerate() {
+            let along = |at: u32, side: u32| {
+                let place = at as f32 / side as f32 * knots as f32;
+                let t = place.fract();
+                (place as usize, t * t * (3.0 - 2.0 * t))
+            };
+            let ((i, a), (j, b)) = (along(index as u32 % width, width), along(index as u32 / width, height));
+            let at = |i: usize, j: usize| grid[j * (knots + 2) + i];
+            let north = at(i, j) + (at(i + 1, j) - at(i, j)) * a;
+            let south = at(i, j + 1) + (at(i + 1, j + 1) - at(i, j + 1)) * a;
+            let folded = 1.0 - (2.0 * (north + (south - north) * b) - 1.0).abs();
+            *carried *= folded * folded;
+            *sum += *carried * 0.6_f32.powi(octave);
+        }
+    }
+    let top = heights.iter().copied().fold(1e-3, f32::max);
+    map(width, height, Samples::Float(heights.iter().map(|h| h / top * highest_m).collect()), 100.0)
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fumarole::gpu::{Compiler, Device};
 use fumarole::measure::Variant as _;
-use fumarole::papers::terrain::{Base, Inputs, Interpolation, MapInput, Placement, Rays, Variant};
+use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, MapInput, Parameters, Placement, Rays, Variant};
 use fumarole::scene::Camera;
 use fumarole::scene::random::Random;
 use glam::{DVec2, DVec3, Vec3};
@@ -16,7 +16,7 @@ use super::verdict::{Judge, Tally};
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
-const THOUSANDTH: f64 = 1e-3;
+pub const THOUSANDTH: f64 = 1e-3;
 const VARIANTS: [Variant; 3] = [Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment];
 const STANDS: [Stand; 7] =
     [Stand::Above, Stand::Beside, Stand::Hovering, Stand::Under, Stand::Down, Stand::Up, Stand::Far(4.0)];
@@ -29,21 +29,27 @@ struct Trial {
 }
 
 /// All variants, and the pictures so far.
-struct Trials<'a> {
+pub struct Trials<'a> {
     device: &'a Arc<Device>,
     trials: Vec<Trial>,
     size: (u32, u32),
+    lod: Lod,
 }
 
 impl<'a> Trials<'a> {
-    fn new(device: &'a Arc<Device>, size: (u32, u32)) -> Self {
+    pub fn new(device: &'a Arc<Device>, size: (u32, u32)) -> Self {
         Self::compiled_by(device, size, &VARIANTS, &[Compiler::Glslang])
     }
 
     fn compiled_by(device: &'a Arc<Device>, size: (u32, u32), variants: &[Variant], compilers: &[Compiler]) -> Self {
         let pairs = variants.iter().flat_map(|&variant| compilers.iter().map(move |&compiler| (variant, compiler)));
         let trials = pairs.map(|(variant, compiler)| Trial { variant, compiler, tally: Tally::default() });
-        Trials { device, trials: trials.collect(), size }
+        Trials { device, trials: trials.collect(), size, lod: Lod::Exact }
+    }
+
+    /// At another level of detail.
+    pub fn at(self, lod: Lod) -> Self {
+        Trials { lod, ..self }
     }
 
     /// Looks at a world from stands by chance.
@@ -52,14 +58,14 @@ impl<'a> Trials<'a> {
         self.compare(world, &cameras, THOUSANDTH);
     }
 
-    fn compare(&mut self, world: &World, cameras: &[(Camera, String)], tolerance_cells: f64) {
-        let Trials { device, trials, size } = self;
+    pub fn compare(&mut self, world: &World, cameras: &[(Camera, String)], tolerance_cells: f64) {
+        let Trials { device, trials, size, lod } = self;
         let judge = |(camera, stand): &(Camera, String)| {
             (*camera, stand.clone(), Judge::new(world, &Rays::new(camera, size.0, size.1), *size, tolerance_cells))
         };
         let judges: Vec<_> = cameras.iter().map(judge).collect();
         let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
-        let parameters = world.parameters(cameras[0].0, *size);
+        let parameters = Parameters { lod: *lod, ..world.parameters(cameras[0].0, *size) };
         for Trial { variant, compiler, tally: sum } in trials {
             let mut painter = Painter::new(device, *compiler, *variant, &parameters, &inputs);
             for (camera, stand, judge) in &judges {
@@ -80,7 +86,7 @@ impl<'a> Trials<'a> {
     }
 
     /// No ray is wrong, less than one in a thousand ends elsewhere by a hair, and every kind of `kinds` was seen.
-    fn assert(&self, kinds: [bool; 5]) {
+    pub fn assert(&self, kinds: [bool; 5]) {
         self.assert_none_wrong();
         for Trial { variant, tally, .. } in &self.trials {
             let word = variant.as_str();

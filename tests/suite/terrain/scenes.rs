@@ -188,7 +188,7 @@ fn a_drape_lies_with_its_corners_on_the_maps() {
         let texels = (0..64u32).map(|i| colors[(i % 8 / 4 + 2 * (i / 8 / 4)) as usize]).collect();
         let drape = Drape::new(8, 8, texels).unwrap();
         let inputs = Inputs { maps: &maps, drape: Some(&drape), ..Inputs::default() };
-        let parameters = Parameters { haze_per_km: 0.0, ..small(View::Top, Lod::Exact) };
+        let parameters = Parameters { haze_per_km: Some(0.0), ..small(View::Top, Lod::Exact) };
         for variant in VARIANTS {
             let drawing = Drawing::with(device, variant, &parameters, &inputs);
             for (hit, pixel) in drawing.hits.iter().zip(drawing.picture.pixels().chunks_exact(4)) {

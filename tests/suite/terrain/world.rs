@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fumarole::papers::terrain::reference::{self, Grid, Place};
-use fumarole::papers::terrain::{Base, Interpolation, Lod, MapInput, Parameters, Placement, View};
+use fumarole::papers::terrain::{Base, Interpolation, Lod, MapInput, Normals, Parameters, Placement, View};
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, HeightMap, Samples};
 use glam::{DQuat, DVec2, DVec3, Vec2Swizzles, Vec3};
@@ -51,7 +51,8 @@ impl World {
     pub fn parameters(&self, camera: Camera, (width, height): (u32, u32)) -> Parameters {
         let (base, interpolation, base_level_m) = (self.base, self.interpolation, self.base_level_m);
         let view = View::Camera(camera);
-        Parameters { lod: Lod::Exact, base, interpolation, base_level_m, view, width, height, ..Parameters::default() }
+        let (lod, normals) = (Lod::Exact, Normals::Surface);
+        Parameters { lod, normals, base, interpolation, base_level_m, view, width, height, ..Parameters::default() }
     }
 
     /// A direction of the world (east, up, south at its origin) as the oracle has it, whose curved bases turn about y. On a

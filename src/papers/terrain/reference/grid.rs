@@ -116,6 +116,28 @@ impl Grid {
         Sample { height_m, gradient: [local[0] / self.spacing[0], local[1] / self.spacing[1]] }
     }
 
+    /// Gradients of the nodes, interpolated by eq. 7: a node's is the difference of its neighbours over their distance.
+    pub fn gradient_between_nodes(&self, uv: [f64; 2]) -> [f64; 2] {
+        let cell = self.cell(uv);
+        let at = |axis: usize| {
+            let place = (uv[axis] - self.origin[axis]) / self.spacing[axis] - cell[axis] as f64;
+            place.clamp(0.0, 1.0)
+        };
+        [0, 1].map(|axis| {
+            let of_node = |i: usize, j: usize| {
+                let node = [cell[0] + i, cell[1] + j];
+                let (mut before, mut after) = (node.map(|n| n as isize), node.map(|n| n as isize));
+                let is_endless = axis == 0 && self.closes;
+                before[axis] -= isize::from(is_endless || node[axis] > 0);
+                after[axis] += isize::from(is_endless || node[axis] + 1 < self.size[axis]);
+                let rise = self.node(after[0], after[1]) - self.node(before[0], before[1]);
+                rise / (self.spacing[axis] * (after[axis] - before[axis]) as f64)
+            };
+            let along = |j: usize| (1.0 - at(0)) * of_node(0, j) + at(0) * of_node(1, j);
+            (1.0 - at(1)) * along(0) + at(1) * along(1)
+        })
+    }
+
     /// Eq. 7 as printed, and its derivatives in cells.
     fn bilinear(&self, cell: [usize; 2], [u, v]: [f64; 2]) -> (f64, [f64; 2]) {
         let [mu, mv] = cell.map(|c| c as isize);

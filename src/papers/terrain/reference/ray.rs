@@ -183,9 +183,17 @@ impl Terrain {
 
     /// The unit normal of the map's surface F = P + n h at (u, v): F_u x F_v, outward.
     pub fn surface_normal(&self, map: &Grid, uv: [f64; 2]) -> DVec3 {
-        let sample = map.interpolate(self.interpolation, uv);
-        let frame = self.base.frame(Place { uv, h: sample.height_m - self.base_level_m });
-        let slope = |axis: usize| sample.gradient[axis] / frame.scales[axis];
+        self.normal_of(map, uv, map.interpolate(self.interpolation, uv).gradient)
+    }
+
+    /// The unit normal of a surface through the map's at (u, v) that has the interpolated gradients of the nodes.
+    pub fn normal_between_nodes(&self, map: &Grid, uv: [f64; 2]) -> DVec3 {
+        self.normal_of(map, uv, map.gradient_between_nodes(uv))
+    }
+
+    fn normal_of(&self, map: &Grid, uv: [f64; 2], gradient: [f64; 2]) -> DVec3 {
+        let frame = self.base.frame(Place { uv, h: self.height_above_base(map, uv) });
+        let slope = |axis: usize| gradient[axis] / frame.scales[axis];
         let steep = |axis: usize| if frame.scales[axis] == 0.0 { 0.0 } else { slope(axis) };
         (frame.normal - frame.axes[0] * steep(0) - frame.axes[1] * steep(1)).normalize()
     }
