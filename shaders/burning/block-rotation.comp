@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants OBJECT=shell,solid,melting
+
 // Eq. 4 and 5 and the algorithm after figure 3.6: a block rotates by gamma rho pi / (N M) for each vertex that
 // unbalanced it, and by its neighbours' own change, -x times at the sides and +x times above and below. Printed, eq. 5
 // calls M epsilon. One thread a block gathers; the total angle is clamped, for a free block (two or more sides without
@@ -33,18 +35,21 @@ bool has_weight(uint block) {
 // Number of live vertices; of a solid's block the less, the longer it has been burning (5.4).
 float weight_of(uint block) {
     float live = float(blocks[block].live);
-    if (constants.variant != SOLID) {
-        return live;
-    }
+#ifdef OBJECT_SOLID
     float flammability = constants.flammability;
-    return live * flammability / (flammability + float(blocks[block].combustion));
+    live *= flammability / (flammability + float(blocks[block].combustion));
+#endif
+    return live;
 }
 
 // Melting blocks rotate outside the combustion-ready boundary and above the ignition alone: there is weight to support
 // (6.4).
 bool is_rigid(uint block) {
-    return constants.variant == MELTING
-        && (blocks[block].heated > 0 || midpoint_of(block).y <= constants.highest_source_y);
+#ifdef OBJECT_MELTING
+    return blocks[block].heated > 0 || midpoint_of(block).y <= constants.highest_source_y;
+#else
+    return false;
+#endif
 }
 
 vec3 own_change(uint block) {

@@ -13,7 +13,6 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     uint vertex_count;
     uint triangle_count; // finest triangles
     uint draw_vertex_count;
-    uint variant; // SHELL to MELTING
     float growth_per_tick; // of the boundary's radius
     float area_width; // of the boundary
     float highest_source_y;
@@ -32,21 +31,13 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     float outward; // 1 where triangles wind outwards, else -1
     float retired_left; // L at which a vertex of a solid retires (5.5), else 0
     float char_depth; // of a solid
-    uint active_limit; // of vertices (3.7.1), 0 for none
-    uint keep_connected; // 1 where neighbours are kept connected (3.5.4)
+    uint active_limit; // of vertices (3.7.1), NONE for none
     uint seed;
     uint levels; // of the refinement pattern
     uint coarse_count; // coarse triangles
     uint fire_pool; // most fire particles
     uint smoke_pool; // most smoke particles
 } constants;
-
-// Variants, numbered as src/papers/burning/parameters.rs does.
-const uint SHELL = 0u;
-const uint LOW_POLY = 1u;
-const uint FULLY_SUBDIVIDED = 2u;
-const uint SOLID = 3u;
-const uint MELTING = 4u;
 
 // Areas of the heat boundary, from the outside in (3.3, 4.3).
 const uint OUTSIDE = 0u;

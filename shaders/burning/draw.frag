@@ -1,6 +1,6 @@
 #version 450
 
-// A surface of one albedo.
+// A surface of one albedo, or of the colours of areas or blocks.
 
 #include "burning/lit.glsl"
 

@@ -37,41 +37,46 @@ uint first_of(uint count, uint before, uint total) {
     return uint(float(count) * (float(before) / float(max(total, 1u))));
 }
 
+uint ready_of(uint block) {
+    return uint(max(blocks[block].ready, 0));
+}
+
+uint weight_of(uint block) {
+    return blocks[block].ready > 0 ? uint(blocks[block].live) : 0u;
+}
+
 void main() {
     uint thread = gl_LocalInvocationID.x;
     uint block_count = constants.block_count;
-    uint weight_before = 0u;
-    uint ready_before = 0u;
-    for (uint base = 0u; base <= block_count; base += GROUP) {
-        uint block = base + thread;
-        uint weight = 0u;
-        uint ready = 0u;
-        if (block < block_count) {
-            ready = uint(max(blocks[block].ready, 0));
-            weight = ready > 0u ? uint(blocks[block].live) : 0u;
-            listed[block] = 0u;
-        }
-        uint weight_sum = weight_before + sum_before(thread, weight);
-        weight_before += sums[GROUP - 1u];
-        barrier();
-        uint ready_sum = ready_before + sum_before(thread, ready);
-        ready_before += sums[GROUP - 1u];
-        barrier();
-        if (block <= block_count) {
-            groups[block].first_fire = weight_sum;
-            groups[block].first_ready = ready_sum;
-            groups[block].weight = weight;
-        }
+    // A run of blocks a thread, of 4,096 at most.
+    uint run = (block_count + GROUP - 1u) / GROUP;
+    uint from = min(thread * run, block_count);
+    uint to = min(from + run, block_count);
+    uint weight = 0u;
+    uint ready = 0u;
+    for (uint block = from; block < to; block++) {
+        weight += weight_of(block);
+        ready += ready_of(block);
     }
-    float fraction = min(1.0, float(weight_before) / (FRACTION_FOR_ALL * float(constants.vertex_count)));
+    uint weight_before = sum_before(thread, weight);
+    uint total = sums[GROUP - 1u];
+    barrier();
+    uint ready_before = sum_before(thread, ready);
+    uint total_ready = sums[GROUP - 1u];
+    float fraction = min(1.0, float(total) / (FRACTION_FOR_ALL * float(constants.vertex_count)));
     uint fire = uint(float(constants.fire_pool) * fraction);
     uint smoke = uint(float(constants.smoke_pool) * fraction);
-    for (uint block = thread; block <= block_count; block += GROUP) {
-        uint before = groups[block].first_fire;
-        groups[block].first_fire = first_of(fire, before, weight_before);
-        groups[block].first_smoke = first_of(smoke, before, weight_before);
+    for (uint block = from; block < to; block++) {
+        uint own = weight_of(block);
+        uint first_fire = first_of(fire, weight_before, total);
+        uint first_smoke = first_of(smoke, weight_before, total);
+        groups[block] = Group(first_fire, first_smoke, ready_before, own);
+        listed[block] = 0u;
+        weight_before += own;
+        ready_before += ready_of(block);
     }
     if (thread == 0u) {
+        groups[block_count] = Group(first_of(fire, total, total), first_of(smoke, total, total), total_ready, 0u);
         clock.fire_particles = 0u;
         clock.smoke_particles = 0u;
     }

@@ -13,8 +13,7 @@ layout(set = 0, binding = 18, std430) buffer Clock {
 };
 
 void main() {
-    uint limit = constants.active_limit;
-    bool halts = limit > 0u && clock.active_vertices > limit;
+    bool halts = clock.active_vertices > constants.active_limit;
     clock.tick += 1u;
     clock.growth_ticks += halts ? 0u : 1u;
     clock.radius = constants.growth_per_tick * float(clock.growth_ticks);

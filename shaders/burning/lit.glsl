@@ -13,18 +13,12 @@ const vec3 EMBERS = vec3(1.0, 0.35, 0.05);
 // `pattern` is what the surface's material makes of the albedo, a factor of it.
 vec4 lit(vec3 pattern) {
     vec3 n = normalize(normal.xyz);
-    if (view.shading == NORMALS) {
-        return vec4(0.5 + 0.5 * n, 1.0);
-    }
     vec3 to_eye = view.eye - position;
     if (dot(n, to_eye) < 0.0) {
         n = -n;
     }
-    vec3 albedo = color.rgb;
-    if (view.shading == LIT) {
-        // `color` mixes the plain albedo with that of char; this replaces it by the pattern's.
-        albedo += (1.0 - normal.w) * constants.albedo * (pattern - 1.0);
-    }
+    // `color` mixes the plain albedo with that of char; this replaces it by the pattern's.
+    vec3 albedo = color.rgb + (1.0 - normal.w) * constants.albedo * (pattern - 1.0);
     float light = view.ambient + (1.0 - view.ambient) * max(dot(n, view.to_light), 0.0);
     return vec4(albedo * light + color.a * EMBERS, 1.0);
 }

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants STEP=eligible,finest,inner
+
 // Sections 4.4.2 and 4.4.3: which triangles of the refinement pattern are in use. The first dispatch finds the coarse
 // triangles that are eligible, by their sets of barycentric points; then one dispatch a level, from the finest parents
 // up to the coarse triangles, splits nodes. The level below is finished when a dispatch reads it, and several threads
@@ -22,6 +24,7 @@ layout(set = 0, binding = 2, std430) readonly buffer Triangles {
     uint triangles[]; // three vertices a finest triangle
 };
 
+#ifdef STEP_ELIGIBLE
 layout(set = 0, binding = 36, std430) readonly buffer BarycentricPoints {
     uint barycentric_points[]; // indices in a coarse triangle's section of `triangles`
 };
@@ -29,15 +32,7 @@ layout(set = 0, binding = 36, std430) readonly buffer BarycentricPoints {
 layout(set = 0, binding = 11, std430) readonly buffer Labels {
     uint labels[]; // of vertices
 };
-
-layout(set = 0, binding = 12, std430) readonly buffer TriangleLabels {
-    uint triangle_labels[]; // of finest triangles
-};
-
-layout(set = 0, binding = 37, std430) buffer Eligible {
-    uint eligible[]; // of coarse triangles
-};
-
+#else
 layout(set = 0, binding = 25, std430) buffer Statuses {
     int statuses[]; // of nodes
 };
@@ -45,14 +40,29 @@ layout(set = 0, binding = 25, std430) buffer Statuses {
 layout(set = 0, binding = 24, std430) buffer Alive {
     uint alive[]; // of vertices
 };
+#endif
+
+#ifdef STEP_FINEST
+layout(set = 0, binding = 12, std430) readonly buffer TriangleLabels {
+    uint triangle_labels[]; // of finest triangles
+};
+#endif
+
+#ifndef STEP_INNER
+layout(set = 0, binding = 37, std430) buffer Eligible {
+    uint eligible[]; // of coarse triangles
+};
+#endif
 
 layout(push_constant, std430) uniform Dispatch {
-    uint level; // of the nodes to split; the finest one finds the eligible coarse triangles
+    uint level; // of the nodes to split
     uint points; // barycentric points a coarse triangle
 } dispatch;
 
+#ifdef STEP_ELIGIBLE
 // "Returns true if coarse triangle T is eligible."
-void find_eligible(uint thread) {
+void main() {
+    uint thread = gl_GlobalInvocationID.x;
     uint coarse = thread / dispatch.points;
     if (coarse >= constants.coarse_count || eligible[coarse] != 0u) {
         return;
@@ -63,19 +73,23 @@ void find_eligible(uint thread) {
     }
 }
 
+#else
+
+#ifdef STEP_FINEST
+bool must_be_split(uint coarse, uint index) {
+    uint finest = finest_at(coarse, dispatch.level, index);
+    uint near = max(triangle_labels[finest], triangle_labels[finest + 1u]);
+    uint far = max(triangle_labels[finest + 2u], triangle_labels[finest + 3u]);
+    uint label = max(near, far);
+    return label >= INITIAL || (label >= VIRTUAL && eligible[coarse] != 0u);
+}
+#else
 bool midpoint_is_alive(uint coarse, uint level, uint index, uint edge) {
     return alive[triangles[midpoint_at(coarse, level, index, edge)]] != 0u;
 }
 
 bool must_be_split(uint coarse, uint index) {
     uint child = 4u * index;
-    if (dispatch.level + 1u == constants.levels) {
-        uint finest = finest_at(coarse, dispatch.level, index);
-        uint near = max(triangle_labels[finest], triangle_labels[finest + 1u]);
-        uint far = max(triangle_labels[finest + 2u], triangle_labels[finest + 3u]);
-        uint label = max(near, far);
-        return label >= INITIAL || (label >= VIRTUAL && eligible[coarse] != 0u);
-    }
     uint below = dispatch.level + 1u;
     uint at = node_at(coarse, below, child);
     for (uint i = 0u; i < 4u; i++) {
@@ -93,13 +107,10 @@ bool must_be_split(uint coarse, uint index) {
     }
     return false;
 }
+#endif
 
 void main() {
     uint thread = gl_GlobalInvocationID.x;
-    if (dispatch.level == constants.levels) {
-        find_eligible(thread);
-        return;
-    }
     uint coarse = thread / power_of_four(dispatch.level);
     uint index = thread % power_of_four(dispatch.level);
     if (coarse >= constants.coarse_count) {
@@ -120,3 +131,4 @@ void main() {
         alive[triangles[midpoint_at(coarse, dispatch.level, index, edge)]] = 1u;
     }
 }
+#endif

@@ -1,7 +1,9 @@
 #version 450
 
-// A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless its
-// block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
+#pragma variants PARTS=kept,free
+
+// A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless parts
+// are kept and its block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
 
 layout(local_size_x = 64) in;
 
@@ -23,16 +25,17 @@ layout(set = 0, binding = 13, std430) buffer Removed {
     uint removed[];
 };
 
+layout(set = 0, binding = 18, std430) buffer Clock {
+    Counts clock;
+};
+
+#ifdef PARTS_KEPT
 layout(set = 0, binding = 14, std430) readonly buffer Cells {
     uint cells[];
 };
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
     Block blocks[];
-};
-
-layout(set = 0, binding = 18, std430) buffer Clock {
-    Counts clock;
 };
 
 bool has_weight(uint block) {
@@ -57,6 +60,7 @@ bool is_needed(uint block) {
     }
     return false;
 }
+#endif
 
 void main() {
     uint triangle = gl_GlobalInvocationID.x;
@@ -67,9 +71,11 @@ void main() {
     if (new_state[at.x].left > 0.0 || new_state[at.y].left > 0.0 || new_state[at.z].left > 0.0) {
         return;
     }
-    if (constants.keep_connected == 1u && is_needed(cells[at.x])) {
+#ifdef PARTS_KEPT
+    if (is_needed(cells[at.x])) {
         return;
     }
+#endif
     removed[triangle] = 1u;
     atomicAdd(clock.removed_triangles, 1u);
 }

@@ -1,7 +1,8 @@
 #version 450
 
 // Second phase: one workgroup makes of the counts the index of each workgroup's first triangle, and writes what the
-// draw reads.
+// draw reads. A thread adds up a run of counts, at most 8,192 where a storage buffer holds 128 MiB, by itself, so that
+// no number of triangles comes near the 65,535 iterations after which lavapipe ends the loops of a shader.
 
 layout(local_size_x = 256) in;
 
@@ -27,23 +28,23 @@ layout(push_constant, std430) uniform Groups {
 
 void main() {
     uint thread = gl_LocalInvocationID.x;
-    uint before = 0u;
-    for (uint base = 0u; base < groups.count; base += GROUP) {
-        uint group = base + thread;
-        uint value = 0u;
-        if (group < groups.count) {
-            value = group_sums[group];
-        }
-        uint first = before + sum_before(thread, value);
-        if (group < groups.count) {
-            group_sums[group] = first;
-        }
-        before += sums[GROUP - 1u];
-        barrier();
+    uint run = (groups.count + GROUP - 1u) / GROUP;
+    uint first = min(thread * run, groups.count);
+    uint end = min(first + run, groups.count);
+    uint own = 0u;
+    for (uint group = first; group < end; group++) {
+        own += group_sums[group];
+    }
+    uint before = sum_before(thread, own);
+    for (uint group = first; group < end; group++) {
+        uint value = group_sums[group];
+        group_sums[group] = before;
+        before += value;
     }
     if (thread == 0u) {
-        clock.drawn_triangles = before;
-        arguments[0] = 3u * before;
+        uint drawn = sums[GROUP - 1u];
+        clock.drawn_triangles = drawn;
+        arguments[0] = 3u * drawn;
         arguments[1] = 1u;
         arguments[2] = 0u;
         arguments[3] = 0u;

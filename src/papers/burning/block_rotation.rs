@@ -2,6 +2,7 @@
 
 use super::buffers::Buffers;
 use super::model::Model;
+use super::parameters::Variant;
 use super::ping_pong::{PingPong, build, new, old};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
@@ -9,8 +10,18 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 ///
 /// # Errors
 /// Those of the Vulkan layer.
-pub fn block_rotation(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<1>, Error> {
-    let rotate = Pass::compute("block-rotation", "3.5.2", "burning/block-rotation.comp")
+pub fn block_rotation(
+    shaders: &ShaderLibrary,
+    variant: Variant,
+    buffers: &Buffers,
+    model: &Model,
+) -> Result<PingPong<1>, Error> {
+    let object = match variant {
+        Variant::Shell | Variant::LowPoly | Variant::FullySubdivided => "shell",
+        Variant::Solid => "solid",
+        Variant::Melting => "melting",
+    };
+    let rotate = Pass::compute("block-rotation", "3.5.2", &format!("burning/block-rotation-{object}.comp"))
         .with("constants", &buffers.constants)
         .with("Blocks", &buffers.blocks);
     let rotations = [old("OldRotations", &buffers.rotations), new("NewRotations", &buffers.rotations)];

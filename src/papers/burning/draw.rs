@@ -8,7 +8,7 @@ use glam::{Mat4, Vec3};
 use super::buffers::Buffers;
 use super::framing;
 use super::model::Model;
-use super::parameters::{Material, Parameters};
+use super::parameters::{Material, Parameters, Shading};
 use super::texture::Surface;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
@@ -22,7 +22,7 @@ host_block! {
         eye: Vec3,
         ambient: f32,
         to_light: Vec3,
-        shading: u32,
+        _pad: f32,
     }
 }
 
@@ -71,7 +71,7 @@ impl Draw {
             eye: camera.eye,
             ambient: AMBIENT,
             to_light: TO_LIGHT.normalize(),
-            shading: parameters.shading as u32,
+            _pad: 0.0,
         };
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let view = upload(device, &format!("{label}/view"), usage, bytemuck::bytes_of(&block))?;
@@ -84,24 +84,27 @@ impl Draw {
             }
             Some(texture) => Some(Surface::new(shaders, label, texture, coordinates)?),
         };
-        // A shader a material: devices that run both sides of a branch would pay for all of them.
-        let pass = match (&surface, parameters.material) {
-            (Some(surface), _) => {
-                Pass::graphics("draw", "3.8", "burning/draw-textured.vert", "burning/draw-textured.frag")
-                    .with("TextureCoordinates", &surface.coordinates)
-                    .with("TextureLevels", &surface.levels)
-                    .with("texels", &surface.texels)
-            }
-            (None, Material::Plain) => Pass::graphics("draw", "3.8", "burning/draw.vert", "burning/draw.frag"),
-            (None, Material::Wood) => Pass::graphics("draw", "3.8", "burning/draw.vert", "burning/draw-wood.frag"),
+        let (vertex, fragment) = shaders_of(parameters);
+        let mut pass =
+            Pass::graphics("draw", "3.8", &format!("burning/{vertex}.vert"), &format!("burning/{fragment}.frag"));
+        pass = match parameters.shading {
+            Shading::Areas => pass.with("Labels", &buffers.labels),
+            Shading::Blocks => pass.with("Cells", &buffers.cells),
+            _ => pass,
         };
+        if let (Some(surface), "draw-textured") = (&surface, fragment) {
+            pass = pass
+                .with("TextureCoordinates", &surface.coordinates)
+                .with("TextureLevels", &surface.levels)
+                .with("texels", &surface.texels);
+        }
+        if fragment != "draw-normals" {
+            pass = pass.with("constants", &buffers.constants);
+        }
         let pass = pass
-            .with("constants", &buffers.constants)
             .with("view", &view)
             .with("Rest", &buffers.rest)
             .with("Welds", &buffers.welds)
-            .with("Labels", &buffers.labels)
-            .with("Cells", &buffers.cells)
             .with("Mapped", &buffers.mapped)
             .with("Normals", &buffers.normals)
             .with("Colors", &buffers.colors)
@@ -119,5 +122,19 @@ impl Draw {
         frame.graphics(&self.pass, |draw| {
             draw.indices_indirect();
         })
+    }
+}
+
+/// The pass's vertex and fragment shader: one each for what colours the surface. Devices that run both sides of a branch
+/// would pay for all of them, and drivers that fold a uniform's value into a shader compile it anew.
+fn shaders_of(parameters: &Parameters) -> (&'static str, &'static str) {
+    match (parameters.shading, &parameters.texture, parameters.material) {
+        (Shading::Areas, ..) => ("draw-areas", "draw"),
+        (Shading::Blocks, ..) => ("draw-blocks", "draw"),
+        (Shading::Normals, ..) => ("draw-surface", "draw-normals"),
+        // Edges stand out on a surface without a pattern.
+        (Shading::Wire, ..) | (Shading::Lit, None, Material::Plain) => ("draw-surface", "draw"),
+        (Shading::Lit, Some(_), _) => ("draw-textured", "draw-textured"),
+        (Shading::Lit, None, Material::Wood) => ("draw-surface", "draw-wood"),
     }
 }

@@ -11,7 +11,7 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["burning/internal-deformation.comp", "burning/normals.comp", "burning/draw.frag"] {
         check_block::<Constants>(shader, "constants");
     }
-    check_block::<ViewBlock>("burning/draw.vert", "view");
+    check_block::<ViewBlock>("burning/draw-surface.vert", "view");
     let clock = block("burning/heat-boundary-clock.comp", "Clock");
     let counts = clock.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(counts.check_host::<Counts>(), Ok(()));

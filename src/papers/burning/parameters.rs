@@ -15,7 +15,7 @@ use crate::measure::parameter::{
 };
 use crate::scene::Camera;
 
-/// The methods, one a chapter, numbered as `burning/constants.glsl` does.
+/// The methods, one a chapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Variant {
     /// Chapter 3: a dense shell.
@@ -72,7 +72,7 @@ impl Choice for Material {
         &[("plain", "The albedo alone"), ("wood", "The albedo with the rings of a tree")];
 }
 
-/// The quantity that colours the mesh, numbered as `burning/view.glsl` does.
+/// The quantity that colours the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
     /// Lit, charred and glowing: the finished picture.

@@ -16,7 +16,7 @@ use crate::host_block;
 host_block! {
     /// Push constants of `burning/refinement.comp`.
     struct Dispatch {
-        /// Level of the nodes to split; the finest one finds the eligible coarse triangles.
+        /// Level of the nodes to split.
         level: u32,
         /// Barycentric points of a coarse triangle.
         points: u32,
@@ -29,7 +29,8 @@ pub struct Refinement {
     pub statuses: Arc<Buffer>,
     /// The finest level that is drawn.
     pub(super) level_of_detail: u32,
-    pass: Pass,
+    /// Finds the eligible coarse triangles, splits nodes above the finest level, and splits the others.
+    steps: [Pass; 3],
     levels: u32,
     coarse_count: u32,
     /// Barycentric points of a coarse triangle.
@@ -60,23 +61,25 @@ impl Refinement {
         let points = tree::barycentric_points(levels);
         let statuses = table("statuses", bytemuck::cast_slice::<i32, u8>(&statuses))?;
         let eligible = table("eligible", &vec![0; 4 * coarse_count as usize])?;
-        let pass = Pass::compute("refinement", "4.4", "burning/refinement.comp")
-            .constants::<Dispatch>()
-            .with("constants", &buffers.constants)
-            .with("Triangles", &buffers.triangles)
+        let step = |name: &str| {
+            Pass::compute("refinement", "4.4", &format!("burning/refinement-{name}.comp"))
+                .constants::<Dispatch>()
+                .with("constants", &buffers.constants)
+                .with("Triangles", &buffers.triangles)
+        };
+        let find = step("eligible")
             .with("BarycentricPoints", &table("barycentric-points", bytemuck::cast_slice(&points))?)
             .with("Labels", &buffers.labels)
-            .with("TriangleLabels", &buffers.triangle_labels)
-            .with("Eligible", &eligible)
-            .with("Statuses", &statuses)
-            .with("Alive", &buffers.alive)
-            .build(shaders)?;
+            .with("Eligible", &eligible);
+        let split = |name: &str| step(name).with("Statuses", &statuses).with("Alive", &buffers.alive);
+        let split_finest = split("finest").with("TriangleLabels", &buffers.triangle_labels).with("Eligible", &eligible);
+        let steps = Pass::steps([find.build(shaders)?, split_finest.build(shaders)?, split("inner").build(shaders)?]);
         buffers.keep(shaders, &statuses)?;
         buffers.keep(shaders, &eligible)?;
         let distance = framing::camera(parameters, model).eye.distance(model.bounds.center());
         let chosen = parameters.level_of_detail.unwrap_or_else(|| level_of_detail(levels, distance));
         let level_of_detail = chosen.min(levels);
-        Ok(Refinement { statuses, level_of_detail, pass, levels, coarse_count, points: points.len() as u32 })
+        Ok(Refinement { statuses, level_of_detail, steps, levels, coarse_count, points: points.len() as u32 })
     }
 
     /// Nodes of the patterns of all coarse triangles.
@@ -89,15 +92,19 @@ impl Refinement {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let mut dispatch_level = |level: u32, threads: u32| {
+        let mut run = |step: &Pass, level: u32, threads: u32| {
             let constants = Dispatch { level, points: self.points };
-            frame.compute(&self.pass, |dispatch| {
+            frame.compute(step, |dispatch| {
                 dispatch.constants(&constants).threads(self.coarse_count * threads, 1, 1);
             })
         };
-        dispatch_level(self.levels, self.points)?;
+        let [find, split_finest, split] = &self.steps;
+        run(find, self.levels, self.points)?;
         // A level reads what the one below it wrote.
-        (0..self.levels).rev().try_for_each(|level| dispatch_level(level, tree::triangles_of(level)))
+        (0..self.levels).rev().try_for_each(|level| {
+            let step = if level + 1 == self.levels { split_finest } else { split };
+            run(step, level, tree::triangles_of(level))
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use ash::vk;
 
 use super::buffers::Buffers;
 use super::model::Model;
-use super::parameters::Variant;
+use super::parameters::{Parameters, Variant};
 use super::ping_pong::{self, new};
 use super::refinement::Refinement;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
@@ -52,7 +52,7 @@ impl SurfaceRemoval {
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
-        variant: Variant,
+        (variant, parameters): (Variant, &Parameters),
         buffers: &Buffers,
         refinement: Option<&Refinement>,
         model: &Model,
@@ -66,12 +66,14 @@ impl SurfaceRemoval {
         };
         let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(sum_count));
         let sums = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
-        let mark = step("burning/surface-removal-mark.comp")
-            .with("Triangles", &buffers.triangles)
-            .with("Removed", &buffers.removed)
-            .with("Cells", &buffers.cells)
-            .with("Blocks", &buffers.blocks)
-            .with("Clock", &buffers.clock);
+        let mark = match parameters.keep_connected {
+            true => step("burning/surface-removal-mark-kept.comp")
+                .with("Cells", &buffers.cells)
+                .with("Blocks", &buffers.blocks),
+            false => step("burning/surface-removal-mark-free.comp"),
+        };
+        let mark =
+            mark.with("Triangles", &buffers.triangles).with("Removed", &buffers.removed).with("Clock", &buffers.clock);
         let marks = ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])?;
         let over_all = |shader: &str| {
             let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);
