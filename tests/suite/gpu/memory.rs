@@ -11,7 +11,7 @@ use fumarole::gpu::physical::choose;
 use fumarole::gpu::{Compiler, Device, Instance, Mode, PhysicalDevice, Recorder, ShaderLibrary};
 use fumarole::measure::study::{Study, Visitor};
 use fumarole::measure::{Error, Paper, Variant};
-use fumarole::papers::{self, gas};
+use fumarole::papers::{self, burning, caustics, gas, lava, terrain};
 
 use crate::common::{beside_others, wanted_device};
 
@@ -26,6 +26,26 @@ const LIMIT_KB: i64 = 1024;
 #[test]
 fn gas_needs_no_more_memory_from_frame_to_frame() {
     stays_flat::<gas::setup::Setup>("size=48x32 steps=12 table=16");
+}
+
+#[test]
+fn burning_needs_no_more_memory_from_frame_to_frame() {
+    stays_flat::<burning::setup::Setup>("size=32x24 triangles=600 levels=2 first-frame=60 speed=0.3");
+}
+
+#[test]
+fn caustics_needs_no_more_memory_from_frame_to_frame() {
+    stays_flat::<caustics::setup::Setup>("mesh=box size=32x24 map-size=32 water-triangles=200 planes=5 levels=8");
+}
+
+#[test]
+fn lava_needs_no_more_memory_from_frame_to_frame() {
+    stays_flat::<lava::setup::Setup>("size=32x24 particles=2000 density=24x8x8 radius=0.2 splats=60x15");
+}
+
+#[test]
+fn terrain_needs_no_more_memory_from_frame_to_frame() {
+    stays_flat::<terrain::setup::Setup>("size=32x24 resolution=64");
 }
 
 /// Fails where 300 frames of a variant leave 1 MB behind; `parameters` make its frames short.
