@@ -15,6 +15,8 @@ layout(set = 0, binding = 3) uniform sampler nearest;
 
 layout(location = 0) out vec4 color;
 
+const float STEEPEST = 0.12; // cosine of the steepest face against the light
+
 void main() {
     vec3 point = to_box(receiver.bounds, world);
     float texels = receiver.bounds.texels;
@@ -22,13 +24,14 @@ void main() {
     vec2 base = floor(place);
     vec2 fraction = place - base;
 
-    // A texel belongs to this surface when its height differs by no more than the surface rises over a texel and a half.
-    vec3 normal = normalize(world_normal);
-    float facing = dot(normal, receiver.bounds.v);
-    float cos_light = max(facing, 0.05);
-    float rise = sqrt(1.0 - cos_light * cos_light) / cos_light;
-    float texel_m = max(receiver.bounds.extent.x, receiver.bounds.extent.z) / texels;
-    float tolerance_m = texel_m * (1.5 * rise + 0.5) + receiver.height_slack_m;
+    // A texel belongs to this surface when its height is that of the face's plane there, but for what a curved surface leaves it
+    // within a texel. A face that is seen nearly edge-on by the light would pass for any height: it counts as one of 83 degrees.
+    vec3 face = cross(dFdx(world), dFdy(world));
+    vec3 face_box = vec3(dot(receiver.bounds.u, face), dot(receiver.bounds.v, face), dot(receiver.bounds.w, face));
+    face_box *= face_box.y < 0.0 ? -1.0 : 1.0;
+    vec2 slope = -face_box.xz / max(face_box.y, max(STEEPEST * length(face), 1.0e-30));
+    vec2 texel_m = receiver.bounds.extent.xz / texels;
+    float tolerance_m = 0.5 * max(texel_m.x, texel_m.y) * (1.0 + length(slope)) + receiver.height_slack_m;
 
     vec3 lit = vec3(0.0);
     float total = 0.0;
@@ -37,12 +40,15 @@ void main() {
         vec2 weights = mix(1.0 - fraction, fraction, corner);
         ivec2 texel = ivec2(clamp(base + corner, vec2(0.0), vec2(texels - 1.0)));
         float height = texelFetch(sampler2D(position_map, nearest), texel, 0).r;
-        float weight = abs(height - point.y) <= tolerance_m ? weights.x * weights.y : 0.0;
+        float expected = point.y + dot(slope, (corner - fraction) * texel_m);
+        float weight = abs(height - expected) <= tolerance_m ? weights.x * weights.y : 0.0;
         lit += weight * texelFetch(sampler2D(combined_map, nearest), texel, 0).rgb;
         total += weight;
     }
-    // Texels of other surfaces say nothing about this one: the rest is spread over those that match.
+    // Texels of other surfaces say nothing about this one: the rest is spread over those that match, as long as they are a quarter of
+    // all, the least weight that the nearest can have. A smaller part fades: it must not light a place in shadow in full.
     // Where it faces away I_d is 0, whatever its lit neighbours across the silhouette hold.
-    lit = total > 0.0 && facing > 0.0 ? lit / total : vec3(0.0);
+    float facing = dot(world_normal, receiver.bounds.v);
+    lit = facing > 0.0 ? lit / max(total, 0.25) : vec3(0.0);
     color = vec4(lit + receiver.albedo * receiver.ambient, 1.0);
 }

@@ -8,7 +8,6 @@ layout(push_constant) uniform Water {
     HeightMap map;
     float eta; // refraction index of air over that of water
     float absorption_per_m;
-    float floor_depth_m; // of the deepest that can be seen, below the flat water
 } water;
 
 // Height above the level in x, slopes along x and z in y and z.

@@ -2,6 +2,7 @@
 
 use super::illumination_volumes::Ray;
 use super::receiver::BoxBlock;
+use super::receiver_tree::Node;
 use super::stencil_volumes::VolumesBlock;
 use super::underwater::CameraBlock;
 use super::view::ViewBlock;
@@ -21,8 +22,9 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["caustics/cast.vert", "caustics/stencil-receivers.vert"] {
         check_block::<CameraBlock>(shader, "camera");
     }
-    for shader in ["caustics/view-above.frag", "caustics/view-above-map.frag"] {
+    for shader in ["caustics/view-above.frag", "caustics/view-above-map.frag", "caustics/view-below.frag"] {
         check_block::<ViewBlock>(shader, "view");
+        check_list::<Node>(shader, "nodes");
     }
     for shader in ["caustics/receiver-map.vert", "caustics/diffuse-map.frag", "caustics/cast.frag"] {
         check_constants_member::<BoxBlock>(shader, "bounds");

@@ -29,6 +29,7 @@ mod position_diffuse_map;
 mod position_map;
 mod read_positions;
 mod receiver;
+mod receiver_tree;
 mod receivers;
 pub mod reference;
 mod reference_planes;
@@ -131,7 +132,7 @@ impl Caustics {
             .collect::<Result<Vec<_>, _>>()?;
         let depth_format = if variant == Variant::Stencil { DEPTH_STENCIL } else { DEPTH };
         let underwater = Underwater::new(context, depth_format)?;
-        let view = View::new(context, &underwater, &water_surface)?;
+        let view = View::new(context, &underwater, &water_surface, inputs)?;
         let (water, volumes) = (&water_surface, &illumination_volumes);
         let technique = match variant {
             Variant::LevelMap | Variant::LevelMapSmart => {

@@ -92,6 +92,8 @@ pub struct Parameters {
     pub time_step_s: f32,
     pub seed: u64,
     pub camera: Camera,
+    /// Rays of the picture in each pixel, 1 to 64.
+    pub samples: u32,
     /// Size of the picture in pixels.
     pub width: u32,
     pub height: u32,
@@ -115,6 +117,7 @@ impl Default for Parameters {
             time_step_s: 1.0 / 30.0,
             seed: 1,
             camera: Parameters::camera_above(3.0),
+            samples: 4,
             width: 800,
             height: 600,
         }
@@ -260,6 +263,10 @@ impl Parameters {
                 .help("Size of the picture")
                 .cost(Cost::Buffers)
                 .everyday()
+                .unrecorded(),
+            Parameter::new("samples", field!(Parameters.samples))
+                .range(Range::from(1.0).to(64.0))
+                .help("Rays of the finished picture in each pixel; no benchmark contains them")
                 .unrecorded(),
             Parameter::new("seed", field!(Parameters.seed))
                 .help("Seed of the waves' directions and phases")

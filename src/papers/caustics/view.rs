@@ -1,10 +1,12 @@
 //! Pass `view`: the finished picture, which is the cast seen through the water's surface from above (chapter 1), or
-//! plainly from below.
+//! plainly from below. Rays find the surface that a pixel shows, the cast its light.
 
 use std::sync::Arc;
 
 use ash::vk;
 
+use super::receiver::ReceiverInput;
+use super::receiver_tree::ReceiverTree;
 use super::resources::Context;
 use super::underwater::Underwater;
 use super::water::LEVEL_M;
@@ -20,9 +22,11 @@ host_block! {
         eye: [f32; 3],
         level_m: f32,
         underwater_eye: [f32; 3],
-        _pad: f32,
+        samples: u32,
         picture_size: [f32; 2],
         texture_size: [f32; 2],
+        node_count: u32,
+        _pad: [f32; 3],
     }
 }
 
@@ -32,7 +36,6 @@ host_block! {
         wave_count: u32,
         eta: f32,
         absorption_per_m: f32,
-        floor_depth_m: f32,
     }
 }
 
@@ -41,7 +44,6 @@ host_block! {
         map: MapBlock,
         eta: f32,
         absorption_per_m: f32,
-        floor_depth_m: f32,
     }
 }
 
@@ -63,18 +65,16 @@ pub struct View {
 impl View {
     /// # Errors
     /// [`Error::Limit`] for a size that the device does not allow.
-    pub fn new(context: Context<'_>, underwater: &Underwater, water: &WaterSurface) -> Result<Self, Error> {
+    pub fn new(
+        context: Context<'_>,
+        underwater: &Underwater,
+        water: &WaterSurface,
+        receivers: &[ReceiverInput],
+    ) -> Result<Self, Error> {
         let Context { shaders, parameters, nearest, .. } = context;
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
         let picture = context.image("picture", vk::Format::R8G8B8A8_SRGB, usage)?.view()?;
-        if !parameters.is_seen_from_above() {
-            let pass = Pass::graphics("view", "1", "common/fullscreen.vert", "caustics/view-below.frag")
-                .with("underwater_color", &underwater.color)
-                .with("nearest", nearest)
-                .color(&picture, Load::Discard, Blend::Replace)
-                .build(shaders)?;
-            return Ok(View { picture, pass, constants: Constants::Below });
-        }
+        let tree = ReceiverTree::new(context, receivers)?;
         let camera = &parameters.camera;
         let matrix = camera.projection(parameters.aspect()) * camera.view();
         let block = ViewBlock {
@@ -84,9 +84,11 @@ impl View {
             eye: camera.eye.to_array(),
             level_m: LEVEL_M as f32,
             underwater_eye: underwater.eye.to_array(),
-            _pad: 0.0,
+            samples: parameters.samples,
             picture_size: [parameters.width as f32, parameters.height as f32],
             texture_size: [underwater.color.width() as f32, underwater.color.height() as f32],
+            node_count: tree.node_count,
+            _pad: [0.0; 3],
         };
         let view = context.upload("view", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let pass = |shader| {
@@ -95,24 +97,25 @@ impl View {
                 .with("underwater_depth", &underwater.fetched_depth)
                 .with("nearest", nearest)
                 .with("view", &view)
+                .with("nodes", &tree.nodes)
+                .with("corners", &tree.corners)
+                .with("triangles", &tree.triangles)
                 .color(&picture, Load::Discard, Blend::Replace)
         };
+        if !parameters.is_seen_from_above() {
+            let pass = pass("caustics/view-below.frag").build(shaders)?;
+            return Ok(View { picture, pass, constants: Constants::Below });
+        }
         let eta = 1.0 / parameters.refraction_index;
-        let (absorption_per_m, floor_depth_m) = (parameters.absorption_per_m, parameters.water_depth_m);
+        let absorption_per_m = parameters.absorption_per_m;
         let (pass, constants) = match &water.shape {
             Shape::Waves { list, count } => (
                 pass("caustics/view-above.frag").with("waves", list).constants::<WavesConstants>(),
-                Constants::AboveWaves(WavesConstants {
-                    time_s: 0.0,
-                    wave_count: *count,
-                    eta,
-                    absorption_per_m,
-                    floor_depth_m,
-                }),
+                Constants::AboveWaves(WavesConstants { time_s: 0.0, wave_count: *count, eta, absorption_per_m }),
             ),
             Shape::Map { coefficients, place } => (
                 pass("caustics/view-above-map.frag").with("coefficients", coefficients).constants::<MapConstants>(),
-                Constants::AboveMap(MapConstants { map: *place, eta, absorption_per_m, floor_depth_m }),
+                Constants::AboveMap(MapConstants { map: *place, eta, absorption_per_m }),
             ),
         };
         Ok(View { pass: pass.build(shaders)?, picture, constants })

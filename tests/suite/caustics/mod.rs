@@ -13,5 +13,6 @@ mod several;
 mod smart;
 mod stencil;
 mod variants;
+mod view;
 mod volumes;
 mod water_map;

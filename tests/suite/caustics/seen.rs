@@ -1,4 +1,4 @@
-//! Points that a camera's rays hit first, in double precision.
+//! Points that rays hit first, in double precision: a camera's, straight ones and those refracted by the water.
 
 use fumarole::papers::caustics::{Parameters, ReceiverInput};
 use glam::{DMat4, DVec3, Vec3};
@@ -20,20 +20,28 @@ impl Surface {
 
 /// Row by row; `None` where no receiver is seen. The camera is under water, so that its rays are straight.
 pub fn first_hits(parameters: &Parameters, receivers: &[ReceiverInput]) -> Vec<Option<Surface>> {
-    let camera = &parameters.camera;
+    let eye = parameters.camera.eye.as_dvec3();
+    rays(parameters).map(|ray| first_hit(receivers, eye, ray).map(|(_, surface)| surface)).collect()
+}
+
+/// The directions through the middles of the pixels, row by row.
+pub fn rays(parameters: &Parameters) -> impl Iterator<Item = DVec3> {
+    let camera = parameters.camera;
     let matrix: DMat4 = (camera.projection(parameters.aspect()) * camera.view()).as_dmat4();
     let inverse = matrix.inverse();
     let (width, height) = (parameters.width, parameters.height);
-    (0..width * height)
-        .map(|pixel| {
-            let fraction = |i: u32, of: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(of) - 1.0;
-            let (x, y) = (fraction(pixel % width, width), fraction(pixel / width, height));
-            let eye = camera.eye.as_dvec3();
-            let ray = (inverse.project_point3(DVec3::new(x, y, 0.5)) - eye).normalize();
-            let hits = receivers.iter().filter_map(|receiver| hit(receiver, eye, ray));
-            hits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, surface)| surface)
-        })
-        .collect()
+    (0..width * height).map(move |pixel| {
+        let fraction = |i: u32, of: u32| 2.0 * (f64::from(i) + 0.5) / f64::from(of) - 1.0;
+        let (x, y) = (fraction(pixel % width, width), fraction(pixel / width, height));
+        (inverse.project_point3(DVec3::new(x, y, 0.5)) - camera.eye.as_dvec3()).normalize()
+    })
+}
+
+/// The receiver that a ray hits first, and the point.
+pub fn first_hit(receivers: &[ReceiverInput], from: DVec3, ray: DVec3) -> Option<(usize, Surface)> {
+    let hits = receivers.iter().enumerate().filter_map(|(index, receiver)| Some((index, hit(receiver, from, ray)?)));
+    let nearest = hits.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+    Some((nearest.0, nearest.1.1))
 }
 
 /// The nearest hit on one receiver and its distance, by Möller and Trumbore.
