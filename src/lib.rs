@@ -3,7 +3,7 @@
 //! ```text
 //!  what the user typed        what is measured              what is drawn
 //!  ┌─────┐   Setup   ┌────────────┐   Paper::record()   ┌────────┐   Pass, Frame   ┌─────┐
-//!  │ cli │ ────────► │ experiment │ ──────────────────► │ papers │ ──────────────► │ gpu │ ──► Vulkan
+//!  │ cli │ ────────► │  measure   │ ──────────────────► │ papers │ ──────────────► │ gpu │ ──► Vulkan
 //!  └─────┘           └────────────┘                     └────────┘                 └─────┘
 //!     │                │   │    │                            │                        ▲
 //!     │         Record │   │    └──────► scene ◄─────────────┘                        │ SPIR-V, interfaces
@@ -16,6 +16,7 @@
 //! the paper's `reference`, in `f64`, written from the equations.
 
 pub mod cli;
+pub mod content;
 pub mod gpu;
 pub mod image;
 pub mod measure;

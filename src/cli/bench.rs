@@ -8,6 +8,7 @@ use super::outcome;
 use super::processes;
 use super::spelling;
 use super::watch::watched;
+use crate::content;
 use crate::measure::bench::{Bench, Loaded, build, load};
 use crate::measure::machine::Machine;
 use crate::measure::picture;
@@ -76,6 +77,10 @@ fn measure<S: Study>(
     Ok((Record::new(machine.environment(), std::env::args().collect(), runs), traces, failed))
 }
 
+fn file_sha256(path: &Path) -> Result<String, Failure> {
+    content::file_sha256(path).map_err(|e| Failure::Running(format!("reading {} again: {e}", path.display())))
+}
+
 /// Renders a frame after the measurement and writes it.
 pub fn write_picture<S: Study>(
     machine: &mut Machine,
@@ -89,5 +94,5 @@ pub fn write_picture<S: Study>(
     let picture = picture::render(machine, &mut built.paper, number)?;
     crate::image::write_png(path, &picture)?;
     machine.check_validation()?;
-    Ok(ImageFile { path: path.display().to_string(), sha256: picture::file_sha256(path)? })
+    Ok(ImageFile { path: path.display().to_string(), sha256: file_sha256(path)? })
 }

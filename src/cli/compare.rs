@@ -7,7 +7,9 @@ use clap::Args;
 use super::failure::Failure;
 use super::options::parse_share;
 use super::outcome;
-use crate::measure::compare::{Input, compare, render};
+use crate::measure::compare::{
+    Comparison, Design, Input, MIN_SHARE, Options, Rules, SAME_MARGIN, compare, markdown, render,
+};
 use crate::report::{json, output};
 
 #[derive(Debug, Clone, Args)]
@@ -18,9 +20,32 @@ pub struct CompareArgs {
     /// Records of side B, comma-separated
     #[arg(value_name = "B.json[,..]", value_parser = parse_side)]
     b: Side,
-    /// Exit with 4 when B is slower than A by more than this, with certainty
+    #[command(flatten)]
+    verdict: VerdictArgs,
+}
+
+/// Options of verdicts, whoever measured.
+#[derive(Debug, Clone, Args)]
+pub struct VerdictArgs {
+    /// Ratios within 1 ± this are the same
+    #[arg(long, value_name = "2%", value_parser = parse_margin, default_value_t = SAME_MARGIN)]
+    margin: f64,
+    /// Exit with 4 when the frame or a pass of B is slower than A's by more than this, with certainty
     #[arg(long, value_name = "5%", value_parser = parse_share)]
     fail_above: Option<f64>,
+    /// Passes below this share of the frame never fail
+    #[arg(long, value_name = "2%", value_parser = parse_share, default_value_t = MIN_SHARE)]
+    min_share: f64,
+    /// Exit with 4 as well when it is not certain that the frame and every pass that counts keep to --fail-above, or,
+    /// without that, when one of their verdicts is UNCLEAR
+    #[arg(long)]
+    fail_unclear: bool,
+    /// Exit with 4 as well when B lacks a run or a pass of A
+    #[arg(long)]
+    fail_missing: bool,
+    /// Print tables of Markdown, as for a pull request
+    #[arg(long)]
+    markdown: bool,
     /// Write the comparison; to standard output without a file
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
     json: Option<PathBuf>,
@@ -37,18 +62,52 @@ fn parse_side(text: &str) -> Result<Side, String> {
     Ok(Side(text.split(',').map(PathBuf::from).collect()))
 }
 
+fn parse_margin(text: &str) -> Result<f64, String> {
+    parse_share(text).and_then(|margin| match margin {
+        0.0..=1.0 => Ok(margin),
+        _ => Err(format!("{text:?} is no margin: give 0 to 100%")),
+    })
+}
+
+impl VerdictArgs {
+    /// Rules of the comparison.
+    pub fn options(&self, design: Design) -> Options {
+        Options {
+            rules: Rules { margin: self.margin, ..Rules::default() },
+            fail_above: self.fail_above,
+            min_share: self.min_share,
+            design,
+        }
+    }
+
+    /// Prints and writes a comparison.
+    ///
+    /// # Errors
+    /// [`Failure::Regression`] for what these options call one.
+    pub fn publish(&self, comparison: &Comparison) -> Result<(), Failure> {
+        let print = || match self.markdown {
+            true => outcome::print(&markdown(comparison)),
+            false => outcome::print(&render(comparison, outcome::style())),
+        };
+        match self.json.as_deref() {
+            Some(path) if path == Path::new("-") => outcome::print(&outcome::text(comparison)?)?,
+            Some(path) => {
+                output::write(path, outcome::text(comparison)?.as_bytes())?;
+                print()?;
+            }
+            None => print()?,
+        }
+        let fails = comparison.has_regression()
+            || self.fail_unclear && comparison.is_unclear()
+            || self.fail_missing && comparison.is_missing_any();
+        if fails { Err(Failure::Regression) } else { Ok(()) }
+    }
+}
+
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
     let read = |side: &Side| -> Result<Vec<Input>, Failure> {
         side.0.iter().map(|path| Ok(Input { name: path.display().to_string(), record: json::read(path)? })).collect()
     };
-    let comparison = compare(&read(&arguments.a)?, &read(&arguments.b)?, arguments.fail_above)?;
-    match arguments.json.as_deref() {
-        Some(path) if path == Path::new("-") => outcome::print(&outcome::text(&comparison)?)?,
-        Some(path) => {
-            output::write(path, outcome::text(&comparison)?.as_bytes())?;
-            outcome::print(&render(&comparison, outcome::style()))?;
-        }
-        None => outcome::print(&render(&comparison, outcome::style()))?,
-    }
-    if comparison.has_regression() { Err(Failure::Regression) } else { Ok(()) }
+    let options = arguments.verdict.options(Design::Processes);
+    arguments.verdict.publish(&compare(&read(&arguments.a)?, &read(&arguments.b)?, &options)?)
 }

@@ -1,5 +1,6 @@
 //! The command line, resolved into work to do, and the exit codes.
 
+mod ab;
 mod all;
 mod bench;
 mod compare;
@@ -42,6 +43,8 @@ enum Command {
     All(all::AllArgs),
     /// Compare records: is B faster or slower than A?
     Compare(compare::CompareArgs),
+    /// Measure two sides in turn, in fresh processes, until it is certain which is faster
+    Ab(ab::AbArgs),
 }
 
 /// The command with every paper below it, and what runs each.
@@ -80,6 +83,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::All(arguments)) => all::run(arguments),
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
+        Some(Command::Ab(arguments)) => ab::run(arguments),
     })
 }
 

@@ -49,7 +49,7 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
             if joined.is_some() && interrupted.load(Ordering::Relaxed) {
                 break;
             }
-            return Err(failure(process, &ended));
+            return Err(failure(&format!("process {process}"), &ended));
         }
         let record = json::read(file.path())?;
         match &mut joined {
@@ -63,14 +63,14 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
 }
 
 /// Exit status of a process, and its standard error.
-struct Ended {
-    status: ExitStatus,
+pub struct Ended {
+    pub status: ExitStatus,
     errors: String,
 }
 
 /// Runs a process to its end. After an interruption it has [`PATIENCE`] to end by itself, as it does when the terminal has
 /// told it too; then it is ended, so that none outlives us.
-fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> {
+pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
     let pipe = child.stderr.take();
     let errors = thread::spawn(move || {
@@ -95,9 +95,9 @@ fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> 
 }
 
 /// A process's own message and exit code as ours.
-fn failure(process: u32, ended: &Ended) -> Failure {
+pub fn failure(which: &str, ended: &Ended) -> Failure {
     let message = ended.errors.lines().find_map(|line| line.strip_prefix("error: "));
-    let message = message.map_or_else(|| format!("process {process} ended with {}", ended.status), str::to_owned);
+    let message = message.map_or_else(|| format!("{which} ended with {}", ended.status), str::to_owned);
     match ended.status.code() {
         Some(2) => Failure::Input(message),
         Some(3) => Failure::NoDevice(message),

@@ -86,7 +86,7 @@ pub use frame::Frame;
 pub use image::{Image, ImageDesc, ImageView, Sampler};
 pub use instance::Instance;
 pub use pass::Pass;
-pub use pass_info::{PassInfo, PassKind};
+pub use pass_info::{Binary, PassInfo, PassKind};
 pub use physical::{Feature, PhysicalDevice};
 pub use pipeline::Topology;
 pub use recorder::Recorder;

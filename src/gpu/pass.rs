@@ -100,6 +100,7 @@ impl Pass {
             depth: None,
             counting: None,
             compiler: None,
+            binaries: Vec::new(),
         });
         let inner = Inner {
             device: to.device().clone(),
@@ -131,6 +132,9 @@ impl Pass {
             add(&mut whole.shaders, &info.shaders);
             add(&mut whole.reads, &info.reads);
             add(&mut whole.writes, &info.writes);
+            whole
+                .binaries
+                .extend(info.binaries.iter().filter(|b| !whole.binaries.contains(b)).cloned().collect::<Vec<_>>());
             if whole.compiler != info.compiler {
                 whole.compiler = Some(Compiler::Glslang);
             }

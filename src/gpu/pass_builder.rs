@@ -105,6 +105,7 @@ impl PassDesc {
             depth: self.targets.depth.as_ref().map(|(_, test)| test.as_str()),
             counting: self.counting.as_ref().map(|(_, test)| test.as_str()),
             compiler: Some(program.compiler()),
+            binaries: program.modules.iter().map(|module| module.binary()).collect(),
         }
     }
 }

@@ -52,6 +52,17 @@ pub struct PassInfo {
     pub counting: Option<&'static str>,
     /// The compiler of the binaries; `None` where no shader runs.
     pub compiler: Option<Compiler>,
+    /// The SPIR-V of each stage.
+    pub binaries: Vec<Binary>,
+}
+
+/// The SPIR-V of one stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Binary {
+    /// Path of the shader under `shaders/`.
+    pub name: String,
+    /// Lower-case hexadecimal SHA-256 of the words, little-endian.
+    pub sha256: String,
 }
 
 impl PassInfo {
@@ -69,6 +80,7 @@ impl PassInfo {
             depth: None,
             counting: None,
             compiler: None,
+            binaries: Vec::new(),
         })
     }
 }

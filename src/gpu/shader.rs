@@ -10,7 +10,9 @@ use super::access::Stages;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::pass_info::Binary;
 use super::physical::{Feature, PhysicalDevice};
+use crate::content;
 use crate::shader_build::{self, EMBEDDED, Interface, Stage};
 
 pub use crate::shader_build::Compiler;
@@ -68,6 +70,7 @@ impl ShaderLibrary {
         if let Some(capability) = unknown_capability(&words, self.device.physical()) {
             return Err(problem(format!("it wants SPIR-V capability {capability}, with which no device is opened")));
         }
+        let sha256 = content::sha256(&words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<_>>());
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the words are a SPIR-V module that one of the two compilers wrote, of capabilities that the device was
         // opened with; they outlive the call.
@@ -75,7 +78,14 @@ impl ShaderLibrary {
             unsafe { self.device.raw.create_shader_module(&info, None) }.context("creating shader module", name)?;
         self.device.live().add(Kind::ShaderModule);
         self.device.name(raw, name);
-        Ok(Arc::new(ShaderModule { raw, device: self.device.clone(), name: name.to_owned(), interface, compiler }))
+        Ok(Arc::new(ShaderModule {
+            raw,
+            device: self.device.clone(),
+            name: name.to_owned(),
+            interface,
+            compiler,
+            sha256,
+        }))
     }
 }
 
@@ -120,9 +130,15 @@ pub struct ShaderModule {
     pub interface: Interface,
     /// The compiler of the binary.
     pub compiler: Compiler,
+    sha256: String,
 }
 
 impl ShaderModule {
+    /// The identity of the binary.
+    pub fn binary(&self) -> Binary {
+        Binary { name: self.name.clone(), sha256: self.sha256.clone() }
+    }
+
     pub(crate) fn stage(&self) -> Stages {
         match self.interface.stage {
             Stage::Vertex => Stages::VERTEX,

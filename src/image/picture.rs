@@ -1,4 +1,4 @@
-use sha2::{Digest, Sha256};
+use crate::content;
 
 use super::{Error, srgb};
 
@@ -58,8 +58,7 @@ impl Rgba8 {
     /// SHA-256 of [`pixels`](Self::pixels) in lower-case hexadecimal: the picture's identity whatever the file's
     /// compression.
     pub fn sha256(&self) -> String {
-        let digest = Sha256::digest(&self.pixels);
-        digest.iter().map(|byte| format!("{byte:02x}")).collect()
+        content::sha256(&self.pixels)
     }
 }
 

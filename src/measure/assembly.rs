@@ -7,7 +7,9 @@ use super::statistics::{median, repetition_noise, summarize};
 use super::study::Identity;
 use crate::gpu::PassKind;
 use crate::gpu::live::MemoryUse;
-use crate::report::record::{self, Limits, Memory, Pass, ResourceMemory, Run, Statistics, Validation};
+use crate::report::record::{
+    self, InputFile, Limits, Memory, Pass, ResourceMemory, Run, ShaderBinary, Statistics, Validation,
+};
 use crate::report::trace::{TraceEvent, TraceRun, Track};
 
 /// Repetitions that scatter more than this are called noisy.
@@ -25,6 +27,10 @@ pub struct RunMetadata {
     pub process: u32,
     /// Every parameter under its option's name, defaults included.
     pub config: Map<String, Value>,
+    /// Files that the configuration names.
+    pub inputs: Vec<InputFile>,
+    /// Start of the measurement, RFC 3339.
+    pub started: String,
     /// Milliseconds of loading the input.
     pub load_ms: f64,
     /// Milliseconds of making the variant's resources and pipelines.
@@ -67,6 +73,8 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
         variant: metadata.variant,
         preset: metadata.identity.preset,
         config: metadata.config,
+        inputs: metadata.inputs,
+        started: Some(metadata.started),
         width: metadata.identity.width,
         height: metadata.identity.height,
         seed: metadata.identity.seed,
@@ -115,6 +123,11 @@ fn pass(measured: &MeasuredPass) -> Pass {
         calls: measured.calls,
         submission: (!is_host).then_some(measured.submission),
         shader_compiler: info.compiler.map(|c| c.to_string()),
+        shaders: info
+            .binaries
+            .iter()
+            .map(|binary| ShaderBinary { name: binary.name.clone(), sha256: binary.sha256.clone() })
+            .collect(),
         gpu_ms: summarize(&measured.gpu_ms),
         host_ms: summarize(&measured.host_ms),
         wait_ms: summarize(&measured.wait_ms),

@@ -10,8 +10,10 @@ use super::measure::{Schedule, Watch, measure};
 use super::study::Study;
 use crate::gpu::live::MemoryUse;
 use crate::measure::{Paper, Variant};
-use crate::report::record::{Limits, Run};
+use crate::report::environment;
+use crate::report::record::{InputFile, Limits, Run};
 use crate::report::trace::TraceRun;
+use crate::scene::source_sha256;
 
 /// The input of a study with the time that loading it took.
 pub struct Loaded<S: Study> {
@@ -82,6 +84,19 @@ pub struct Bench<'a, S: Study> {
     pub limits: Option<&'a Limits>,
 }
 
+/// Identity of every file that a study's parameters name.
+fn inputs<S: Study>(study: &S) -> Result<Vec<InputFile>, Error> {
+    let files = S::parameters().iter().flat_map(|parameter| parameter.files(study)).collect::<Vec<_>>();
+    files
+        .into_iter()
+        .map(|path| {
+            let sha256 = source_sha256(&path)
+                .map_err(|e| Error::Input(format!("reading {} again for its identity: {e}", path.display())))?;
+            Ok(InputFile { path: path.display().to_string(), sha256 })
+        })
+        .collect()
+}
+
 /// One variant's run with its trace.
 pub struct VariantRun {
     /// The record's run.
@@ -97,6 +112,7 @@ impl<S: Study> Bench<'_, S> {
     /// [`Error::Gpu`]; [`Error::Interrupted`] when not one frame was measured.
     pub fn measure(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Vec<VariantRun>, Error> {
         let Bench { study, loaded, variants, schedule, .. } = *self;
+        let started = environment::instant();
         let mut built = variants
             .iter()
             .map(|&variant| build(machine, study, &loaded.scene, variant))
@@ -123,6 +139,7 @@ impl<S: Study> Bench<'_, S> {
         let validation = machine.check_validation()?;
         let warnings = machine.warnings();
         let identity = study.identity();
+        let inputs = inputs(study)?;
         let runs = measured.iter().zip(metrics).map(|((built, measurement), metrics)| {
             let metadata = RunMetadata {
                 paper: S::PAPER,
@@ -130,6 +147,8 @@ impl<S: Study> Bench<'_, S> {
                 identity: identity.clone(),
                 process: machine.process,
                 config: study.config(&loaded.scene, &built.paper),
+                inputs: inputs.clone(),
+                started: started.clone(),
                 load_ms: loaded.load_ms,
                 build_ms: built.build_ms,
                 memory: built.memory.clone(),

@@ -1,16 +1,14 @@
 //! Pictures and dumps of a frame, read back after it.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use ash::vk;
-use sha2::{Digest, Sha256};
 
 use super::error::Error;
 use super::machine::Machine;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Device, Mode, transfer};
-use crate::image::{self, Raster, Rgba8};
+use crate::image::{Raster, Rgba8};
 use crate::measure::{Kind, Paper, Target};
 
 /// Records frame `number` and reads its picture; numbers rise, unless the paper is restarted.
@@ -66,13 +64,4 @@ pub fn read_target(device: &Arc<Device>, target: &Target) -> Result<Raster, Erro
         }
         Resource::Sampler(_) => Err(Error::Input(format!("{} holds no values", target.name))),
     }
-}
-
-/// SHA-256 of a file, in hexadecimal.
-///
-/// # Errors
-/// [`Error::Image`] when it cannot be read.
-pub fn file_sha256(path: &Path) -> Result<String, Error> {
-    let bytes = std::fs::read(path).map_err(|e| image::Error::Open { path: path.into(), reason: e.to_string() })?;
-    Ok(Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect())
 }

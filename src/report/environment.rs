@@ -1,6 +1,15 @@
 //! The host's part of a record's environment; the device's part is filled by whoever owns the device.
 
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+
 use super::record::{Build, Host};
+use crate::content;
+
+/// The current time in UTC, RFC 3339 to the microsecond, by which processes that follow each other are put in order.
+pub fn instant() -> String {
+    humantime::format_rfc3339_micros(std::time::SystemTime::now()).to_string()
+}
 
 /// The current time in UTC, RFC 3339 to the second: `2026-01-31T12:00:00Z`.
 pub fn date() -> String {
@@ -15,7 +24,18 @@ pub fn host() -> Host {
         cpu: read("/proc/cpuinfo").and_then(|text| cpu_name(&text)),
         logical_cores: std::thread::available_parallelism().ok().and_then(|count| u32::try_from(count.get()).ok()),
         lp_num_threads: std::env::var("LP_NUM_THREADS").ok().and_then(|value| value.trim().parse().ok()),
+        cpu_governor: read("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor").map(|text| text.trim().to_owned()),
+        variables: variables(std::env::vars_os()),
     }
+}
+
+/// Prefixes of the variables that the Vulkan loader, its layers and Mesa's drivers read.
+const VARIABLES: [&str; 8] = ["VK_", "LP_", "MESA_", "GALLIUM_", "GALLIVM_", "RADV_", "ANV_", "DRI_PRIME"];
+
+fn variables(all: impl Iterator<Item = (OsString, OsString)>) -> BTreeMap<String, String> {
+    let text = |value: OsString| value.to_string_lossy().into_owned();
+    let all = all.map(|(name, value)| (text(name), text(value)));
+    all.filter(|(name, _)| VARIABLES.iter().any(|prefix| name.starts_with(prefix))).collect()
 }
 
 /// The build of this program, as told by the build script; what it could not find out is absent.
@@ -27,6 +47,7 @@ pub fn build() -> Build {
         dirty: option_env!("FUMAROLE_GIT_DIRTY").and_then(|value| value.parse().ok()),
         rustc: known(option_env!("FUMAROLE_RUSTC")),
         profile: known(option_env!("FUMAROLE_PROFILE")),
+        executable_sha256: std::env::current_exe().and_then(|path| content::file_sha256(&path)).ok(),
     }
 }
 

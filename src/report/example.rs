@@ -1,5 +1,7 @@
 //! Records for the tests of everything that reads one.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Map, Value, json};
 
 use super::record::*;
@@ -31,10 +33,19 @@ pub fn environment() -> Environment {
             cpu: None,
             logical_cores: Some(2),
             lp_num_threads: None,
+            cpu_governor: None,
+            variables: BTreeMap::new(),
         },
         loader: None,
         layers: vec![],
-        build: Build { version: "0.1.0".to_owned(), git_commit: None, dirty: None, rustc: None, profile: None },
+        build: Build {
+            version: "0.1.0".to_owned(),
+            git_commit: None,
+            dirty: None,
+            rustc: None,
+            profile: None,
+            executable_sha256: None,
+        },
     }
 }
 
@@ -45,6 +56,7 @@ pub fn run() -> Run {
         variant: "slices".to_owned(),
         preset: None,
         config: Map::new(),
+        inputs: vec![],
         width: 800,
         height: 600,
         seed: 1,
@@ -52,6 +64,7 @@ pub fn run() -> Run {
         frames: 0,
         repeat: 1,
         process: 0,
+        started: None,
         frame_ms: None,
         passes: vec![],
         overlap_ms: None,
@@ -77,6 +90,7 @@ pub fn pass(name: &str, kind: PassKind) -> Pass {
         calls: 1,
         submission: None,
         shader_compiler: None,
+        shaders: vec![],
         gpu_ms: None,
         host_ms: None,
         wait_ms: None,
@@ -110,6 +124,7 @@ pub fn full() -> Record {
         calls: 30,
         submission: Some(0),
         shader_compiler: Some("glslang".to_owned()),
+        shaders: vec![ShaderBinary { name: "lava/splat.vert".to_owned(), sha256: "1".repeat(64) }],
         gpu_ms: summarize(&[1.5, 2.0, 2.5]),
         statistics: Some(Statistics { vertices: Some(90_000), fragments: Some(1_600_000), ..Statistics::default() }),
         bytes: Some(Bytes { read: 1024, written: 2048 }),
@@ -118,6 +133,8 @@ pub fn full() -> Record {
     let run = Run {
         preset: Some("figure-7".to_owned()),
         config: object(json!({"planes": 30, "shadow": true, "density": [100, 24, 24]})),
+        inputs: vec![InputFile { path: "bunny.ply".to_owned(), sha256: "2".repeat(64) }],
+        started: Some("2026-01-31T12:00:01.500000Z".to_owned()),
         warmup: 2,
         frames: 3,
         frame_ms: summarize(&[5.0, 4.0, 6.0]),

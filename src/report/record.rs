@@ -4,6 +4,8 @@
 //! tolerated when a record is read, so that a newer program's additions do not break an older reader. The JSON Schema
 //! is `schema/fumarole.bench-1.json`.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -106,6 +108,12 @@ pub struct Host {
     pub logical_cores: Option<u32>,
     /// The thread count that `LP_NUM_THREADS` pins; absent when it is unset or no number.
     pub lp_num_threads: Option<u32>,
+    /// Frequency governor of the first core; absent where the system does not tell.
+    #[serde(default)]
+    pub cpu_governor: Option<String>,
+    /// Environment variables that the Vulkan loader, its layers and Mesa's drivers read, as they were set.
+    #[serde(default)]
+    pub variables: BTreeMap<String, String>,
 }
 
 /// The build of this program.
@@ -121,6 +129,9 @@ pub struct Build {
     pub rustc: Option<String>,
     /// Cargo's profile: `release`.
     pub profile: Option<String>,
+    /// Lower-case hexadecimal SHA-256 of the program's file.
+    #[serde(default)]
+    pub executable_sha256: Option<String>,
 }
 
 /// One configuration of one variant, measured in one process.
@@ -134,6 +145,9 @@ pub struct Run {
     pub preset: Option<String>,
     /// Every parameter under its option's name, defaults included.
     pub config: Map<String, Value>,
+    /// Files that the configuration names.
+    #[serde(default)]
+    pub inputs: Vec<InputFile>,
     /// Pixels of the picture, at least 1.
     pub width: u32,
     /// Pixels of the picture, at least 1.
@@ -148,6 +162,9 @@ pub struct Run {
     pub repeat: u32,
     /// Number of this process among the fresh ones of `--processes`, from 0.
     pub process: u32,
+    /// Start of the measurement in this process, RFC 3339 in UTC.
+    #[serde(default)]
+    pub started: Option<String>,
     /// Host clock from the start of recording to the last fence, without timestamps or queries: one sample per frame,
     /// repetition after repetition.
     pub frame_ms: Option<Summary>,
@@ -206,6 +223,9 @@ pub struct Pass {
     pub submission: Option<u32>,
     /// Whose SPIR-V ran; absent where no shader ran.
     pub shader_compiler: Option<String>,
+    /// The binaries that ran.
+    #[serde(default)]
+    pub shaders: Vec<ShaderBinary>,
     /// Sum of the pass's calls in a timestamped frame.
     pub gpu_ms: Option<Summary>,
     /// Host work that the paper's method needs, without waiting.
@@ -216,6 +236,24 @@ pub struct Pass {
     pub statistics: Option<Statistics>,
     /// Absent where the paper states none.
     pub bytes: Option<Bytes>,
+}
+
+/// A file that a run read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputFile {
+    /// Its path, as `config` has it.
+    pub path: String,
+    /// Lower-case hexadecimal SHA-256 of its content, with that of the files that it names.
+    pub sha256: String,
+}
+
+/// The SPIR-V of one stage.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ShaderBinary {
+    /// Name of the shader.
+    pub name: String,
+    /// Lower-case hexadecimal SHA-256 of its words.
+    pub sha256: String,
 }
 
 /// Kind of a pass's work.
@@ -418,7 +456,9 @@ mod tests {
             ("/runs/0", &full["runs"][0]),
             ("/runs/0/passes/1", &full["runs"][0]["passes"][1]),
         ] {
-            for field in fields.as_object().unwrap().keys() {
+            // What later programs of the schema added, older records lack.
+            let added = ["inputs", "started", "shaders"];
+            for field in fields.as_object().unwrap().keys().filter(|field| !added.contains(&field.as_str())) {
                 let mut document = full.clone();
                 let object = document.pointer_mut(pointer).unwrap();
                 object.as_object_mut().unwrap().remove(field);

@@ -57,6 +57,7 @@ pub fn interval(ends: Option<[f64; 2]>) -> String {
 #[derive(Clone, Debug)]
 pub struct Table {
     table: comfy_table::Table,
+    alignment: Vec<Align>,
 }
 
 impl Table {
@@ -67,7 +68,7 @@ impl Table {
         for (column, (_, align)) in table.column_iter_mut().zip(columns) {
             column.set_padding((0, 2)).set_cell_alignment(*align);
         }
-        Self { table }
+        Self { table, alignment: columns.iter().map(|(_, align)| *align).collect() }
     }
 
     /// Adds a row; missing cells are empty.
@@ -89,6 +90,33 @@ impl Table {
             None => "\n".to_owned(),
         }
     }
+
+    /// The table in Markdown.
+    pub fn markdown(&self) -> String {
+        let line = |row: &comfy_table::Row| {
+            row.cell_iter().fold("|".to_owned(), |line, cell| line + " " + &markdown_text(&cell.content()) + " |")
+        };
+        let aligned = self.alignment.iter().map(|align| match align {
+            Align::Right => " ---: |",
+            _ => " --- |",
+        });
+        let header = self.table.header().map(line).unwrap_or_default();
+        let rule: String = std::iter::once("|").chain(aligned).collect();
+        let rows = self.table.row_iter().map(|row| line(row) + "\n");
+        format!("{header}\n{rule}\n{}", rows.collect::<String>())
+    }
+}
+
+/// Text that Markdown shows as it is.
+pub fn markdown_text(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        if r"\`*_{}[]<>#|".contains(character) {
+            escaped.push('\\');
+        }
+        escaped.push(character);
+    }
+    escaped
 }
 
 #[cfg(test)]
@@ -102,6 +130,13 @@ mod tests {
         table.push(vec!["longer".into(), String::new(), "10.0".into()]);
         let expected = "pass           ms\na       1.0 ± 0.1\nlonger       10.0\n";
         assert_eq!(table.render(Style::default()), expected);
+    }
+
+    #[test]
+    fn markdown_keeps_its_columns_whatever_a_cell_says() {
+        let mut table = Table::new(&[("pass", Align::Left), ("ms", Align::Right)]);
+        table.push(vec!["a|b <i>".into(), "1.0".into()]);
+        assert_eq!(table.markdown(), "| pass | ms |\n| --- | ---: |\n| a\\|b \\<i\\> | 1.0 |\n");
     }
 
     #[test]

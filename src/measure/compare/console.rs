@@ -1,38 +1,99 @@
-//! A comparison for people.
+//! A comparison for people: on the terminal, and as Markdown for a pull request.
 
 use std::fmt::Write;
 
-use super::{Clock, Comparison, Ratio, RunComparison, Verdict};
-use crate::report::table::{Align, Style, Table};
+use super::{Clock, Comparison, Design, Difference, Gate, Quantity, RunComparison, Verdict};
+use crate::report::table::{Align, Style, Table, markdown_text};
 
-/// Every run with its verdict, the ratio B / A with its interval, and the table of passes; then what only one side has,
-/// and the warnings.
+/// Passes with the same value of what differs are shown as one line from this many on.
+const MANY: usize = 4;
+
+/// What differs between the sides, every run with the verdicts on frame and passes, what only one side has, warnings.
 pub fn render(comparison: &Comparison, style: Style) -> String {
     let mut text = String::new();
     // Writing into a String cannot fail.
+    let _ = writeln!(text, "{}", style.bold("what is compared"));
+    for line in differences(comparison) {
+        let _ = writeln!(text, "  {line}");
+    }
+    text.push('\n');
     for run in &comparison.runs {
         let _ = writeln!(text, "{}", style.bold(&title(run)));
-        let _ = writeln!(text, "{}", verdict(run, comparison, style));
+        let _ = writeln!(text, "{}", headline(run, comparison, style));
         if !run.passes.is_empty() {
             text.push_str(&passes(run).render(style));
         }
         text.push('\n');
     }
-    for (side, names) in [("A", &comparison.only_in_a), ("B", &comparison.only_in_b)] {
-        for name in names {
-            let _ = writeln!(text, "only in {side}: {name}");
-        }
+    for line in missing(comparison) {
+        let _ = writeln!(text, "{line}");
     }
     for warning in &comparison.warnings {
         let _ = writeln!(text, "{} {warning}", style.yellow("warning:"));
     }
-    let _ = writeln!(
-        text,
-        "B / A is a ratio of medians with its {:.0} % interval; SAME means within ± {} %",
-        100.0 * comparison.confidence,
-        percent(comparison.same_margin)
-    );
+    let _ = writeln!(text, "{}", legend(comparison));
     text
+}
+
+/// The same as tables of Markdown.
+pub fn markdown(comparison: &Comparison) -> String {
+    let mut text = String::from("**What is compared**\n\n");
+    for line in differences(comparison) {
+        let _ = writeln!(text, "- {}", markdown_text(&line));
+    }
+    for run in &comparison.runs {
+        let _ = writeln!(text, "\n### {}\n", markdown_text(&title(run)));
+        let _ = writeln!(text, "{}\n", markdown_text(&headline(run, comparison, Style::default())));
+        text.push_str(&passes(run).markdown());
+    }
+    text.push('\n');
+    for line in missing(comparison).chain(comparison.warnings.iter().map(|warning| format!("warning: {warning}"))) {
+        let _ = writeln!(text, "- {}", markdown_text(&line));
+    }
+    let _ = writeln!(text, "\n{}", markdown_text(&legend(comparison)));
+    text
+}
+
+fn differences(comparison: &Comparison) -> Vec<String> {
+    let line = |what: &str, difference: &Difference| {
+        format!("{what}: A {}, B {}", values(&difference.a), values(&difference.b))
+    };
+    let mut lines: Vec<String> = vec![];
+    for (prefix, plural) in [("SPIR-V of ", "shaders"), ("shader_compiler of ", "shader compilers")] {
+        let same_kind: Vec<&Difference> =
+            comparison.differences.iter().filter(|difference| difference.what.starts_with(prefix)).collect();
+        if same_kind.len() >= MANY {
+            lines.push(format!("{plural}: {} differ", same_kind.len()));
+        } else if prefix == "SPIR-V of " {
+            lines.extend(same_kind.iter().map(|difference| format!("{} differs", difference.what)));
+        } else {
+            lines.extend(same_kind.iter().map(|difference| line(&difference.what, difference)));
+        }
+    }
+    let others = comparison.differences.iter().filter(|difference| !difference.what.contains(" of "));
+    lines.extend(others.map(|difference| line(&difference.what, difference)));
+    if lines.is_empty() {
+        lines.push("the same program, shaders and environment on both sides".to_owned());
+    }
+    lines
+}
+
+fn values(values: &[String]) -> String {
+    // Digests are told apart by their beginning.
+    let short = |value: &String| match value.as_str() {
+        digest if digest.len() >= 40 && digest.chars().all(|c| c.is_ascii_hexdigit()) => digest[..12].to_owned(),
+        "" => "none".to_owned(),
+        other => other.to_owned(),
+    };
+    if values.is_empty() { "unset".to_owned() } else { values.iter().map(short).collect::<Vec<_>>().join(" and ") }
+}
+
+fn missing(comparison: &Comparison) -> impl Iterator<Item = String> {
+    let runs = [("A", &comparison.only_in_a), ("B", &comparison.only_in_b)];
+    let alone =
+        runs.into_iter().flat_map(|(side, names)| names.iter().map(move |name| format!("only in {side}: {name}")));
+    let passes = comparison.runs.iter().filter(|run| !run.missing_passes.is_empty());
+    alone.chain(passes.map(|run| format!("B lacks passes of {}: {}", title(run), run.missing_passes.join(", "))))
 }
 
 fn title(run: &RunComparison) -> String {
@@ -41,33 +102,38 @@ fn title(run: &RunComparison) -> String {
     format!("{} {}{preset}: {} × {}", run.paper, run.variant, run.width, run.height)
 }
 
-fn verdict(run: &RunComparison, comparison: &Comparison, style: Style) -> String {
-    let mut text = match run.verdict {
+fn headline(run: &RunComparison, comparison: &Comparison, style: Style) -> String {
+    let Quantity { a_median_ms, b_median_ms, ratio, .. } = run.frame;
+    let mut text = verdict(&run.frame, style);
+    if let (Some(a), Some(b), Some(ratio)) = (a_median_ms, b_median_ms, ratio) {
+        let (a_count, b_count) = (processes(run.a_processes), processes(run.b_processes));
+        let interval = interval(&run.frame);
+        let _ = write!(text, ": frame B / A {ratio:.4} {interval}, A {a:.3} ms ({a_count}), B {b:.3} ms ({b_count})");
+    }
+    if let Some(limit) = comparison.fail_above {
+        let gates = || run.passes.iter().map(|pass| (pass.name.as_str(), &pass.time)).chain([("frame", &run.frame)]);
+        for (gate, says) in [(Gate::Failed, "regression beyond"), (Gate::Undecided, "undecided against")] {
+            let names: Vec<&str> = gates().filter(|(_, time)| time.gate == Some(gate)).map(|(name, _)| name).collect();
+            if !names.is_empty() {
+                let message = format!("{says} {} %: {}", percent(limit), names.join(", "));
+                let message = if gate == Gate::Failed { style.red(&message) } else { style.yellow(&message) };
+                let _ = write!(text, "; {message}");
+            }
+        }
+    }
+    if let Some(reason) = &run.frame.reason {
+        let _ = write!(text, "; {reason}");
+    }
+    text
+}
+
+fn verdict(quantity: &Quantity, style: Style) -> String {
+    match quantity.verdict {
         Verdict::Same => style.green("SAME"),
         Verdict::Faster => style.green("FASTER"),
         Verdict::Slower => style.red("SLOWER"),
         Verdict::Unclear => style.yellow("UNCLEAR"),
-    };
-    if let Some(frame) = &run.frame {
-        let _ = write!(
-            text,
-            ": frame B / A {:.4} {}, A {:.3} ms ({}), B {:.3} ms ({})",
-            frame.ratio,
-            interval(frame),
-            frame.a_median_ms,
-            processes(run.a_processes),
-            frame.b_median_ms,
-            processes(run.b_processes),
-        );
     }
-    if let Some(limit) = comparison.fail_above.filter(|_| run.regression) {
-        let message = format!("regression beyond {} %", percent(limit));
-        let _ = write!(text, "; {}", style.red(&message));
-    }
-    if let Some(reason) = &run.reason {
-        let _ = write!(text, "; {reason}");
-    }
-    text
 }
 
 fn processes(count: usize) -> String {
@@ -83,29 +149,54 @@ fn passes(run: &RunComparison) -> Table {
         ("clock", Align::Left),
         ("A ms", Align::Right),
         ("B ms", Align::Right),
+        ("share", Align::Right),
         ("B / A", Align::Right),
         ("interval", Align::Left),
+        ("verdict", Align::Left),
     ]);
     for pass in &run.passes {
-        let cell = |text: fn(&Ratio) -> String| pass.ratio.as_ref().map_or("-".to_owned(), text);
+        let time = &pass.time;
+        let number = |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
         table.push(vec![
             pass.name.clone(),
             match pass.clock {
-                Clock::Gpu => "GPU".to_owned(),
-                Clock::Host => "host".to_owned(),
+                Clock::Gpu => "GPU",
+                Clock::Host => "host",
+                Clock::Wait => "wait",
+            }
+            .to_owned(),
+            number(time.a_median_ms, 3),
+            number(time.b_median_ms, 3),
+            time.share.map_or("-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
+            number(time.ratio, 4),
+            interval(time),
+            match &time.reason {
+                // What holds for the frame too is said once, with it.
+                Some(reason) if run.frame.reason.as_ref() != Some(reason) => {
+                    format!("{}: {reason}", verdict(time, Style::default()))
+                }
+                _ => verdict(time, Style::default()),
             },
-            cell(|ratio| format!("{:.3}", ratio.a_median_ms)),
-            cell(|ratio| format!("{:.3}", ratio.b_median_ms)),
-            cell(|ratio| format!("{:.4}", ratio.ratio)),
-            cell(interval),
         ]);
     }
     table
 }
 
-fn interval(ratio: &Ratio) -> String {
-    let [low, high] = ratio.interval;
-    format!("[{low:.4}, {high:.4}]")
+fn interval(quantity: &Quantity) -> String {
+    quantity.interval.map_or_else(|| "-".to_owned(), |[low, high]| format!("[{low:.4}, {high:.4}]"))
+}
+
+fn legend(comparison: &Comparison) -> String {
+    let test = match comparison.design {
+        Design::Processes => "processes compared by Welch's t-test",
+        Design::Blocks => "blocks A B B A compared by signed ranks",
+    };
+    format!(
+        "B / A is a ratio of medians with its {} % interval, {test}; SAME means within ± {} %, FASTER and SLOWER are \
+         corrected for the number of passes",
+        percent(comparison.confidence),
+        percent(comparison.margin)
+    )
 }
 
 /// A fraction in percent, without needless digits.

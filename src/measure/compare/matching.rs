@@ -1,11 +1,12 @@
 //! Matching of the runs of two sides, and the reasons why others may not be compared.
 //!
-//! Two runs are the same configuration when everything that fixes their work is equal: [`fields`]. The device's type
-//! must be equal too. What else may shift a time (driver, CPU, build profile, ...) is a warning, as it may be what is
-//! compared.
+//! Two runs are the same configuration when everything that fixes their work is equal: [`fields`]. Input files count by
+//! their content, whatever their path. What else may shift a time (device, driver, program, shaders, ...) may be what is
+//! compared: [`differences_between`] lists it.
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Input;
@@ -39,6 +40,11 @@ impl<'a> Configuration<'a> {
         self.first
     }
 
+    /// Start of each process's first run, RFC 3339; absent where a record does not say.
+    pub fn started(&self) -> Option<Vec<&'a str>> {
+        self.processes.iter().map(|runs| runs.first()?.started.as_deref()).collect()
+    }
+
     /// All runs, process after process.
     pub fn runs(&self) -> impl Iterator<Item = &'a Run> {
         self.processes.iter().flatten().copied()
@@ -51,6 +57,7 @@ impl<'a> Configuration<'a> {
         samples.map(Iterator::collect::<Vec<f64>>).filter(|samples| !samples.is_empty()).collect()
     }
 
+    /// Paper, variant, preset, size and file.
     fn name(&self) -> String {
         let preset = self.first.preset.as_ref();
         let preset = preset.map_or_else(String::new, |preset| format!(", {preset}"));
@@ -69,6 +76,8 @@ pub(super) struct Matched<'a> {
     pub only_in_a: Vec<String>,
     /// Names of variants that A lacks.
     pub only_in_b: Vec<String>,
+    /// Parameters that differ within pairs.
+    pub differences: Vec<Difference>,
     /// Doubts about the comparison, one line each.
     pub warnings: Vec<String>,
 }
@@ -78,7 +87,7 @@ pub(super) struct Matched<'a> {
 /// A variant that one side lacks altogether is listed; a variant that both sides have, but measured differently, is an
 /// error, as is having nothing in common.
 pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'a>, CompareError> {
-    let mut warnings = check_environments(a, b)?;
+    let mut warnings = Vec::new();
     let a = configurations("A", a, &mut warnings)?;
     let mut b = configurations("B", b, &mut warnings)?;
     let (mut pairs, mut alone) = (vec![], vec![]);
@@ -102,8 +111,35 @@ pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'
         pairs,
         only_in_a: alone.iter().map(Configuration::name).collect(),
         only_in_b: b.iter().map(Configuration::name).collect(),
+        differences: Vec::new(),
         warnings,
     })
+}
+
+/// Pairs each configuration of A with the one of B that differs from it least, and lists in which parameters.
+pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'a>, CompareError> {
+    let mut warnings = Vec::new();
+    let a = configurations("A", a, &mut warnings)?;
+    let mut b = configurations("B", b, &mut warnings)?;
+    let (mut pairs, mut only_in_a, mut listed) = (vec![], vec![], vec![]);
+    for configuration in a {
+        let nearest = (0..b.len()).min_by_key(|&index| differences(&configuration, &b[index]).len());
+        let Some(index) = nearest else {
+            only_in_a.push(configuration.name());
+            continue;
+        };
+        let other = b.remove(index);
+        let value = |side: &Configuration, field: &str| side.fields.get(field).cloned().into_iter().collect::<Vec<_>>();
+        let differing = differences(&configuration, &other).into_iter().map(|field| Difference {
+            a: value(&configuration, &field),
+            b: value(&other, &field),
+            what: field,
+        });
+        listed.extend(differing.filter(|difference| !listed.contains(difference)).collect::<Vec<_>>());
+        pairs.push((configuration, other));
+    }
+    let only_in_b = b.iter().map(Configuration::name).collect();
+    Ok(Matched { pairs, only_in_a, only_in_b, differences: listed, warnings })
 }
 
 fn configurations<'a>(
@@ -170,12 +206,20 @@ fn fields(run: &Run) -> BTreeMap<String, String> {
         ("frames", run.frames.to_string()),
         ("validation", text(run.validation.name())),
     ];
-    let config = run.config.iter();
-    fixed
-        .into_iter()
-        .map(|(name, value)| (name.to_owned(), value))
-        .chain(config.map(|(name, value)| (format!("config.{name}"), value.to_string())))
-        .collect()
+    let config = run.config.iter().map(|(name, value)| (format!("config.{name}"), by_content(value, run).to_string()));
+    fixed.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(config).collect()
+}
+
+/// A parameter's value with the content of files in place of their paths.
+fn by_content(value: &Value, run: &Run) -> Value {
+    match value {
+        Value::String(text) => {
+            let file = run.inputs.iter().find(|file| file.path == *text);
+            file.map_or_else(|| value.clone(), |file| format!("sha256:{}", file.sha256).into())
+        }
+        Value::Array(items) => items.iter().map(|item| by_content(item, run)).collect(),
+        other => other.clone(),
+    }
 }
 
 /// Names of the fields that differ, the telling ones first.
@@ -204,47 +248,70 @@ fn different(a: &Configuration, b: &Configuration) -> CompareError {
     }
 }
 
-/// Compares every record's environment with the first one's.
-fn check_environments(a: &[Input], b: &[Input]) -> Result<Vec<String>, CompareError> {
-    let mut inputs = a.iter().chain(b);
-    let Some(first) = inputs.next() else {
-        return Err(CompareError::NoRun { side: "A" });
-    };
-    let expected = conditions(&first.record);
-    let mut warnings: Vec<(&str, String)> = vec![];
-    for input in inputs {
-        let device = |input: &Input| input.record.environment.device.kind.name().to_owned();
-        if device(input) != device(first) {
-            return Err(CompareError::Different {
-                field: "environment.device.type".to_owned(),
-                a_name: first.name.clone(),
-                a_value: device(first),
-                b_name: input.name.clone(),
-                b_value: device(input),
-            });
-        }
-        for ((name, expected), (_, found)) in expected.iter().zip(conditions(&input.record)) {
-            let known = warnings.iter().any(|(known, _)| known == name);
-            if *expected != found && !known {
-                let message = format!("{name} is {expected} in {} and {found} in {}", first.name, input.name);
-                warnings.push((name, message));
-            }
-        }
-    }
-    Ok(warnings.into_iter().map(|(_, message)| message).collect())
+/// Something that is not the same on both sides: what the comparison is about, or what disturbs it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Difference {
+    /// Path in the record.
+    pub what: String,
+    /// Each value that the records of side A have, once.
+    pub a: Vec<String>,
+    /// Those of side B.
+    pub b: Vec<String>,
 }
 
-fn conditions(record: &Record) -> [(&'static str, Value); 8] {
+/// All that differs between the sides beside their times: environment, program and shaders.
+pub(super) fn differences_between(a: &[Input], b: &[Input]) -> Vec<Difference> {
+    let of = |side: &[Input]| {
+        let mut values: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for (what, value) in side.iter().flat_map(|input| conditions(&input.record)) {
+            let known = values.entry(what).or_default();
+            if !known.contains(&value) {
+                known.push(value);
+            }
+        }
+        values
+    };
+    let (a, b) = (of(a), of(b));
+    let mut names: Vec<&String> = a.keys().chain(b.keys()).collect();
+    names.sort();
+    names.dedup();
+    let differing = names.into_iter().filter(|name| a.get(*name) != b.get(*name));
+    let values = |side: &BTreeMap<String, Vec<String>>, name: &String| side.get(name).cloned().unwrap_or_default();
+    differing.map(|name| Difference { what: name.clone(), a: values(&a, name), b: values(&b, name) }).collect()
+}
+
+/// Everything beside the work that a time may depend on, by its path in the record.
+fn conditions(record: &Record) -> Vec<(String, String)> {
     let environment = &record.environment;
-    let (device, host) = (&environment.device, &environment.host);
-    [
-        ("device.name", Value::from(device.name.as_str())),
-        ("device.driver_version", Value::from(device.driver_version.clone())),
-        ("host.os", Value::from(host.os.as_str())),
-        ("host.cpu", Value::from(host.cpu.clone())),
-        ("host.logical_cores", Value::from(host.logical_cores)),
-        ("host.lp_num_threads", Value::from(host.lp_num_threads)),
-        ("layers", Value::from(environment.layers.clone())),
-        ("build.profile", Value::from(environment.build.profile.clone())),
+    let (device, host, build) = (&environment.device, &environment.host, &environment.build);
+    let some = |value: &Option<String>| value.clone().unwrap_or_else(|| "unknown".to_owned());
+    let number = |value: Option<u32>| value.map_or_else(|| "unset".to_owned(), |value| value.to_string());
+    let mut conditions: Vec<(String, String)> = [
+        ("device.name", device.name.clone()),
+        ("device.type", device.kind.name().to_owned()),
+        ("device.driver_version", some(&device.driver_version)),
+        ("host.os", host.os.clone()),
+        ("host.cpu", some(&host.cpu)),
+        ("host.cpu_governor", some(&host.cpu_governor)),
+        ("host.logical_cores", number(host.logical_cores)),
+        ("host.lp_num_threads", number(host.lp_num_threads)),
+        ("layers", environment.layers.join(", ")),
+        ("build.git_commit", some(&build.git_commit)),
+        ("build.profile", some(&build.profile)),
+        ("build.executable_sha256", some(&build.executable_sha256)),
     ]
+    .into_iter()
+    .map(|(name, value)| (name.to_owned(), value))
+    .collect();
+    conditions.extend(host.variables.iter().map(|(name, value)| (format!("host.variables.{name}"), value.clone())));
+    for (run, pass) in record.runs.iter().flat_map(|run| run.passes.iter().map(move |pass| (run, pass))) {
+        let place = format!("{} {} {}", run.paper, run.variant, pass.name);
+        if let Some(compiler) = &pass.shader_compiler {
+            conditions.push((format!("shader_compiler of {place}"), compiler.clone()));
+        }
+        conditions.extend(
+            pass.shaders.iter().map(|shader| (format!("SPIR-V of {place}: {}", shader.name), shader.sha256.clone())),
+        );
+    }
+    conditions
 }

@@ -1,40 +1,45 @@
-//! Verdict on B against A, faster or slower, from several records a side.
+//! Verdicts on B against A, same, faster or slower, for the frame and for every pass.
 //!
 //! Runs are matched by what was measured (`matching.rs`); each record, and each process inside one, is one process of
-//! its side. The frame decides: the ratio of its medians B / A has an interval of 95 % (`bootstrap.rs`), and
+//! its side and gives one number for every time: the logarithm of its median. What these say of the ratio B / A is
+//! [evidence](Evidence), and the frame with all its passes is one family of quantities on which it is [decided](decide):
 //!
-//! - `SAME`: the whole interval lies within [`SAME_MARGIN`] of 1, or both sides hold the very same samples;
-//! - `SLOWER`, `FASTER`: the interval lies above or below 1;
+//! - `SAME`: the ratio lies within the margin of 1, or both sides hold the very same samples;
+//! - `SLOWER`, `FASTER`: it lies above or below 1, and not certainly within the margin;
 //! - `UNCLEAR`: anything else, and always when a side has one process only: how much processes differ is then unknown.
-//!
-//! The margin is 2 %: what moving code or memory about changes by itself (Mytkowicz et al., 2009, "Producing wrong data
-//! without doing anything obviously wrong"), and no more than five quiet processes a side resolve. A difference that is
-//! certain but smaller is called the same. A threshold below the margin replaces it. Passes are reported with their
-//! intervals and get no verdict: among many passes some interval always misses 1 by chance.
 
-mod bootstrap;
 mod console;
+mod decision;
+mod evidence;
 mod matching;
 #[cfg(test)]
 mod synthetic;
 #[cfg(test)]
 mod tests;
+mod within;
 
-pub use bootstrap::{CONFIDENCE, RESAMPLES};
-pub use console::render;
-pub use matching::CompareError;
+pub use console::{markdown, render};
+pub use decision::{CONFIDENCE, Gate, Rules, SAME_MARGIN, Verdict, decide, gate, needed};
+pub use evidence::Evidence;
+pub use matching::{CompareError, Difference};
+pub use within::{Ratio, ratio_within_process};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::statistics::median;
 use crate::report::record::{Record, Run};
 use matching::Configuration;
 
-/// Distance from 1 within which the whole interval of a ratio must lie to be called the same.
-pub const SAME_MARGIN: f64 = 0.02;
-
 /// The value of [`Comparison::schema`].
-pub const SCHEMA: &str = "fumarole.compare/1";
+pub const SCHEMA: &str = "fumarole.compare/2";
+
+/// Numbers of blocks after which sides that are measured in turn are compared, each time with an equal part of the error:
+/// looking after every block would find differences where there are none.
+pub const LOOKS: [usize; 4] = [5, 10, 20, 40];
+
+/// Processes a side, or blocks, beyond which none are recommended.
+const MOST_PROCESSES: usize = 1000;
 
 /// A record and the file it came from, which messages name.
 #[derive(Clone, Debug)]
@@ -45,6 +50,38 @@ pub struct Input {
     pub record: Record,
 }
 
+/// Order in which the sides were measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Design {
+    /// In any order: processes are compared by Welch's t-test.
+    Processes,
+    /// In blocks A B B A: the differences of blocks are compared by signed ranks.
+    Blocks,
+}
+
+/// Rules of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Margin and error of the verdicts.
+    pub rules: Rules,
+    /// Fraction by which B may be slower: 0.05 is 5 %.
+    pub fail_above: Option<f64>,
+    /// Fraction of the frame's time from which on a pass is held against `fail_above`, on the side where it is greater.
+    pub min_share: f64,
+    /// Order of the measurement.
+    pub design: Design,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { rules: Rules::default(), fail_above: None, min_share: MIN_SHARE, design: Design::Processes }
+    }
+}
+
+/// [`Options::min_share`] of those that name none.
+pub const MIN_SHARE: f64 = 0.02;
+
 /// The outcome, as written by `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -54,14 +91,18 @@ pub struct Comparison {
     pub a: Vec<String>,
     /// Files of side B.
     pub b: Vec<String>,
-    /// Confidence of the intervals, 0 to 1.
+    /// Order of the measurement, which decides the test.
+    pub design: Design,
+    /// Probability with which an interval holds the true ratio, 0 to 1.
     pub confidence: f64,
-    /// Bootstrap resamples behind each interval.
-    pub resamples: usize,
     /// The margin in use, as a fraction.
-    pub same_margin: f64,
+    pub margin: f64,
     /// Fraction by which B may be slower than A; absent without `--fail-above`.
     pub fail_above: Option<f64>,
+    /// Fraction of the frame from which on a pass is held against it.
+    pub min_share: f64,
+    /// Differences between the sides beside their times.
+    pub differences: Vec<Difference>,
     /// In the order of A.
     pub runs: Vec<RunComparison>,
     /// Runs that the other side does not have.
@@ -73,9 +114,27 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// True when any run's interval lies beyond `fail_above`.
+    /// Everything that was compared: of each run the frame, then the passes.
+    pub fn quantities(&self) -> impl Iterator<Item = &Quantity> {
+        self.runs.iter().flat_map(RunComparison::quantities)
+    }
+
+    /// True when a frame or a pass lies beyond `fail_above`.
     pub fn has_regression(&self) -> bool {
-        self.runs.iter().any(|run| run.regression)
+        self.quantities().any(|quantity| quantity.gate == Some(Gate::Failed))
+    }
+
+    /// True when a frame, or a pass whose share counts, is not decided: against `fail_above`, or without it at all.
+    pub fn is_unclear(&self) -> bool {
+        self.quantities().filter(|quantity| quantity.counts).any(|quantity| match self.fail_above {
+            Some(_) => quantity.gate.is_none_or(|gate| gate == Gate::Undecided),
+            None => quantity.verdict == Verdict::Unclear,
+        })
+    }
+
+    /// True when B lacks a run or a pass of A.
+    pub fn is_missing_any(&self) -> bool {
+        !self.only_in_a.is_empty() || self.runs.iter().any(|run| !run.missing_passes.is_empty())
     }
 }
 
@@ -88,57 +147,28 @@ pub struct RunComparison {
     pub variant: String,
     /// Name of the preset; absent without one.
     pub preset: Option<String>,
-    /// Every parameter under its option's name.
+    /// Every parameter under its option's name, as A has it.
     pub config: Map<String, Value>,
     /// Pixels of the picture.
     pub width: u32,
     /// Pixels of the picture.
     pub height: u32,
-    /// Distinct processes on each side that timed the frame.
+    /// Distinct processes of A that timed the frame.
     pub a_processes: usize,
     /// Distinct processes of B that timed the frame.
     pub b_processes: usize,
-    /// Verdict on the frame's time.
-    pub verdict: Verdict,
-    /// Why the verdict is not clear; absent when it is.
-    pub reason: Option<String>,
-    /// The interval lies beyond `fail_above`.
-    pub regression: bool,
-    /// Absent when a side did not time the frame.
-    pub frame: Option<Ratio>,
+    /// Time of the whole frame on the host's clock.
+    pub frame: Quantity,
     /// In the order of A, then what only B has.
     pub passes: Vec<PassComparison>,
+    /// Passes of A that B lacks.
+    pub missing_passes: Vec<String>,
 }
 
-/// B against A.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "UPPERCASE")]
-pub enum Verdict {
-    Same,
-    Faster,
-    Slower,
-    Unclear,
-}
-
-/// Two medians and B / A with its interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ratio {
-    /// Geometric mean of the processes' medians.
-    pub a_median_ms: f64,
-    /// Geometric mean of the medians of B's processes.
-    pub b_median_ms: f64,
-    /// `b_median_ms / a_median_ms`: below 1 where B is faster.
-    pub ratio: f64,
-    /// Lower and upper end.
-    pub interval: [f64; 2],
-    /// Frames in a resampled block.
-    pub block_length: usize,
-}
-
-/// The ratio B / A of two methods measured in one process, alternating frame by frame: drift hits both alike, so the
-/// noise of frames is all that its interval has to cover. Absent without samples.
-pub fn ratio_within_process(a: &[f64], b: &[f64]) -> Option<Ratio> {
-    bootstrap::estimate(&[a.to_vec()], &[b.to_vec()])
+impl RunComparison {
+    fn quantities(&self) -> impl Iterator<Item = &Quantity> {
+        std::iter::once(&self.frame).chain(self.passes.iter().map(|pass| &pass.time))
+    }
 }
 
 /// One time of one pass.
@@ -148,57 +178,154 @@ pub struct PassComparison {
     pub name: String,
     /// Clock that timed it.
     pub clock: Clock,
-    /// Absent when a side lacks the pass or this time of it.
-    pub ratio: Option<Ratio>,
+    /// Its verdict.
+    #[serde(flatten)]
+    pub time: Quantity,
 }
 
 /// Clock of a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Clock {
+    /// Time stamps of the device.
     Gpu,
+    /// Work of the host, without waiting.
     Host,
+    /// Waiting of the host for the device.
+    Wait,
 }
 
-/// Compares side B with side A. `fail_above` is the fraction (0.05 is 5 %) by which B may be slower.
+/// A time on both sides, their ratio and the verdict on it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quantity {
+    /// Geometric mean of the processes' medians; absent where A has no such time.
+    pub a_median_ms: Option<f64>,
+    /// Absent where B has no such time.
+    pub b_median_ms: Option<f64>,
+    /// B / A, below 1 where B is faster; by signed ranks the median ratio of the blocks.
+    pub ratio: Option<f64>,
+    /// Lower and upper end; absent where too little was measured for one.
+    pub interval: Option<[f64; 2]>,
+    /// Fraction of the frame's time, on the side where it is greater.
+    pub share: Option<f64>,
+    /// The frame, or a pass of at least `min_share`.
+    pub counts: bool,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Reason of a verdict that is not clear.
+    pub reason: Option<String>,
+    /// Standing against `fail_above`; absent without it, and for what does not count or has no verdict.
+    pub gate: Option<Gate>,
+}
+
+/// Compares side B with side A.
 ///
 /// # Errors
 /// A side has no record or no run, or the sides were not measured alike; the message names the field that differs.
-pub fn compare(a: &[Input], b: &[Input], fail_above: Option<f64>) -> Result<Comparison, CompareError> {
-    let matched = matching::match_runs(a, b)?;
-    let same_margin = fail_above.map_or(SAME_MARGIN, |limit| limit.clamp(0.0, SAME_MARGIN));
+pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison, CompareError> {
+    let mut options = *options;
+    // Sides in turn may do different work on purpose; that is then what is compared.
+    let mut matched = match options.design {
+        Design::Processes => matching::match_runs(a, b)?,
+        Design::Blocks => matching::match_nearest(a, b)?,
+    };
+    // What fails is not called the same.
+    if let Some(limit) = options.fail_above {
+        options.rules.margin = options.rules.margin.min(limit);
+    }
     let names = |side: &[Input]| side.iter().map(|input| input.name.clone()).collect();
-    let runs = matched.pairs.iter().map(|(a, b)| {
-        let mut run = compare_run(a, b, same_margin);
-        // One process a side is no ground to fail on.
-        run.regression = fail_above.is_some_and(|limit| {
-            let beyond = run.frame.is_some_and(|frame| frame.interval[0] > 1.0 + limit);
-            beyond && run.verdict == Verdict::Slower
-        });
-        run
-    });
+    if options.design == Design::Processes {
+        matched.warnings.extend(matched.pairs.iter().filter_map(|(a, b)| order_warning(a, b)).next());
+    }
     Ok(Comparison {
         schema: SCHEMA.to_owned(),
         a: names(a),
         b: names(b),
-        confidence: CONFIDENCE,
-        resamples: RESAMPLES,
-        same_margin,
-        fail_above,
-        runs: runs.collect(),
+        design: options.design,
+        confidence: 1.0 - options.rules.error,
+        margin: options.rules.margin,
+        fail_above: options.fail_above,
+        min_share: options.min_share,
+        differences: [matched.differences, matching::differences_between(a, b)].concat(),
+        runs: matched.pairs.iter().map(|(a, b)| compare_run(a, b, &options)).collect(),
         only_in_a: matched.only_in_a,
         only_in_b: matched.only_in_b,
         warnings: matched.warnings,
     })
 }
 
-fn compare_run(a: &Configuration, b: &Configuration, same_margin: f64) -> RunComparison {
-    let frame_times = |run: &Run| run.frame_ms.as_ref().map(|time| time.samples.clone());
-    let (a_times, b_times) = (a.samples(frame_times), b.samples(frame_times));
-    let identical = !a_times.is_empty() && same_samples(&a_times, &b_times);
-    let frame = ratio(&a_times, &b_times, identical);
-    let (verdict, reason) =
-        if identical { (Verdict::Same, None) } else { decide(frame, a_times.len().min(b_times.len()), same_margin) };
+/// A doubt about sides of which one was measured wholly before the other: drift then looks like a difference.
+fn order_warning(a: &Configuration, b: &Configuration) -> Option<String> {
+    let (Some(a), Some(b)) = (a.started(), b.started()) else {
+        return Some("the records do not say when each process ran: drift may look like a difference".to_owned());
+    };
+    let ends = |side: &[&str]| Some((side.iter().min()?.to_string(), side.iter().max()?.to_string()));
+    let (a, b) = (ends(&a)?, ends(&b)?);
+    let is_apart = a.0 != b.0 && (a.1 < b.0 || b.1 < a.0);
+    is_apart.then(|| {
+        "one side was measured wholly before the other, so that drift looks like a difference: measure them in turn with \
+         ab"
+        .to_owned()
+    })
+}
+
+/// The times of one quantity, process after process of each side.
+struct Times {
+    a: Vec<Vec<f64>>,
+    b: Vec<Vec<f64>>,
+}
+
+impl Times {
+    /// Both sides hold the same processes' samples, in any order of the processes: they are one measurement.
+    fn are_identical(&self) -> bool {
+        !self.a.is_empty() && self.a.len() == self.b.len() && self.a.iter().all(|samples| self.b.contains(samples))
+    }
+
+    fn evidence(&self, design: Design) -> Option<Evidence> {
+        let (a, b) = (log_medians(&self.a)?, log_medians(&self.b)?);
+        match design {
+            Design::Processes => Evidence::welch(&a, &b),
+            Design::Blocks => {
+                let means =
+                    |side: &[f64]| side.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect::<Vec<_>>();
+                let blocks = means(&b).iter().zip(means(&a)).map(|(b, a)| b - a).collect::<Vec<_>>();
+                (a.len() == b.len()).then(|| Evidence::signed_ranks(&blocks)).flatten()
+            }
+        }
+    }
+
+    /// Processes of the side with fewer, or blocks.
+    fn count(&self, design: Design) -> usize {
+        let processes = self.a.len().min(self.b.len());
+        if design == Design::Blocks { processes / 2 } else { processes }
+    }
+}
+
+/// Logarithm of each process's median; absent where one is not positive.
+fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
+    side.iter().map(|samples| median(samples).filter(|median| *median > 0.0).map(f64::ln)).collect()
+}
+
+fn geometric_mean(side: &[Vec<f64>]) -> Option<f64> {
+    let logs = log_medians(side).filter(|logs| !logs.is_empty())?;
+    Some((logs.iter().sum::<f64>() / logs.len() as f64).exp())
+}
+
+fn compare_run(a: &Configuration, b: &Configuration, options: &Options) -> RunComparison {
+    let times = |time: &dyn Fn(&Run) -> Option<Vec<f64>>| Times { a: a.samples(time), b: b.samples(time) };
+    let frame = times(&|run| run.frame_ms.as_ref().map(|time| time.samples.clone()));
+    let passes = pass_times(a, b);
+    let of_frame = |pass: &Times| {
+        let share = |pass, frame| Some(geometric_mean(pass)? / geometric_mean(frame)?);
+        let shares = [share(&pass.a, &frame.a), share(&pass.b, &frame.b)];
+        shares.into_iter().flatten().max_by(f64::total_cmp)
+    };
+    let shares: Vec<Option<f64>> =
+        std::iter::once(Some(1.0)).chain(passes.iter().map(|(_, _, times)| of_frame(times))).collect();
+    let family: Vec<&Times> = std::iter::once(&frame).chain(passes.iter().map(|(_, _, times)| times)).collect();
+    let mut quantities = judge(&family, &shares, options).into_iter();
+    let has = |side: &Configuration, name: &str| side.runs().any(|run| run.passes.iter().any(|pass| pass.name == name));
+    let names = pass_names(a, b);
     let run = a.first();
     RunComparison {
         paper: run.paper.clone(),
@@ -207,78 +334,116 @@ fn compare_run(a: &Configuration, b: &Configuration, same_margin: f64) -> RunCom
         config: run.config.clone(),
         width: run.width,
         height: run.height,
-        a_processes: a_times.len(),
-        b_processes: b_times.len(),
-        verdict,
-        reason,
-        regression: false,
-        frame,
-        passes: compare_passes(a, b),
+        a_processes: frame.a.len(),
+        b_processes: frame.b.len(),
+        frame: quantities.next().unwrap_or_else(|| unmeasured(&frame, None)),
+        passes: passes
+            .iter()
+            .zip(quantities)
+            .map(|((name, clock, _), time)| PassComparison { name: name.clone(), clock: *clock, time })
+            .collect(),
+        missing_passes: names.into_iter().filter(|name| has(a, name) && !has(b, name)).collect(),
     }
 }
 
-fn decide(frame: Option<Ratio>, processes: usize, same_margin: f64) -> (Verdict, Option<String>) {
-    let unclear = |reason: &str| (Verdict::Unclear, Some(reason.to_owned()));
-    let Some(Ratio { interval: [low, high], .. }) = frame else {
-        return unclear("a side did not time the frame");
-    };
-    if processes < 2 {
-        return unclear("one process on a side: how much processes differ is unknown; measure with --processes 5");
-    }
-    let margin = 1.0 + same_margin;
-    if low >= 1.0 / margin && high <= margin {
-        (Verdict::Same, None)
-    } else if low > 1.0 {
-        (Verdict::Slower, None)
-    } else if high < 1.0 {
-        (Verdict::Faster, None)
-    } else {
-        unclear("the interval holds 1 and is wider than the margin; measure more processes or frames")
-    }
-}
-
-fn compare_passes(a: &Configuration, b: &Configuration) -> Vec<PassComparison> {
-    let mut names: Vec<&str> = vec![];
-    for run in a.runs().chain(b.runs()) {
-        for pass in &run.passes {
-            if !names.contains(&pass.name.as_str()) {
-                names.push(&pass.name);
-            }
+fn pass_names(a: &Configuration, b: &Configuration) -> Vec<String> {
+    let mut names: Vec<String> = vec![];
+    for pass in a.runs().chain(b.runs()).flat_map(|run| &run.passes) {
+        if !names.contains(&pass.name) {
+            names.push(pass.name.clone());
         }
     }
-    let mut compared = vec![];
-    for name in names {
-        for clock in [Clock::Gpu, Clock::Host] {
-            let times = |run: &Run| {
+    names
+}
+
+/// Every pass's times on every clock that either side has.
+fn pass_times(a: &Configuration, b: &Configuration) -> Vec<(String, Clock, Times)> {
+    let mut found = vec![];
+    for name in pass_names(a, b) {
+        for clock in [Clock::Gpu, Clock::Host, Clock::Wait] {
+            let samples = |run: &Run| {
                 let pass = run.passes.iter().find(|pass| pass.name == name)?;
                 let time = match clock {
                     Clock::Gpu => &pass.gpu_ms,
                     Clock::Host => &pass.host_ms,
+                    Clock::Wait => &pass.wait_ms,
                 };
                 time.as_ref().map(|time| time.samples.clone())
             };
-            let (a_times, b_times) = (a.samples(times), b.samples(times));
-            if a_times.is_empty() && b_times.is_empty() {
-                continue;
+            let times = Times { a: a.samples(samples), b: b.samples(samples) };
+            if !(times.a.is_empty() && times.b.is_empty()) {
+                found.push((name.clone(), clock, times));
             }
-            let identical = same_samples(&a_times, &b_times);
-            compared.push(PassComparison { name: name.to_owned(), clock, ratio: ratio(&a_times, &b_times, identical) });
         }
     }
-    compared
+    found
 }
 
-fn ratio(a: &[Vec<f64>], b: &[Vec<f64>], identical: bool) -> Option<Ratio> {
-    let mut ratio = bootstrap::estimate(a, b)?;
-    if identical {
-        // Nothing is estimated: the two are one measurement.
-        ratio.ratio = 1.0;
-        ratio.interval = [1.0, 1.0];
+/// Verdicts on a run's family: the frame first.
+fn judge(family: &[&Times], shares: &[Option<f64>], options: &Options) -> Vec<Quantity> {
+    let mut quantities: Vec<Quantity> =
+        family.iter().zip(shares).map(|(times, share)| unmeasured(times, *share)).collect();
+    let found: Vec<Option<Evidence>> =
+        family.iter().map(|times| times.evidence(options.design).filter(|_| !times.are_identical())).collect();
+    let known: Vec<(usize, &Evidence)> =
+        found.iter().enumerate().filter_map(|(index, evidence)| Some((index, evidence.as_ref()?))).collect();
+    let evidence: Vec<&Evidence> = known.iter().map(|(_, evidence)| *evidence).collect();
+    for ((index, evidence), verdict) in known.iter().zip(decide(&evidence, options.rules)) {
+        let [low, high] = evidence.interval(options.rules.error).map(f64::exp);
+        let quantity = &mut quantities[*index];
+        quantity.ratio = Some(evidence.estimate().exp());
+        quantity.interval = (low > 0.0 && high.is_finite()).then_some([low, high]);
+        quantity.verdict = verdict;
+        quantity.reason = (verdict == Verdict::Unclear).then(|| {
+            let count = family[*index].count(options.design);
+            let unit = if options.design == Design::Blocks { "blocks" } else { "processes a side" };
+            match needed(evidence, options.rules, count, known.len(), MOST_PROCESSES) {
+                Some(count) => format!("about {count} {unit} would decide"),
+                None => format!("more than {MOST_PROCESSES} {unit} would be needed"),
+            }
+        });
     }
-    Some(ratio)
+    for (index, (quantity, times)) in quantities.iter_mut().zip(family).enumerate() {
+        quantity.counts = index == 0 || quantity.share.is_some_and(|share| share >= options.min_share);
+        if times.are_identical() {
+            // Nothing is estimated: the two are one measurement.
+            (quantity.ratio, quantity.interval) = (Some(1.0), Some([1.0, 1.0]));
+            (quantity.verdict, quantity.reason) = (Verdict::Same, None);
+            quantity.gate = options.fail_above.filter(|_| quantity.counts).map(|_| Gate::Passed);
+        }
+    }
+    if let Some(limit) = options.fail_above {
+        let counting: Vec<(usize, &Evidence)> =
+            known.iter().filter(|(index, _)| quantities[*index].counts).copied().collect();
+        let evidence: Vec<&Evidence> = counting.iter().map(|(_, evidence)| *evidence).collect();
+        for ((index, _), gate) in counting.iter().zip(gate(&evidence, limit, options.rules.error)) {
+            quantities[*index].gate = Some(gate);
+        }
+    }
+    quantities
 }
 
-/// True when both sides hold the same processes' samples, in any order of the processes.
-fn same_samples(a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
-    a.len() == b.len() && a.iter().all(|samples| b.contains(samples))
+/// A time without evidence on it.
+fn unmeasured(times: &Times, share: Option<f64>) -> Quantity {
+    let (a_median_ms, b_median_ms) = (geometric_mean(&times.a), geometric_mean(&times.b));
+    let reason = if times.a.is_empty() {
+        "A has no such time"
+    } else if times.b.is_empty() {
+        "B has no such time"
+    } else if a_median_ms.is_none() || b_median_ms.is_none() {
+        "a median is not positive"
+    } else {
+        "one process on a side: how much processes differ is unknown; measure with --processes 5 or with ab"
+    };
+    Quantity {
+        a_median_ms,
+        b_median_ms,
+        ratio: a_median_ms.zip(b_median_ms).map(|(a, b)| b / a),
+        interval: None,
+        share,
+        counts: false,
+        verdict: Verdict::Unclear,
+        reason: Some(reason.to_owned()),
+        gate: None,
+    }
 }

@@ -12,8 +12,7 @@ impl Noise {
 
     /// A standard normal number (Box and Muller).
     pub fn normal(&mut self) -> f64 {
-        let mut uniform = || (self.0.next_u64() >> 11) as f64 * 2_f64.powi(-53);
-        let (u, v) = (1.0 - uniform(), uniform());
+        let (u, v) = (1.0 - self.uniform(), self.uniform());
         (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
     }
 
@@ -30,16 +29,27 @@ impl Noise {
             .collect()
     }
 
-    /// One process's frame times: independent noise of the given relative deviation.
-    pub fn frame_times(&mut self, count: usize, mean_ms: f64, deviation: f64) -> Vec<f64> {
-        (0..count).map(|_| mean_ms * (1.0 + deviation * self.normal())).collect()
+    /// Logarithms of the medians of `processes` processes, of 150 frames each around 1 ms: processes differ by
+    /// `deviation`, frames by `frame_deviation` with correlation 0.9, and one in fifty takes up to twice as long.
+    pub fn process_log_medians(&mut self, processes: usize, deviation: f64, frame_deviation: f64) -> Vec<f64> {
+        let median = |noise: &mut Self| {
+            let level = 1.0 + deviation * noise.normal();
+            let mut frames: Vec<f64> =
+                noise.autoregressive(150, 0.9).iter().map(|x| level * (1.0 + frame_deviation * x)).collect();
+            for frame in &mut frames {
+                let (chance, height) = (noise.uniform(), noise.uniform());
+                if chance < 0.02 {
+                    *frame *= 1.0 + height;
+                }
+            }
+            frames.sort_by(f64::total_cmp);
+            0.5 * (frames[74] + frames[75])
+        };
+        (0..processes).map(|_| median(self).ln()).collect()
     }
 
-    /// One process's frame times as they are on a busy machine: the process as a whole is off by `drift`, and its
-    /// frames by noise with correlation 0.9 from one to the next.
-    pub fn drifting_frame_times(&mut self, count: usize, mean_ms: f64, deviation: f64, drift: f64) -> Vec<f64> {
-        let level = mean_ms * (1.0 + drift * self.normal());
-        let noise = self.autoregressive(count, 0.9);
-        noise.iter().map(|x| level * (1.0 + deviation * x)).collect()
+    /// A number from 0 to 1.
+    pub fn uniform(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * 2_f64.powi(-53)
     }
 }

@@ -4,11 +4,26 @@ use super::synthetic::Noise;
 use super::*;
 use crate::measure::statistics::summarize;
 use crate::report::example;
-use crate::report::record::{DeviceKind, PassKind, Validation};
+use crate::report::record::{DeviceKind, InputFile, Pass, PassKind, ShaderBinary, Validation};
 use crate::report::table::Style;
 
 const FRAMES: usize = 150;
 const SEEDS: u64 = 100;
+
+impl Noise {
+    /// One process's frame times: independent noise of the given relative deviation.
+    pub fn frame_times(&mut self, count: usize, mean_ms: f64, deviation: f64) -> Vec<f64> {
+        (0..count).map(|_| mean_ms * (1.0 + deviation * self.normal())).collect()
+    }
+
+    /// One process's frame times as they are on a busy machine: the process as a whole is off by `drift`, and its
+    /// frames by noise with correlation 0.9 from one to the next.
+    pub fn drifting_frame_times(&mut self, count: usize, mean_ms: f64, deviation: f64, drift: f64) -> Vec<f64> {
+        let level = mean_ms * (1.0 + drift * self.normal());
+        let noise = self.autoregressive(count, 0.9);
+        noise.iter().map(|x| level * (1.0 + deviation * x)).collect()
+    }
+}
 
 fn run_of(samples: &[f64]) -> Run {
     Run { frames: samples.len() as u32, frame_ms: summarize(samples), ..example::run() }
@@ -22,8 +37,12 @@ fn side(name: &str, processes: usize, mut samples: impl FnMut() -> Vec<f64>) -> 
     (0..processes).map(|index| input(&format!("{name}{index}.json"), vec![run_of(&samples())])).collect()
 }
 
+fn compared(a: &[Input], b: &[Input], fail_above: Option<f64>) -> Comparison {
+    compare(a, b, &Options { fail_above, ..Options::default() }).unwrap()
+}
+
 fn verdict(a: &[Input], b: &[Input]) -> Verdict {
-    compare(a, b, None).unwrap().runs[0].verdict
+    compared(a, b, None).runs[0].frame.verdict
 }
 
 /// Number of seeds that give each of SAME, FASTER, SLOWER and UNCLEAR.
@@ -42,10 +61,10 @@ fn a_record_against_itself_is_the_same() {
     for processes in [1, 2, 5] {
         let a = side("a", processes, || noise.drifting_frame_times(FRAMES, 5.0, 0.05, 0.05));
         let b: Vec<Input> = a.iter().rev().cloned().collect();
-        let comparison = compare(&a, &b, Some(0.0)).unwrap();
+        let comparison = compared(&a, &b, Some(0.0));
         let run = &comparison.runs[0];
-        assert_eq!(run.verdict, Verdict::Same);
-        assert_eq!(run.frame.unwrap().interval, [1.0, 1.0]);
+        assert_eq!(run.frame.verdict, Verdict::Same);
+        assert_eq!(run.frame.interval, Some([1.0, 1.0]));
         assert!(!comparison.has_regression());
     }
 }
@@ -99,8 +118,8 @@ fn copies_of_one_record_are_one_process() {
         let one = side("x", 1, || noise.frame_times(FRAMES, mean_ms, 0.01));
         vec![one[0].clone(), one[0].clone(), one[0].clone()]
     });
-    let comparison = compare(&sides[0], &sides[1], Some(0.05)).unwrap();
-    assert_eq!(comparison.runs[0].verdict, Verdict::Unclear);
+    let comparison = compared(&sides[0], &sides[1], Some(0.05));
+    assert_eq!(comparison.runs[0].frame.verdict, Verdict::Unclear);
     assert_eq!(comparison.runs[0].a_processes, 1);
     assert!(!comparison.has_regression());
     assert!(comparison.warnings.iter().any(|w| w.contains("counted once")));
@@ -113,9 +132,9 @@ fn processes_may_share_a_record() {
         let runs = (0..5).map(|process| Run { process, ..run_of(&noise.frame_times(FRAMES, mean_ms, 0.01)) });
         vec![input("x.json", runs.collect())]
     });
-    let comparison = compare(&sides[0], &sides[1], None).unwrap();
+    let comparison = compared(&sides[0], &sides[1], None);
     assert_eq!(comparison.runs[0].a_processes, 5);
-    assert_eq!(comparison.runs[0].verdict, Verdict::Slower);
+    assert_eq!(comparison.runs[0].frame.verdict, Verdict::Slower);
     assert_eq!(verdict(&sides[1], &sides[0]), Verdict::Faster);
 }
 
@@ -123,17 +142,17 @@ fn processes_may_share_a_record() {
 fn a_regression_is_an_interval_beyond_the_limit() {
     let mut noise = Noise::new(1);
     let [a, b] = [5.0, 5.5].map(|mean_ms| side("x", 5, || noise.frame_times(FRAMES, mean_ms, 0.005)));
-    let fails = |limit| compare(&a, &b, Some(limit)).unwrap().has_regression();
+    let fails = |limit| compared(&a, &b, Some(limit)).has_regression();
     assert!(fails(0.05));
     assert!(!fails(0.10));
     assert!(!fails(0.15));
-    assert!(!compare(&b, &a, Some(0.05)).unwrap().has_regression());
-    assert!(!compare(&a, &b, None).unwrap().has_regression());
+    assert!(!compared(&b, &a, Some(0.05)).has_regression());
+    assert!(!compared(&a, &b, None).has_regression());
 
     // A limit below the margin replaces it: what fails is not called the same.
     let b = side("x", 5, || noise.frame_times(FRAMES, 5.075, 0.001));
-    let strict = compare(&a, &b, Some(0.005)).unwrap();
-    assert_eq!(strict.runs[0].verdict, Verdict::Slower);
+    let strict = compared(&a, &b, Some(0.005));
+    assert_eq!(strict.runs[0].frame.verdict, Verdict::Slower);
     assert!(strict.has_regression());
     assert_eq!(verdict(&a, &b), Verdict::Same);
 }
@@ -144,11 +163,11 @@ fn what_was_measured_differently_cannot_be_compared() {
     let with = |change: fn(&mut Input)| {
         let mut other = input("b.json", vec![original.clone()]);
         change(&mut other);
-        compare(&[input("a.json", vec![original.clone()])], &[other], None)
+        compare(&[input("a.json", vec![original.clone()])], &[other], &Options::default())
     };
     assert!(with(|_| ()).is_ok());
     type Change = fn(&mut Input);
-    let cases: [(&str, Change); 8] = [
+    let cases: [(&str, Change); 7] = [
         ("paper is \"gas\"", |b| b.record.runs[0].paper = "lava".into()),
         ("variant", |b| b.record.runs[0].variant = "splats".into()),
         ("preset is absent", |b| b.record.runs[0].preset = Some("figure-7".into())),
@@ -158,9 +177,6 @@ fn what_was_measured_differently_cannot_be_compared() {
         ("width is 800", |b| b.record.runs[0].width = 1024),
         ("seed", |b| b.record.runs[0].seed = 2),
         ("validation", |b| b.record.runs[0].validation = Validation::Clean),
-        ("environment.device.type is cpu", |b| {
-            b.record.environment.device.kind = DeviceKind::Discrete;
-        }),
     ];
     for (field, change) in cases {
         let message = with(change).unwrap_err().to_string();
@@ -180,59 +196,184 @@ fn variants_of_one_side_are_listed_and_conflicts_are_errors() {
     };
     let a = [input("a.json", vec![run("slices", 30), run("splats", 30)])];
     let b = [input("b.json", vec![run("slices", 30)])];
-    let comparison = compare(&a, &b, None).unwrap();
+    let comparison = compared(&a, &b, None);
     assert_eq!(comparison.runs.len(), 1);
     assert_eq!(comparison.only_in_a.len(), 1);
     assert!(comparison.only_in_a[0].contains("splats"));
 
     let conflict = [input("b.json", vec![run("slices", 30), run("splats", 60)])];
-    let message = compare(&a, &conflict, None).unwrap_err().to_string();
+    let message = compare(&a, &conflict, &Options::default()).unwrap_err().to_string();
     assert!(message.contains("config.planes is 30"), "{message}");
     for (a, b) in [(&a[..], &[][..]), (&[], &a), (&a, &[input("b.json", vec![])])] {
-        assert!(matches!(compare(a, b, None), Err(CompareError::NoRun { .. })));
+        assert!(matches!(compare(a, b, &Options::default()), Err(CompareError::NoRun { .. })));
     }
 }
 
-#[test]
-fn passes_are_reported_by_clock() {
-    let with_passes = |factor: f64, extra: bool| {
-        let mut run = run_of(&[5.0; 4]);
-        let mut splat = example::pass("splat", PassKind::Graphics);
-        splat.gpu_ms = summarize(&[2.0 * factor; 4]);
-        let mut cluster = example::pass("cluster", PassKind::Host);
-        cluster.host_ms = summarize(&[1.0; 4]);
-        run.passes = vec![cluster, splat];
-        if extra {
-            let mut blur = example::pass("blur", PassKind::Compute);
-            blur.gpu_ms = summarize(&[1.0; 4]);
-            run.passes.push(blur);
-        }
-        run
-    };
-    let a = [input("a.json", vec![with_passes(1.0, false)])];
-    let b = [input("b.json", vec![with_passes(1.5, true)])];
-    let comparison = compare(&a, &b, None).unwrap();
-    let passes = &comparison.runs[0].passes;
-    let found: Vec<_> =
-        passes.iter().map(|pass| (pass.name.as_str(), pass.clock, pass.ratio.map(|ratio| ratio.ratio))).collect();
-    assert_eq!(found[0], ("cluster", Clock::Host, Some(1.0)));
-    assert_eq!((found[1].0, found[1].1), ("splat", Clock::Gpu));
-    assert!((found[1].2.unwrap() - 1.5).abs() < 1e-12);
-    assert_eq!(found[2], ("blur", Clock::Gpu, None));
-    let text = render(&comparison, Style::default());
-    assert!(text.contains("1.5000"), "{text}");
-    assert!(text.lines().any(|line| line.starts_with("blur") && line.contains('-')));
+/// A run of two passes besides the frame: `cluster` on the host's clock, `splat` on the device's.
+fn with_passes(frame: &[f64], cluster: &[f64], splat: &[f64]) -> Run {
+    let mut run = run_of(frame);
+    run.passes = vec![
+        Pass { host_ms: summarize(cluster), ..example::pass("cluster", PassKind::Host) },
+        Pass { gpu_ms: summarize(splat), ..example::pass("splat", PassKind::Graphics) },
+    ];
+    run
 }
 
 #[test]
-fn conditions_that_differ_are_warnings() {
-    let a = [input("a.json", vec![run_of(&[5.0; 4])])];
+fn passes_have_verdicts_by_clock() {
+    let mut noise = Noise::new(1);
+    let mut times = |mean_ms: f64| noise.frame_times(FRAMES, mean_ms, 0.005);
+    let [a, b] = [0.1, 0.3].map(|splat_ms| {
+        let runs = (0..5).map(|process| Run { process, ..with_passes(&times(5.0), &times(1.0), &times(splat_ms)) });
+        vec![input("x.json", runs.collect())]
+    });
+    let comparison = compared(&a, &b, Some(0.05));
+    let run = &comparison.runs[0];
+    assert_eq!(run.frame.verdict, Verdict::Same);
+    let found: Vec<_> = run.passes.iter().map(|p| (p.name.as_str(), p.clock, p.time.verdict, p.time.gate)).collect();
+    assert_eq!(found[0], ("cluster", Clock::Host, Verdict::Same, Some(Gate::Passed)));
+    assert_eq!(found[1], ("splat", Clock::Gpu, Verdict::Slower, Some(Gate::Failed)));
+    assert!((run.passes[1].time.ratio.unwrap() - 3.0).abs() < 0.02);
+    assert!(comparison.has_regression(), "a pass of 6 % that takes three times as long fails");
+
+    // Below the share it has its verdict and does not fail.
+    let options = Options { fail_above: Some(0.05), min_share: 0.1, ..Options::default() };
+    let lenient = compare(&a, &b, &options).unwrap();
+    assert_eq!(lenient.runs[0].passes[1].time.verdict, Verdict::Slower);
+    assert!(!lenient.has_regression() && !lenient.is_unclear());
+    let text = render(&comparison, Style::default());
+    assert!(text.contains("regression beyond 5 %: splat"), "{text}");
+    assert!(markdown(&comparison).contains("| splat | GPU |"), "{}", markdown(&comparison));
+}
+
+#[test]
+fn what_one_side_lacks_is_named() {
+    let four = [1.0; 4];
+    let mut more = with_passes(&[5.0; 4], &four, &four);
+    let a = [input("a.json", vec![more.clone()])];
+    more.passes.remove(1);
+    let b = [input("b.json", vec![more])];
+    let comparison = compared(&a, &b, None);
+    assert_eq!(comparison.runs[0].missing_passes, ["splat"]);
+    assert!(comparison.is_missing_any());
+    assert!(!compared(&b, &a, None).is_missing_any());
+    let splat = &comparison.runs[0].passes[1];
+    assert_eq!((splat.time.ratio, splat.time.reason.as_deref()), (None, Some("B has no such time")));
+    assert!(render(&comparison, Style::default()).contains("B lacks passes of"));
+}
+
+#[test]
+fn what_cannot_be_told_is_unclear_and_says_what_would_decide() {
+    let levels = [[5.0, 5.3, 4.8, 5.1], [5.3, 5.0, 5.5, 5.2]];
+    let [a, b] = levels.map(|levels| levels.map(|ms| input(&format!("{ms}.json"), vec![run_of(&[ms; 4])])));
+    let comparison = compared(&a, &b, Some(0.05));
+    let frame = &comparison.runs[0].frame;
+    assert_eq!((frame.verdict, frame.gate), (Verdict::Unclear, Some(Gate::Undecided)));
+    assert!(frame.reason.as_ref().unwrap().contains("processes a side would"), "{frame:?}");
+    assert!(comparison.is_unclear() && !comparison.has_regression());
+}
+
+#[test]
+fn files_count_by_their_content() {
+    let with_file = |path: &str, sha256: &str| {
+        let mut run = run_of(&[5.0; 4]);
+        run.config.insert("mesh".to_owned(), json!([path]));
+        run.inputs = vec![InputFile { path: path.to_owned(), sha256: sha256.to_owned() }];
+        vec![input(path, vec![run])]
+    };
+    let a = with_file("a/bunny.ply", "11");
+    assert_eq!(verdict(&a, &with_file("b/bunny.ply", "11")), Verdict::Same);
+    let changed = compare(&a, &with_file("a/bunny.ply", "22"), &Options::default()).unwrap_err().to_string();
+    assert!(changed.contains("config.mesh is [\"sha256:11\"]"), "{changed}");
+}
+
+#[test]
+fn what_differs_beside_the_times_is_listed_first() {
+    let a = [input("a.json", vec![with_passes(&[5.0; 4], &[1.0; 4], &[1.0; 4])])];
     let mut b = a.clone();
     b[0].name = "b.json".to_owned();
     b[0].record.environment.device.driver_version = Some("Mesa 25".to_owned());
-    let comparison = compare(&a, &b, None).unwrap();
-    let expected = "device.driver_version is null in a.json and \"Mesa 25\" in b.json";
-    assert_eq!(comparison.warnings, [expected]);
+    b[0].record.environment.device.kind = DeviceKind::Discrete;
+    let shader = |sha256: &str| vec![ShaderBinary { name: "s.comp".to_owned(), sha256: sha256.to_owned() }];
+    let mut a = a;
+    a[0].record.runs[0].passes[1].shaders = shader("1");
+    b[0].record.runs[0].passes[1].shaders = shader("2");
+    let comparison = compared(&a, &b, None);
+    let whats: Vec<&str> = comparison.differences.iter().map(|difference| difference.what.as_str()).collect();
+    assert_eq!(whats, ["SPIR-V of gas slices splat: s.comp", "device.driver_version", "device.type"]);
+    let text = render(&comparison, Style::default());
+    let first: Vec<&str> = text.lines().take(4).collect();
+    assert_eq!(first[0], "what is compared");
+    assert!(first[1..].iter().any(|line| line.contains("device.type: A cpu, B discrete")), "{text}");
+}
+
+#[test]
+fn sides_that_follow_each_other_are_doubted() {
+    let started = |at: [u32; 4]| {
+        let runs = at.map(|second| {
+            let mut noise = Noise::new(u64::from(second));
+            Run {
+                process: second,
+                started: Some(format!("2026-01-31T12:00:{second:02}Z")),
+                ..run_of(&noise.frame_times(FRAMES, 5.0, 0.01))
+            }
+        });
+        let (a, b) = runs.split_at(2);
+        compared(&[input("a.json", a.to_vec())], &[input("b.json", b.to_vec())], None).warnings
+    };
+    assert!(started([1, 2, 3, 4])[0].contains("wholly before"), "A, A, B, B");
+    assert!(started([3, 4, 1, 2])[0].contains("wholly before"), "B, B, A, A");
+    assert_eq!(started([1, 3, 2, 4]), [""; 0], "A, B, A, B");
+}
+
+#[test]
+fn sides_in_turn_cancel_drift() {
+    let mut noise = Noise::new(5);
+    let mut level = 1.0;
+    let mut sides = [vec![], vec![]];
+    for _ in 0..20 {
+        for side in [0, 1, 1, 0] {
+            // The machine slows down by a percent from process to process; B takes 6 % longer.
+            level *= 1.01;
+            let mean_ms = level * [5.0, 5.3][side];
+            sides[side].push(input("x.json", vec![run_of(&noise.frame_times(FRAMES, mean_ms, 0.005))]));
+        }
+    }
+    let [a, b] = sides;
+    let blocks = Options { design: Design::Blocks, ..Options::default() };
+    let frame = &compare(&a, &b, &blocks).unwrap().runs[0].frame;
+    assert_eq!(frame.verdict, Verdict::Slower);
+    assert!((frame.ratio.unwrap() - 1.06).abs() < 0.003, "{frame:?}");
+    assert_eq!(compared(&a, &b, None).runs[0].frame.verdict, Verdict::Unclear, "drift hides it otherwise");
+
+    // What is measured in turn may differ in its work: that is what is compared.
+    let mut other = b.clone();
+    for input in &mut other {
+        input.record.runs[0].variant = "splats".to_owned();
+    }
+    let comparison = compare(&a, &other, &blocks).unwrap();
+    assert_eq!(comparison.differences[0].what, "variant");
+    assert_eq!(comparison.runs[0].frame.verdict, Verdict::Slower);
+}
+
+/// Verdicts of many trials: at most `wrong` families in a hundred have a false FASTER or SLOWER.
+#[test]
+fn families_keep_their_error() {
+    let (mut wrong, mut same) = (0, 0);
+    for seed in 0..SEEDS {
+        let mut noise = Noise::new(1000 + seed);
+        let evidence: Vec<Evidence> = (0..12)
+            .map(|_| {
+                let [a, b] = [0, 1].map(|_| noise.process_log_medians(10, 0.01, 0.01));
+                Evidence::welch(&a, &b).unwrap()
+            })
+            .collect();
+        let verdicts = decide(&evidence.iter().collect::<Vec<_>>(), Rules::default());
+        same += u64::from(verdicts[0] == Verdict::Same);
+        wrong += u64::from(verdicts.iter().any(|v| matches!(v, Verdict::Faster | Verdict::Slower)));
+    }
+    assert!(wrong <= 7, "{wrong} of {SEEDS}");
+    assert!(same >= 93, "{same} of {SEEDS}");
 }
 
 #[test]
@@ -240,15 +381,28 @@ fn the_outcome_is_readable_by_people_and_programs() {
     let mut noise = Noise::new(1);
     let [a, b] =
         [("a", 5.0), ("b", 6.0)].map(|(name, mean_ms)| side(name, 5, || noise.frame_times(FRAMES, mean_ms, 0.01)));
-    let comparison = compare(&a, &b, Some(0.05)).unwrap();
+    let comparison = compared(&a, &b, Some(0.05));
     let text = render(&comparison, Style::default());
-    for part in ["SLOWER: frame B / A 1.", "5 processes", "regression beyond 5 %"] {
+    for part in ["SLOWER: frame B / A 1.", "5 processes", "regression beyond 5 %: frame"] {
         assert!(text.contains(part), "{part} in\n{text}");
     }
     let document = serde_json::to_value(&comparison).unwrap();
-    assert_eq!(document["runs"][0]["verdict"], "SLOWER");
+    assert_eq!(document["runs"][0]["frame"]["verdict"], "SLOWER");
     assert_eq!(document["schema"], SCHEMA);
+    let schema = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.compare-2.json"));
+    let schema: Value = serde_json::from_str(schema).unwrap();
+    jsonschema::meta::validate(&schema).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> =
+        validator.iter_errors(&document).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    assert!(errors.is_empty(), "{errors:#?}");
+    for (pointer, wrong) in [("/schema", json!("x")), ("/runs/0/frame/verdict", json!("BAD")), ("/margin", json!("2"))]
+    {
+        let mut document = document.clone();
+        *document.pointer_mut(pointer).unwrap() = wrong;
+        assert!(!validator.is_valid(&document), "{pointer}");
+    }
     let read: Comparison = serde_json::from_value(document).unwrap();
-    assert_eq!(read.runs[0].verdict, Verdict::Slower);
+    assert_eq!(read.runs[0].frame.verdict, Verdict::Slower);
     assert_eq!(read.a, comparison.a);
 }

@@ -13,6 +13,7 @@ mod value;
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
+use std::path::PathBuf;
 
 use serde_json::{Map, Value as Json};
 
@@ -210,6 +211,11 @@ impl<S: 'static> Parameter<S> {
         self.access.set(setup, texts)
     }
 
+    /// Files that the value names.
+    pub fn files(&self, setup: &S) -> Vec<PathBuf> {
+        self.access.files(setup)
+    }
+
     /// Gives `to` the value of `from`.
     pub fn copy(&self, from: &S, to: &mut S) {
         self.access.copy(from, to);
@@ -261,6 +267,7 @@ trait Access<S> {
     fn copy(&self, from: &S, to: &mut S);
     fn text(&self, setup: &S) -> String;
     fn json(&self, setup: &S) -> Json;
+    fn files(&self, setup: &S) -> Vec<PathBuf>;
     fn lies_in(&self, setup: &S, range: &Range) -> bool;
 }
 
@@ -287,6 +294,10 @@ impl<S, T: Value> Access<S> for Field<S, T> {
 
     fn json(&self, setup: &S) -> Json {
         (self.get)(setup).json()
+    }
+
+    fn files(&self, setup: &S) -> Vec<PathBuf> {
+        (self.get)(setup).files()
     }
 
     fn lies_in(&self, setup: &S, range: &Range) -> bool {
@@ -324,6 +335,10 @@ impl<W, S> Access<W> for Inside<W, S> {
 
     fn json(&self, setup: &W) -> Json {
         self.access.json((self.part)(setup))
+    }
+
+    fn files(&self, setup: &W) -> Vec<PathBuf> {
+        self.access.files((self.part)(setup))
     }
 
     fn lies_in(&self, setup: &W, range: &Range) -> bool {

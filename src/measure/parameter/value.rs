@@ -60,6 +60,11 @@ pub trait Value: Clone + 'static {
     /// As the record has it.
     fn json(&self) -> Json;
 
+    /// Files that it names.
+    fn files(&self) -> Vec<PathBuf> {
+        Vec::new()
+    }
+
     /// Holds each of its numbers against a range.
     fn lies_in(&self, _range: &Range) -> bool {
         true
@@ -333,6 +338,10 @@ impl<T: Value> Value for Option<T> {
         self.as_ref().map_or(Json::Null, T::json)
     }
 
+    fn files(&self) -> Vec<PathBuf> {
+        self.as_ref().map_or_else(Vec::new, T::files)
+    }
+
     fn lies_in(&self, range: &Range) -> bool {
         self.as_ref().is_none_or(|value| value.lies_in(range))
     }
@@ -351,6 +360,10 @@ impl<T: Value> Value for Vec<T> {
 
     fn json(&self) -> Json {
         self.iter().map(T::json).collect()
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        self.iter().flat_map(T::files).collect()
     }
 
     fn lies_in(&self, range: &Range) -> bool {
@@ -381,6 +394,10 @@ macro_rules! source {
             fn json(&self) -> Json {
                 json!(self.to_string())
             }
+
+            fn files(&self) -> Vec<PathBuf> {
+                if let Self::File(path) = self { vec![path.clone()] } else { Vec::new() }
+            }
         }
     )+ };
 }
@@ -403,6 +420,10 @@ impl Value for PathBuf {
 
     fn json(&self) -> Json {
         json!(self.display().to_string())
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        vec![self.clone()]
     }
 }
 

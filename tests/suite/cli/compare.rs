@@ -53,7 +53,7 @@ fn compare(a: &Path, b: &Path) -> Program {
 }
 
 fn verdicts(comparison: &Value) -> Vec<&str> {
-    comparison["runs"].as_array().unwrap().iter().map(|run| run["verdict"].as_str().unwrap()).collect()
+    comparison["runs"].as_array().unwrap().iter().map(|run| run["frame"]["verdict"].as_str().unwrap()).collect()
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn a_record_against_itself_is_the_same() {
     assert_eq!(ended.stdout.matches("SAME:").count(), 2, "{}", ended.stdout);
     assert_eq!(ended.stderr, "");
     let json = compare(&record, &record).arg("--json").run().succeeded().json();
-    assert_eq!(json["schema"], "fumarole.compare/1");
+    assert_eq!(json["schema"], "fumarole.compare/2");
     assert_eq!(verdicts(&json), ["SAME", "SAME"]);
 }
 
@@ -110,7 +110,10 @@ fn one_process_a_side_is_unclear_at_best() {
     let a = file(&out, "a.json", record_of(1, 1.0).to_string());
     let b = file(&out, "b.json", record_of(1, 1.2).to_string());
     let ended = compare(&a, &b).args("--fail-above 5%").run().succeeded();
-    assert_eq!(ended.stdout.matches("UNCLEAR:").count(), 2, "{}", ended.stdout);
+    assert_eq!(ended.stdout.matches("UNCLEAR: frame").count(), 2, "{}", ended.stdout);
+    // What is not certain fails where that is asked for.
+    let ended = compare(&a, &b).args("--fail-unclear").run();
+    assert_eq!(ended.status.code(), Some(4));
 }
 
 #[test]
@@ -164,4 +167,27 @@ fn arguments_are_two_sides_and_a_share() {
     for share in ["much", "nan", "-5%", "inf"] {
         program().arg(format!("--fail-above={share}")).run().misused(&["--fail-above", share]);
     }
+}
+
+#[test]
+fn a_missing_variant_fails_where_that_is_asked_for() {
+    let out = folder();
+    let a = file(&out, "a.json", record_of(3, 1.0).to_string());
+    let mut fewer = record_of(3, 1.0);
+    fewer["runs"].as_array_mut().unwrap().retain(|run| run["variant"] == "level-map");
+    let b = file(&out, "b.json", fewer.to_string());
+    assert!(compare(&a, &b).run().succeeded().stdout.contains("only in A: caustics volumetric"));
+    assert_eq!(compare(&a, &b).args("--fail-missing").run().status.code(), Some(4));
+    compare(&b, &a).args("--fail-missing").run().succeeded();
+}
+
+#[test]
+fn markdown_has_tables_for_a_pull_request() {
+    let out = folder();
+    let a = file(&out, "a.json", record_of(5, 1.0).to_string());
+    let b = file(&out, "b.json", record_of(5, 1.2).to_string());
+    let text = compare(&a, &b).args("--markdown --margin 1%").run().succeeded().stdout;
+    assert!(text.starts_with("**What is compared**"), "{text}");
+    assert!(text.contains("| --- | --- | ---: |") && text.contains("± 1 %"), "{text}");
+    assert_eq!(compare(&a, &b).args("--margin 200%").run().status.code(), Some(2));
 }

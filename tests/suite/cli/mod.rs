@@ -2,6 +2,7 @@
 //!
 //! They run on lavapipe (`FUMAROLE_TEST_DEVICE` names another device) and fail where there is none.
 
+mod ab;
 mod arguments;
 mod bench;
 mod burning;

@@ -1,78 +1,57 @@
-//! The interval of a ratio of medians, by resampling processes and then blocks of consecutive frames.
+//! The ratio of two methods that one process measured in turn, frame by frame.
 //!
-//! Frames of one process are not independent (clocks, caches and neighbours drift), and processes differ from each
-//! other by more than their frames tell (memory layout, thread placement). So processes are drawn with replacement,
-//! and the frames of each in blocks long enough to keep their autocorrelation. With few processes such an interval is
-//! too narrow twice over: the spread of k drawn processes is short by √((k - 1) / k), and k processes know their own
-//! spread badly. Its two halves are therefore widened by √(k / (k - 1)) and by Student's t with k - 1 degrees of
-//! freedom over the normal quantile, k being the smaller number of processes of the two sides.
+//! Drift hits both alike, so the noise of frames is all that an interval has to cover. Frames are not independent
+//! (clocks, caches and neighbours drift), so they are resampled in blocks long enough to keep their autocorrelation, the
+//! same blocks on both sides.
 
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-use super::Ratio;
+use super::decision::CONFIDENCE;
 use crate::measure::statistics::{median, percentile};
 
-/// Probability with which the interval should contain the true ratio.
-pub const CONFIDENCE: f64 = 0.95;
-/// Draws of processes.
-pub const RESAMPLES: usize = 10_000;
-
-/// Draws of frame blocks in each process, from which the draws of processes choose.
-const FRAME_RESAMPLES: usize = 500;
+/// Resamples of the frames.
+const RESAMPLES: usize = 1000;
 /// Any fixed number: the same records always give the same interval.
 const SEED: u64 = 0x66_75_6d_61_72_6f_6c_65;
 
-/// Compares two sides, each with the samples of one measured time per process. Absent when a side has no process, a
-/// process has no samples, or a median is not positive, so that no ratio exists. With one process on a side the
-/// interval knows the noise of frames only.
-pub(super) fn estimate(a: &[Vec<f64>], b: &[Vec<f64>]) -> Option<Ratio> {
-    let a_log = log_medians(a)?;
-    let b_log = log_medians(b)?;
-    let center = mean(&b_log) - mean(&a_log);
-    let block_length = block_length(&residuals(a.iter().chain(b))?);
-    let draws_of = |side: &[Vec<f64>]| -> Vec<Vec<f64>> {
-        side.iter().map(|samples| resampled_log_medians(samples, block_length)).collect()
-    };
-    let (a_draws, b_draws) = (draws_of(a), draws_of(b));
-    let mut random = Pcg64Mcg::seed_from_u64(SEED + 1);
-    let mut differences: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            let frames = below(&mut random, FRAME_RESAMPLES);
-            let b_draw = mean_of_drawn_processes(&b_draws, frames, &mut random);
-            b_draw - mean_of_drawn_processes(&a_draws, frames, &mut random)
-        })
-        .collect();
+/// Two medians and B / A with its interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ratio {
+    /// Median of the one method in milliseconds.
+    pub a_median_ms: f64,
+    /// Median of the other.
+    pub b_median_ms: f64,
+    /// `b_median_ms / a_median_ms`: below 1 where B is faster.
+    pub ratio: f64,
+    /// Lower and upper end, of [`CONFIDENCE`].
+    pub interval: [f64; 2],
+}
+
+/// The ratio B / A of two methods measured in one process, alternating frame by frame. Absent without samples, and where
+/// a median is not positive.
+pub fn ratio_within_process(a: &[f64], b: &[f64]) -> Option<Ratio> {
+    let positive = |samples: &[f64]| median(samples).filter(|median| *median > 0.0);
+    let (a_median_ms, b_median_ms) = (positive(a)?, positive(b)?);
+    let block_length = block_length(&residuals(&[a, b])?);
+    let (a_draws, b_draws) = (resampled_log_medians(a, block_length), resampled_log_medians(b, block_length));
+    let mut differences: Vec<f64> = b_draws.iter().zip(&a_draws).map(|(b, a)| b - a).collect();
     differences.sort_by(f64::total_cmp);
     let tail = 0.5 * (1.0 - CONFIDENCE);
-    let widening = small_sample_widening(a.len().min(b.len()));
-    let bound = |fraction: f64| {
-        let bound = percentile(&differences, fraction)?;
-        Some((center + widening * (bound - center)).exp())
-    };
+    let bound = |fraction: f64| percentile(&differences, fraction).map(f64::exp);
     Some(Ratio {
-        a_median_ms: mean(&a_log).exp(),
-        b_median_ms: mean(&b_log).exp(),
-        ratio: center.exp(),
+        a_median_ms,
+        b_median_ms,
+        ratio: b_median_ms / a_median_ms,
         interval: [bound(tail)?, bound(1.0 - tail)?],
-        block_length,
     })
 }
 
-fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
-    if side.is_empty() {
-        return None;
-    }
-    let medians = side.iter().map(|samples| median(samples));
-    medians.map(|median| median.filter(|m| *m > 0.0).map(f64::ln)).collect()
-}
-
-/// Residuals of each process's samples, as fractions of its median, less what all processes have in common: frames
-/// differ by content, and content is no noise. Frames are matched by their place, which needs equally many in every
-/// process.
-fn residuals<'a>(processes: impl Iterator<Item = &'a Vec<f64>>) -> Option<Vec<Vec<f64>>> {
+/// Residuals of each side's samples, as fractions of its median, less what both have in common: frames differ by
+/// content, and content is no noise. Frames are matched by their place, which needs equally many on each side.
+fn residuals(sides: &[&[f64]]) -> Option<Vec<Vec<f64>>> {
     let mut residuals: Vec<Vec<f64>> = vec![];
-    for samples in processes {
+    for samples in sides {
         let center = median(samples).filter(|center| *center > 0.0)?;
         residuals.push(samples.iter().map(|x| x / center).collect());
     }
@@ -129,15 +108,15 @@ fn autocovariance(series: &[f64], lag: usize) -> f64 {
     pairs.map(|(x, y)| (x - center) * (y - center)).sum::<f64>() / series.len() as f64
 }
 
-/// Logarithms of the medians of [`FRAME_RESAMPLES`] circular block resamples of one process.
+/// Logarithms of the medians of [`RESAMPLES`] circular block resamples of one side.
 ///
-/// Every process starts from the same seed: processes with equally many frames get the same blocks, so that what the
+/// Each side starts from the same seed: sides with equally many frames get the same blocks, so that what the
 /// frames' content adds is the same on both sides and leaves the ratio.
 fn resampled_log_medians(samples: &[f64], block_length: usize) -> Vec<f64> {
     let count = samples.len();
     let mut random = Pcg64Mcg::seed_from_u64(SEED);
     let mut drawn = Vec::with_capacity(count + block_length);
-    (0..FRAME_RESAMPLES)
+    (0..RESAMPLES)
         .map(|_| {
             drawn.clear();
             while drawn.len() < count {
@@ -165,11 +144,6 @@ fn median_in_place(samples: &mut [f64]) -> f64 {
     }
 }
 
-fn mean_of_drawn_processes(draws: &[Vec<f64>], frames: usize, random: &mut Pcg64Mcg) -> f64 {
-    let total: f64 = (0..draws.len()).map(|_| draws[below(random, draws.len())][frames]).sum();
-    total / draws.len() as f64
-}
-
 /// A uniform index below `bound`, which is small enough that the method's bias of `bound / 2^64` is nothing.
 fn below(random: &mut Pcg64Mcg, bound: usize) -> usize {
     ((u128::from(random.next_u64()) * bound as u128) >> 64) as usize
@@ -179,44 +153,10 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// See the module's page. One process leaves nothing to correct by.
-fn small_sample_widening(processes: usize) -> f64 {
-    if processes < 2 {
-        return 1.0;
-    }
-    let k = processes as f64;
-    (k / (k - 1.0)).sqrt() * student_t_975(processes - 1) / NORMAL_975
-}
-
-const NORMAL_975: f64 = 1.959_963_985;
-
-/// 97.5 % quantile of Student's t: tabulated, then its expansion in 1 / freedom (Abramowitz and Stegun, 26.7.5).
-fn student_t_975(freedom: usize) -> f64 {
-    const TABLE: [f64; 10] = [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
-    if let Some(tabulated) = TABLE.get(freedom.saturating_sub(1)) {
-        return *tabulated;
-    }
-    let (z, v) = (NORMAL_975, freedom as f64);
-    let terms = [
-        z,
-        (z.powi(3) + z) / 4.0,
-        (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / 96.0,
-        (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / 384.0,
-    ];
-    terms.iter().rev().fold(0.0, |sum, term| sum / v + term)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::synthetic::Noise;
     use super::*;
-
-    #[test]
-    fn student_t_meets_its_tables() {
-        for (freedom, expected) in [(1, 12.7062), (10, 2.2281), (11, 2.2010), (30, 2.0423)] {
-            assert!((student_t_975(freedom) - expected).abs() < 1e-3, "{freedom}");
-        }
-    }
 
     #[test]
     fn blocks_are_as_long_as_the_correlation() {
@@ -232,10 +172,10 @@ mod tests {
     }
 
     #[test]
-    fn content_shared_by_all_processes_leaves_the_ratio() {
+    fn content_shared_by_both_sides_leaves_the_ratio() {
         let content: Vec<f64> = (0..200).map(|frame| 5.0 + 0.05 * f64::from(frame)).collect();
         let slower: Vec<f64> = content.iter().map(|x| 1.1 * x).collect();
-        let found = estimate(&[content], &[slower]).unwrap();
+        let found = ratio_within_process(&content, &slower).unwrap();
         for value in [found.ratio, found.interval[0], found.interval[1]] {
             assert!((value - 1.1).abs() < 1e-9, "{value}");
         }
@@ -244,12 +184,11 @@ mod tests {
     #[test]
     fn swapping_the_sides_inverts_the_ratio() {
         let mut noise = Noise::new(3);
-        let sides: Vec<Vec<f64>> = (0..6).map(|_| noise.frame_times(100, 5.0, 0.03)).collect();
-        let there = estimate(&sides[..3], &sides[3..]).unwrap();
-        let back = estimate(&sides[3..], &sides[..3]).unwrap();
+        let [a, b] = [0, 1].map(|_| noise.frame_times(100, 5.0, 0.03));
+        let (there, back) = (ratio_within_process(&a, &b).unwrap(), ratio_within_process(&b, &a).unwrap());
         assert!((there.ratio * back.ratio - 1.0).abs() < 1e-12);
         assert!((there.interval[0] * back.interval[1]).ln().abs() < 0.02);
-        assert_eq!(there, estimate(&sides[..3], &sides[3..]).unwrap());
+        assert_eq!(Some(there), ratio_within_process(&a, &b));
     }
 
     #[test]
@@ -262,13 +201,12 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_ratio_has_no_estimate() {
-        let of = |samples: &[f64]| vec![samples.to_vec()];
-        let times = of(&[1.0, 2.0]);
-        assert!(estimate(&[], &times).is_none());
-        assert!(estimate(&times, &of(&[])).is_none());
-        assert!(estimate(&times, &of(&[0.0, 0.0, 1.0])).is_none());
-        let partly_zero = estimate(&times, &of(&[0.0, 1.0, 1.0])).unwrap();
+    fn nothing_has_no_ratio() {
+        let times = [1.0, 2.0];
+        assert!(ratio_within_process(&[], &times).is_none());
+        assert!(ratio_within_process(&times, &[]).is_none());
+        assert!(ratio_within_process(&times, &[0.0, 0.0, 1.0]).is_none());
+        let partly_zero = ratio_within_process(&times, &[0.0, 1.0, 1.0]).unwrap();
         assert!(partly_zero.interval.iter().all(|bound| bound.is_finite()));
     }
 }

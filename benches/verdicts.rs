@@ -1,0 +1,137 @@
+//! How often the verdicts of `compare` and `ab` are right: seeded trials of 12 quantities each, a frame and 11 passes,
+//! on frame times that are autocorrelated and heavy-tailed. Prints counts; takes the number of trials as its argument.
+
+#[path = "../src/measure/compare/synthetic.rs"]
+mod synthetic;
+
+use fumarole::measure::compare::{Evidence, Gate, LOOKS, Rules, Verdict, decide, gate};
+use synthetic::Noise;
+
+const MEMBERS: usize = 12;
+
+fn main() {
+    let trials = std::env::args().skip(1).find_map(|text| text.parse().ok()).unwrap_or(2000);
+    println!("{trials} trials a line, {MEMBERS} quantities, 150 frames a process, frame noise 1 %");
+    for (processes, spread) in [(10, 0.01), (10, 0.03), (5, 0.01), (20, 0.01)] {
+        processes_alike(trials, processes, spread);
+    }
+    for (processes, spread) in [(10, 0.01), (10, 0.02), (10, 0.03), (20, 0.03)] {
+        slower(trials, processes, spread);
+    }
+    for drift in [0.0, 0.05] {
+        blocks(trials, drift, 1.0);
+        blocks(trials, drift, 1.1);
+    }
+}
+
+fn percent(count: usize, trials: usize) -> String {
+    format!("{:5.1} %", 100.0 * count as f64 / trials as f64)
+}
+
+fn is_difference(verdict: &Verdict) -> bool {
+    matches!(verdict, Verdict::Faster | Verdict::Slower)
+}
+
+/// Two equal sides: how often the frame is SAME, and any quantity falsely FASTER or SLOWER.
+fn processes_alike(trials: usize, processes: usize, spread: f64) {
+    let (mut same, mut wrong) = (0, 0);
+    for seed in 0..trials {
+        let verdicts = family(seed as u64, processes, spread, 1.0).1;
+        same += usize::from(verdicts[0] == Verdict::Same);
+        wrong += usize::from(verdicts.iter().any(is_difference));
+    }
+    println!(
+        "compare, alike, {processes} processes, spread {:.0} %: frame SAME {}, a false FASTER or SLOWER {}",
+        100.0 * spread,
+        percent(same, trials),
+        percent(wrong, trials)
+    );
+}
+
+/// One quantity 10 % slower: how often it is SLOWER, and its standing against a limit of 5 %.
+fn slower(trials: usize, processes: usize, spread: f64) {
+    let (mut found, mut failed, mut undecided) = (0, 0, 0);
+    for seed in 0..trials {
+        let (evidence, verdicts) = family(seed as u64, processes, spread, 1.1);
+        found += usize::from(verdicts[1] == Verdict::Slower);
+        let gates = gate(&evidence.iter().collect::<Vec<_>>(), 0.05, Rules::default().error);
+        failed += usize::from(gates[1] == Gate::Failed);
+        undecided += usize::from(gates[1] == Gate::Undecided);
+    }
+    println!(
+        "compare, one pass 1.10, {processes} processes, spread {:.0} %: SLOWER {}, beyond 5 % {}, undecided {}",
+        100.0 * spread,
+        percent(found, trials),
+        percent(failed, trials),
+        percent(undecided, trials)
+    );
+}
+
+/// A family with its second member `factor` times as slow on side B.
+fn family(seed: u64, processes: usize, spread: f64, factor: f64) -> (Vec<Evidence>, Vec<Verdict>) {
+    let mut noise = Noise::new(seed);
+    let member = |index: usize| {
+        let a = noise.process_log_medians(processes, spread, 0.01);
+        let shift = if index == 1 { factor.ln() } else { 0.0 };
+        let b: Vec<f64> = noise.process_log_medians(processes, spread, 0.01).iter().map(|b| b + shift).collect();
+        Evidence::welch(&a, &b)
+    };
+    let evidence: Vec<Evidence> = (0..MEMBERS).filter_map(member).collect();
+    let verdicts = decide(&evidence.iter().collect::<Vec<_>>(), Rules::default());
+    (evidence, verdicts)
+}
+
+/// Sides in turn under drift over a block and steps of the clock rate, until decided or the last look.
+fn blocks(trials: usize, drift: f64, factor: f64) {
+    let (mut same, mut wrong, mut found, mut used) = (0, 0, 0, 0);
+    for seed in 0..trials {
+        let mut noise = Noise::new(seed as u64);
+        let levels = levels(&mut noise, drift);
+        let side = |noise: &mut Noise, places: [usize; 2], shift: f64| -> Vec<f64> {
+            let own = noise.process_log_medians(2 * levels.len(), 0.01, 0.01);
+            let pairs = levels.iter().zip(own.chunks_exact(2));
+            pairs.map(|(level, own)| 0.5 * (own[0] + own[1] + level[places[0]] + level[places[1]]) + shift).collect()
+        };
+        let members: Vec<Vec<f64>> = (0..MEMBERS)
+            .map(|index| {
+                let shift = if index == 1 { factor.ln() } else { 0.0 };
+                let (a, b) = (side(&mut noise, [0, 3], 0.0), side(&mut noise, [1, 2], shift));
+                b.iter().zip(a).map(|(b, a)| b - a).collect()
+            })
+            .collect();
+        let rules = Rules { error: Rules::default().error / LOOKS.len() as f64, ..Rules::default() };
+        for look in LOOKS {
+            let evidence: Vec<Evidence> =
+                members.iter().filter_map(|blocks| Evidence::signed_ranks(&blocks[..look])).collect();
+            let verdicts = decide(&evidence.iter().collect::<Vec<_>>(), rules);
+            if look == LOOKS[LOOKS.len() - 1] || !verdicts.contains(&Verdict::Unclear) {
+                used += look;
+                same += usize::from(verdicts[0] == Verdict::Same);
+                found += usize::from(verdicts[1] == Verdict::Slower);
+                let others = verdicts.iter().enumerate().filter(|(index, _)| factor == 1.0 || *index != 1);
+                wrong += usize::from(others.into_iter().any(|(_, verdict)| is_difference(verdict)));
+                break;
+            }
+        }
+    }
+    println!(
+        "ab, one pass {factor:.2}, drift {:.0} % and clock steps: frame SAME {}, SLOWER found {}, false {}, {:.0} blocks",
+        100.0 * drift,
+        percent(same, trials),
+        percent(found, trials),
+        percent(wrong, trials),
+        used as f64 / trials as f64
+    );
+}
+
+/// The machine's speed in each block's four processes: a ramp over the block, and in one block of ten a step of 5 %.
+fn levels(noise: &mut Noise, drift: f64) -> Vec<[f64; 4]> {
+    (0..LOOKS[LOOKS.len() - 1])
+        .map(|_| {
+            let slope = drift / 4.0 * (1.0 + 0.5 * noise.normal());
+            let step = if drift > 0.0 && noise.uniform() < 0.1 { 0.05 } else { 0.0 };
+            let at = (4.0 * noise.uniform()) as usize;
+            [0, 1, 2, 3].map(|place| slope * place as f64 + if place > at { step } else { 0.0 })
+        })
+        .collect()
+}

@@ -1,0 +1,226 @@
+//! `ab`: two sides measured in turn, in fresh processes, until the verdicts are certain.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+
+use super::compare::VerdictArgs;
+use super::failure::Failure;
+use super::outcome;
+use super::processes::{failure, finish};
+use super::watch::{interrupted, progress_bar};
+use crate::measure::compare::{Comparison, Design, Input, LOOKS, Verdict, compare};
+use crate::report::{Record, json, output};
+
+#[derive(Debug, Clone, Args)]
+pub struct AbArgs {
+    /// Options of side A alone, as one text: "--variant none --shader-dir changed"
+    #[arg(long, value_name = "OPTIONS", value_parser = parse_words, allow_hyphen_values = true, default_value = "")]
+    a: Words,
+    /// Options of side B alone
+    #[arg(long, value_name = "OPTIONS", value_parser = parse_words, allow_hyphen_values = true, default_value = "")]
+    b: Words,
+    /// Environment variable of one side; may be repeated
+    #[arg(long, value_name = "A|B:NAME=VALUE", value_parser = parse_variable)]
+    env: Vec<(Side, (String, String))>,
+    /// Program of one side, in place of this one: another build of fumarole
+    #[arg(long, value_name = "A|B:FILE", value_parser = parse_binary)]
+    binary: Vec<(Side, PathBuf)>,
+    /// Start no further block after this many seconds, 1 to 86400
+    #[arg(long, value_name = "S", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    budget: u64,
+    /// Blocks A B B A at most, 2 to 40
+    #[arg(long, value_name = "N", default_value_t = LAST_LOOK, value_parser = clap::value_parser!(u32).range(2..=i64::from(LAST_LOOK)))]
+    blocks: u32,
+    /// Folder for the records of both sides, ab-a.json and ab-b.json
+    #[arg(long, value_name = "DIR", default_value = "fumarole-out")]
+    out: PathBuf,
+    /// Print nothing but the comparison
+    #[arg(long, short)]
+    quiet: bool,
+    #[command(flatten)]
+    verdict: VerdictArgs,
+    /// Paper and options of both sides, as after bench: gas --preset fig-8
+    #[arg(value_name = "PAPER [OPTIONS]", trailing_var_arg = true, allow_hyphen_values = true, required = true)]
+    common: Vec<OsString>,
+}
+
+const LAST_LOOK: u32 = LOOKS[LOOKS.len() - 1] as u32;
+
+/// A block's order: drift that is linear over its four processes cancels.
+const BLOCK: [Side; 4] = [Side::A, Side::B, Side::B, Side::A];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    A,
+    B,
+}
+
+/// Options as a shell would split them.
+#[derive(Debug, Clone)]
+struct Words(Vec<String>);
+
+fn parse_words(text: &str) -> Result<Words, String> {
+    shlex::split(text).map(Words).ok_or_else(|| "a quotation mark is not closed".to_owned())
+}
+
+fn parse_side(text: &str) -> Result<(Side, &str), String> {
+    match text.split_once(':') {
+        Some(("A" | "a", rest)) => Ok((Side::A, rest)),
+        Some(("B" | "b", rest)) => Ok((Side::B, rest)),
+        _ => Err("begin with the side, A: or B:".to_owned()),
+    }
+}
+
+fn parse_variable(text: &str) -> Result<(Side, (String, String)), String> {
+    let (side, assignment) = parse_side(text)?;
+    match assignment.split_once('=') {
+        Some((name, value)) if !name.is_empty() && !text.contains('\0') => {
+            Ok((side, (name.to_owned(), value.to_owned())))
+        }
+        _ => Err("give NAME=VALUE after the side".to_owned()),
+    }
+}
+
+fn parse_binary(text: &str) -> Result<(Side, PathBuf), String> {
+    let (side, path) = parse_side(text)?;
+    if path.is_empty() { Err("give a file after the side".to_owned()) } else { Ok((side, path.into())) }
+}
+
+pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
+    let files = [Side::A, Side::B].map(|side| arguments.record_file(side));
+    files.iter().try_for_each(|file| output::check_writable(file))?;
+    let interrupted = interrupted();
+    let bar = progress_bar(arguments.quiet, "blocks A B B A");
+    bar.set_length(u64::from(arguments.blocks));
+    let deadline = Instant::now() + Duration::from_secs(arguments.budget);
+    let mut records: [Vec<Record>; 2] = [vec![], vec![]];
+    let mut comparison = None;
+    for block in 1..=arguments.blocks as usize {
+        let mut measured = vec![];
+        for (place, side) in BLOCK.into_iter().enumerate() {
+            let process = 2 * (block - 1) + usize::from(place > 1);
+            match arguments.measure(side, process) {
+                Ok(record) => measured.push((side, record)),
+                Err(_) if interrupted.load(Ordering::Relaxed) => break,
+                Err(failure) => return Err(failure),
+            }
+        }
+        // An unfinished block cancels no drift.
+        if measured.len() == BLOCK.len() {
+            for (side, record) in measured {
+                records[side as usize].push(record);
+            }
+            bar.inc(1);
+        }
+        let is_last =
+            block == arguments.blocks as usize || Instant::now() >= deadline || interrupted.load(Ordering::Relaxed);
+        if is_last || LOOKS.contains(&block) {
+            comparison = arguments.look(&records)?;
+            if is_last || comparison.as_ref().is_some_and(is_decided) {
+                break;
+            }
+        }
+    }
+    bar.finish_and_clear();
+    let Some(mut comparison) = comparison else {
+        return Err(Failure::Running("interrupted before two blocks were measured; nothing can be said".to_owned()));
+    };
+    for ((file, side), name) in files.iter().zip(&records).zip([&mut comparison.a, &mut comparison.b]) {
+        if let Some(joined) = joined(side) {
+            output::write(file, outcome::text(&joined)?.as_bytes())?;
+            *name = vec![file.display().to_string()];
+            if !arguments.quiet {
+                outcome::say(&format!("wrote {}", file.display()));
+            }
+        }
+    }
+    arguments.verdict.publish(&comparison)
+}
+
+/// True when the frame and every pass that counts have a verdict, and stand on one side of the limit if there is one.
+fn is_decided(comparison: &Comparison) -> bool {
+    let counting = || comparison.quantities().filter(|quantity| quantity.counts);
+    !comparison.is_unclear() && counting().all(|quantity| quantity.verdict != Verdict::Unclear)
+}
+
+/// All records of one side as one.
+fn joined(records: &[Record]) -> Option<Record> {
+    let mut joined = records.first()?.clone();
+    joined.command = std::env::args().collect();
+    joined.runs = records.iter().flat_map(|record| record.runs.clone()).collect();
+    Some(joined)
+}
+
+impl AbArgs {
+    fn record_file(&self, side: Side) -> PathBuf {
+        self.out.join(if side == Side::A { "ab-a.json" } else { "ab-b.json" })
+    }
+
+    /// Compares the blocks so far, at this look's part of the error; absent with fewer than two.
+    fn look(&self, records: &[Vec<Record>; 2]) -> Result<Option<Comparison>, Failure> {
+        if records[0].len() < 4 {
+            return Ok(None);
+        }
+        let mut options = self.verdict.options(Design::Blocks);
+        options.rules.error /= LOOKS.len() as f64;
+        let inputs = |side: Side| -> Vec<Input> {
+            let name = self.record_file(side).display().to_string();
+            records[side as usize].iter().map(|record| Input { name: name.clone(), record: record.clone() }).collect()
+        };
+        Ok(Some(compare(&inputs(Side::A), &inputs(Side::B), &options)?))
+    }
+
+    /// Measures one side in a fresh process.
+    fn measure(&self, side: Side, process: usize) -> Result<Record, Failure> {
+        let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
+        let chosen = self.binary.iter().rev().find(|(of, _)| *of == side);
+        let program = chosen.map_or_else(std::env::current_exe, |(_, path)| Ok(path.clone())).map_err(failed)?;
+        let file = tempfile::NamedTempFile::new().map_err(failed)?;
+        let words = if side == Side::A { &self.a.0 } else { &self.b.0 };
+        let (paper, options) = match &self.common[..] {
+            [paper, verb, rest @ ..] if verb == "bench" => (paper, rest),
+            [paper, rest @ ..] => (paper, rest),
+            [] => return Err(Failure::Input("ab: name a paper, as in: ab --b \"--seed 2\" gas".to_owned())),
+        };
+        let mut command = Command::new(&program);
+        command
+            .arg(paper)
+            .arg("bench")
+            .args(options)
+            .args(words)
+            .args(["--process", &process.to_string(), "--quiet", "--json"])
+            .arg(file.path())
+            .envs(self.env.iter().filter(|(of, _)| *of == side).map(|(_, variable)| variable.clone()))
+            .stdin(Stdio::null());
+        let ended = finish(&mut command, interrupted()).map_err(|e| {
+            Failure::Input(format!("side {side:?}: starting {}: {e}; name a build of fumarole", program.display()))
+        })?;
+        if !ended.status.success() {
+            return Err(failure(&format!("side {side:?}"), &ended));
+        }
+        Ok(json::read(file.path())?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_named_before_what_is_theirs() {
+        let (side, variable) = parse_variable("B:VK_DRIVER_FILES=/a=b.json").unwrap();
+        assert_eq!((side, variable), (Side::B, ("VK_DRIVER_FILES".to_owned(), "/a=b.json".to_owned())));
+        for wrong in ["VK=1", "C:VK=1", "A:VK", "A:=1"] {
+            parse_variable(wrong).unwrap_err();
+        }
+        assert_eq!(parse_binary("a:./old").unwrap(), (Side::A, PathBuf::from("./old")));
+        parse_binary("A:").unwrap_err();
+        assert_eq!(parse_words("--variant none --shader-dir 'a b'").unwrap().0.len(), 4);
+        parse_words("'").unwrap_err();
+    }
+}

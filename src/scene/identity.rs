@@ -1,0 +1,67 @@
+//! Identity of an input by its content.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::content;
+
+/// Endings of the files that a raster may be read with.
+const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
+
+/// SHA-256 of a file in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
+/// projection of a raster), that of all their digests in order.
+///
+/// # Errors
+/// A file cannot be read.
+pub fn source_sha256(path: &Path) -> io::Result<String> {
+    let own = content::file_sha256(path)?;
+    let companions = companions(path);
+    if companions.is_empty() {
+        return Ok(own);
+    }
+    let digests = companions.iter().map(|companion| content::file_sha256(companion)).collect::<io::Result<Vec<_>>>()?;
+    Ok(content::sha256(format!("{own}{}", digests.concat()).as_bytes()))
+}
+
+fn companions(path: &Path) -> Vec<PathBuf> {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if ending == "gltf" {
+        let document: Option<serde_json::Value> =
+            std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let buffers = document.as_ref().and_then(|document| document["buffers"].as_array()).into_iter().flatten();
+        let uris = buffers.filter_map(|buffer| buffer["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
+        // A name that is percent-encoded is none of a plain file and stays out; the document itself names it.
+        return uris.map(|uri| path.with_file_name(uri)).filter(|file| file.is_file()).collect();
+    }
+    let is_raster = BESIDE_A_RASTER.iter().any(|known| ending == *known);
+    let beside = BESIDE_A_RASTER.iter().filter(|_| is_raster).map(|ending| path.with_extension(ending));
+    beside.filter(|file| file != path && file.is_file()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_read_with_a_file_counts() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            path
+        };
+        let gltf = write("a.gltf", r#"{"buffers": [{"uri": "a.bin"}, {"uri": "data:,x"}]}"#);
+        write("a.bin", "one");
+        let first = source_sha256(&gltf).unwrap();
+        write("a.bin", "two");
+        assert_ne!(source_sha256(&gltf).unwrap(), first);
+
+        let raster = write("b.bil", "raster");
+        let alone = source_sha256(&raster).unwrap();
+        assert_eq!(alone, content::sha256(b"raster"));
+        write("b.hdr", "header");
+        assert_ne!(source_sha256(&raster).unwrap(), alone);
+        write("c.obj", "mesh");
+        assert_eq!(source_sha256(&folder.path().join("c.obj")).unwrap(), content::sha256(b"mesh"));
+    }
+}

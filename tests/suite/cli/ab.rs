@@ -1,0 +1,49 @@
+//! `fumarole ab`: two sides in turn.
+
+use super::program::{ONCE, Program, SCENE, device, folder, fumarole, read_json};
+
+/// Two blocks of the tiny scene, with `options` before the paper.
+fn ab(options: &str) -> Program {
+    fumarole("ab --blocks 2 --quiet").args(options)
+}
+
+fn common(program: Program) -> Program {
+    program.args("caustics bench --variant level-map").args(SCENE).args(ONCE).arg("--device").arg(device())
+}
+
+#[test]
+fn sides_are_measured_in_turn_and_both_records_kept() {
+    let out = folder();
+    let report = out.path().join("ab.json");
+    let program = ab("--env B:LP_NUM_THREADS=1 --json").arg(&report).arg("--out").arg(out.path());
+    let ended = common(program.arg("--b").arg("--waves 2 --seed 7")).run().succeeded();
+    assert!(ended.stdout.starts_with("what is compared\n"), "{}", ended.stdout);
+    for part in ["seed: A 1, B 7", "host.variables.LP_NUM_THREADS: A unset, B 1", "blocks A B B A"] {
+        assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
+    }
+    let report = read_json(&report);
+    assert_eq!(report["schema"], "fumarole.compare/2");
+    assert_eq!(report["design"], "blocks");
+    let run = &report["runs"][0];
+    assert_eq!((&run["a_processes"], &run["b_processes"]), (&4.into(), &4.into()));
+    // Two blocks are too few for any verdict at this error.
+    assert_eq!(run["frame"]["verdict"], "UNCLEAR");
+    assert!(run["passes"].as_array().unwrap().len() > 3);
+    let records = ["ab-a.json", "ab-b.json"].map(|name| read_json(&out.path().join(name)));
+    let started = records.each_ref().map(|record| {
+        let runs = record["runs"].as_array().unwrap().iter();
+        runs.map(|run| run["started"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    });
+    let [a, b] = started;
+    assert!(a[0] < b[0] && b[0] < b[1] && b[1] < a[1] && a[1] < a[2], "A B B A: {a:?} {b:?}");
+}
+
+#[test]
+fn a_side_may_be_another_program_and_failures_name_the_side() {
+    let out = folder();
+    let nowhere = out.path().join("nowhere");
+    let binary = |path: &str| common(ab("--binary").arg(format!("B:{path}")).arg("--out").arg(out.path()));
+    binary(nowhere.to_str().unwrap()).run().refused(2, &["side B", "nowhere"]);
+    common(ab("--out").arg(out.path()).arg("--a").arg("--planes 0")).run().refused(2, &["planes"]);
+    assert!(!out.path().join("ab-a.json").exists(), "nothing was measured");
+}
