@@ -35,6 +35,10 @@ layout(set = 0, binding = 40, std430) readonly buffer Groups {
     Group groups[];
 };
 
+layout(set = 0, binding = 41, std430) readonly buffer Listed {
+    uint listed[]; // ready vertices of the block in the list
+};
+
 layout(set = 0, binding = 42, std430) readonly buffer Ready {
     uint ready[];
 };
@@ -93,12 +97,13 @@ uint next_block(uint block) {
     return next;
 }
 
-// A ready vertex of the block: the one whose hash is the lowest, whatever their order in the list.
+// A listed ready vertex of the block: the one whose hash is the lowest, whatever their order in the list.
 uint vertex_of(uint block, uint particle) {
     uint chosen = NONE;
     uint lowest = NONE;
-    for (uint i = groups[block].first_ready; i < groups[block + 1u].first_ready; i++) {
-        uint vertex = ready[i];
+    uint first = groups[block].first_ready;
+    for (uint i = 0u; i < listed[block]; i++) {
+        uint vertex = ready[first + i];
         uint key = hash(uvec3(vertex, clock.tick, particle ^ constants.seed)).x;
         if (chosen == NONE || key < lowest || (key == lowest && vertex < chosen)) {
             chosen = vertex;

@@ -111,6 +111,7 @@ impl Flames {
         let list = step("burning/flames-ready.comp")
             .with("Labels", &buffers.labels)
             .with("Cells", &buffers.cells)
+            .with("Clock", &buffers.clock)
             .with("Alive", &buffers.alive)
             .with("Groups", &groups)
             .with("Listed", &listed)
@@ -120,6 +121,7 @@ impl Flames {
             .with("Blocks", &buffers.blocks)
             .with("Clock", &buffers.clock)
             .with("Groups", &groups)
+            .with("Listed", &listed)
             .with("Ready", &ready)
             .with("Particles", &particles);
         let state = new("NewState", &buffers.states);

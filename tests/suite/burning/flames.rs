@@ -125,3 +125,18 @@ fn fire_adds_light_smoke_covers_and_neither_leaves_a_picture_alone() {
         assert!((0..plain.len()).filter(|&i| smoky[i] != plain[i]).count() > 300);
     });
 }
+
+#[test]
+fn the_groups_of_a_million_blocks_hold_every_vertex() {
+    gpu_test(|device| {
+        let parameters = Parameters { blocks: [256, 256, 16], ..burning() };
+        let mut fire = Fire::new(device, Variant::Shell, &parameters, &ball());
+        fire.ticks(110);
+        let (state, groups) = (fire.state(), groups(&fire));
+        assert!(state.counts.ready_vertices > 50);
+        let ready_before = |block: usize| state.blocks[..block].iter().map(|b| b.ready as u32).sum::<u32>();
+        for block in [1, 1000, state.blocks.len() / 2, state.blocks.len()] {
+            assert_eq!(groups[block].first_ready, ready_before(block), "{block}");
+        }
+    });
+}

@@ -1,7 +1,11 @@
 //! The device's particles, advanced by the oracle by one tick, are the device's next ones.
 
+use std::cell::Cell;
+
+use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::reference::flames::{Fate, Group, Particle, Pools};
 use fumarole::papers::burning::{Group as DeviceGroup, Parameters, Particle as DeviceParticle, Variant};
+use fumarole::scene::{Mesh, shapes};
 use glam::DVec3;
 
 use super::dump;
@@ -35,26 +39,50 @@ fn is_close(ours: (u32, f64), theirs: u32) -> bool {
 
 #[test]
 fn every_particle_is_where_the_oracle_has_it() {
+    let parameters = Parameters {
+        fire: 600,
+        smoke: 200,
+        speed_per_s: 0.2,
+        width_of_areas: 0.1,
+        level_of_detail: Some(5),
+        ..quick()
+    };
+    let fates = compare(&parameters, &ball(), 0, 160);
+    let names = [Fate::Absent, Fate::Stays, Fate::Lit, Fate::Follows, Fate::Moves, Fate::Ends];
+    assert!(names.iter().all(|fate| fates[*fate as usize] > 10), "{names:?}: {fates:?}");
+}
+
+/// More ready vertices in one block than a birth searches.
+#[test]
+fn particles_of_a_crowded_block_are_where_the_oracle_has_them() {
+    let parameters = Parameters {
+        fire: 60,
+        smoke: 20,
+        speed_per_s: 1.0,
+        width_of_areas: 0.9,
+        blocks: [1, 1, 1],
+        level_of_detail: Some(5),
+        ..quick()
+    };
+    let fates = compare(&parameters, &with_triangles(&shapes::sphere(32, 32), 40_000), 80, 12);
+    assert!(fates[Fate::Follows as usize] > 10, "{fates:?}");
+}
+
+/// Burns for some ticks, compares `count` times, each three ticks after the last, and counts the fates.
+fn compare(parameters: &Parameters, mesh: &Mesh, first: u32, count: u32) -> [u32; 6] {
+    let counted = Cell::new([0; 6]);
     gpu_test(|device| {
-        let parameters = Parameters {
-            fire: 600,
-            smoke: 200,
-            speed_per_s: 0.2,
-            width_of_areas: 0.1,
-            level_of_detail: Some(5),
-            ..quick()
-        };
         let pools = Pools {
             sizes: [parameters.fire, parameters.smoke],
             radius: parameters.particle_radius.into(),
             seed: parameters.noise_seed(),
         };
-        let mesh = ball();
-        let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh);
-        let twin = Twin::new(&fire, Variant::Shell, &parameters, &mesh);
+        let mut fire = Fire::new(device, Variant::Shell, parameters, mesh);
+        let twin = Twin::new(&fire, Variant::Shell, parameters, mesh);
         let tick = twin.tick();
         let mut fates = [0; 6];
-        for _ in 0..160 {
+        fire.ticks(first);
+        for _ in 0..count {
             fire.ticks(2);
             let before = particles(&fire);
             fire.ticks(1);
@@ -97,7 +125,9 @@ fn every_particle_is_where_the_oracle_has_it() {
             let counted = fire.paper.counts().unwrap();
             assert_eq!([counted.fire_particles, counted.smoke_particles], counts, "{at}");
         }
-        let names = [Fate::Absent, Fate::Stays, Fate::Lit, Fate::Follows, Fate::Moves, Fate::Ends];
-        assert!(names.iter().all(|fate| fates[*fate as usize] > 10), "{names:?}: {fates:?}");
+        let ready = fire.read::<DeviceGroup>(&fire.paper.flames().unwrap().groups).last().unwrap().first_ready;
+        assert!(parameters.blocks != [1, 1, 1] || ready > 10_000, "{ready} ready vertices");
+        counted.set(fates);
     });
+    counted.get()
 }

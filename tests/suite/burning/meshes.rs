@@ -163,6 +163,19 @@ fn more_triangles_than_the_device_binds_are_refused() {
 }
 
 #[test]
+fn a_fan_that_no_thread_can_visit_is_refused() {
+    let fan = |triangles: u32| {
+        let rim = (0..=triangles).map(|i| Vec2::from_angle(6.0 * i as f32 / triangles as f32));
+        let positions: Vec<[f32; 3]> = [[0.0; 3]].into_iter().chain(rim.map(|p| [p.x, 0.0, p.y])).collect();
+        mesh(&positions, &(1..=triangles).map(|i| [0, i, i + 1]).collect::<Vec<_>>())
+    };
+    let model = |triangles: u32| Model::new(&fan(triangles), Variant::Shell, &quick(), u64::MAX);
+    assert!(model(8192).is_ok());
+    let error = model(8193).err().expect("it is refused").to_string();
+    assert!(error.contains("8193") && error.contains("`mesh`") && !error.contains('\n'), "{error}");
+}
+
+#[test]
 fn an_open_mesh_as_a_solid_is_told() {
     gpu_test(|device| {
         let mut turned = shapes::cuboid();

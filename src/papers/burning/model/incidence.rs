@@ -30,6 +30,12 @@ impl Incidence {
         Incidence { offsets, entries }
     }
 
+    /// The last vertex with the longest list, and its length.
+    pub fn largest(&self) -> Option<(u32, u32)> {
+        let counts = self.offsets.windows(2).map(|pair| pair[1] - pair[0]);
+        (0..).zip(counts).max_by_key(|&(_, count)| count)
+    }
+
     /// The list of one vertex.
     pub fn of(&self, vertex: u32) -> &[u32] {
         let [from, to] = [vertex, vertex + 1].map(|v| self.offsets[v as usize] as usize);

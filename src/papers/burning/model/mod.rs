@@ -63,6 +63,10 @@ pub struct Model {
 /// Stands for no vertex in a list of vertices.
 pub const NO_VERTEX: u32 = u32::MAX;
 
+/// Triangles around a vertex at most: a thread visits each up to six times, and lavapipe ends the loops of a shader after
+/// 65,535 iterations.
+const MOST_AROUND: u32 = 8192;
+
 /// Fraction of volume over surface: with more, crumpled sides of a box that burns one after the other were seen to pass
 /// each other.
 pub const CHAR_FRACTION: f64 = 0.75;
@@ -71,7 +75,7 @@ impl Model {
     /// Prepares a mesh for a variant. `largest_bytes` is the device's longest storage buffer.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more triangles than that holds.
+    /// [`Error::Limit`] for more triangles than that holds; [`Error::Pass`] for too many around one vertex.
     pub fn new(mesh: &Mesh, variant: Variant, parameters: &Parameters, largest_bytes: u64) -> Result<Self, Error> {
         let welded = Welded::new(mesh);
         let (degenerate, is_closed) = (welded.degenerate, welded.is_closed());
@@ -91,6 +95,15 @@ impl Model {
         let triangles: Vec<[u32; 3]> =
             lattice.finest().iter().map(|t| t.map(|corner| lattice.welds[corner as usize])).collect();
         let positions = &lattice.positions;
+        let incidence = Incidence::new(positions.len(), &triangles);
+        if let Some((vertex, wanted)) = incidence.largest().filter(|&(_, triangles)| triangles > MOST_AROUND) {
+            let [x, y, z] = positions[vertex as usize].to_array();
+            let problem = format!(
+                "{wanted} triangles of the `mesh` meet at {x},{y},{z} of the scaled object, and a thread visits \
+                 {MOST_AROUND} at most; cut the fan into rings"
+            );
+            return Err(Error::Pass { pass: "internal-deformation".into(), problem });
+        }
         let bounds = Bounds::of_points(positions.iter().copied());
         let grid = Grid::new(&bounds, parameters.blocks);
         let sources = match &parameters.sources[..] {
@@ -107,7 +120,7 @@ impl Model {
         Ok(Model {
             levels,
             rest: positions.iter().map(at_rest).collect(),
-            incidence: Incidence::new(positions.len(), &triangles),
+            incidence,
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
             mean_edge: mean_edge(positions, &triangles),

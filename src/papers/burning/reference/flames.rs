@@ -11,6 +11,8 @@ use super::{State, Tick};
 
 /// The object's vertices over those in burning blocks that make whole pools burn.
 const FRACTION_FOR_ALL: u64 = 4;
+/// Ready vertices of a block from which on a random share of them, half as many as this or so, is searched (ours).
+const LISTED: usize = 8192;
 /// A free index is taken in one of so many ticks.
 const BIRTH_TICKS: u32 = 8;
 
@@ -145,6 +147,10 @@ impl Tick<'_> {
         let mut ready = vec![Vec::new(); state.blocks.len()];
         for v in (0..state.labels.len()).filter(|v| state.labels[*v] == area::READY && state.is_live(*v)) {
             ready[state.cells[v]].push(v);
+        }
+        for list in ready.iter_mut().filter(|list| list.len() > LISTED) {
+            let share = u32::MAX / list.len() as u32 * (LISTED / 2) as u32;
+            list.retain(|v| pcg3d([pools.seed, state.tick, *v as u32])[2] < share);
         }
         let of_fire = pools.sizes[0] as usize;
         let one = |(number, particle): (usize, &Particle)| {
