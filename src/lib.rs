@@ -17,6 +17,7 @@
 
 pub mod cli;
 pub mod content;
+pub mod file;
 pub mod gpu;
 pub mod image;
 pub mod measure;

@@ -13,8 +13,9 @@ use super::failure::Failure;
 use super::outcome;
 use super::processes::{failure, finish};
 use super::watch::{interrupted, progress_bar};
+use crate::file;
 use crate::measure::compare::{Comparison, Design, Input, LOOKS, Verdict, compare};
-use crate::report::{Record, json, output};
+use crate::report::{Record, environment, json};
 
 #[derive(Debug, Clone, Args)]
 pub struct AbArgs {
@@ -93,7 +94,7 @@ fn parse_binary(text: &str) -> Result<(Side, PathBuf), String> {
 
 pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     let files = [Side::A, Side::B].map(|side| arguments.record_file(side));
-    files.iter().try_for_each(|file| output::check_writable(file))?;
+    files.iter().try_for_each(|path| file::check_writable(path))?;
     let interrupted = interrupted();
     let bar = progress_bar(arguments.quiet, "blocks A B B A");
     bar.set_length(u64::from(arguments.blocks));
@@ -132,7 +133,7 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     };
     for ((file, side), name) in files.iter().zip(&records).zip([&mut comparison.a, &mut comparison.b]) {
         if let Some(joined) = joined(side) {
-            output::write(file, outcome::text(&joined)?.as_bytes())?;
+            file::write(file, outcome::text(&joined)?.as_bytes())?;
             *name = vec![file.display().to_string()];
             if !arguments.quiet {
                 outcome::say(&format!("wrote {}", file.display()));
@@ -151,7 +152,7 @@ fn is_decided(comparison: &Comparison) -> bool {
 /// All records of one side as one.
 fn joined(records: &[Record]) -> Option<Record> {
     let mut joined = records.first()?.clone();
-    joined.command = std::env::args().collect();
+    joined.command = environment::command();
     joined.runs = records.iter().flat_map(|record| record.runs.clone()).collect();
     Some(joined)
 }

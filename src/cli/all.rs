@@ -16,9 +16,9 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Schedule;
 use crate::measure::study::{Study, Visitor};
 use crate::papers;
-use crate::report::Record;
 use crate::report::record::{Limits, Run};
 use crate::report::trace::TraceRun;
+use crate::report::{Record, environment};
 
 #[derive(Debug, Clone, Args)]
 pub struct AllArgs {
@@ -66,7 +66,7 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     outcome::say_device(&output, &machine);
     let mut measured = Measured::default();
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
-    let record = Record::new(machine.environment(), std::env::args().collect(), measured.runs);
+    let record = Record::new(machine.environment(), environment::command(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)
 }
 

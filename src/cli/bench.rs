@@ -13,9 +13,9 @@ use crate::measure::bench::{Bench, Loaded, build, load};
 use crate::measure::machine::Machine;
 use crate::measure::picture;
 use crate::measure::study::Study;
-use crate::report::Record;
 use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
+use crate::report::{Record, environment};
 
 /// Frames and repetitions of a bench that names none.
 const FRAMES: u32 = 10;
@@ -74,7 +74,7 @@ fn measure<S: Study>(
             }
         }
     }
-    Ok((Record::new(machine.environment(), std::env::args().collect(), runs), traces, failed))
+    Ok((Record::new(machine.environment(), environment::command(), runs), traces, failed))
 }
 
 fn file_sha256(path: &Path) -> Result<String, Failure> {

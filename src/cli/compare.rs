@@ -1,24 +1,27 @@
 //! `compare`: is B faster or slower than A?
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::failure::Failure;
-use super::options::parse_share;
+use super::options::{parse_share, split};
 use super::outcome;
+use crate::file;
 use crate::measure::compare::{
     Comparison, Design, Input, MIN_SHARE, Options, Rules, SAME_MARGIN, compare, markdown, render,
 };
-use crate::report::{json, output};
+use crate::report::json;
 
 #[derive(Debug, Clone, Args)]
 pub struct CompareArgs {
     /// Records of side A, comma-separated; several processes a side make a verdict possible
-    #[arg(value_name = "A.json[,..]", value_parser = parse_side)]
+    #[arg(value_name = "A.json[,..]", value_parser = OsStringValueParser::new().try_map(|text| parse_side(&text)))]
     a: Side,
     /// Records of side B, comma-separated
-    #[arg(value_name = "B.json[,..]", value_parser = parse_side)]
+    #[arg(value_name = "B.json[,..]", value_parser = OsStringValueParser::new().try_map(|text| parse_side(&text)))]
     b: Side,
     #[command(flatten)]
     verdict: VerdictArgs,
@@ -55,11 +58,12 @@ pub struct VerdictArgs {
 #[derive(Debug, Clone)]
 struct Side(Vec<PathBuf>);
 
-fn parse_side(text: &str) -> Result<Side, String> {
-    if text.split(',').any(str::is_empty) {
+fn parse_side(text: &OsStr) -> Result<Side, String> {
+    let files = split(text, b',');
+    if files.iter().any(|file| file.is_empty()) {
         return Err("give files, separated by commas".to_owned());
     }
-    Ok(Side(text.split(',').map(PathBuf::from).collect()))
+    Ok(Side(files.into_iter().map(PathBuf::from).collect()))
 }
 
 fn parse_margin(text: &str) -> Result<f64, String> {
@@ -92,7 +96,7 @@ impl VerdictArgs {
         match self.json.as_deref() {
             Some(path) if path == Path::new("-") => outcome::print(&outcome::text(comparison)?)?,
             Some(path) => {
-                output::write(path, outcome::text(comparison)?.as_bytes())?;
+                file::write(path, outcome::text(comparison)?.as_bytes())?;
                 print()?;
             }
             None => print()?,

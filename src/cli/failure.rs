@@ -3,10 +3,10 @@
 use std::fmt;
 
 use super::outcome;
+use crate::file::OutputError;
 use crate::measure::Error;
 use crate::measure::compare::CompareError;
 use crate::report::json::ReadError;
-use crate::report::output::OutputError;
 use crate::{gpu, image};
 
 /// Why a command ended without doing all that was asked.
@@ -31,8 +31,15 @@ impl Failure {
             Failure::NoDevice(message) => (3, message),
             Failure::Regression => return 4,
         };
+        /// Characters; a library's message may quote a whole file.
+        const LONGEST: usize = 2_000;
         // One line, whatever a library put into its own.
-        outcome::say(&format!("error: {}", message.split_whitespace().collect::<Vec<_>>().join(" ")));
+        let mut line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        if let Some((end, _)) = line.char_indices().nth(LONGEST) {
+            line.truncate(end);
+            line.push_str("...");
+        }
+        outcome::say(&format!("error: {line}"));
         code
     }
 }

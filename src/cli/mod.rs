@@ -71,13 +71,19 @@ pub fn umbrella() -> ExitCode {
     let mut papers = Papers { command: Umbrella::command(), run: Vec::new() };
     let Ok(()) = papers::each(&mut papers);
     spelling::learn(&papers.command);
-    let matches = papers.command.get_matches();
+    let matches = match papers.command.try_get_matches_from(std::env::args_os()) {
+        Ok(matches) => matches,
+        Err(error) => return ExitCode::from(outcome::usage(&error)),
+    };
     if let Some((name, matches)) = matches.subcommand()
         && let Some((_, run)) = papers.run.iter().find(|(paper, _)| *paper == name)
     {
         return end(run(matches));
     }
-    let parsed = Umbrella::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    let parsed = match Umbrella::from_arg_matches(&matches) {
+        Ok(parsed) => parsed,
+        Err(error) => return ExitCode::from(outcome::usage(&error)),
+    };
     end(match &parsed.command {
         None => all::run(&all::AllArgs::plain()),
         Some(Command::All(arguments)) => all::run(arguments),
@@ -96,8 +102,10 @@ pub fn binary<S: Study>() -> ExitCode {
 pub fn paper_from<S: Study>(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let command = declared::command::<S>().version(env!("CARGO_PKG_VERSION")).propagate_version(true);
     spelling::learn(&command);
-    let matches = command.try_get_matches_from(arguments).unwrap_or_else(|error| error.exit());
-    code(declared::run::<S>(&matches))
+    match command.try_get_matches_from(arguments) {
+        Ok(matches) => code(declared::run::<S>(&matches)),
+        Err(error) => outcome::usage(&error),
+    }
 }
 
 fn end(result: Result<(), Failure>) -> ExitCode {

@@ -1,5 +1,6 @@
 //! Options that every paper has, as they were typed.
 
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use clap::{Args, Parser, ValueEnum};
@@ -33,6 +34,19 @@ impl CommonArgs {
         }
         Plain::parse_from(["fumarole"]).arguments
     }
+}
+
+/// The pieces of a text between separators; a name that is not UTF-8 can only be taken apart on Unix.
+pub fn split(text: &OsStr, separator: u8) -> Vec<OsString> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        let pieces = text.as_bytes().split(|byte| *byte == separator);
+        pieces.map(|piece| OsStr::from_bytes(piece).to_owned()).collect()
+    }
+    #[cfg(not(unix))]
+    text.to_str()
+        .map_or_else(|| vec![text.to_owned()], |text| text.split(char::from(separator)).map(OsString::from).collect())
 }
 
 /// Parses `5%` or `0.05` as a fraction.

@@ -7,14 +7,15 @@ use super::failure::Failure;
 use super::options::OutputArgs;
 use super::spelling;
 use super::watch::watched;
+use crate::file::{check_writable, write};
 use crate::image;
 use crate::measure::Error;
 use crate::measure::experiment::Console;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Watch;
-use crate::report::output::{check_writable, write};
 use crate::report::record::Record;
 use crate::report::table::Style;
+use crate::report::text::{escaped, one_line};
 use crate::report::trace::TraceRun;
 use crate::report::{console, csv, json, trace};
 
@@ -23,10 +24,10 @@ pub fn style() -> Style {
     Style::detect(io::stdout().is_terminal())
 }
 
-/// Prints on standard output. A reader that has left, as `head` does, wants no more: that is no failure.
+/// Prints on standard output, which names and files cannot make a terminal obey. A reader that has left, as `head` does, wants no more: that is no failure.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(escaped(text, true).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::Input(format!("writing to standard output: {e}; send it where there is space")))
         }
@@ -36,7 +37,22 @@ pub fn print(text: &str) -> Result<(), Failure> {
 
 /// Says a line on standard error, if anybody listens; its parameters are spelled as options.
 pub fn say(line: &str) {
-    let _unheard = writeln!(io::stderr(), "{}", spelling::options(line));
+    let _unheard = writeln!(io::stderr(), "{}", one_line(&spelling::options(line)));
+}
+
+/// Prints help, or says what the argument parser refuses, and gives the exit code.
+pub fn usage(error: &clap::Error) -> u8 {
+    let text = error.render();
+    if error.use_stderr() {
+        let is_coloured = Style::detect(io::stderr().is_terminal()).color;
+        let text = if is_coloured { text.ansi().to_string() } else { text.to_string() };
+        let _unheard = io::stderr().write_all(escaped(&text, is_coloured).as_bytes());
+    } else {
+        let is_coloured = style().color;
+        // As with any other output: a reader that has left wants no more.
+        let _unheard = print(&if is_coloured { text.ansi().to_string() } else { text.to_string() });
+    }
+    u8::try_from(error.exit_code()).unwrap_or(2)
 }
 
 /// Says which device was chosen.

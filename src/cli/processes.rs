@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::failure::Failure;
 use super::watch::{interrupted, progress_bar};
-use crate::report::{Record, json};
+use crate::report::{Record, environment, json};
 
 /// Options that the fresh processes do not get, and whether a value follows.
 const OURS: [(&str, bool); 4] = [("--processes", true), ("--process", true), ("--csv", true), ("--quiet", false)];
@@ -54,7 +54,7 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
         let record = json::read(file.path())?;
         match &mut joined {
             Some(all) => all.runs.extend(record.runs),
-            None => joined = Some(Record { command: std::env::args().collect(), ..record }),
+            None => joined = Some(Record { command: environment::command(), ..record }),
         }
         bar.inc(1);
     }

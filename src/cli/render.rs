@@ -1,11 +1,13 @@
 //! `render`: the picture of a frame or of a range of frames, and intermediate targets at full precision.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::failure::Failure;
-use super::options::{MachineArgs, OutputArgs};
+use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
 use super::watch::{interrupted, progress_bar};
 use crate::image;
@@ -22,7 +24,7 @@ pub struct PictureArgs {
     #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]
     frame: Frames,
     /// Write a target of the frame, by the file's ending: .exr, .npy or .png; `passes` lists the targets; repeatable
-    #[arg(long, value_name = "TARGET=FILE", value_parser = parse_dump)]
+    #[arg(long, value_name = "TARGET=FILE", value_parser = OsStringValueParser::new().try_map(|text| parse_dump(&text)))]
     dump: Vec<Dump>,
     #[command(flatten)]
     machine: MachineArgs,
@@ -61,10 +63,11 @@ struct Dump {
     file: PathBuf,
 }
 
-fn parse_dump(text: &str) -> Result<Dump, String> {
-    match text.split_once('=') {
-        Some((target, file)) if !target.is_empty() && !file.is_empty() => {
-            Ok(Dump { target: target.to_owned(), file: file.into() })
+fn parse_dump(text: &OsStr) -> Result<Dump, String> {
+    match split(text, b'=').as_slice() {
+        [target, file @ ..] if !target.is_empty() && file.iter().any(|part| !part.is_empty()) => {
+            // Only the first separates.
+            Ok(Dump { target: target.to_string_lossy().into_owned(), file: file.join(OsStr::new("=")).into() })
         }
         _ => Err("give a target and a file, as caustics-map=map.exr".to_owned()),
     }
@@ -147,9 +150,13 @@ pub fn draw<S: Study>(
 
 /// `picture.png` for frame 7 is `picture-0007.png`.
 fn numbered(path: &Path, number: u32) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let ending = path.extension().map(|e| format!(".{}", e.to_string_lossy())).unwrap_or_default();
-    path.with_file_name(format!("{stem}-{number:04}{ending}"))
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{number:04}"));
+    if let Some(ending) = path.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    path.with_file_name(name)
 }
 
 #[cfg(test)]

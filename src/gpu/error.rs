@@ -27,7 +27,7 @@ pub enum Error {
     MissingFeature { device: String, missing: String },
     #[error("{object}: {what} {wanted} is beyond this device's limit of {limit}; lower it")]
     Limit { object: String, what: &'static str, wanted: u64, limit: u64 },
-    #[error("allocating {bytes} bytes for {object}: out of memory; lower the sizes or choose a device with more")]
+    #[error("{}{object}: out of memory; lower the sizes or choose a device with more", allocating(*bytes))]
     OutOfMemory { object: String, bytes: u64 },
     #[error("{operation} {object}: {result}")]
     Vulkan { operation: &'static str, object: String, result: vk::Result },
@@ -51,6 +51,11 @@ pub enum Error {
     Shader { name: String, problem: String },
     #[error("validation: {} message(s), the first: {first}", count)]
     Validation { count: usize, first: String },
+}
+
+/// Begin of the message on memory; a driver that ran out of it elsewhere tells no size.
+fn allocating(bytes: u64) -> String {
+    if bytes == 0 { String::new() } else { format!("allocating {bytes} bytes for ") }
 }
 
 impl Error {

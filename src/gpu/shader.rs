@@ -22,6 +22,8 @@ pub struct ShaderLibrary {
     device: Arc<Device>,
     compiler: Compiler,
     replaced: Vec<shader_build::CompiledShader>,
+    /// Folder that they are from; empty without.
+    folder: String,
 }
 
 impl ShaderLibrary {
@@ -34,7 +36,20 @@ impl ShaderLibrary {
             None => Vec::new(),
             Some(dir) => replace(dir).map_err(|problem| Error::Shader { name: dir.display().to_string(), problem })?,
         };
-        Ok(ShaderLibrary { device: device.clone(), compiler, replaced })
+        let folder = replacements.map_or_else(String::new, |dir| dir.display().to_string());
+        Ok(ShaderLibrary { device: device.clone(), compiler, replaced, folder })
+    }
+
+    /// Names the shader folder where a pass that could not be built of the built-in shaders' counterparts may be its
+    /// fault.
+    pub fn blamed(&self, error: Error) -> Error {
+        match error {
+            Error::Pass { .. } | Error::Unsupported { .. } if !self.replaced.is_empty() => Error::Shader {
+                name: self.folder.clone(),
+                problem: format!("{error}; keep the inputs, outputs and blocks of the shader that it replaces"),
+            },
+            other => other,
+        }
     }
 
     /// The device that the modules are made on.

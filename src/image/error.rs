@@ -1,5 +1,6 @@
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+use crate::file::OutputError;
 
 /// Failures of pictures and rasters; every message is one line.
 #[derive(Debug, thiserror::Error)]
@@ -8,16 +9,16 @@ pub enum Error {
     UnknownEnding { path: PathBuf },
     #[error("writing {path}: there is no value to draw; an empty buffer can be written as .npy")]
     Empty { path: PathBuf },
-    #[error("writing {path}: {reason}; name a file in an existing, writable folder with room for it")]
-    Write { path: PathBuf, reason: String },
+    #[error(transparent)]
+    Output(#[from] OutputError),
     #[error("opening picture {path}: {reason}; name a readable PNG file")]
     Open { path: PathBuf, reason: String },
     #[error("reading picture {path}: {reason}; give a whole PNG file")]
     Png { path: PathBuf, reason: String },
     #[error(
-        "reading picture {path}: more than {max_side} pixels a side or {max_pixels} in all; give a smaller picture"
+        "reading picture {path}: {width} x {height} pixels are more than {max_side} a side or {max_pixels} in all; scale it"
     )]
-    TooLarge { path: PathBuf, max_pixels: u64, max_side: u32 },
+    TooLarge { path: PathBuf, width: u32, height: u32, max_pixels: u64, max_side: u32 },
     #[error("making {what}: {expected} values are needed and {found} were given")]
     Length { what: String, expected: String, found: usize },
     #[error("making {what}: an image has 1 to 4 channels; write wider data as a table")]
@@ -30,12 +31,6 @@ pub enum Error {
     MaskLength { expected: usize, found: usize },
     #[error("comparing pictures: no pixel to compare; give a mask that holds at least one")]
     NoPixels,
-}
-
-impl Error {
-    pub(super) fn write(path: &Path, reason: &io::Error) -> Self {
-        Self::Write { path: path.into(), reason: one_line(reason) }
-    }
 }
 
 /// Another library's message on one line, to be continued by ours.

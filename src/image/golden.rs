@@ -59,9 +59,9 @@ pub fn check(
 /// Makes `actual` the golden picture at `golden`, in a folder that is made if need be.
 ///
 /// # Errors
-/// [`Error::Empty`] and [`Error::Write`].
+/// [`Error::Empty`] and [`Error::Output`].
 pub fn bless(actual: &Rgba8, golden: &Path) -> Result<(), Error> {
-    write_into(golden.parent().unwrap_or(Path::new("")), golden, actual)
+    write_png(golden, actual)
 }
 
 fn check_strictly(
@@ -73,14 +73,14 @@ fn check_strictly(
     let name = golden.file_stem().unwrap_or_default().to_string_lossy();
     let actual_path = output_dir.join(format!("{name}.actual.png"));
     if !golden.exists() {
-        write_into(output_dir, &actual_path, actual)?;
+        write_png(&actual_path, actual)?;
         return Err(GoldenError::Missing { golden: golden.into(), actual: actual_path });
     }
     let expected = read_png(golden)?;
     let distances = match compare::distances(&expected, actual) {
         Ok(distances) => distances,
         Err(Error::SizeMismatch { left, right }) => {
-            write_into(output_dir, &actual_path, actual)?;
+            write_png(&actual_path, actual)?;
             return Err(GoldenError::Size { golden: golden.into(), actual: actual_path, expected: left, found: right });
         }
         Err(error) => return Err(error.into()),
@@ -91,8 +91,8 @@ fn check_strictly(
     }
     let heat_map_path = output_dir.join(format!("{name}.difference.png"));
     let heat_map = compare::heat_map(actual.width(), actual.height(), &distances)?;
-    write_into(output_dir, &actual_path, actual)?;
-    write_into(output_dir, &heat_map_path, &heat_map)?;
+    write_png(&actual_path, actual)?;
+    write_png(&heat_map_path, &heat_map)?;
     Err(GoldenError::Different {
         golden: golden.into(),
         actual: actual_path,
@@ -100,11 +100,6 @@ fn check_strictly(
         difference,
         tolerance,
     })
-}
-
-fn write_into(folder: &Path, path: &Path, picture: &Rgba8) -> Result<(), Error> {
-    std::fs::create_dir_all(folder).map_err(|reason| Error::write(path, &reason))?;
-    write_png(path, picture)
 }
 
 #[cfg(test)]

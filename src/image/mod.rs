@@ -15,18 +15,19 @@ mod npy;
 mod picture;
 mod png;
 mod raster;
-mod replace;
 pub mod srgb;
 mod view;
 
 pub use self::compare::{Difference, compare};
 pub use self::error::Error;
 pub use self::picture::Rgba8;
-pub use self::png::{read_png, write_png};
+pub use self::png::{read_png, read_png_within, write_png};
 pub use self::raster::{Raster, Samples, Shape};
 
 use std::io;
 use std::path::Path;
+
+use crate::file;
 
 /// A file format for a [`Raster`], chosen by the ending of the file's name (in any case).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,19 +67,19 @@ impl Format {
 /// stays as it was when writing fails.
 ///
 /// # Errors
-/// [`Error::UnknownEnding`]; [`Error::Empty`] for a raster without values in a picture format; [`Error::Write`] when
-/// the folder cannot be written to or the format cannot hold so large a raster.
+/// [`Error::UnknownEnding`]; [`Error::Empty`] for a raster without values in a picture format; [`Error::Output`] when
+/// the file cannot be written or the format cannot hold so large a raster.
 pub fn write(path: &Path, raster: &Raster) -> Result<(), Error> {
     let format = Format::of(path)?;
     if raster.samples().is_empty() && format != Format::Npy {
         return Err(Error::Empty { path: path.into() });
     }
-    replace::replace(path, |file| match format {
+    file::write_with(path, |file| match format {
         Format::Exr => exr::encode(file, raster),
         Format::Npy => npy::encode(file, raster),
         Format::Png => png::encode(file, raster),
-    })
-    .map_err(|reason| Error::write(path, &reason))
+    })?;
+    Ok(())
 }
 
 /// A failure inside a format's own encoder, as the failure of the write that it is.

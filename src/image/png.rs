@@ -1,19 +1,22 @@
 use std::borrow::Cow;
-use std::fs::File;
-use std::io::{self, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Seek, Write};
 use std::path::Path;
 
-use ::png::{BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, Filter, Limits, Transformations};
+use ::png::{
+    BitDepth, ColorType, Compression, Decoder, DecodingError, Encoder, Filter, Limits, Reader, Transformations,
+};
 
 use super::error::one_line;
 use super::raster::{Raster, Samples};
-use super::replace::replace;
 use super::{Error, Rgba8, view};
+use crate::file;
 
-/// The largest 2-D image that desktop GPUs commonly take.
+/// The largest 2-D image that desktop GPUs commonly take, pixels.
 const MAX_SIDE: u32 = 16_384;
 /// 256 MiB of RGBA.
 const MAX_PIXELS: u64 = 1 << 26;
+/// Bytes that a damaged file may take beyond 16 times its own size.
+const SPARE_BYTES: u64 = 64 << 20;
 
 /// Colour types by number of channels, where two travel as three.
 const COLORS: [ColorType; 4] = [ColorType::Grayscale, ColorType::Rgb, ColorType::Rgb, ColorType::Rgba];
@@ -25,44 +28,115 @@ const COLORS: [ColorType; 4] = [ColorType::Grayscale, ColorType::Rgb, ColorType:
 /// [`Error::Open`]; [`Error::Png`] for a file that is no PNG, is cut short or damaged; [`Error::TooLarge`] beyond
 /// 16,384 pixels a side or 2^26 in all, whatever the file's own size, before anything is allocated.
 pub fn read_png(path: &Path) -> Result<Rgba8, Error> {
-    let too_large = || Error::TooLarge { path: path.into(), max_pixels: MAX_PIXELS, max_side: MAX_SIDE };
-    let damaged = |reason| match reason {
-        DecodingError::LimitsExceeded => too_large(),
-        reason => Error::Png { path: path.into(), reason: one_line(reason) },
-    };
-    let file = File::open(path).map_err(|reason| Error::Open { path: path.into(), reason: one_line(reason) })?;
+    read_png_within(path, MAX_SIDE)
+}
+
+/// As [`read_png`], of at most `max_side` pixels a side.
+///
+/// # Errors
+/// As [`read_png`].
+pub fn read_png_within(path: &Path, max_side: u32) -> Result<Rgba8, Error> {
+    let opened = file::open(path);
+    let (file, size_bytes) = opened.map_err(|reason| Error::Open { path: path.into(), reason: one_line(reason) })?;
+    decode(BufReader::new(file), size_bytes, max_side).map_err(|refusal| match refusal {
+        Refusal::TooLarge { width, height } => {
+            Error::TooLarge { path: path.into(), width, height, max_pixels: MAX_PIXELS, max_side }
+        }
+        Refusal::Damaged(reason) => Error::Png { path: path.into(), reason: one_line(reason) },
+    })
+}
+
+/// Why a PNG is not read.
+#[derive(Debug)]
+pub enum Refusal {
+    /// Pixels, by its header.
+    TooLarge {
+        width: u32,
+        height: u32,
+    },
+    Damaged(DecodingError),
+}
+
+impl From<DecodingError> for Refusal {
+    fn from(reason: DecodingError) -> Self {
+        Refusal::Damaged(reason)
+    }
+}
+
+/// [`read_png`] from any input of `size_bytes`.
+///
+/// # Errors
+/// The header's size, or what is damaged.
+pub fn decode(mut input: impl BufRead + Seek, size_bytes: u64, max_side: u32) -> Result<Rgba8, Refusal> {
+    let ((width, height), mut reader) = open(&mut input, max_side)?;
+    // Some kilobytes can hold 256 MiB of one colour, and a fault at their end: nothing is kept before all is seen to be
+    // whole.
+    if u64::from(width) * u64::from(height) * 4 > SPARE_BYTES + 16 * size_bytes {
+        while reader.next_interlaced_row()?.is_some() {}
+        drop(reader);
+        reader = open(&mut input, max_side)?.1;
+    }
+    let (color, depth) = reader.output_color_type();
+    let mut pixels = Vec::with_capacity(4 * width as usize * height as usize);
+    if reader.info().interlaced {
+        let mut samples = vec![0; reader.output_buffer_size().unwrap_or(0)];
+        reader.next_frame(&mut samples)?;
+        push_pixels(&samples, color, depth, &mut pixels);
+    } else {
+        while let Some(row) = reader.next_row()? {
+            push_pixels(row.data(), color, depth, &mut pixels);
+        }
+    }
+    Rgba8::new(width, height, pixels).map_err(|_| Refusal::TooLarge { width, height })
+}
+
+/// The size of a PNG and what reads its rows, grey or RGB with an alpha.
+fn open<R: BufRead + Seek>(mut input: R, max_side: u32) -> Result<((u32, u32), Reader<R>), Refusal> {
+    input.rewind().map_err(DecodingError::from)?;
     // 16-bit RGBA, the widest a PNG can be.
-    let limits = Limits { bytes: MAX_PIXELS as usize * 8 };
-    let mut decoder = Decoder::new_with_limits(BufReader::new(file), limits);
-    let (width, height) = decoder.read_header_info().map_err(damaged)?.size();
-    if width.max(height) > MAX_SIDE || u64::from(width) * u64::from(height) > MAX_PIXELS {
-        return Err(too_large());
+    let mut decoder = Decoder::new_with_limits(input, Limits { bytes: MAX_PIXELS as usize * 8 });
+    // Texts and profiles can be compressed too, and are not looked at.
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    let (width, height) = decoder.read_header_info()?.size();
+    if width.max(height) > max_side || u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(Refusal::TooLarge { width, height });
     }
     decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
-    let mut reader = decoder.read_info().map_err(damaged)?;
-    let mut samples = vec![0; reader.output_buffer_size().ok_or_else(too_large)?];
-    let frame = reader.next_frame(&mut samples).map_err(damaged)?;
-    if frame.bit_depth == BitDepth::Sixteen {
-        let nearest = |wide: &[u8]| ((u32::from(u16::from_be_bytes([wide[0], wide[1]])) + 128) / 257) as u8;
-        samples = samples.chunks_exact(2).map(nearest).collect();
+    Ok(((width, height), decoder.read_info()?))
+}
+
+/// Appends samples, grey or RGB with an alpha, as 8-bit RGBA.
+fn push_pixels(samples: &[u8], color: ColorType, depth: BitDepth, pixels: &mut Vec<u8>) {
+    let nearest = |wide: &[u8; 2]| ((u32::from(u16::from_be_bytes(*wide)) + 128) / 257) as u8;
+    let is_grey = color == ColorType::GrayscaleAlpha;
+    let grey = |pixel: &[u8; 2]| [pixel[0], pixel[0], pixel[0], pixel[1]];
+    match (depth, is_grey) {
+        (BitDepth::Sixteen, false) => pixels.extend(samples.as_chunks().0.iter().map(nearest)),
+        (BitDepth::Sixteen, true) => {
+            pixels.extend(
+                samples
+                    .as_chunks::<4>()
+                    .0
+                    .iter()
+                    .flat_map(|[a, b, c, d]| grey(&[nearest(&[*a, *b]), nearest(&[*c, *d])])),
+            );
+        }
+        (_, false) => pixels.extend(samples),
+        (_, true) => pixels.extend(samples.as_chunks().0.iter().flat_map(grey)),
     }
-    if frame.color_type == ColorType::GrayscaleAlpha {
-        samples = samples.chunks_exact(2).flat_map(|pixel| [pixel[0], pixel[0], pixel[0], pixel[1]]).collect();
-    }
-    Rgba8::new(width, height, samples)
 }
 
 /// Writes a picture, whole or not at all, to `path` whatever its ending.
 ///
 /// # Errors
-/// [`Error::Empty`] for a picture without pixels; [`Error::Write`] when the folder cannot be written to.
+/// [`Error::Empty`] for a picture without pixels; [`Error::Output`] when the file cannot be written.
 pub fn write_png(path: &Path, picture: &Rgba8) -> Result<(), Error> {
     if picture.pixels().is_empty() {
         return Err(Error::Empty { path: path.into() });
     }
     let size = (picture.width(), picture.height());
-    replace(path, |file| store(file, picture.pixels(), size, ColorType::Rgba, BitDepth::Eight))
-        .map_err(|reason| Error::write(path, &reason))
+    Ok(file::write_with(path, |file| store(file, picture.pixels(), size, ColorType::Rgba, BitDepth::Eight))?)
 }
 
 /// Writes a raster that is not empty, as [`Format::Png`](super::Format::Png) says.
@@ -111,6 +185,8 @@ fn store(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs::File;
+    use std::io::Cursor;
 
     fn sample() -> Rgba8 {
         let pixels = (0..7 * 5 * 4).map(|i| (i * 37 % 251) as u8).collect();
@@ -272,5 +348,25 @@ mod tests {
             assert!(matches!(error, Error::TooLarge { .. }), "{error}");
         }
         assert!(matches!(read(&promise(4, 4)), Err(Error::Png { .. })));
+    }
+
+    /// 8,192 pixels a side in some ten kilobytes, whole and without its last row.
+    #[test]
+    fn a_damaged_picture_of_one_colour_is_refused_before_it_is_kept() {
+        let side = 8_192;
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, side, side);
+        encoder.set_color(ColorType::Grayscale);
+        encoder.set_depth(BitDepth::One);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&vec![0; (side * side / 8) as usize]).unwrap();
+        writer.finish().unwrap();
+        assert!(bytes.len() < 30_000, "{}", bytes.len());
+        let whole = decode(Cursor::new(&bytes), bytes.len() as u64, MAX_SIDE).unwrap();
+        assert_eq!((whole.width(), whole.pixels().len()), (side, 4 << 26));
+        let cut = &bytes[..bytes.len() - 40];
+        assert!(matches!(decode(Cursor::new(cut), cut.len() as u64, MAX_SIDE), Err(Refusal::Damaged(_))));
+        let too_large = decode(Cursor::new(&bytes), bytes.len() as u64, side - 1);
+        assert!(matches!(too_large, Err(Refusal::TooLarge { .. })));
     }
 }

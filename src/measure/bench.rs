@@ -56,7 +56,8 @@ pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: 
     let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
     live.reset_peak();
     let started = Instant::now();
-    let paper = study.make(&machine.shaders, variant.as_str(), scene, variant)?;
+    let made = study.make(&machine.shaders, variant.as_str(), scene, variant);
+    let paper = made.map_err(|error| machine.shaders.blamed(error))?;
     let build_ms = started.elapsed().as_secs_f64() * 1e3;
     let prefix = format!("{}/", variant.as_str());
     let memory = live

@@ -1,6 +1,6 @@
 //! Failures of a command; the command line maps each kind to its exit code.
 
-use crate::report::output::OutputError;
+use crate::file::OutputError;
 use crate::report::plot::PlotError;
 use crate::{gpu, image, scene};
 

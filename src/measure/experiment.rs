@@ -12,12 +12,12 @@ use super::parameter::Given;
 use super::result_table::ResultTable;
 use super::study::{Preset, Study};
 use super::sweep::{Plan, Point, Swept};
+use crate::file::{check_writable, write};
 use crate::image::{self, Raster, Rgba8};
-use crate::report::output::{check_writable, write};
 use crate::report::plot::PlotError;
 use crate::report::record::Run;
 use crate::report::table::Style;
-use crate::report::{Record, csv, json as writer};
+use crate::report::{Record, csv, environment, json as writer};
 
 /// One table or figure of a paper.
 pub struct Experiment<S: Study> {
@@ -238,7 +238,7 @@ impl<S: Study> Context<'_, S> {
         for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
             *warning = self.console.spell(warning);
         }
-        let record = Record::new(machine.environment(), std::env::args().collect(), runs);
+        let record = Record::new(machine.environment(), environment::command(), runs);
         let text = json_text(&record)?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), csv::to_string(&record).as_bytes())?;
@@ -255,7 +255,7 @@ impl<S: Study> Context<'_, S> {
     pub fn publish_table(&self, machine: &Machine, table: &ResultTable) -> Result<(), Error> {
         let document: Value = json!({
             "experiment": self.name, "environment": machine.environment(),
-            "command": std::env::args().collect::<Vec<_>>(), "table": table.json(),
+            "command": environment::command(), "table": table.json(),
         });
         let text = json_text(&document)?;
         self.save(&self.json_file(), text.as_bytes())?;

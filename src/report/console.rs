@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use super::record::{Pass, Record, Run, Summary};
 use super::table::{Align, Style, Table};
+use super::text::one_line;
 
 /// The device, then every run: see [`run`].
 pub fn record(record: &Record, style: Style) -> String {
     let device = &record.environment.device;
-    let mut text = format!("device: {} ({})\n", device.name, device.kind.name());
+    let mut text = format!("device: {} ({})\n", one_line(&device.name), device.kind.name());
     for item in &record.runs {
         text.push('\n');
         text.push_str(&run(item, style));
@@ -27,7 +28,7 @@ pub fn run(run: &Run, style: Style) -> String {
     text.push_str(&frame(run, style));
     for warning in &run.warnings {
         // Writing into a String cannot fail.
-        let _ = writeln!(text, "{} {warning}", style.yellow("warning:"));
+        let _ = writeln!(text, "{} {}", style.yellow("warning:"), one_line(warning));
     }
     text
 }
@@ -38,10 +39,10 @@ fn title(run: &Run, style: Style) -> String {
     let process = if run.process > 0 { format!(", process {}", run.process) } else { String::new() };
     format!(
         "{}\n",
-        style.bold(&format!(
+        style.bold(&one_line(&format!(
             "{} {}{preset}: {} × {}, {} frames{repeat}, seed {}{process}",
             run.paper, run.variant, run.width, run.height, run.frames, run.seed
-        ))
+        )))
     )
 }
 

@@ -4,6 +4,8 @@
 //! samples are in the JSON only. `config`, `results` and `experiment` are JSON objects: the run's
 //! parameters, the paper's own figures, and the row of a table that it reproduces.
 
+use std::borrow::Cow;
+
 use csv::{Terminator, WriterBuilder};
 
 use super::record::{Bytes, Pass, Record, Run, Statistics, Summary};
@@ -101,7 +103,15 @@ pub fn to_string(record: &Record) -> String {
     lines(Terminator::CRLF, rows)
 }
 
-/// Rows of cells as CSV text, each cell quoted where it holds a comma, a quote or a line break.
+/// A cell that no spreadsheet takes for a formula: an apostrophe goes before what begins like one, but for numbers.
+fn guarded(cell: &[u8]) -> Cow<'_, [u8]> {
+    let begins = matches!(cell, [b'=' | b'+' | b'-' | b'@' | b'\t' | b'\r', _, ..]);
+    let is_number = || std::str::from_utf8(cell).is_ok_and(|text| text.parse::<f64>().is_ok());
+    if begins && !is_number() { [b"'", cell].concat().into() } else { cell.into() }
+}
+
+/// Rows of cells as CSV text, each cell quoted where it holds a comma, a quote or a line break, and guarded where it
+/// begins like a formula.
 pub fn lines<C: AsRef<[u8]>>(
     terminator: Terminator,
     rows: impl IntoIterator<Item = impl IntoIterator<Item = C>>,
@@ -109,7 +119,7 @@ pub fn lines<C: AsRef<[u8]>>(
     let mut writer = WriterBuilder::new().flexible(true).terminator(terminator).from_writer(Vec::new());
     for row in rows {
         // Rows of any length into memory cannot fail.
-        let _infallible = writer.write_record(row);
+        let _infallible = writer.write_record(row.into_iter().map(|cell| guarded(cell.as_ref()).into_owned()));
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
@@ -172,6 +182,26 @@ mod tests {
         assert_eq!(value(&rows, 2, "section"), "4.2, \"splats\"");
         let config: serde_json::Value = serde_json::from_str(value(&rows, 2, "config")).unwrap();
         assert_eq!(config["density"][1], 24);
+    }
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        for (name, expected) in [
+            ("=1+1", "'=1+1"),
+            ("+cmd|' /C calc'!A0", "'+cmd|' /C calc'!A0"),
+            ("-2+3", "'-2+3"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("\t=1", "'\t=1"),
+            ("a=1", "a=1"),
+            ("-", "-"),
+        ] {
+            let mut record = example::full();
+            record.runs[0].passes[1].name = name.to_owned();
+            record.runs[0].overlap_ms = Some(-1.5);
+            let rows = parse(&to_string(&record));
+            assert_eq!(value(&rows, 2, "pass"), expected);
+            assert_eq!(value(&rows, 2, "overlap_ms"), "-1.5");
+        }
     }
 
     #[test]

@@ -16,6 +16,11 @@ pub fn date() -> String {
     humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string()
 }
 
+/// The command line as it was typed, what is not UTF-8 replaced.
+pub fn command() -> Vec<String> {
+    std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect()
+}
+
 /// The machine this process runs on, as far as the system tells.
 pub fn host() -> Host {
     Host {

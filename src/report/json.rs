@@ -1,13 +1,14 @@
 //! The record as JSON, and back.
 
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::bounded;
 use super::record::{Record, SCHEMA};
+use crate::file;
 
 /// Failures of reading a record; every message names the file.
 #[derive(Debug, thiserror::Error)]
@@ -52,7 +53,10 @@ pub fn to_string(value: &impl Serialize) -> Result<String, serde_json::Error> {
 /// # Errors
 /// See [`ReadError`]: every message names the file, and the line or the field.
 pub fn read(path: &Path) -> Result<Record, ReadError> {
-    let text = fs::read_to_string(path).map_err(|source| ReadError::Unreadable { path: path.to_owned(), source })?;
+    /// Far more than a hundred processes of a hundred thousand frames leave.
+    const MAX_BYTES: u64 = 1 << 30;
+    let text =
+        file::read_text(path, MAX_BYTES).map_err(|source| ReadError::Unreadable { path: path.to_owned(), source })?;
     parse(&text, path)
 }
 
@@ -63,22 +67,23 @@ pub fn read(path: &Path) -> Result<Record, ReadError> {
 pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
     #[derive(Deserialize)]
     struct Header {
-        schema: Option<Value>,
+        schema: Option<String>,
     }
     let owned = || path.to_owned();
     let header: Header = serde_json::from_str(text).map_err(|source| {
         if source.is_eof() {
             ReadError::Truncated { path: owned(), line: source.line() }
         } else if source.is_data() {
-            ReadError::WrongSchema { path: owned(), found: "absent".to_owned() }
+            ReadError::WrongSchema { path: owned(), found: "no text".to_owned() }
         } else {
             ReadError::NotJson { path: owned(), source }
         }
     })?;
-    if header.schema.as_ref().and_then(Value::as_str) != Some(SCHEMA) {
-        let found = header.schema.map_or_else(|| "absent".to_owned(), |found| found.to_string());
+    if header.schema.as_deref() != Some(SCHEMA) {
+        let found = header.schema.map_or_else(|| "absent".to_owned(), |found| Value::from(found).to_string());
         return Err(ReadError::WrongSchema { path: owned(), found });
     }
+    bounded::begin(text.len());
     let mut deserializer = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut deserializer).map_err(|error| ReadError::WrongField {
         path: owned(),

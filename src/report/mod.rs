@@ -2,25 +2,25 @@
 //!
 //! [`Record`] is the one document a measurement leaves behind; the writers turn it (or plain data) into a console
 //! table, JSON, CSV, a Chrome trace and SVG plots. Nothing here knows Vulkan, and nothing here measures: the writers
-//! return text, and [`output`] alone touches the disk.
+//! return text, and [`crate::file`] puts it on the disk.
 //!
 //! ```text
 //! Record --> console (String)     json (String, and back)     csv (String)
 //! TraceRun --> trace (String)   plot::LineChart, plot::BarChart --> SVG (String)
-//! any text --> output::write (temporary file, renamed)
+//! any text --> file::write (temporary file, renamed)
 //! ```
 
+mod bounded;
 pub mod console;
 pub mod csv;
 pub mod environment;
 #[cfg(test)]
 pub(crate) mod example;
 pub mod json;
-pub mod output;
 pub mod plot;
 pub mod record;
 pub mod table;
+pub mod text;
 pub mod trace;
 
-pub use output::OutputError;
 pub use record::{Record, Run, SCHEMA, Summary};

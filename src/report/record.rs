@@ -144,6 +144,7 @@ pub struct Run {
     /// Name of the preset that the setup began with; absent without one.
     pub preset: Option<String>,
     /// Every parameter under its option's name, defaults included.
+    #[serde(deserialize_with = "super::bounded::map")]
     pub config: Map<String, Value>,
     /// Files that the configuration names.
     #[serde(default)]
@@ -185,6 +186,7 @@ pub struct Run {
     /// The device's own limits; absent where they were not measured.
     pub limits: Option<Limits>,
     /// The paper's own figures.
+    #[serde(deserialize_with = "super::bounded::map")]
     pub results: Map<String, Value>,
     /// Row of the experiment; absent outside experiments.
     pub experiment: Option<ExperimentRow>,

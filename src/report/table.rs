@@ -4,6 +4,8 @@ use anstyle::{AnsiColor, Effects};
 pub use comfy_table::CellAlignment as Align;
 use comfy_table::{ColumnConstraint, presets};
 
+use super::text::one_line;
+
 /// Decoration of text for people.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
@@ -71,9 +73,9 @@ impl Table {
         Self { table, alignment: columns.iter().map(|(_, align)| *align).collect() }
     }
 
-    /// Adds a row; missing cells are empty.
+    /// Adds a row; missing cells are empty. A cell stays on its line whatever it holds.
     pub fn push(&mut self, row: Vec<String>) {
-        self.table.add_row(row);
+        self.table.add_row(row.iter().map(|cell| one_line(cell)));
     }
 
     /// The table, each line ending in a newline. Columns in which no row has anything are left out.

@@ -5,17 +5,12 @@ use std::path::PathBuf;
 /// Why a mesh, a height map or a camera cannot be used. Every message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    #[error("cannot read {}: {source}; check the path and its permissions", path.display())]
+    #[error("cannot read {}: {source}; name a file that can be read", path.display())]
     Read { path: PathBuf, source: io::Error },
     #[error("cannot read {}: it is not a regular file; name a {asset} file", path.display())]
     NotAFile { path: PathBuf, asset: Asset },
     #[error("cannot load {asset} {}: unknown file ending {ending:?}; known endings are {known}", path.display())]
     UnknownEnding { path: PathBuf, asset: Asset, ending: String, known: String },
-    #[error(
-        "cannot read {}: its {size_bytes} bytes exceed the limit of {limit_bytes}; split or simplify the mesh",
-        path.display()
-    )]
-    TooLarge { path: PathBuf, size_bytes: u64, limit_bytes: u64 },
     #[error("cannot load {asset} {}: {fault}", path.display())]
     Malformed { path: PathBuf, asset: Asset, fault: Fault },
     #[error("cannot use the camera: {reason}")]

@@ -1,14 +1,37 @@
+//! Files of the scene, with messages that say what they were read as.
+
+use crate::file;
 use crate::scene::Error;
 use crate::scene::error::Asset;
-use std::fs::{self, File};
-use std::path::Path;
+use std::fs::File;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
 
-/// Opens a regular file, which rules out devices and pipes that never end, and tells its size in bytes.
+/// Opens a regular file, and tells its size in bytes.
 pub(super) fn open(path: &Path, asset: Asset) -> Result<(File, u64), Error> {
-    let failed = |source| Error::Read { path: path.to_owned(), source };
-    let metadata = fs::metadata(path).map_err(failed)?;
-    if !metadata.is_file() {
-        return Err(Error::NotAFile { path: path.to_owned(), asset });
+    file::open(path).map_err(|source| failed(path, asset, source))
+}
+
+/// The error of a file that cannot be read.
+pub(super) fn failed(path: &Path, asset: Asset, source: io::Error) -> Error {
+    let path = path.to_owned();
+    if source.kind() == ErrorKind::InvalidInput {
+        Error::NotAFile { path, asset }
+    } else {
+        Error::Read { path, source }
     }
-    Ok((File::open(path).map_err(failed)?, metadata.len()))
+}
+
+/// The file beside `path` with another ending, if there is one.
+///
+/// # Errors
+/// A link out of the folder: what is read there could be shown by a message.
+pub(super) fn beside(path: &Path, ending: &str) -> Result<Option<PathBuf>, Error> {
+    let path = path.with_extension(ending);
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let Some(name) = path.file_name().filter(|_| path.is_file()) else { return Ok(None) };
+    match file::below(folder, Path::new(name)) {
+        Ok(_) => Ok(Some(path)),
+        Err(source) => Err(Error::Read { path, source }),
+    }
 }

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::content;
+use crate::{content, file};
 
 /// Endings of the files that a raster may be read with.
 const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
@@ -31,7 +31,8 @@ fn companions(path: &Path) -> Vec<PathBuf> {
         let buffers = document.as_ref().and_then(|document| document["buffers"].as_array()).into_iter().flatten();
         let uris = buffers.filter_map(|buffer| buffer["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
         // A name that is percent-encoded is none of a plain file and stays out; the document itself names it.
-        return uris.map(|uri| path.with_file_name(uri)).filter(|file| file.is_file()).collect();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        return uris.filter_map(|uri| file::below(folder, Path::new(uri)).ok()).filter(|file| file.is_file()).collect();
     }
     let is_raster = BESIDE_A_RASTER.iter().any(|known| ending == *known);
     let beside = BESIDE_A_RASTER.iter().filter(|_| is_raster).map(|ending| path.with_extension(ending));

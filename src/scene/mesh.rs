@@ -121,10 +121,7 @@ pub(super) fn check_positions(positions: &[Vec3]) -> Result<(), Fault> {
         return Err(Fault::new(Place::Whole, reason));
     }
     match positions.iter().position(|position| !position.is_finite()) {
-        Some(vertex) => {
-            let reason = format!("the position {} is not finite", positions[vertex]);
-            Err(Fault::new(Place::Vertex(vertex), reason))
-        }
+        Some(vertex) => Err(Fault::new(Place::Vertex(vertex), "its position is not finite")),
         None => Ok(()),
     }
 }
@@ -158,10 +155,7 @@ fn check_texture_coordinates(coordinates: &[Vec2], vertex_count: usize) -> Resul
         return Err(Fault::new(Place::Whole, reason));
     }
     match coordinates.iter().position(|uv| !uv.is_finite()) {
-        Some(vertex) => {
-            let reason = format!("the texture coordinate {} is not finite", coordinates[vertex]);
-            Err(Fault::new(Place::Vertex(vertex), reason))
-        }
+        Some(vertex) => Err(Fault::new(Place::Vertex(vertex), "its texture coordinate is not finite")),
         None => Ok(()),
     }
 }

@@ -3,8 +3,9 @@ use crate::scene::mesh;
 use earcut::Earcut;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-/// Longest polygon that is cut: ear clipping takes quadratic time on hostile input.
-const MAX_CORNERS: usize = 65_536;
+/// Squares of corners, summed over all polygons that are clipped, that any file may have: ear clipping takes quadratic
+/// time on hostile input, some 10 ns for each. A file may have one more for each of its bytes.
+const CLIPPED_SQUARES: u64 = 100_000_000;
 
 /// Polygons as OBJ and PLY files give them.
 #[derive(Debug, Default)]
@@ -22,11 +23,11 @@ pub(super) struct PolygonMesh {
 }
 
 impl PolygonMesh {
-    /// Cuts every polygon into triangles. Polygons of fewer than three corners (points and lines)
-    /// are left out.
-    pub fn into_mesh(self) -> Result<mesh::Mesh, Fault> {
+    /// Cuts every polygon of a file of `size_bytes` into triangles. Polygons of fewer than three
+    /// corners (points and lines) are left out.
+    pub fn into_mesh(self, size_bytes: usize) -> Result<mesh::Mesh, Fault> {
         mesh::check_positions(&self.positions)?;
-        let mut cutter = Cutter::default();
+        let mut cutter = Cutter { squares_left: CLIPPED_SQUARES + size_bytes as u64, ..Cutter::default() };
         let mut indices = Vec::with_capacity(self.corners.len());
         let mut rest = &self.corners[..];
         for (face, &arity) in self.arities.iter().enumerate() {
@@ -49,6 +50,8 @@ struct Cutter {
     earcut: Earcut<f64>,
     points: Vec<DVec3>,
     triangles: Vec<u32>,
+    /// Squares of corners that may still be clipped.
+    squares_left: u64,
 }
 
 impl Cutter {
@@ -65,12 +68,6 @@ impl Cutter {
             indices.extend(polygon.chunks_exact(3).flatten());
             return Ok(());
         }
-        if polygon.len() > MAX_CORNERS {
-            return Err(format!(
-                "a polygon has {} corners, more than {MAX_CORNERS}; cut it into smaller ones",
-                polygon.len()
-            ));
-        }
         // Relative to the first corner, so that a polygon far from the origin keeps its precision.
         let origin = positions[polygon[0] as usize].as_dvec3();
         self.points.clear();
@@ -79,6 +76,14 @@ impl Cutter {
         let turns_over = |pair: &[DVec3]| pair[0].cross(pair[1]).dot(normal) < 0.0;
         self.triangles.clear();
         if self.points[1..].windows(2).any(turns_over) {
+            let squares = (polygon.len() as u64).pow(2);
+            self.squares_left = self.squares_left.checked_sub(squares).ok_or_else(|| {
+                format!(
+                    "with its {} corners the concave polygons so far are too long to be cut; cut them into triangles \
+                     where they were made",
+                    polygon.len()
+                )
+            })?;
             self.clip(normal);
         }
         if self.triangles.is_empty() {
@@ -121,7 +126,7 @@ mod tests {
         let positions: Vec<Vec3> = outline.iter().map(place).collect();
         let polygon: Vec<u32> = (0..outline.len() as u32).collect();
         let mut indices = Vec::new();
-        Cutter::default().cut(&positions, &polygon, &mut indices).unwrap();
+        Cutter { squares_left: CLIPPED_SQUARES, ..Cutter::default() }.cut(&positions, &polygon, &mut indices).unwrap();
         (positions, indices, rotation * Vec3::Z)
     }
 
@@ -191,13 +196,38 @@ mod tests {
     fn points_and_lines_are_left_out_and_bad_polygons_named() {
         let mesh = |corners: Vec<u32>, arities: Vec<u32>| {
             let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
-            PolygonMesh { positions, corners, arities, ..PolygonMesh::default() }.into_mesh()
+            PolygonMesh { positions, corners, arities, ..PolygonMesh::default() }.into_mesh(0)
         };
         assert_eq!(mesh(vec![0, 0, 1, 0, 1, 2], vec![1, 2, 3]).unwrap().indices, [0, 1, 2]);
         assert_eq!(mesh(vec![0, 1, 2, 0, 1, 2, 3], vec![3, 4]).unwrap_err().place, Place::Face(1));
         assert_eq!(mesh(vec![0, 1, 2, 0], vec![3, 4]).unwrap_err().place, Place::Face(1));
-        let long = vec![0; MAX_CORNERS + 1];
-        let arity = long.len() as u32;
-        assert_eq!(mesh(long, vec![arity]).unwrap_err().place, Place::Face(0));
+    }
+
+    /// Teeth on one handle, and a spiral of two arms.
+    #[test]
+    fn long_concave_polygons_are_cut_or_refused_within_a_second() {
+        let comb = |count: usize| -> Vec<Vec3> {
+            let tooth = |i: usize| Vec3::new(i as f32, ((i + 1) % 2) as f32, 0.0);
+            (1..count).map(tooth).chain([Vec3::new(count as f32 / 2.0, -5.0, 0.0)]).collect()
+        };
+        let spiral = |count: usize| -> Vec<Vec3> {
+            let arm = |i: usize, inner: f32| {
+                let turn = i as f32 / count as f32 * 200.0;
+                Vec3::new(turn.cos(), turn.sin(), 0.0) * (inner + turn)
+            };
+            (0..count / 2).map(|i| arm(i, 0.0)).chain((0..count / 2).rev().map(|i| arm(i, 1.0))).collect()
+        };
+        for make in [comb as fn(usize) -> Vec<Vec3>, spiral] {
+            for (count, times, is_cut) in [(10_000, 1, true), (60_000, 1, false), (1_000, 101, false)] {
+                let positions = make(count);
+                let corners = (0..times).flat_map(|_| 0..count as u32).collect();
+                let polygons =
+                    PolygonMesh { positions, corners, arities: vec![count as u32; times], ..Default::default() };
+                let started = std::time::Instant::now();
+                let cut = polygons.into_mesh(0);
+                assert_eq!(cut.is_ok(), is_cut, "{count} {:?}", cut.err());
+                assert!(started.elapsed().as_secs_f64() < 2.0, "{count}: {:?}", started.elapsed());
+            }
+        }
     }
 }

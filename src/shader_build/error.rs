@@ -45,11 +45,13 @@ pub enum DirectiveProblem {
     IncludeMissing(String),
     #[error("include cycle: {0}; move what both need into a third file")]
     IncludeCycle(String),
+    #[error("more than 64 files include each other; include what they need at one place")]
+    IncludeDepth,
     #[error("`#include` inside `#if`; move it out, a file is included once whatever the condition")]
     IncludeConditional,
     #[error(
         "expected `#pragma variants NAME=value,value NAME=value,value`: names in capitals, values in small letters and digits, \
-         none twice"
+         none twice, at most 256 combinations"
     )]
     VariantsSyntax,
     #[error("`#pragma variants` stands once, in the shader's own file and outside `#if`; move it there")]

@@ -1,6 +1,7 @@
 //! Includes, resolved before either compiler sees the text, and the way back from a line of that text to its file.
 
 use std::fs;
+use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use super::error::{DirectiveProblem, Error};
@@ -27,7 +28,7 @@ impl Source {
     /// or conditional, and variants that are misspelt or misplaced.
     pub fn read_variants(root: &Path, file: &str) -> Result<Vec<(String, Source)>, Error> {
         let path = root.join(file);
-        let text = read_text(&path)?;
+        let text = read_text(root, &path)?;
         let pragma = lines(&text).find_map(|(line, _, directive)| match directive {
             Some(("pragma", rest)) => Some((line, variant_list(rest)?)),
             _ => None,
@@ -89,7 +90,10 @@ impl Source {
                         }
                         Some(_) => self.push_line("", file, line_number),
                         None => {
-                            let included = read_text(&path)?;
+                            if stack.len() == MOST_NESTED {
+                                return Err(problem(DirectiveProblem::IncludeDepth));
+                            }
+                            let included = read_text(root, &path)?;
                             self.files.push(path);
                             stack.push(self.files.len() - 1);
                             self.append(root, &included, stack)?;
@@ -138,8 +142,28 @@ impl Source {
     }
 }
 
-fn read_text(path: &Path) -> Result<String, Error> {
-    fs::read_to_string(path).map_err(|source| Error::Read { path: path.to_owned(), source })
+/// Files that include each other.
+const MOST_NESTED: usize = 64;
+/// Of one file; all of a paper's shaders together have some hundred kilobytes.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// The text of a regular file below `root`, symbolic links followed: a compiler's message shows what it read.
+fn read_text(root: &Path, path: &Path) -> Result<String, Error> {
+    let read = || {
+        let refused = |reason: &str| Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+        if !fs::canonicalize(path)?.starts_with(fs::canonicalize(root)?) {
+            return refused("it is a link out of the shader folder");
+        }
+        let metadata = fs::metadata(path)?;
+        if !metadata.is_file() {
+            return refused("it is not a regular file");
+        }
+        if metadata.len() > MOST_BYTES {
+            return refused("it is too large for a shader");
+        }
+        fs::read_to_string(path)
+    };
+    read().map_err(|source| Error::Read { path: path.to_owned(), source })
 }
 
 /// The existing file below `root` that an include names.
@@ -318,5 +342,34 @@ mod tests {
         let folder = folder(&[("a.frag", "// comment\n#version 450\n")]);
         let error = Source::read_variants(folder.path(), "a.frag").unwrap_err();
         assert!(matches!(error, Error::Version { .. }));
+    }
+
+    #[test]
+    fn chains_of_includes_have_an_end() {
+        let names: Vec<String> = (0..100).map(|i| format!("{i}.glsl")).collect();
+        let texts: Vec<String> = (1..=100).map(|i| format!("#include \"{i}.glsl\"\n")).collect();
+        let mut files: Vec<(&str, &str)> = vec![("a.frag", "#version 450\n#include \"0.glsl\"\n")];
+        files.extend(names.iter().map(String::as_str).zip(texts.iter().map(String::as_str)));
+        assert_eq!(problem(&files), ("62.glsl".to_owned(), 1, DirectiveProblem::IncludeDepth));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_out_of_the_folder_are_not_read() {
+        use std::os::unix::fs::symlink;
+        let outside = tempfile::NamedTempFile::new().unwrap();
+        fs::write(outside.path(), "#version 450\nroot:x:0:0\n").unwrap();
+        let folder = folder(&[("a.frag", "#version 450\n#include \"b.glsl\"\n"), ("real.glsl", "int a;\n")]);
+        let read = || Source::read_variants(folder.path(), "a.frag");
+        symlink("real.glsl", folder.path().join("b.glsl")).unwrap();
+        assert!(read().is_ok());
+        for target in [outside.path(), Path::new("/dev/zero")] {
+            fs::remove_file(folder.path().join("b.glsl")).unwrap();
+            symlink(target, folder.path().join("b.glsl")).unwrap();
+            assert!(read().is_err(), "{target:?}");
+        }
+        symlink(outside.path(), folder.path().join("c.frag")).unwrap();
+        let error = Source::read_variants(folder.path(), "c.frag").unwrap_err().to_string();
+        assert!(error.contains("c.frag: it is a link out of the shader folder"), "{error}");
     }
 }

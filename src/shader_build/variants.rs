@@ -5,6 +5,9 @@ use super::error::DirectiveProblem;
 /// A name that the line `#pragma variants` gives a value, and that value.
 pub(super) type Definition = (String, String);
 
+/// Each is compiled.
+const MOST_COMBINATIONS: usize = 256;
+
 /// The combinations of `BASE=plane,curved LOD=pixel,exact`, the last name changing fastest.
 pub(super) fn parse(line: &str) -> Result<Vec<Vec<Definition>>, DirectiveProblem> {
     let mut combinations: Vec<Vec<Definition>> = vec![Vec::new()];
@@ -20,6 +23,9 @@ pub(super) fn parse(line: &str) -> Result<Vec<Vec<Definition>>, DirectiveProblem
             let with = |value: &&str| [&combination[..], &[(name.to_owned(), (*value).to_owned())]].concat();
             values.iter().map(with).collect::<Vec<_>>()
         };
+        if combinations.len() * values.len() > MOST_COMBINATIONS {
+            return Err(DirectiveProblem::VariantsSyntax);
+        }
         combinations = combinations.iter().flat_map(extend).collect();
     }
     if combinations[0].is_empty() { Err(DirectiveProblem::VariantsSyntax) } else { Ok(combinations) }

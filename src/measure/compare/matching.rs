@@ -17,6 +17,8 @@ use crate::report::record::{Record, Run};
 pub enum CompareError {
     #[error("cannot compare: side {side} has no run; name at least one record with a finished run a side")]
     NoRun { side: &'static str },
+    #[error("cannot compare: a sample of {time} in {name} is {sample} ms; no time is negative, measure it again")]
+    Negative { name: String, time: String, sample: String },
     #[error(
         "cannot compare {a_name} with {b_name}: {field} is {a_value} in the first and {b_value} in the second; measure \
          both sides alike"

@@ -223,6 +223,7 @@ pub struct Quantity {
 /// # Errors
 /// A side has no record or no run, or the sides were not measured alike; the message names the field that differs.
 pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison, CompareError> {
+    a.iter().chain(b).try_for_each(check_samples)?;
     let mut options = *options;
     // Sides in turn may do different work on purpose; that is then what is compared.
     let mut matched = match options.design {
@@ -252,6 +253,23 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         only_in_b: matched.only_in_b,
         warnings: matched.warnings,
     })
+}
+
+/// Refuses times below zero.
+fn check_samples(input: &Input) -> Result<(), CompareError> {
+    for run in &input.record.runs {
+        let of_passes = run.passes.iter().flat_map(|pass| {
+            [&pass.gpu_ms, &pass.host_ms, &pass.wait_ms].map(|time| (pass.name.as_str(), time.as_ref()))
+        });
+        for (time, summary) in std::iter::once(("the frame", run.frame_ms.as_ref())).chain(of_passes) {
+            let samples = summary.map_or(&[][..], |summary| &summary.samples);
+            if let Some(sample) = samples.iter().find(|sample| **sample < 0.0) {
+                let time = format!("{time} of {} {}", run.paper, run.variant);
+                return Err(CompareError::Negative { name: input.name.clone(), time, sample: sample.to_string() });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// A doubt about sides of which one was measured wholly before the other: drift then looks like a difference.

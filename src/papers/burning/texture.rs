@@ -9,7 +9,7 @@ use ash::vk;
 use crate::gpu::transfer::{upload, upload_rows};
 use crate::gpu::{Buffer, Error, Image, ImageDesc, ImageView, ShaderLibrary};
 use crate::host_block;
-use crate::image::{Rgba8, read_png, srgb};
+use crate::image::{Rgba8, read_png_within, srgb};
 use crate::measure;
 
 /// A picture with its smaller versions, each half as large as the one before it, down to one texel.
@@ -105,17 +105,9 @@ const LARGEST_SIDE: u32 = 8192;
 /// Reads a PNG and makes its levels.
 ///
 /// # Errors
-/// [`measure::Error::Image`] for a file that is missing, cut short or no PNG; [`measure::Error::Input`] for more than
-/// 8,192 pixels a side.
+/// [`measure::Error::Image`] for a file that is missing, cut short or no PNG, or of more than 8,192 pixels a side.
 pub fn load(path: &Path) -> Result<Texture, measure::Error> {
-    let picture = read_png(path)?;
-    let (width, height) = (picture.width(), picture.height());
-    if width.max(height) > LARGEST_SIDE {
-        let path = path.display();
-        return Err(measure::Error::Input(format!(
-            "`texture` {path}: {width} x {height} pixels; scale it to {LARGEST_SIDE} a side at most"
-        )));
-    }
+    let picture = read_png_within(path, LARGEST_SIDE)?;
     Ok(with_levels(&picture))
 }
 

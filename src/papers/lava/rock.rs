@@ -21,12 +21,15 @@ pub struct Rock {
 }
 
 impl Rock {
+    /// Most texels a side.
+    pub const MAX_SIDE: u32 = 4096;
+
     /// Checks that it is a texture.
     ///
     /// # Errors
     /// A size outside 2 to 4096 texels a side, or another number of texels.
     pub fn validate(&self) -> Result<(), ParameterError> {
-        let sides = 2..=4096;
+        let sides = 2..=Self::MAX_SIDE;
         let is_sized = sides.contains(&self.width) && sides.contains(&self.height);
         if is_sized && self.texels.len() as u64 == u64::from(self.width) * u64::from(self.height) {
             return Ok(());

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::experiments::{self, Options};
 use crate::field;
 use crate::gpu::{self, Feature, ShaderLibrary};
-use crate::image::read_png;
+use crate::image::read_png_within;
 use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
@@ -77,7 +77,7 @@ impl Study for Setup {
         let rock = match &self.rock {
             None => Cow::Borrowed(Rock::built_in()),
             Some(path) => {
-                let picture = read_png(path)?;
+                let picture = read_png_within(path, Rock::MAX_SIDE)?;
                 let texels = picture.pixels().as_chunks().0.to_vec();
                 let rock = Rock { width: picture.width(), height: picture.height(), texels };
                 rock.validate().map_err(|e| Error::Input(format!("reading the rock {}: {e}", path.display())))?;

@@ -1,24 +1,23 @@
 use super::gltf_accessor;
+use super::gltf_buffer::Buffers;
 use crate::scene::Mesh;
 use crate::scene::error::{Fault, Place};
+use crate::scene::normals::double_area_vector;
 use ::gltf::accessor::{DataType, Dimensions};
-use ::gltf::buffer::Source;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Gltf, Primitive, Semantic};
-use base64::Engine;
-use base64::alphabet::STANDARD;
-use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use glam::{Mat4, Vec2, Vec3};
+use glam::{DVec3, Mat4, Vec2, Vec3};
 use std::path::Path;
 
-/// Most triangle corners after instancing; a small file can name one mesh from any number of nodes.
+/// Most vertices and most triangle corners of any scene.
 const MAX_CORNERS: usize = 1 << 28;
-
-/// Some exporters leave the padding out.
-const BASE64: GeneralPurpose = GeneralPurpose::new(
-    &STANDARD,
-    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
-);
+/// As many as a small file may make by naming the same data from any number of primitives and nodes; a larger one may
+/// make one for each of its bytes.
+const MAX_SHARED_CORNERS: usize = 1 << 24;
+/// Most primitives, each as often as nodes place it.
+const MAX_PARTS: usize = 1 << 20;
+/// Bytes that one object of the document can take in memory.
+const OBJECT_BYTES: usize = 512;
 
 const POSITION_TYPES: [(Dimensions, DataType); 1] = [(Dimensions::Vec3, DataType::F32)];
 const TEXTURE_COORDINATE_TYPES: [(Dimensions, DataType); 3] =
@@ -30,25 +29,52 @@ const INDEX_TYPES: [(Dimensions, DataType); 3] =
 /// binary, in world space.
 ///
 /// The first scene serves where none is the default. Buffers may be embedded or lie in files
-/// relative to `directory`. Texture coordinates are the first set. Skins, morph targets, points,
+/// below `directory`. Texture coordinates are the first set. Skins, morph targets, points,
 /// lines and materials are left out.
 pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
     check_container(bytes)?;
+    check_objects(bytes)?;
     let (document, blob) = read_document(bytes)?;
-    let buffers = read_buffers(&document, blob, directory)?;
+    let buffers = Buffers::read(&document, blob, directory)?;
+    let meshes = placed_meshes(&document)?;
+    let is_drawn = |part: &Primitive| matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
+    let placed = || {
+        let parts = meshes.iter().flat_map(|(mesh, transform)| {
+            mesh.primitives().map(|part| Placed { mesh: mesh.index(), part, transform: *transform })
+        });
+        parts.filter(|placed| is_drawn(&placed.part))
+    };
+    check_total(placed(), bytes.len() + buffers.total_bytes())?;
+    // Nothing is kept before all of it is seen to be good: a small file can make a large mesh.
+    let mut has_area = None;
+    for part in placed() {
+        let found = has_area.unwrap_or(false);
+        has_area = Some(found | check_primitive(&part, &buffers, found).map_err(|reason| part.fault(reason))?);
+    }
+    if has_area == Some(false) {
+        return Err(Fault::new(Place::Whole, "none of its triangles has a positive area; a mesh needs at least one"));
+    }
     let mut merged = Merged::default();
-    for (mesh, transform) in placed_meshes(&document)? {
-        for primitive in mesh.primitives() {
-            let named = |reason| {
-                let (mesh, primitive) = (mesh.index(), primitive.index());
-                Fault::new(Place::Part(format!("mesh {mesh}, primitive {primitive}")), reason)
-            };
-            if let Some(part) = read_primitive(&primitive, &buffers).map_err(named)? {
-                merged.append(part.transformed(&transform)).map_err(named)?;
-            }
-        }
+    for part in placed() {
+        let mesh = read_primitive(&part.part, &buffers).map_err(|reason| part.fault(reason))?;
+        merged.append(mesh.transformed(&part.transform));
     }
     merged.into_mesh()
+}
+
+/// A primitive that makes triangles.
+struct Placed<'a> {
+    /// Number of its mesh.
+    mesh: usize,
+    part: Primitive<'a>,
+    /// To the world.
+    transform: Mat4,
+}
+
+impl Placed<'_> {
+    fn fault(&self, reason: String) -> Fault {
+        Fault::new(Place::Part(format!("mesh {}, primitive {}", self.mesh, self.part.index())), reason)
+    }
 }
 
 /// The length in a GLB header is subtracted from without a check by the `gltf` crate.
@@ -66,6 +92,47 @@ fn check_container(bytes: &[u8]) -> Result<(), Fault> {
     }
 }
 
+/// Refuses a document whose objects would take far more memory than its text.
+fn check_objects(bytes: &[u8]) -> Result<(), Fault> {
+    /// As many bytes of memory for each of the file, and as many more.
+    const PER_BYTE: usize = 16;
+    const SPARE: usize = 64 << 20;
+    let text = match bytes.strip_prefix(b"glTF").and_then(|rest| rest.get(8..12)?.try_into().ok()) {
+        Some(length) => bytes[12..].get(8..).unwrap_or_default().get(..u32::from_le_bytes(length) as usize),
+        None => Some(bytes),
+    };
+    let text = text.unwrap_or_default();
+    let count = text.iter().filter(|byte| **byte == b'{').count();
+    if count * OBJECT_BYTES > PER_BYTE * text.len() + SPARE {
+        let reason = format!("its {} bytes of JSON hold {count} objects, too many for that size", text.len());
+        return Err(Fault::new(Place::Whole, reason));
+    }
+    Ok(())
+}
+
+/// Refuses a scene that is far larger than the file and its buffers, of so many bytes together.
+fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) -> Result<(), Fault> {
+    let most = size_bytes.clamp(MAX_SHARED_CORNERS, MAX_CORNERS);
+    let (mut vertices, mut corners, mut parts) = (0_usize, 0_usize, 0_usize);
+    for Placed { part, .. } in placed {
+        let count = part.get(&Semantic::Positions).map_or(0, |positions| positions.count());
+        let indices = part.indices().map_or(count, |indices| indices.count());
+        let per_index = if part.mode() == Mode::Triangles { 1 } else { 3 };
+        vertices = vertices.saturating_add(count);
+        corners = corners.saturating_add(indices.saturating_mul(per_index));
+        parts += 1;
+        if vertices.max(corners) > most || parts > MAX_PARTS {
+            let reason = format!(
+                "its scene has more than the {most} vertices, {} triangles or {MAX_PARTS} primitives that a file of its \
+                 size may make; simplify it",
+                most / 3
+            );
+            return Err(Fault::new(Place::Whole, reason));
+        }
+    }
+    Ok(())
+}
+
 fn read_document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
     let foreign = |error: ::gltf::Error| Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"));
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(foreign)?;
@@ -81,51 +148,6 @@ fn read_document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
         }
     }
     Ok((Document::from_json(json).map_err(foreign)?, blob))
-}
-
-fn read_buffers(document: &Document, mut blob: Option<Vec<u8>>, directory: &Path) -> Result<Vec<Vec<u8>>, Fault> {
-    let mut buffers = Vec::new();
-    for buffer in document.buffers() {
-        let fault = |reason| Fault::new(Place::Part(format!("buffer {}", buffer.index())), reason);
-        let mut bytes = match buffer.source() {
-            Source::Bin => blob.take().ok_or_else(|| fault("the file has no binary chunk for it".to_owned()))?,
-            Source::Uri(uri) => read_uri(uri, directory).map_err(fault)?,
-        };
-        if bytes.len() < buffer.length() {
-            return Err(fault(format!("it claims {} bytes, but there are {}", buffer.length(), bytes.len())));
-        }
-        bytes.truncate(buffer.length());
-        buffers.push(bytes);
-    }
-    Ok(buffers)
-}
-
-fn read_uri(uri: &str, directory: &Path) -> Result<Vec<u8>, String> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        let (_, encoded) = data.split_once(";base64,").ok_or("its data URI is not encoded as base64")?;
-        return BASE64.decode(encoded).map_err(|error| Fault::foreign(Place::Whole, &error).reason);
-    }
-    if uri.contains(':') {
-        return Err("only data URIs and relative paths are supported".to_owned());
-    }
-    let path = percent_decoded(uri).ok_or("its path is not valid percent-encoded UTF-8")?;
-    super::read(&directory.join(path)).map_err(|error| Fault::foreign(Place::Whole, &error).reason)
-}
-
-fn percent_decoded(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, after @ ..] = rest {
-        rest = after;
-        if *first != b'%' {
-            bytes.push(*first);
-            continue;
-        }
-        let (digits, after) = rest.split_at_checked(2)?;
-        bytes.push(u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok()?);
-        rest = after;
-    }
-    String::from_utf8(bytes).ok()
 }
 
 /// The meshes of the scene's nodes with their transforms to the world.
@@ -152,13 +174,13 @@ fn placed_meshes(document: &Document) -> Result<Vec<(::gltf::Mesh<'_>, Mat4)>, F
     Ok(placed)
 }
 
-/// The triangles of a primitive, in its own space, with zero normals where it has none; nothing for
-/// points and lines.
-fn read_primitive(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Option<Mesh>, String> {
-    if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-        return Ok(None);
-    }
-    let check = |semantic: Semantic, types: &[_]| match primitive.get(&semantic) {
+/// Checks all that [`read_primitive`] reads and all that becomes of it. True for a triangle of positive area, which is
+/// looked for unless there `has_area` already.
+///
+/// No message shows a value: a buffer may be any file beside the document.
+fn check_primitive(placed: &Placed<'_>, buffers: &Buffers, has_area: bool) -> Result<bool, String> {
+    let Placed { part, transform, .. } = placed;
+    let check = |semantic: Semantic, types: &[_]| match part.get(&semantic) {
         Some(accessor) => {
             gltf_accessor::check(&accessor, types, buffers).map_err(|reason| format!("{semantic:?}: {reason}"))
         }
@@ -167,10 +189,37 @@ fn read_primitive(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Opti
     check(Semantic::Positions, &POSITION_TYPES)?;
     check(Semantic::Normals, &POSITION_TYPES)?;
     check(Semantic::TexCoords(0), &TEXTURE_COORDINATE_TYPES)?;
-    if let Some(accessor) = primitive.indices() {
+    if let Some(accessor) = part.indices() {
         gltf_accessor::check(&accessor, &INDEX_TYPES, buffers).map_err(|reason| format!("indices: {reason}"))?;
     }
-    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
+    let reader = part.reader(|buffer| buffers.get(buffer.index()));
+    let positions: Vec<Vec3> = reader.read_positions().ok_or("it has no positions")?.map(Vec3::from).collect();
+    let count = positions.len();
+    if let Some(vertex) = positions.iter().position(|p| !transform.transform_point3(*p).is_finite()) {
+        return Err(format!("vertex {vertex}: its position in the scene is not finite"));
+    }
+    let mut coordinates = reader.read_tex_coords(0).into_iter().flat_map(|read| read.into_f32());
+    if let Some(vertex) = coordinates.position(|[u, v]| !(u.is_finite() && (1.0 - v).is_finite())) {
+        return Err(format!("vertex {vertex}: its texture coordinate is not finite"));
+    }
+    let beyond = |index: &u32| *index as usize >= count;
+    if let Some(place) = reader.read_indices().and_then(|read| read.into_u32().position(|index| beyond(&index))) {
+        return Err(format!("index {place} names a vertex that is not there; there are {count}"));
+    }
+    if has_area {
+        return Ok(true);
+    }
+    let at = |index: u32| transform.transform_point3(positions[index as usize]);
+    let is_wide = |[a, b, c]: [u32; 3]| double_area_vector(at(a), at(b), at(c)) != DVec3::ZERO;
+    Ok(match reader.read_indices() {
+        Some(indices) => triangles(part.mode(), indices.into_u32()).any(is_wide),
+        None => triangles(part.mode(), 0..count as u32).any(is_wide),
+    })
+}
+
+/// The triangles of a primitive that was checked, in its own space, with zero normals where it has none.
+fn read_primitive(part: &Primitive<'_>, buffers: &Buffers) -> Result<Mesh, String> {
+    let reader = part.reader(|buffer| buffers.get(buffer.index()));
     let positions: Vec<Vec3> = reader.read_positions().ok_or("it has no positions")?.map(Vec3::from).collect();
     let mut normals: Vec<Vec3> = reader.read_normals().map_or(vec![], |normals| normals.map(Vec3::from).collect());
     normals.resize(positions.len(), Vec3::ZERO);
@@ -182,40 +231,34 @@ fn read_primitive(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Opti
     if !texture_coordinates.is_empty() {
         texture_coordinates.resize(positions.len(), Vec2::ZERO);
     }
-    let corners: Vec<u32> = match reader.read_indices() {
-        Some(indices) => indices.into_u32().collect(),
-        None => (0..positions.len() as u32).collect(),
+    let indices = match reader.read_indices() {
+        Some(indices) => triangles(part.mode(), indices.into_u32()).flatten().collect(),
+        None => triangles(part.mode(), 0..positions.len() as u32).flatten().collect(),
     };
-    if let Some(index) = corners.iter().find(|i| **i as usize >= positions.len()) {
-        let count = positions.len();
-        return Err(format!("an index names vertex {index}, but there are {count}"));
-    }
-    Ok(Some(Mesh {
-        name: String::new(),
-        positions,
-        normals,
-        texture_coordinates,
-        indices: triangle_list(primitive.mode(), corners),
-    }))
+    Ok(Mesh { name: String::new(), positions, normals, texture_coordinates, indices })
 }
 
-/// Corners of a triangle list, strip or fan as a list of the same orientation; loose corners at the
-/// end are left out.
-fn triangle_list(mode: Mode, mut corners: Vec<u32>) -> Vec<u32> {
-    match mode {
-        Mode::TriangleStrip => corners
-            .windows(3)
-            .enumerate()
-            .flat_map(|(i, t)| if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] })
-            .collect(),
-        Mode::TriangleFan => {
-            corners.get(1..).unwrap_or_default().windows(2).flat_map(|pair| [pair[0], pair[1], corners[0]]).collect()
-        }
-        _ => {
-            corners.truncate(corners.len() / 3 * 3);
-            corners
-        }
-    }
+/// The triangles of a list, strip or fan in the same orientation; loose corners at the end are left out.
+fn triangles(mode: Mode, corners: impl Iterator<Item = u32>) -> impl Iterator<Item = [u32; 3]> {
+    // The fan's centre or the corner before the last, and the last.
+    let mut kept = [0, 0];
+    corners.enumerate().filter_map(move |(place, corner)| {
+        let [first, last] = kept;
+        let triangle = match mode {
+            Mode::TriangleFan => (place >= 2).then_some([last, corner, first]),
+            Mode::TriangleStrip if place % 2 == 0 => (place >= 2).then_some([first, last, corner]),
+            Mode::TriangleStrip => (place >= 2).then_some([first, corner, last]),
+            _ => (place % 3 == 2).then_some([first, last, corner]),
+        };
+        kept = match (mode, place) {
+            (_, 0) => [corner, corner],
+            (_, 1) | (Mode::TriangleFan, _) => [first, corner],
+            (Mode::TriangleStrip, _) => [last, corner],
+            (_, place) if place % 3 == 0 => [corner, corner],
+            _ => [first, corner],
+        };
+        triangle
+    })
 }
 
 /// All primitives seen so far as one mesh.
@@ -226,24 +269,15 @@ struct Merged {
 }
 
 impl Merged {
-    fn append(&mut self, part: Mesh) -> Result<(), String> {
+    fn append(&mut self, part: Mesh) {
         let mesh = &mut self.mesh;
-        let corner_count = mesh.indices.len() + part.indices.len();
-        let vertex_count = mesh.positions.len() + part.positions.len();
-        if corner_count.max(vertex_count) > MAX_CORNERS {
-            return Err(format!(
-                "with it the scene has {vertex_count} vertices and {} triangles, more than can be loaded; simplify it",
-                corner_count / 3
-            ));
-        }
         let first = mesh.positions.len() as u32;
         self.has_texture_coordinates |= !part.texture_coordinates.is_empty();
         mesh.positions.extend(part.positions);
         mesh.normals.extend(part.normals);
         mesh.texture_coordinates.extend(part.texture_coordinates);
-        mesh.texture_coordinates.resize(vertex_count, Vec2::ZERO);
+        mesh.texture_coordinates.resize(mesh.positions.len(), Vec2::ZERO);
         mesh.indices.extend(part.indices.iter().map(|index| first + index));
-        Ok(())
     }
 
     fn into_mesh(self) -> Result<Mesh, Fault> {

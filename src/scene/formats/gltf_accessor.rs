@@ -1,15 +1,16 @@
+use super::gltf_buffer::Buffers;
 use ::gltf::Accessor;
 use ::gltf::accessor::{DataType, Dimensions};
 
 /// Checks that an accessor has one of the `types` of data and lies inside its buffer, which the
 /// `gltf` crate takes for granted.
 ///
-/// `buffers` are all buffers of the document in order. The error is what is wrong with the
+/// The error is what is wrong with the
 /// accessor.
 pub(super) fn check(
     accessor: &Accessor<'_>,
     types: &[(Dimensions, DataType)],
-    buffers: &[Vec<u8>],
+    buffers: &Buffers,
 ) -> Result<(), String> {
     let data = (accessor.dimensions(), accessor.data_type());
     if !types.contains(&data) {
@@ -31,7 +32,7 @@ pub(super) fn check(
         .and_then(|last| last.checked_add(accessor.offset()))
         .and_then(|last| last.checked_add(size_bytes));
     let end_in_buffer = view.offset().checked_add(view.length());
-    let buffer_bytes = buffers.get(view.buffer().index()).map_or(0, Vec::len);
+    let buffer_bytes = buffers.get(view.buffer().index()).map_or(0, <[u8]>::len);
     let fits = |end: Option<usize>, length: usize| end.is_some_and(|end| end <= length);
     if stride_bytes < size_bytes || !fits(end_in_view, view.length()) || !fits(end_in_buffer, buffer_bytes) {
         return Err(format!(

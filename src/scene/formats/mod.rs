@@ -4,13 +4,13 @@
 
 mod gltf;
 mod gltf_accessor;
+mod gltf_buffer;
 mod obj;
 mod ply;
 mod stl;
 
 use crate::scene::error::{Asset, Fault};
 use crate::scene::{Error, Mesh, file};
-use std::io::Read;
 use std::path::Path;
 
 /// Largest file that is read; 32-bit vertex numbers do not reach much further.
@@ -60,16 +60,7 @@ fn malformed(path: &Path, fault: Fault) -> Error {
 
 /// The bytes of a regular file.
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    let failed = |source| Error::Read { path: path.to_owned(), source };
-    let (file, size_bytes) = file::open(path, Asset::Mesh)?;
-    if size_bytes > MAX_FILE_BYTES {
-        return Err(Error::TooLarge { path: path.to_owned(), size_bytes, limit_bytes: MAX_FILE_BYTES });
-    }
-    let mut bytes = Vec::new();
-    bytes.try_reserve_exact(size_bytes as usize).map_err(|error| failed(error.into()))?;
-    // A file that grows meanwhile is cut, and its reader says so.
-    file.take(MAX_FILE_BYTES).read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
+    crate::file::read(path, MAX_FILE_BYTES).map_err(|source| file::failed(path, Asset::Mesh, source))
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     if texture_coordinates.len() != positions.len() {
         texture_coordinates.clear();
     }
-    PolygonMesh { positions, normals, texture_coordinates, corners: mesh.indices, arities }.into_mesh()
+    PolygonMesh { positions, normals, texture_coordinates, corners: mesh.indices, arities }.into_mesh(bytes.len())
 }
 
 fn decode(bytes: &[u8]) -> Result<&str, Fault> {

@@ -29,7 +29,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     if mesh.arities.is_empty() {
         return Err(Fault::new(Place::Whole, "it has no faces; a point cloud needs to be meshed first"));
     }
-    mesh.into_mesh()
+    mesh.into_mesh(bytes.len())
 }
 
 /// The file and how much of it has been read.
@@ -56,12 +56,29 @@ impl Source<'_> {
             Some(line) if self.is_ascii => Place::Line(line),
             _ => Place::Byte(self.size - self.reader.get_ref().len()),
         };
-        Fault::foreign(place, &message)
+        Fault::foreign(place, &plain(message))
+    }
+}
+
+/// The telling part of the library's message, which quotes the line and prints its own structures.
+fn plain(message: &str) -> String {
+    let is_plain =
+        |part: &&str| !(part.contains('{') || part.contains("expected one of") || part.starts_with("String:"));
+    let parts = message.lines().map(str::trim).filter(|part| part.len() > 1 && is_plain(part));
+    let mut parts = parts.map(|part| part.trim_start_matches("Error: ").trim_end_matches(['.', ':', ',', ' ']));
+    let first = parts.next().unwrap_or("it is not understood");
+    let part = if first == "Couldn't read element line" { parts.next_back().unwrap_or(first) } else { first };
+    match part.split_once(" with declared type ") {
+        Some((property, _)) => format!("{property} has a type that cannot be used"),
+        None => part.to_owned(),
     }
 }
 
 /// Refuses element counts that the rest of the file cannot hold.
 fn check_sizes(header: &Header, available_bytes: usize) -> Result<(), Fault> {
+    /// Bytes of memory that may be taken for each of the file, and as many more.
+    const PER_BYTE: usize = 16;
+    const SPARE: usize = 64 << 20;
     let mut needed_bytes = 0_usize;
     for element in header.elements.values() {
         let properties = element.properties.values();
@@ -72,6 +89,18 @@ fn check_sizes(header: &Header, available_bytes: usize) -> Result<(), Fault> {
         };
         if smallest_bytes == 0 && element.count > 0 {
             let reason = format!("element {} has no properties", element.name);
+            return Err(Fault::new(Place::Whole, reason));
+        }
+        // A list may be empty, and a face in memory is not; twice, as the list of them grows by copying.
+        let is_kept = ["vertex", "face"].contains(&element.name.as_str());
+        let face_bytes = 2 * size_of::<Face>() + size_of::<u32>();
+        if is_kept
+            && element.count.saturating_mul(face_bytes) > available_bytes.saturating_mul(PER_BYTE).saturating_add(SPARE)
+        {
+            let reason = format!(
+                "its header claims {} elements {:?} in {available_bytes} bytes, which leaves them empty",
+                element.count, element.name
+            );
             return Err(Fault::new(Place::Whole, reason));
         }
         needed_bytes = needed_bytes.saturating_add(element.count.saturating_mul(smallest_bytes));
@@ -309,10 +338,42 @@ mod tests {
             ("float z", "float w", "x, y and z"),
             ("vertex_index", "corners", "vertex_index"),
             ("element face 1", "element face 0", "no faces"),
-            ("property list uchar int", "property int", "unsupported"),
+            ("property list uchar int", "property int", "cannot be used"),
         ] {
             let fault = parse(text.replace(from, to).as_bytes()).expect_err(from);
             assert!(fault.reason.contains(word), "{fault}");
         }
+    }
+
+    #[test]
+    fn messages_are_words() {
+        let cut = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+                   property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 ";
+        for (rest, line, reason) in [
+            ("element vertex x\nend_header\n", 3, "Couldn't parse line"),
+            ("element vertex 3\nproperty foo x\nend_header\n", 4, "Couldn't parse line"),
+            ("format binary_little_endian 1.0\n", 3, "Found contradicting format definition"),
+            ("property float x\n", 3, "it is not understood"),
+            (&format!("{cut}x\n3 0 1 2\n"), 12, "Couldn't parse element line"),
+            (&format!("{cut}0\n3 0 1\n\n"), 13, "Expected 3 list elements, but found only 2"),
+            (
+                &format!("{}0\n3 0 1 2\n", cut.replace("float x", "list uchar int x")),
+                10,
+                "has a type that cannot be used",
+            ),
+        ] {
+            let fault = parse(format!("ply\nformat ascii 1.0\n{rest}").as_bytes()).expect_err(rest).to_string();
+            assert!(fault.starts_with(&format!("line {line}: ")) && fault.ends_with(reason), "{fault}");
+        }
+        let fault = parse(b"plx\n").unwrap_err().to_string();
+        assert_eq!(fault, "line 1: Expected magic number 'ply'");
+    }
+
+    #[test]
+    fn empty_faces_make_no_vast_list() {
+        let header = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n\
+                      property uchar z\nelement face 9000000\nproperty list uchar uchar vertex_indices\nend_header\n";
+        let fault = parse(&[header.as_bytes(), &[0; 9_000_003]].concat()).unwrap_err().to_string();
+        assert!(fault.contains("claims 9000000 elements \"face\"") && fault.ends_with("leaves them empty"), "{fault}");
     }
 }

@@ -40,13 +40,12 @@ impl<T: Copy + Into<f64>> Grid<T> {
             return Err(whole(format!("{} samples for {width} x {height}", self.values.len())));
         }
         let no_data = self.no_data;
-        let mut void_places = Vec::new();
+        let mut void_count = 0_usize;
         let (mut low, mut high) = (f64::MAX, f64::MIN);
         for (index, value) in self.values.iter().enumerate() {
             let value = (*value).into();
             if is_void(value, no_data) {
-                // A map has at most 2^28 samples.
-                void_places.push(index as u32);
+                void_count += 1;
             } else if (value as f32).is_finite() {
                 (low, high) = (low.min(value), high.max(value));
             } else {
@@ -54,9 +53,13 @@ impl<T: Copy + Into<f64>> Grid<T> {
                 return Err(Fault::new(Place::Part(place), format!("its height is {value}, not a finite number")));
             }
         }
-        if void_places.len() == self.values.len() {
+        if void_count == self.values.len() {
             return Err(whole("all its samples are void; a map needs at least one height".to_owned()));
         }
+        let mut void_places = Vec::with_capacity(void_count);
+        // A map has at most 2^28 samples.
+        let indices = self.values.iter().zip(0..).filter(|(value, _)| is_void((**value).into(), no_data));
+        void_places.extend(indices.map(|(_, index): (_, u32)| index));
         let fits = self.integral && high - low <= STEPS && low.abs() <= EXACT && high.abs() <= EXACT;
         let samples = if fits {
             // The void's own value may lie anywhere; the conversion saturates.

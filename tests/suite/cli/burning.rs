@@ -157,8 +157,8 @@ fn a_picture_covers_the_mesh() {
         ("--mesh box --texture gone.png", &["gone.png"][..]),
         ("--mesh box --texture cut.png", &["cut.png"]),
         ("--mesh box --texture no.png", &["no.png"]),
-        ("--mesh box --texture .", &["reading picture ."]),
-        ("--mesh box --texture wide.png", &["--texture wide.png", "8192"]),
+        ("--mesh box --texture .", &["opening picture ."]),
+        ("--mesh box --texture wide.png", &["wide.png", "8193 x 1", "8192"]),
         ("--mesh bunny --texture blue.png", &["--texture blue.png", "bunny", "texture coordinates"]),
     ] {
         small("render").args(options).inside(out.path()).run().refused(2, parts);

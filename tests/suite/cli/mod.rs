@@ -11,6 +11,8 @@ mod devices;
 mod dumps;
 mod experiment;
 mod gas;
+mod hostile;
+mod hostile_cost;
 mod interruption;
 mod lava;
 mod meshes;

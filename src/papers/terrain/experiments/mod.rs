@@ -11,12 +11,12 @@ use self::table::{Axis, Outcome};
 use super::setup::Setup;
 use super::{Variant, View};
 use crate::field;
+use crate::file::{check_writable, write};
 use crate::measure::experiment::Experiment;
 use crate::measure::parameter::{Choice, Parameter};
 use crate::measure::study::Study;
 use crate::measure::sweep::Point;
 use crate::measure::{Error, Variant as _, experiment};
-use crate::report::output::{check_writable, write};
 
 type Context<'a> = experiment::Context<'a, Setup>;
 

@@ -148,7 +148,7 @@ fn bad_contents_and_containers_are_refused() {
     nan[14] = 0xc0;
     nan[15] = 0x7f;
     let fault = parse(&binary(&json, &nan), Path::new("")).unwrap_err();
-    assert_eq!(fault.place, Place::Vertex(1));
+    assert!(fault.to_string().starts_with("mesh 0, primitive 0: vertex 1: its position"), "{fault}");
     let mut index = square_bytes();
     index[50] = 4;
     let fault = parse(&binary(&json, &index), Path::new("")).unwrap_err();
@@ -162,4 +162,93 @@ fn bad_contents_and_containers_are_refused() {
         bytes[12..16].copy_from_slice(&length.to_le_bytes());
         assert!(parse(&bytes, Path::new("")).is_err());
     }
+}
+
+#[test]
+fn what_leaves_the_folder_is_not_read() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path().join("folder");
+    std::fs::create_dir(&folder).unwrap();
+    for place in ["secret.bin", "folder/a.bin"] {
+        std::fs::write(root.path().join(place), square_bytes()).unwrap();
+    }
+    let absolute = root.path().join("secret.bin");
+    let mut uris =
+        vec!["../secret.bin", "%2e%2e/secret.bin", "..%2Fsecret.bin", "./../secret.bin", "a/../../secret.bin"];
+    uris.push(absolute.to_str().unwrap());
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("../secret.bin", folder.join("link.bin")).unwrap();
+        uris.push("link.bin");
+    }
+    let external = |uri| parse(document(NODE, LIST, Some(uri)).as_bytes(), &folder);
+    assert!(external("a.bin").is_ok() && external("./a.bin").is_ok());
+    for uri in uris {
+        let fault = external(uri).expect_err(uri).to_string();
+        assert!(fault.starts_with("buffer 0: it lies outside the folder"), "{uri}: {fault}");
+    }
+}
+
+/// The buffer may be any file beside the document.
+#[test]
+fn messages_show_no_bytes_of_buffers() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = document(NODE, LIST, Some("key"));
+    let path = folder.path().join("key");
+    // 0x73 is 115, 0x7373 is 29555; as a float 0x7fa17373 is no number.
+    for (bytes, count) in [(vec![0x73; 54], 54), ([0x73, 0x73, 0xa1, 0x7f].repeat(14), 54)] {
+        std::fs::write(&path, &bytes[..count]).unwrap();
+        let fault = parse(json.as_bytes(), folder.path()).unwrap_err().to_string();
+        assert!(!["115", "29555", "1.9", "e31"].iter().any(|shown| fault.contains(shown)), "{fault}");
+    }
+}
+
+/// Each of many primitives and nodes names the same data.
+#[test]
+fn small_files_make_no_vast_scenes() {
+    let bytes = vec![0; 1 << 20];
+    let count = bytes.len() / 12;
+    let list = |item: &str, count: usize| vec![item; count].join(",");
+    let document = |nodes: usize, primitives: usize| {
+        let primitive = r#"{"attributes":{"POSITION":0}}"#;
+        let roots = (0..nodes).map(|node| node.to_string()).collect::<Vec<_>>().join(",");
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[{roots}]}}],"nodes":[{}],
+            "meshes":[{{"primitives":[{}]}}],"buffers":[{{"byteLength":{}}}],
+            "bufferViews":[{{"buffer":0,"byteLength":{2}}}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":{count},"type":"VEC3",
+            "min":[0,0,0],"max":[0,0,0]}}]}}"#,
+            list(r#"{"mesh":0}"#, nodes),
+            list(primitive, primitives),
+            bytes.len()
+        )
+    };
+    for (nodes, primitives) in [(10_000, 1), (1, 10_000), (1_000, 1_000)] {
+        let glb = binary(&document(nodes, primitives), &bytes);
+        let started = std::time::Instant::now();
+        let fault = parse(&glb, Path::new("")).unwrap_err().to_string();
+        assert!(fault.contains("has more than the 16777216 vertices"), "{fault}");
+        assert!(started.elapsed().as_secs_f64() < 1.0, "{nodes} x {primitives}: {:?}", started.elapsed());
+    }
+    // A few are read, and only then seen to make no triangle.
+    let fault = parse(&binary(&document(10, 10), &bytes), Path::new("")).unwrap_err().to_string();
+    assert!(fault.contains("positive area"), "{fault}");
+}
+
+#[test]
+fn a_document_of_nothing_but_objects_is_refused() {
+    let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{}{{}}]}}"#, "{},".repeat(1 << 20));
+    let fault = parse(json.as_bytes(), Path::new("")).unwrap_err().to_string();
+    assert!(fault.contains("1048579 objects"), "{fault}");
+}
+
+#[test]
+fn buffers_of_one_file_share_it() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.bin"), square_bytes()).unwrap();
+    let buffers = format!(r#""buffers":[{}]"#, vec![r#"{"uri":"a.bin","byteLength":54}"#; 100].join(","));
+    let json = document(NODE, LIST, Some("a.bin")).replace(r#""buffers":[{"uri":"a.bin","byteLength":54}]"#, &buffers);
+    let document = Gltf::from_slice(json.as_bytes()).unwrap().document;
+    assert_eq!(Buffers::read(&document, None, folder.path()).unwrap().total_bytes(), 54);
+    assert_eq!(parse(json.as_bytes(), folder.path()).unwrap().triangle_count(), 2);
 }

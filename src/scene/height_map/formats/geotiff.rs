@@ -1,5 +1,5 @@
-use super::check_compressed;
 use super::placement::{MapCoordinates, Unit};
+use super::{check_compressed, spare_bytes};
 use crate::scene::HeightMap;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
@@ -7,7 +7,7 @@ use crate::scene::height_map::map::check_size;
 use glam::DVec2;
 use std::io::{Read, Seek};
 use tiff::ColorType;
-use tiff::decoder::{Decoder, DecodingResult, Limits};
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
 /// The largest map in 64 bits a sample.
@@ -36,6 +36,10 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMa
     tags.refuse_scaled_heights()?;
     let (no_data, placement) = (tags.no_data()?, tags.placement(width, height)?);
     let source = Source { width, height, no_data, placement };
+    let raw_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
+    if raw_bytes > spare_bytes(size_bytes) {
+        check_chunks(&mut decoder, size_bytes, bits)?;
+    }
     match decoder.read_image().map_err(foreign)? {
         DecodingResult::U8(_) | DecodingResult::I8(_) if bits != 8 => {
             Err(fault("BitsPerSample", format!("it is {bits}; 8, 16, 32 and 64 can be read")))
@@ -52,6 +56,24 @@ pub(super) fn parse(size_bytes: u64, input: impl Read + Seek) -> Result<HeightMa
         DecodingResult::F32(values) => source.map(values, false),
         DecodingResult::F64(values) => source.map(values, false),
     }
+}
+
+/// Decodes all strips or tiles of a file that could be far larger than it is, one by one, before any is kept.
+fn check_chunks(decoder: &mut Decoder<impl Read + Seek>, size_bytes: u64, bits: u8) -> Result<(), Fault> {
+    let (width, height) = decoder.chunk_dimensions();
+    let chunk_bytes = u64::from(width) * u64::from(height) * u64::from(bits).div_ceil(8);
+    if chunk_bytes > spare_bytes(size_bytes) {
+        let reason = format!(
+            "it packs {chunk_bytes} bytes into one strip of a file of {size_bytes}; write it anew in tiles, with \
+             gdal_translate -co TILED=YES"
+        );
+        return Err(fault("RowsPerStrip", reason));
+    }
+    let count = match decoder.get_chunk_type() {
+        ChunkType::Strip => decoder.strip_count(),
+        ChunkType::Tile => decoder.tile_count(),
+    };
+    (0..count.map_err(foreign)?).try_for_each(|chunk| decoder.read_chunk(chunk).map(drop)).map_err(foreign)
 }
 
 struct Source {

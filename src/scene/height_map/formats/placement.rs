@@ -56,8 +56,8 @@ impl MapCoordinates {
 /// The unit that the `.prj` file beside a raster names, if there is one.
 pub(super) fn beside(raster: &Path) -> Result<Option<Unit>, Error> {
     for ending in ["prj", "PRJ"] {
-        let path = raster.with_extension(ending);
-        if let Ok((file, _)) = file::open(&path, Asset::HeightMap) {
+        if let Some(path) = file::beside(raster, ending)? {
+            let (file, _) = file::open(&path, Asset::HeightMap)?;
             return Ok(unit(&read_text(file, &path)?));
         }
     }

@@ -1,18 +1,47 @@
-use super::check_compressed;
+use super::{check_compressed, spare_bytes};
 use crate::scene::HeightMap;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
-use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
+use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
 use std::io::{BufRead, Seek};
 
 /// 16 bits and alpha in the largest map.
 const MAX_BYTES: usize = 4 << 28;
 
 /// Reads a grey PNG of 8 or 16 bits: whole metres. Transparent samples, which is how GDAL writes no-data, are void.
-pub(super) fn parse(size_bytes: u64, input: impl BufRead + Seek) -> Result<HeightMap, Fault> {
-    let foreign = |error: DecodingError| Fault::foreign(Place::Whole, &error);
+pub(super) fn parse(size_bytes: u64, mut input: impl BufRead + Seek) -> Result<HeightMap, Fault> {
+    let ((width, height), mut reader) = open(size_bytes, &mut input)?;
+    let (color, depth) = reader.output_color_type();
+    let raw_bytes = reader.output_buffer_size().unwrap_or(0);
+    // Nothing is kept of a file that could be far larger than it is before all of it is seen to be whole.
+    if raw_bytes as u64 > spare_bytes(size_bytes) {
+        while reader.next_interlaced_row().map_err(foreign)?.is_some() {}
+        drop(reader);
+        reader = open(size_bytes, &mut input)?.1;
+    }
+    let mut bytes = vec![0; raw_bytes];
+    reader.next_frame(&mut bytes).map_err(foreign)?;
+    let samples: Vec<u16> = match depth {
+        BitDepth::Sixteen => bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
+        _ => bytes.into_iter().map(u16::from).collect(),
+    };
+    if color == ColorType::Grayscale {
+        return map(width, height, samples, None);
+    }
+    // A value that no 16-bit sample has.
+    const VOID: i32 = -1;
+    let masked = |pixel: &[u16]| if pixel[1] == 0 { VOID } else { pixel[0].into() };
+    map(width, height, samples.chunks_exact(2).map(masked).collect(), Some(VOID.into()))
+}
+
+/// The size of a grey PNG of 8 or 16 bits, and what reads its rows.
+fn open<R: BufRead + Seek>(size_bytes: u64, mut input: R) -> Result<((u32, u32), Reader<R>), Fault> {
+    input.rewind().map_err(|error| Fault::foreign(Place::Whole, &error))?;
     let mut decoder = Decoder::new_with_limits(input, Limits { bytes: MAX_BYTES });
+    // Texts and profiles can be compressed too, and are not looked at.
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
     let header = decoder.read_header_info().map_err(foreign)?;
     let (width, height) = header.size();
     let is_packed = (header.bit_depth as u8) < 8;
@@ -20,26 +49,17 @@ pub(super) fn parse(size_bytes: u64, input: impl BufRead + Seek) -> Result<Heigh
     check_size(width.into(), height.into()).map_err(header_fault)?;
     check_compressed(size_bytes, (width, height), 8).map_err(header_fault)?;
     decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info().map_err(foreign)?;
-    let (color, depth) = reader.output_color_type();
-    let has_alpha = color == ColorType::GrayscaleAlpha;
-    if !has_alpha && (color != ColorType::Grayscale || is_packed) {
-        let reason = "it is no grey picture of 8 or 16 bits; write heights as grey, for instance with gdal_translate";
-        return Err(header_fault(reason.to_owned()));
+    let reader = decoder.read_info().map_err(foreign)?;
+    let color = reader.output_color_type().0;
+    if color == ColorType::GrayscaleAlpha || (color == ColorType::Grayscale && !is_packed) {
+        return Ok(((width, height), reader));
     }
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap_or(0)];
-    reader.next_frame(&mut bytes).map_err(foreign)?;
-    let samples: Vec<u16> = match depth {
-        BitDepth::Sixteen => bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect(),
-        _ => bytes.into_iter().map(u16::from).collect(),
-    };
-    if !has_alpha {
-        return map(width, height, samples, None);
-    }
-    // A value that no 16-bit sample has.
-    const VOID: i32 = -1;
-    let masked = |pixel: &[u16]| if pixel[1] == 0 { VOID } else { pixel[0].into() };
-    map(width, height, samples.chunks_exact(2).map(masked).collect(), Some(VOID.into()))
+    let reason = "it is no grey picture of 8 or 16 bits; write heights as grey, for instance with gdal_translate";
+    Err(header_fault(reason.to_owned()))
+}
+
+fn foreign(error: DecodingError) -> Fault {
+    Fault::foreign(Place::Whole, &error)
 }
 
 fn map<T: Copy + Into<f64>>(width: u32, height: u32, values: Vec<T>, no_data: Option<f64>) -> Result<HeightMap, Fault> {

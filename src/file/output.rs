@@ -5,7 +5,7 @@
 //! written to directly.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -34,20 +34,23 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_with(path, |file| file.write_all(bytes))
 }
 
-/// Writes `path` through `fill`, whole or not at all: for encoders that want a writer. Buffer small writes.
+/// Writes `path` through `fill`, whole or not at all: for encoders that want a writer.
 ///
 /// # Errors
 /// As [`write()`]; an error of `fill` counts as a failure to write.
-pub fn write_with(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), OutputError> {
+pub fn write_with(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+) -> Result<(), OutputError> {
     let failed = |source| OutputError::Write { path: path.to_owned(), source };
     match Destination::find(path)? {
         Destination::Stream => {
             let mut stream = File::options().write(true).open(path).map_err(failed)?;
-            fill(&mut stream).map_err(failed)
+            buffered(&mut stream, fill).map_err(failed)
         }
         Destination::File(target) => {
             let mut temporary = create_beside(&target).map_err(failed)?;
-            fill(temporary.as_file_mut()).map_err(failed)?;
+            buffered(temporary.as_file_mut(), fill).map_err(failed)?;
             temporary.as_file().sync_all().map_err(failed)?;
             temporary.persist(&target).map_err(|error| failed(error.error))?;
             Ok(())
@@ -68,6 +71,12 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
     opened.map_err(|source| OutputError::Write { path: path.to_owned(), source })
 }
 
+fn buffered(file: &mut File, fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>) -> io::Result<()> {
+    let mut writer = BufWriter::new(file);
+    fill(&mut writer)?;
+    writer.flush()
+}
+
 enum Destination {
     /// A regular file or a name not yet taken, symbolic links resolved, in a directory that exists.
     File(PathBuf),
@@ -82,8 +91,10 @@ impl Destination {
             if path.as_os_str().as_encoded_bytes().ends_with(b"/") || path.file_name().is_none() {
                 return Err(OutputError::IsDirectory { path: path.to_owned() });
             }
-            create_directory(&parent(path))?;
-            return Ok(Self::File(path.to_owned()));
+            // A link to what is not there yet makes it there, as a link to an older file replaces that.
+            let target = followed(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
+            create_directory(&parent(&target))?;
+            return Ok(Self::File(target));
         };
         if metadata.is_dir() {
             return Err(OutputError::IsDirectory { path: path.to_owned() });
@@ -97,6 +108,20 @@ impl Destination {
         let target = fs::canonicalize(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
         Ok(Self::File(target))
     }
+}
+
+/// The end of a chain of symbolic links, of which nothing need exist.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        if !fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_symlink()) {
+            return Ok(path);
+        }
+        path = parent(&path).join(fs::read_link(&path)?);
+    }
+    Err(io::Error::other("its symbolic links lead round in a circle"))
 }
 
 fn parent(path: &Path) -> PathBuf {
@@ -118,7 +143,8 @@ fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
     let everyone = <fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666);
     #[cfg(unix)]
     builder.permissions(everyone);
-    builder.tempfile_in(parent(target))
+    // The kind alone: the message names the temporary file, which means nothing to the user.
+    builder.tempfile_in(parent(target)).map_err(|error| io::Error::from(error.kind()))
 }
 
 #[cfg(test)]
@@ -203,6 +229,23 @@ mod tests {
         write(&link, b"through").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&path).unwrap(), b"through");
+
+        let dangling = root.path().join("dangling");
+        std::os::unix::fs::symlink("new/file", &dangling).unwrap();
+        check_writable(&dangling).unwrap();
+        write(&dangling, b"made").unwrap();
+        assert!(fs::symlink_metadata(&dangling).unwrap().is_symlink());
+        assert_eq!(fs::read(root.path().join("new/file")).unwrap(), b"made");
+        let circle = root.path().join("circle");
+        std::os::unix::fs::symlink("circle", &circle).unwrap();
+        assert!(write(&circle, b"x").unwrap_err().to_string().contains("circle"));
+    }
+
+    #[test]
+    fn no_message_names_a_temporary_file() {
+        // Not even root makes files there.
+        let error = check_writable(Path::new("/proc/result.json")).unwrap_err().to_string();
+        assert!(error.contains("/proc/result.json") && !error.contains(".tmp"), "{error}");
     }
 
     #[cfg(unix)]

@@ -1,0 +1,149 @@
+//! What a refusal may cost: a second and one more for each 100 MB of the file, 64 MiB and 16 times the file's size.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use super::program::{Program, burning, caustics, folder, fumarole, terrain};
+use crate::common::beside_others;
+
+/// A program that is refused `bytes` under `name`, within the rule.
+fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
+    let out = folder();
+    let path = out.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    let program = program().arg(&path);
+    let program = if name.ends_with("json") { program.arg(&path) } else { program };
+    // The program itself, its libraries and their threads, as it takes for a file of nothing.
+    const OWN_KIB: usize = 192 << 10;
+    let limit_kib = OWN_KIB + (64 << 10) + 16 * bytes.len() / 1024;
+    let script = format!("ulimit -v {limit_kib}; exec {}", program.for_shell());
+    let run = || std::process::Command::new("sh").arg("-c").arg(&script).output().unwrap();
+    let started = Instant::now();
+    let output = beside_others(run);
+    let seconds = started.elapsed().as_secs_f64();
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{name}: {stderr}");
+    assert!(stderr.starts_with("error: ") && stderr.lines().count() == 1, "{name}: {stderr}");
+    assert!(!stderr.contains("out of memory"), "{name}: {stderr}");
+    for part in parts {
+        assert!(stderr.contains(part), "{name}: {part:?} is missing: {stderr}");
+    }
+    // Twice the rule: other tests keep the machine busy.
+    assert!(seconds < 2.0 * (1.0 + bytes.len() as f64 / 1e8), "{name}: {seconds} s");
+}
+
+fn mesh() -> Program {
+    caustics("render --mesh")
+}
+
+#[test]
+fn small_files_of_many_triangles() {
+    let list = |item: &str, count: usize| vec![item; count].join(",");
+    let gltf = |nodes: usize, primitives: usize, buffers: usize| {
+        let roots = (0..nodes).map(|node| node.to_string()).collect::<Vec<_>>().join(",");
+        let data = format!(r#"{{"byteLength":3000,"uri":"data:;base64,{}"}}"#, "A".repeat(4000));
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[{roots}]}}],"nodes":[{}],"meshes":[{{"primitives":[{}]}}],
+            "buffers":[{}],"bufferViews":[{{"buffer":0,"byteLength":3000}}],"accessors":[{{"bufferView":0,
+            "componentType":5126,"count":250,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}}]}}"#,
+            list(r#"{"mesh":0}"#, nodes),
+            list(r#"{"attributes":{"POSITION":0}}"#, primitives),
+            list(&data, buffers)
+        )
+    };
+    refused(mesh, "instances.gltf", gltf(10_000, 9_000, 1).as_bytes(), &["simplify it"]);
+    refused(mesh, "objects.gltf", format!("{{\"nodes\":[{}{{}}]}}", "{},".repeat(1 << 20)).as_bytes(), &["objects"]);
+    refused(mesh, "buffers.gltf", gltf(1, 1, 500).as_bytes(), &["positive area"]);
+}
+
+#[test]
+fn long_polygons() {
+    let mut teeth = String::new();
+    let count = 60_000;
+    for i in 0..count {
+        let _ = writeln!(teeth, "v {i} {} 0", if i % 2 == 0 { 1.0 + i as f32 / 60_000.0 } else { 0.0 });
+    }
+    let face = (1..=count).map(|i| i.to_string()).collect::<Vec<_>>().join(" ");
+    refused(mesh, "teeth.obj", format!("{teeth}f {face}\n").as_bytes(), &["face 0", "60000 corners"]);
+    let mut ring = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned();
+    ring.push_str(&"f 1 1 1\n".repeat(1 << 20));
+    refused(mesh, "points.obj", ring.as_bytes(), &["positive area"]);
+    let long = "f".to_owned() + &" 1".repeat(4_000_000);
+    refused(mesh, "long.obj", format!("v 0 0 0\nv 1 0 0\n{long}\n").as_bytes(), &["positive area"]);
+}
+
+#[test]
+fn headers_that_promise() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n\
+                  property uchar z\nelement face 9000000\nproperty list uchar uchar vertex_indices\nend_header\n";
+    refused(mesh, "empty.ply", &[header.as_bytes(), &[0; 9_000_003]].concat(), &["leaves them empty"]);
+    refused(|| terrain("render --map"), "grid.asc", b"ncols 16384\nnrows 16384\n1 2 3", &["cut off"]);
+}
+
+/// A grey PNG of zeros without its end.
+fn cut_png(side: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side, side);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header().unwrap();
+    let mut stream = writer.stream_writer().unwrap();
+    let row = vec![0; side as usize];
+    for _ in 0..side {
+        std::io::Write::write_all(&mut stream, &row).unwrap();
+    }
+    stream.finish().unwrap();
+    writer.finish().unwrap();
+    bytes.truncate(bytes.len() - 40);
+    bytes
+}
+
+#[test]
+fn small_pictures_of_many_pixels() {
+    let bytes = cut_png(8_192);
+    assert!(bytes.len() < 200_000, "{}", bytes.len());
+    refused(|| burning("render --mesh box --texture"), "cut.png", &bytes, &["cut.png"]);
+    refused(|| terrain("render --drape"), "cut.png", &bytes, &["cut.png"]);
+    refused(|| terrain("render --map"), "cut.png", &bytes, &["cut.png"]);
+}
+
+#[test]
+fn records_of_many_values() {
+    let compare = || fumarole("compare");
+    let example = include_str!("../../data/record.json");
+    let marker = "\"config\": {";
+    assert!(example.contains(marker));
+    let with = |config: String| example.replacen(marker, &format!("{marker}{config}"), 1);
+    let empties = with(format!("\"x\": [{}[]],", "[],".repeat(3_000_000)));
+    refused(compare, "values.json", empties.as_bytes(), &["config", "too many values"]);
+    let deep = with(format!("\"x\": {},", "[".repeat(500_000)));
+    refused(compare, "deep.json", deep.as_bytes(), &["deep.json"]);
+    let text = with(format!("\"x\": \"{}\", \"seed\"", "a".repeat(3_000_000)));
+    refused(compare, "text.json", text.as_bytes(), &["text.json"]);
+    let negative = example.replacen("\"samples\": [", "\"samples\": [-1.0, ", 1);
+    assert_ne!(negative, example);
+    refused(compare, "negative.json", negative.as_bytes(), &["-1 ms", "no time is negative"]);
+}
+
+/// Three million samples take no minutes.
+#[test]
+fn a_long_record_is_compared_within_seconds() {
+    let out = folder();
+    let example = include_str!("../../data/record.json");
+    let samples: Vec<String> =
+        (0..3_000_000).map(|i| format!("{}", 1.0 + f64::from(i * 7_919 % 1_000) / 1e5)).collect();
+    let joined = samples.join(",");
+    let write = |name: &str, first: &str| {
+        let text = example.replacen("\"samples\": [", &format!("\"samples\": [{first}, {joined}, "), 1);
+        fs::write(out.path().join(name), text).unwrap();
+    };
+    write("a.json", "1.0");
+    write("b.json", "1.1");
+    let path = |name: &str| Path::new(out.path()).join(name);
+    let started = Instant::now();
+    fumarole("compare").arg(path("a.json")).arg(path("b.json")).run().succeeded();
+    assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
+}
