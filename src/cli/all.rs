@@ -67,7 +67,33 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let mut measured = Measured::default();
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     let record = Record::new(machine.environment(), environment::command(), measured.runs);
-    outcome::publish(&output, &record, &measured.traces)
+    outcome::publish(&output, &record, &measured.traces)?;
+    if !output.quiet {
+        summary(&record, &output).iter().for_each(|line| outcome::say(line));
+    }
+    Ok(())
+}
+
+/// The slowest pass of every variant, where everything lies, and what to try next; a line each.
+fn summary(record: &Record, output: &OutputArgs) -> Vec<String> {
+    let mut lines = vec!["slowest passes".to_owned()];
+    lines.extend(record.runs.iter().filter_map(|run| {
+        let (pass, ms) = slowest(run)?;
+        Some(format!("  {} {}: {pass}, {ms:.1} ms", run.paper, run.variant))
+    }));
+    lines.push(format!("record and pictures are in {}", output.out.display()));
+    lines.push(
+        "next: fumarole PAPER bench --preset NAME, fumarole PAPER passes, fumarole PAPER experiment --list".into(),
+    );
+    lines
+}
+
+fn slowest(run: &Run) -> Option<(&str, f64)> {
+    let times = run.passes.iter().filter_map(|pass| {
+        let time = pass.gpu_ms.as_ref().or(pass.host_ms.as_ref())?;
+        Some((pass.name.as_str(), time.median))
+    });
+    times.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 struct All<'a> {

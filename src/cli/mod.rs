@@ -25,7 +25,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use self::failure::Failure;
 pub use self::page::options_table;
 use crate::measure::study::{Study, Visitor};
-use crate::papers;
+use crate::{gpu, papers};
 
 /// Rendering papers on Vulkan, pass by pass, every pass measured.
 #[derive(Debug, Parser)]
@@ -68,6 +68,7 @@ impl Visitor for Papers {
 
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
+    gpu::pin_software_threads();
     let mut papers = Papers { command: Umbrella::command(), run: Vec::new() };
     let Ok(()) = papers::each(&mut papers);
     spelling::learn(&papers.command);
@@ -95,6 +96,7 @@ pub fn umbrella() -> ExitCode {
 
 /// Runs a paper's own binary.
 pub fn binary<S: Study>() -> ExitCode {
+    gpu::pin_software_threads();
     ExitCode::from(paper_from::<S>(std::env::args_os()))
 }
 

@@ -130,6 +130,13 @@ pub fn wrote(output: &OutputArgs, path: &Path) {
     }
 }
 
+/// Says that a file was written, and what to know of it.
+pub fn wrote_with(output: &OutputArgs, path: &Path, remark: &str) {
+    if !output.quiet {
+        say(&format!("wrote {} ({remark})", path.display()));
+    }
+}
+
 /// The terminal, or what stands in its place.
 pub struct Terminal {
     /// True when only errors are said on standard error.

@@ -140,8 +140,10 @@ pub fn draw<S: Study>(
     let targets = built.paper.targets();
     for dump in &arguments.dump {
         for target in targets.iter().filter(|t| t.name == dump.target) {
-            image::write(&dump.file, &picture::read_target(&machine.device, target)?)?;
-            outcome::wrote(&output, &dump.file);
+            match image::write(&dump.file, &picture::read_target(&machine.device, target)?)? {
+                Some(ramp) => outcome::wrote_with(&output, &dump.file, &ramp.to_string()),
+                None => outcome::wrote(&output, &dump.file),
+            }
         }
     }
     machine.check_validation()?;

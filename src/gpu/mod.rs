@@ -74,6 +74,7 @@ mod sample;
 pub mod shader;
 #[cfg(test)]
 mod tests;
+mod threads;
 mod tracked;
 pub mod transfer;
 
@@ -93,3 +94,4 @@ pub use recorder::Recorder;
 pub use render_pass::{Blend, DepthTest, Load};
 pub use sample::{Counts, FrameSample, Mode, PassSample, Span};
 pub use shader::{Compiler, ShaderLibrary};
+pub use threads::pin_software_threads;

@@ -23,6 +23,7 @@ pub use self::error::Error;
 pub use self::picture::Rgba8;
 pub use self::png::{read_png, read_png_within, write_png};
 pub use self::raster::{Raster, Samples, Shape};
+pub use self::view::Ramp;
 
 use std::io;
 use std::path::Path;
@@ -41,9 +42,9 @@ pub enum Format {
     Npy,
     /// PNG. `u8` and `u16` data are stored unchanged (8 and 16 bits; two channels as red and green). Other data becomes
     /// an 8-bit view: `f32` of two to four channels is taken as linear light, clamped to 0..=1 and sRGB-encoded,
-    /// without the fourth channel; one channel of `f32`, and all `u32` and `i32`, is drawn as a linear ramp from the
-    /// smallest finite value (0) to the largest (255), common to all channels and layers. A pixel with a value that is
-    /// not finite is magenta. The layers of an array target stand below one another.
+    /// without the fourth channel; one channel of `f32`, and all `u32` and `i32`, is drawn by a linear [`Ramp`]
+    /// common to all channels and layers, which the file's comment tells. A pixel with a value that is not finite, or
+    /// that stands for none as it lies far off all others, is magenta. The layers of an array target stand below one another.
     Png,
 }
 
@@ -63,23 +64,24 @@ impl Format {
     }
 }
 
-/// Writes `raster` to `path` in the [`Format`] of its ending. The file appears whole or not at all: an older file
+/// Writes `raster` to `path` in the [`Format`] of its ending, and gives the ramp that a PNG draws it by. The file appears whole or not at all: an older file
 /// stays as it was when writing fails.
 ///
 /// # Errors
 /// [`Error::UnknownEnding`]; [`Error::Empty`] for a raster without values in a picture format; [`Error::Output`] when
 /// the file cannot be written or the format cannot hold so large a raster.
-pub fn write(path: &Path, raster: &Raster) -> Result<(), Error> {
+pub fn write(path: &Path, raster: &Raster) -> Result<Option<Ramp>, Error> {
     let format = Format::of(path)?;
     if raster.samples().is_empty() && format != Format::Npy {
         return Err(Error::Empty { path: path.into() });
     }
+    let mut shown = None;
     file::write_with(path, |file| match format {
         Format::Exr => exr::encode(file, raster),
         Format::Npy => npy::encode(file, raster),
-        Format::Png => png::encode(file, raster),
+        Format::Png => png::encode(file, raster).map(|ramp| shown = ramp),
     })?;
-    Ok(())
+    Ok(shown)
 }
 
 /// A failure inside a format's own encoder, as the failure of the write that it is.

@@ -8,6 +8,7 @@ use ::png::{
 
 use super::error::one_line;
 use super::raster::{Raster, Samples};
+use super::view::{Ramp, ramped};
 use super::{Error, Rgba8, view};
 use crate::file;
 
@@ -136,11 +137,11 @@ pub fn write_png(path: &Path, picture: &Rgba8) -> Result<(), Error> {
         return Err(Error::Empty { path: path.into() });
     }
     let size = (picture.width(), picture.height());
-    Ok(file::write_with(path, |file| store(file, picture.pixels(), size, ColorType::Rgba, BitDepth::Eight))?)
+    Ok(file::write_with(path, |file| store(file, picture.pixels(), size, (ColorType::Rgba, BitDepth::Eight), None))?)
 }
 
-/// Writes a raster that is not empty, as [`Format::Png`](super::Format::Png) says.
-pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
+/// Writes a raster that is not empty, as [`Format::Png`](super::Format::Png) says, and gives the ramp that it is drawn by.
+pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<Option<Ramp>> {
     let planes = raster.planes();
     let size = planes
         .layers
@@ -148,6 +149,8 @@ pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
         .and_then(|height| Some((planes.width.try_into().ok()?, height.try_into().ok()?)))
         .ok_or_else(|| io::Error::other("a PNG cannot be so large, write it as .npy"))?;
     let channels = planes.channels;
+    let mut shown = None;
+    let mut by = |ramp| *shown.insert(ramp);
     let (bytes, color, depth): (Cow<[u8]>, _, _) = match raster.samples() {
         Samples::U8(values) if channels == 2 => (view::with_blue(values).into(), ColorType::Rgb, BitDepth::Eight),
         Samples::U8(values) => (values.into(), COLORS[channels - 1], BitDepth::Eight),
@@ -156,27 +159,39 @@ pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<()> {
             let big_endian: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
             (big_endian.into(), COLORS[channels - 1], BitDepth::Sixteen)
         }
-        Samples::F32(values) if channels == 1 => (view::ramp(values, 1).into(), ColorType::Rgb, BitDepth::Eight),
+        Samples::F32(values) if channels == 1 => {
+            (ramped(values, 1, by(Ramp::of(values))).into(), ColorType::Rgb, BitDepth::Eight)
+        }
         Samples::F32(values) => (view::linear_light(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
-        Samples::U32(values) => (view::ramp(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
-        Samples::I32(values) => (view::ramp(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
+        Samples::U32(values) => {
+            (ramped(values, channels, by(Ramp::of(values))).into(), ColorType::Rgb, BitDepth::Eight)
+        }
+        Samples::I32(values) => {
+            (ramped(values, channels, by(Ramp::of(values))).into(), ColorType::Rgb, BitDepth::Eight)
+        }
     };
-    store(file, &bytes, size, color, depth)
+    let comment = shown.map(|ramp| ramp.to_string());
+    store(file, &bytes, size, (color, depth), comment)?;
+    Ok(shown)
 }
 
-/// `bytes` holds exactly the pixels of `size` in `color`, 16-bit values with the high byte first.
+/// `bytes` holds exactly the pixels of `size` in its colour type, 16-bit values with the high byte first; the comment goes
+/// into the file.
 fn store(
     file: &mut impl Write,
     bytes: &[u8],
     (width, height): (u32, u32),
-    color: ColorType,
-    depth: BitDepth,
+    (color, depth): (ColorType, BitDepth),
+    comment: Option<String>,
 ) -> io::Result<()> {
     let mut encoder = Encoder::new(file, width, height);
     encoder.set_color(color);
     encoder.set_depth(depth);
     encoder.set_compression(Compression::Balanced);
     encoder.set_filter(Filter::Adaptive);
+    if let Some(comment) = comment {
+        encoder.add_text_chunk("Comment".to_owned(), comment)?;
+    }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(bytes)?;
     Ok(writer.finish()?)
@@ -215,7 +230,7 @@ mod tests {
     fn encoded(picture: &Rgba8) -> Vec<u8> {
         let mut bytes = Vec::new();
         let size = (picture.width(), picture.height());
-        store(&mut bytes, picture.pixels(), size, ColorType::Rgba, BitDepth::Eight).unwrap();
+        store(&mut bytes, picture.pixels(), size, (ColorType::Rgba, BitDepth::Eight), None).unwrap();
         bytes
     }
 
@@ -233,10 +248,10 @@ mod tests {
     #[test]
     fn grey_and_rgb_files_are_expanded() {
         let mut bytes = Vec::new();
-        store(&mut bytes, &[5, 250], (2, 1), ColorType::Grayscale, BitDepth::Eight).unwrap();
+        store(&mut bytes, &[5, 250], (2, 1), (ColorType::Grayscale, BitDepth::Eight), None).unwrap();
         assert_eq!(read(&bytes).unwrap().pixels(), [5, 5, 5, 255, 250, 250, 250, 255]);
         let mut bytes = Vec::new();
-        store(&mut bytes, &[1, 2, 3], (1, 1), ColorType::Rgb, BitDepth::Eight).unwrap();
+        store(&mut bytes, &[1, 2, 3], (1, 1), (ColorType::Rgb, BitDepth::Eight), None).unwrap();
         assert_eq!(read(&bytes).unwrap().pixels(), [1, 2, 3, 255]);
     }
 
@@ -244,7 +259,7 @@ mod tests {
     fn wide_samples_alpha_and_palettes_are_read_to_the_nearest_eight_bits() {
         let pixels = |color, depth, samples: &[u8], size| {
             let mut bytes = Vec::new();
-            store(&mut bytes, samples, size, color, depth).unwrap();
+            store(&mut bytes, samples, size, (color, depth), None).unwrap();
             read(&bytes).unwrap().pixels().to_vec()
         };
         let wide = [0u16, 128, 129, 65_406, 65_407, 65_535].map(u16::to_be_bytes).concat();

@@ -2,7 +2,8 @@
 
 use serde_json::{Map, Value};
 
-use super::measure::{MeasuredPass, Measurement, Schedule};
+use super::config::entries;
+use super::measure::{FrameSpan, MeasuredPass, Measurement, Schedule};
 use super::statistics::{median, repetition_noise, summarize};
 use super::study::Identity;
 use crate::gpu::PassKind;
@@ -142,19 +143,33 @@ fn pass(measured: &MeasuredPass) -> Pass {
     }
 }
 
-/// The last timestamped frame as a trace.
+/// The timestamped frames as a trace.
 pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
     let events = measurement
         .spans
         .iter()
-        .filter_map(|span| {
+        .filter_map(|FrameSpan { repetition, frame, frame_start_ms, span }| {
             let pass = measurement.passes.get(span.pass)?;
-            let mut args = Map::new();
-            args.insert("section".into(), pass.info.section.into());
+            let mut args = entries([
+                ("section", pass.info.section.into()),
+                ("repetition", (*repetition).into()),
+                ("frame", (*frame).into()),
+                ("calls", pass.calls.into()),
+            ]);
+            let counts = pass.counts.iter().flat_map(|counts| {
+                [
+                    ("vertices", counts.vertices),
+                    ("primitives", counts.primitives),
+                    ("fragments", counts.fragments),
+                    ("compute_invocations", counts.compute_invocations),
+                    ("samples_passed", counts.samples_passed),
+                ]
+            });
+            args.extend(counts.filter_map(|(name, count)| Some((name.to_owned(), count?.into()))));
             Some(TraceEvent {
                 name: pass.info.name.to_owned(),
                 track: if span.on_gpu { Track::Gpu } else { Track::Host },
-                start_us: span.start_ms * 1e3,
+                start_us: (frame_start_ms + span.start_ms) * 1e3,
                 duration_us: span.duration_ms * 1e3,
                 args,
             })

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::assembly::{self, RunMetadata, assemble};
 use super::error::Error;
+use super::limits;
 use super::machine::Machine;
 use super::measure::{Schedule, Watch, measure};
 use super::study::Study;
@@ -102,7 +103,7 @@ fn inputs<S: Study>(study: &S) -> Result<Vec<InputFile>, Error> {
 pub struct VariantRun {
     /// The record's run.
     pub run: Run,
-    /// Timeline of its last timestamped frame.
+    /// Timeline of its timestamped frames.
     pub trace: TraceRun,
 }
 
@@ -138,7 +139,7 @@ impl<S: Study> Bench<'_, S> {
         let mut measured: Vec<_> = built.into_iter().zip(measurements).collect();
         let metrics = study.metrics(machine, &mut measured)?;
         let validation = machine.check_validation()?;
-        let warnings = machine.warnings();
+        let warnings = [machine.warnings(), self.limits.map(limits::warnings).unwrap_or_default()].concat();
         let identity = study.identity();
         let inputs = inputs(study)?;
         let runs = measured.iter().zip(metrics).map(|((built, measurement), metrics)| {

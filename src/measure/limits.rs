@@ -1,18 +1,22 @@
 //! The device's own limits, measured in the same process, so that a pass can be shown as a fraction of them.
 
+use std::collections::BTreeMap;
+
 use ash::vk;
 
 use super::machine::Machine;
-use super::statistics::median;
+use super::statistics::{median, relative_mad, summarize};
 use crate::gpu::{
     Blend, Buffer, BufferDesc, Error, Frame, Image, ImageDesc, Load, Mode, Pass, Recorder, ShaderLibrary,
 };
 use crate::host_block;
-use crate::report::record::Limits;
+use crate::report::record::{Limits, Summary};
 
 /// A load grows until it lasts this long: far above the resolution of a timestamp, short enough for every run.
 const LEAST_MS: f64 = 8.0;
 const SAMPLES: usize = 5;
+/// Limits that scatter more than this are doubted.
+const NOISY: f64 = 0.1;
 const COPY_BYTES: u64 = 64 << 20;
 const THREADS: u32 = 1 << 14;
 /// Eight chains of four components, a multiplication and an addition each.
@@ -35,12 +39,30 @@ host_block! {
 /// Any error of the Vulkan layer.
 pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
     let Machine { recorder, shaders, .. } = machine;
+    let samples: BTreeMap<String, Summary> = [
+        ("copy_gb_s", copy(recorder, shaders)?),
+        ("fma_gflops", multiply_add(recorder, shaders)?),
+        ("fill_gpix_s", fill(recorder, shaders, BYTES, SIDE, Blend::Replace)?),
+        ("blend_gpix_s", fill(recorder, shaders, BYTES, SIDE, Blend::Add)?),
+    ]
+    .into_iter()
+    .filter_map(|(name, rates)| Some((name.to_owned(), summarize(&rates)?)))
+    .collect();
+    let rate = |name: &str| samples.get(name).map(|rates| rates.median);
     Ok(Limits {
-        copy_gb_s: copy(recorder, shaders)?.map(|per_ms| per_ms * 1e-6),
-        fma_gflops: multiply_add(recorder, shaders)?.map(|per_ms| per_ms * 1e-6),
-        fill_gpix_s: fill(recorder, shaders, BYTES, SIDE, Blend::Replace)?.map(|per_ms| per_ms * 1e-6),
-        blend_gpix_s: fill(recorder, shaders, BYTES, SIDE, Blend::Add)?.map(|per_ms| per_ms * 1e-6),
+        copy_gb_s: rate("copy_gb_s"),
+        fma_gflops: rate("fma_gflops"),
+        fill_gpix_s: rate("fill_gpix_s"),
+        blend_gpix_s: rate("blend_gpix_s"),
+        samples,
     })
+}
+
+/// Doubts about limits whose samples scatter: something else used the device, or its clock moved.
+pub fn warnings(limits: &Limits) -> Vec<String> {
+    let spread = |rates: &Summary| relative_mad(&rates.samples).filter(|&spread| spread > NOISY);
+    let noisy = limits.samples.iter().filter_map(|(name, rates)| Some((name, spread(rates)?)));
+    noisy.map(|(name, spread)| format!("the limit {name} scatters by {:.0} %", 100.0 * spread)).collect()
 }
 
 /// The additive blend rate of a target of four 32-bit floats, in 10^9 pixels a second; `None` without timestamps. The
@@ -51,16 +73,16 @@ pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
 pub fn float_blend_gpix_s(machine: &mut Machine) -> Result<Option<f64>, Error> {
     let Machine { recorder, shaders, .. } = machine;
     // As many bytes as the other targets have.
-    let per_ms = fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, SIDE / 2, Blend::Add)?;
-    Ok(per_ms.map(|per_ms| per_ms * 1e-6))
+    Ok(median(&fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, SIDE / 2, Blend::Add)?))
 }
 
-/// Runs `record` with a growing load and returns `amount` per millisecond at a load that lasts.
+/// Runs `record` with a growing load and returns `amount` in 10^9 a second at a load that lasts, sample after sample; none
+/// without timestamps.
 fn rate(
     recorder: &mut Recorder,
     amount: impl Fn(u32) -> f64,
     record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
-) -> Result<Option<f64>, Error> {
+) -> Result<Vec<f64>, Error> {
     let mut once = |load: u32| -> Result<Option<f64>, Error> {
         let sample = recorder.run(Mode::Timestamped, |frame| record(frame, load))?;
         Ok(sample.passes.first().and_then(|p| p.gpu_ms).filter(|&ms| ms > 0.0))
@@ -70,14 +92,14 @@ fn rate(
     while load < 1 << 16 && once(load)?.is_some_and(|ms| ms < LEAST_MS) {
         load *= 2;
     }
-    let mut times = Vec::with_capacity(SAMPLES);
+    let mut rates = Vec::with_capacity(SAMPLES);
     for _ in 0..SAMPLES {
-        times.extend(once(load)?);
+        rates.extend(once(load)?.map(|ms| amount(load) / ms * 1e-6));
     }
-    Ok(median(&times).map(|ms| amount(load) / ms))
+    Ok(rates)
 }
 
-fn copy(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Option<f64>, Error> {
+fn copy(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
     let device = shaders.device();
     // Uploaded, not only allocated: a driver may map untouched pages to one of zeros.
     let bytes = vec![1u8; COPY_BYTES as usize];
@@ -91,7 +113,7 @@ fn copy(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Option<f64>,
     )
 }
 
-fn multiply_add(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Option<f64>, Error> {
+fn multiply_add(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
     let desc = BufferDesc::new("limits/results", u64::from(THREADS) * 16).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
     let results = Buffer::new(shaders.device(), desc)?;
     let pass = Pass::compute("multiply-add", "", "limits/multiply-add.comp")
@@ -117,7 +139,7 @@ fn fill(
     format: vk::Format,
     side: u32,
     blend: Blend,
-) -> Result<Option<f64>, Error> {
+) -> Result<Vec<f64>, Error> {
     let desc = ImageDesc::new_2d("limits/target", format, side, side).usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
     let target = Image::new(shaders.device(), desc)?.view()?;
     let pass = Pass::graphics("fill", "", "common/fullscreen.vert", "limits/constant.frag")

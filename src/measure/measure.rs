@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, Recorder, Span};
 use crate::measure::Paper;
@@ -22,6 +23,22 @@ pub struct Schedule {
 
 /// No run repeats its frames more often than this, however long it is asked to take.
 const MOST_REPETITIONS: u32 = 10_000;
+
+/// Spans that are kept: more are no help in a viewer, and a long run takes no more memory.
+pub const MOST_SPANS: usize = 500_000;
+
+/// A span of time with the frame that it belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct FrameSpan {
+    /// Number of the repetition, from 0.
+    pub repetition: u32,
+    /// Number of the frame in it, from 0.
+    pub frame: u32,
+    /// Start of the frame's recording in milliseconds from the start of the measurement, common to all papers.
+    pub frame_start_ms: f64,
+    /// The pass and its time within the frame.
+    pub span: Span,
+}
 
 /// Measurements of one pass: one sample a frame, repetition after repetition.
 #[derive(Debug, Clone)]
@@ -55,8 +72,8 @@ pub struct Measurement {
     pub passes: Vec<MeasuredPass>,
     /// Time of the first frame less the median of the others: what first use costs.
     pub first_frame_ms: f64,
-    /// The passes' spans of time in the last timestamped frame.
-    pub spans: Vec<Span>,
+    /// The passes' spans of time in the timestamped frames, as long as there are fewer than [`MOST_SPANS`].
+    pub spans: Vec<FrameSpan>,
 }
 
 /// Progress and interruption of the loop.
@@ -89,6 +106,7 @@ pub fn measure(
     };
     let stopped = || watch.interrupted.load(Ordering::Relaxed);
 
+    let origin = Instant::now();
     restart(papers)?;
     for number in 0..schedule.warmup.max(1) {
         for (paper, result) in papers.iter_mut().zip(&mut results) {
@@ -117,8 +135,13 @@ pub fn measure(
                     if stopped() {
                         return Ok(results);
                     }
+                    let frame_start_ms = origin.elapsed().as_secs_f64() * 1e3;
                     let sample = recorder.run(mode, |frame| paper.record(frame, number))?;
                     result.take(mode, sample);
+                    if mode == Mode::Timestamped && result.spans.len() + sample.spans.len() < MOST_SPANS {
+                        let of_frame = |&span| FrameSpan { repetition, frame: number, frame_start_ms, span };
+                        result.spans.extend(sample.spans.iter().map(of_frame));
+                    }
                     tick(expected);
                 }
             }
@@ -180,7 +203,6 @@ impl Measurement {
                 for pass in &sample.passes {
                     self.pass(pass).gpu_ms.extend(pass.gpu_ms);
                 }
-                self.spans.clone_from(&sample.spans);
             }
             Mode::Counted => {}
         }

@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use super::record::{Pass, Record, Run, Summary};
+use super::record::{Limits, Pass, Record, Run, Summary};
 use super::table::{Align, Style, Table};
 use super::text::one_line;
 
-/// The device, then every run: see [`run`].
+/// The device, then every run: see [`run`]; then the device's limits, and every warning once with the number of runs that
+/// it concerns.
 pub fn record(record: &Record, style: Style) -> String {
     let device = &record.environment.device;
     let mut text = format!("device: {} ({})\n", one_line(&device.name), device.kind.name());
@@ -14,11 +15,46 @@ pub fn record(record: &Record, style: Style) -> String {
         text.push('\n');
         text.push_str(&run(item, style));
     }
+    if let Some(limits) = record.runs.iter().find_map(|run| run.limits.as_ref()) {
+        text.push_str(&limits_line(limits));
+    }
+    let mut warnings: Vec<(&str, usize)> = vec![];
+    for warning in record.runs.iter().flat_map(|run| &run.warnings) {
+        match warnings.iter_mut().find(|(known, _)| known == warning) {
+            Some((_, count)) => *count += 1,
+            None => warnings.push((warning, 1)),
+        }
+    }
+    for (warning, count) in warnings {
+        let runs = if count > 1 { format!(" ({count} of {} runs)", record.runs.len()) } else { String::new() };
+        // Writing into a String cannot fail.
+        let _ = writeln!(text, "{} {}{runs}", style.yellow("warning:"), one_line(warning));
+    }
     text
 }
 
-/// One run: its name, the table of passes in the paper's order, the frame, what the passes leave unaccounted, and the
-/// warnings. Times are `median ± MAD` in milliseconds; `fraction` is the pass's GPU and host time over the median
+/// The device's own limits with the spread of their samples.
+fn limits_line(limits: &Limits) -> String {
+    let spread = |name: &str| {
+        let samples = limits.samples.get(name);
+        let spread = samples.and_then(|samples| Some(samples.mad? / samples.median));
+        spread.map_or_else(String::new, |spread| format!(" ± {:.0} %", 100.0 * spread))
+    };
+    let rates = [
+        ("copy_gb_s", limits.copy_gb_s, "copy", "GB/s"),
+        ("fma_gflops", limits.fma_gflops, "multiply-add", "GFLOPS"),
+        ("fill_gpix_s", limits.fill_gpix_s, "fill", "Gpixel/s"),
+        ("blend_gpix_s", limits.blend_gpix_s, "blend", "Gpixel/s"),
+    ];
+    let known: Vec<String> = rates
+        .into_iter()
+        .filter_map(|(name, rate, what, unit)| Some(format!("{what} {:.2} {unit}{}", rate?, spread(name))))
+        .collect();
+    if known.is_empty() { String::new() } else { format!("\nlimits of the device: {}\n", known.join(", ")) }
+}
+
+/// One run: its name, the table of passes in the paper's order, the frame, and what the passes leave
+/// unaccounted. Times are `median ± MAD` in milliseconds; `fraction` is the pass's GPU and host time over the median
 /// frame. Columns that no pass has are left out; a time that was not measured is a dash.
 pub fn run(run: &Run, style: Style) -> String {
     let mut text = title(run, style);
@@ -26,10 +62,6 @@ pub fn run(run: &Run, style: Style) -> String {
         text.push_str(&passes(run).render(style));
     }
     text.push_str(&frame(run, style));
-    for warning in &run.warnings {
-        // Writing into a String cannot fail.
-        let _ = writeln!(text, "{} {}", style.yellow("warning:"), one_line(warning));
-    }
     text
 }
 

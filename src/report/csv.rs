@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use csv::{Terminator, WriterBuilder};
 
-use super::record::{Bytes, Pass, Record, Run, Statistics, Summary};
+use super::record::{Bytes, Limits, Pass, Record, Run, Statistics, Summary};
 
 /// A run of a record with one of its passes and the pass's index, if it has any.
 struct Row<'a> {
@@ -20,7 +20,7 @@ struct Row<'a> {
 type Column = (&'static str, fn(&Row) -> String);
 
 /// Names and cells of the columns, in order. Times are milliseconds, sizes bytes.
-const COLUMNS: [Column; 43] = [
+const COLUMNS: [Column; 50] = [
     ("device", |row| row.record.environment.device.name.clone()),
     ("device_type", |row| row.record.environment.device.kind.name().to_owned()),
     ("paper", |row| row.run.paper.clone()),
@@ -64,6 +64,13 @@ const COLUMNS: [Column; 43] = [
     ("samples_passed", |row| row.statistic(|count| count.samples_passed)),
     ("bytes_read", |row| row.bytes(|bytes| bytes.read)),
     ("bytes_written", |row| row.bytes(|bytes| bytes.written)),
+    ("date", |row| row.record.environment.date.clone()),
+    ("driver_version", |row| cell(row.record.environment.device.driver_version.as_ref())),
+    ("lp_num_threads", |row| cell(row.record.environment.host.lp_num_threads)),
+    ("limit_copy_gb_s", |row| row.limit(|limits| limits.copy_gb_s)),
+    ("limit_fma_gflops", |row| row.limit(|limits| limits.fma_gflops)),
+    ("limit_fill_gpix_s", |row| row.limit(|limits| limits.fill_gpix_s)),
+    ("limit_blend_gpix_s", |row| row.limit(|limits| limits.blend_gpix_s)),
 ];
 
 impl Row<'_> {
@@ -77,6 +84,10 @@ impl Row<'_> {
 
     fn statistic(&self, value: fn(&Statistics) -> Option<u64>) -> String {
         cell(self.pass.and_then(|(_, pass)| value(pass.statistics.as_ref()?)))
+    }
+
+    fn limit(&self, rate: fn(&Limits) -> Option<f64>) -> String {
+        cell(self.run.limits.as_ref().and_then(rate))
     }
 
     fn bytes(&self, value: fn(Bytes) -> u64) -> String {

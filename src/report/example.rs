@@ -150,7 +150,11 @@ pub fn full() -> Record {
             peak_bytes: Some(1 << 21),
             by_resource: vec![ResourceMemory { name: "density".to_owned(), bytes: 1 << 19 }],
         },
-        limits: Some(Limits { copy_gb_s: Some(6.5), ..Limits::default() }),
+        limits: Some(Limits {
+            copy_gb_s: Some(6.5),
+            samples: summarize(&[6.0, 6.5, 7.0]).into_iter().map(|rates| ("copy_gb_s".to_owned(), rates)).collect(),
+            ..Limits::default()
+        }),
         results: object(json!({"fps": 200.0})),
         experiment: Some(ExperimentRow {
             row: "30 planes".to_owned(),

@@ -360,6 +360,9 @@ pub struct Limits {
     pub fill_gpix_s: Option<f64>,
     /// Pixels blended additively into an 8-bit RGBA target, 10^9 a second.
     pub blend_gpix_s: Option<f64>,
+    /// The samples behind each rate, under its name.
+    #[serde(default)]
+    pub samples: BTreeMap<String, Summary>,
 }
 
 /// The row of a paper's table or figure that a run reproduces.
@@ -459,7 +462,7 @@ mod tests {
             ("/runs/0/passes/1", &full["runs"][0]["passes"][1]),
         ] {
             // What later programs of the schema added, older records lack.
-            let added = ["inputs", "started", "shaders"];
+            let added = ["inputs", "started", "shaders", "samples"];
             for field in fields.as_object().unwrap().keys().filter(|field| !added.contains(&field.as_str())) {
                 let mut document = full.clone();
                 let object = document.pointer_mut(pointer).unwrap();

@@ -15,10 +15,11 @@ fn common(program: Program) -> Program {
 fn sides_are_measured_in_turn_and_both_records_kept() {
     let out = folder();
     let report = out.path().join("ab.json");
-    let program = ab("--env B:LP_NUM_THREADS=1 --json").arg(&report).arg("--out").arg(out.path());
+    let program =
+        ab("--env A:LP_NUM_THREADS=2 --env B:LP_NUM_THREADS=1 --json").arg(&report).arg("--out").arg(out.path());
     let ended = common(program.arg("--b").arg("--waves 2 --seed 7")).run().succeeded();
     assert!(ended.stdout.starts_with("what is compared\n"), "{}", ended.stdout);
-    for part in ["seed: A 1, B 7", "host.variables.LP_NUM_THREADS: A unset, B 1", "blocks A B B A"] {
+    for part in ["seed: A 1, B 7", "host.lp_num_threads: A 2, B 1", "blocks A B B A"] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
     let report = read_json(&report);
