@@ -22,5 +22,5 @@ void main() {
     if (height < plane.lower || height >= plane.upper || !is_lit(surface.w)) {
         discard;
     }
-    caustics = intensity(water_dx, water_dy, weight, plane.texel_area_m2);
+    caustics = intensity(water_dx, water_dy, weight, plane.up, plane.texel_area_m2);
 }

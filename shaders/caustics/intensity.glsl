@@ -6,9 +6,12 @@
 // the texel's area, exactly, and the same for every fragment of a triangle. `weight` holds the incident ray times
 // e^(-K d) / cos theta_t of each vertex, between them linear.
 
-float intensity(vec3 water_dx, vec3 water_dy, vec3 weight, float texel_area_m2) {
-    // Beyond its focus a beam is turned over, which changes the sign and nothing else.
-    return abs(dot(cross(water_dx, water_dy), weight)) / texel_area_m2;
+float intensity(vec3 water_dx, vec3 water_dy, vec3 weight, vec3 up, float texel_area_m2) {
+    // Beyond its focus a beam is turned over, which changes the sign of the area and nothing else: a face's front is its upper side.
+    vec3 area = cross(water_dx, water_dy);
+    float passing = -sign(dot(area, up)) * dot(area, weight);
+    // A face that is turned away passes nothing, whatever the normals of its vertices say.
+    return max(passing, 0.0) / texel_area_m2;
 }
 
 // A triangle lights nothing when one of its rays does not: between the vertices `lit` is then below 1.

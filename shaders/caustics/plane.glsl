@@ -8,4 +8,5 @@ layout(push_constant) uniform Plane {
     float upper; // first height no longer accepted
     float absorption_per_m; // K of eq. 4-17
     float texel_area_m2;
+    vec3 up; // of the world, along U, V, W
 } plane;

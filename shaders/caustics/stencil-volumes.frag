@@ -65,6 +65,11 @@ void main() {
 
     // Twice A_w along the face normal: against the incident ray it is 2 A_w cos theta_i.
     vec3 water = cross(b.origin - a.origin, c.origin - a.origin);
+    // Upwards; a face that is turned away from a corner's light passes nothing, whatever the normals of its vertices say.
+    water *= sign(dot(water, vec3(volumes.u.y, volumes.v.y, volumes.w.y)));
+    if (max(dot(water, a.incident), max(dot(water, b.incident), dot(water, c.incident))) >= 0.0) {
+        return;
+    }
     float k = volumes.absorption_per_m;
     vec3 weights = vec3(dot(water, a.incident) * a.secant * exp(-k * descent.x * a.secant),
         dot(water, b.incident) * b.secant * exp(-k * descent.y * b.secant),

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::illumination_volumes::{IlluminationVolumes, Ray};
 use super::planes::Cell;
 use super::receiver::LitReceiver;
@@ -21,6 +23,8 @@ host_block! {
         upper: f32,
         absorption_per_m: f32,
         texel_area_m2: f32,
+        _pad: [f32; 3],
+        up: [f32; 3],
     }
 }
 
@@ -37,6 +41,8 @@ impl PlaneConstants {
             upper: cell.upper,
             absorption_per_m: lit.absorption_per_m,
             texel_area_m2: (extent.x * extent.z / texels) as f32,
+            _pad: [0.0; 3],
+            up: volumes.axes.along(DVec3::Y).as_vec3().to_array(),
         }
     }
 }
