@@ -4,6 +4,7 @@
 // three rays; a ray is stored once a vertex, in the directions of the light's boxes, so that the many planes each need one
 // multiplication to find where it pierces them.
 
+#include "caustics/fresnel.glsl"
 #include "caustics/refraction.glsl"
 
 layout(local_size_x = 64) in;
@@ -19,7 +20,7 @@ struct Ray {
     vec2 slope; // movement along U and W per metre of descent along V
     float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
     float _pad_slope; // 0
-    vec3 incident; // unit direction of the light in air, along U, V, W
+    vec3 incident; // direction of the light in air, along U, V, W, as long as the share of it that enters
     float _pad_incident; // 0
 };
 
@@ -39,6 +40,7 @@ layout(push_constant) uniform Light {
     vec3 u; // axes of the light's boxes
     uint vertex_count; // of the water
     vec3 v;
+    float fresnel; // 1 where the surface reflects a part of the light (no part of the thesis), 0 where all of it enters
     vec3 w;
 } light;
 
@@ -61,6 +63,8 @@ void main() {
     bool descends = cos_refracted > 0.0;
     float secant = descends ? 1.0 / cos_refracted : 0.0;
 
-    rays.list[index] = Ray(along_axes(position) - light.reference, enters && descends ? 1.0 : 0.0, ray.xz * secant, secant, 0.0,
-        along_axes(incident), 0.0);
+    bool is_lit = enters && descends;
+    float reflected = is_lit ? light.fresnel * fresnel(-dot(incident, normal), -dot(refracted, normal), light.eta) : 0.0;
+    rays.list[index] = Ray(along_axes(position) - light.reference, is_lit ? 1.0 : 0.0, ray.xz * secant, secant, 0.0,
+        (1.0 - reflected) * along_axes(incident), 0.0);
 }

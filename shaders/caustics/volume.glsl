@@ -6,7 +6,7 @@ struct Ray {
     vec2 slope; // movement along U and W per metre of descent along V
     float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
     float _pad_slope; // 0
-    vec3 incident; // unit direction of the light in air, along U, V, W
+    vec3 incident; // direction of the light in air, along U, V, W, as long as the share of it that enters
     float _pad_incident; // 0
 };
 

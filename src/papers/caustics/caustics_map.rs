@@ -2,89 +2,49 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
-use super::illumination_volumes::{IlluminationVolumes, Ray};
+use super::coverage::Coverage;
+use super::illumination_volumes::IlluminationVolumes;
+use super::intersections::{Intersections, Scope};
 use super::planes::Cell;
 use super::receiver::LitReceiver;
 use super::resources::{BLACK, CAUSTICS, Context};
+use super::shadow_map::ShadowMap;
 use super::water_surface::WaterSurface;
-use crate::gpu::pass::PassBuilder;
-use crate::gpu::{Blend, Error, Frame, ImageView, Pass};
-use crate::host_block;
-
-host_block! {
-    /// Constants of one plane's draw.
-    pub struct PlaneConstants {
-        center: [f32; 2],
-        to_clip: [f32; 2],
-        height: f32,
-        lower: f32,
-        upper: f32,
-        absorption_per_m: f32,
-        texel_area_m2: f32,
-        _pad: [f32; 3],
-        up: [f32; 3],
-    }
-}
-
-impl PlaneConstants {
-    fn new(lit: &LitReceiver, cell: &Cell, volumes: &IlluminationVolumes) -> Self {
-        let extent = lit.aligned.extent;
-        let offset = lit.aligned.center - volumes.reference;
-        let texels = f64::from(lit.map_size).powi(2);
-        PlaneConstants {
-            center: [offset.x as f32, offset.z as f32],
-            to_clip: [(2.0 / extent.x) as f32, (2.0 / extent.z) as f32],
-            height: (offset.y + f64::from(cell.plane)) as f32,
-            lower: cell.lower,
-            upper: cell.upper,
-            absorption_per_m: lit.absorption_per_m,
-            texel_area_m2: (extent.x * extent.z / texels) as f32,
-            _pad: [0.0; 3],
-            up: volumes.axes.along(DVec3::Y).as_vec3().to_array(),
-        }
-    }
-}
+use crate::gpu::{Blend, Error, Frame, ImageView};
 
 /// The pass.
 pub struct CausticsMap {
-    pass: Pass,
+    intersections: Intersections,
+    /// The same triangles with nothing shaded. It draws on the map and spoils it; no frame contains it.
+    pub floor: Intersections,
+    coverage: Option<Coverage>,
     /// I_c of eq. 4-18 for light of unit intensity.
     pub map: Arc<ImageView>,
 }
 
 impl CausticsMap {
-    /// The level map's: a plane lights the texels whose height lies in its cell (figure 4-15, steps 2.1 to 2.3).
+    /// The level map's, with its position map: a plane lights the texels whose height lies in its cell (figure 4-15,
+    /// steps 2.1 to 2.3). The volumetric method's, without: a plane at a time, which lights every texel that it meets
+    /// (figure 5-4).
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn of_level_map(
+    pub fn new(
         context: Context<'_>,
         volumes: &IlluminationVolumes,
         water: &WaterSurface,
-        position_map: &Arc<ImageView>,
+        position_map: Option<&Arc<ImageView>>,
+        shadows: Option<&ShadowMap>,
     ) -> Result<Self, Error> {
-        let builder = intersections("caustics-map", "4.4, 4.5", "caustics/caustics-map.frag", volumes, water);
-        Self::build(context, builder.with("position_map", position_map).with("nearest", context.nearest))
-    }
-
-    /// The volumetric method's: a plane at a time, which lights every texel that it meets (figure 5-4).
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn of_sample_plane(
-        context: Context<'_>,
-        volumes: &IlluminationVolumes,
-        water: &WaterSurface,
-    ) -> Result<Self, Error> {
-        let fragment = "caustics/caustics-map-plane.frag";
-        Self::build(context, intersections("caustics-map", "5.2.1", fragment, volumes, water))
-    }
-
-    fn build(context: Context<'_>, builder: PassBuilder) -> Result<Self, Error> {
+        let multiple = context.parameters.coverage;
         let map = context.map("caustics-map", CAUSTICS)?;
-        Ok(CausticsMap { pass: builder.color(&map, BLACK, Blend::Add).build(context.shaders)?, map })
+        let drawn =
+            if multiple == 1 { map.clone() } else { context.multiple_of_map("caustics-map-drawn", CAUSTICS)? };
+        let scope = Scope { context, volumes, water, position_map, shadows };
+        let intersections = Intersections::new(scope, |pass| pass.color(&drawn, BLACK, Blend::Add))?;
+        let floor = Intersections::floor(scope, |pass| pass.color(&drawn, BLACK, Blend::Masked))?;
+        let coverage = (multiple > 1).then(|| Coverage::new(context, &drawn, &map)).transpose()?;
+        Ok(CausticsMap { intersections, floor, coverage, map })
     }
 
     /// Clears the map and adds the light of these planes.
@@ -98,38 +58,7 @@ impl CausticsMap {
         planes: &[Cell],
         volumes: &IlluminationVolumes,
     ) -> Result<(), Error> {
-        draw_planes(frame, &self.pass, lit, planes, volumes)
+        self.intersections.record(frame, lit, planes, volumes)?;
+        self.coverage.as_ref().map_or(Ok(()), |coverage| coverage.record(frame))
     }
-}
-
-/// A pass that draws the intersection triangles of the volumes with a plane.
-pub fn intersections(
-    name: &'static str,
-    section: &'static str,
-    fragment: &str,
-    volumes: &IlluminationVolumes,
-    water: &WaterSurface,
-) -> PassBuilder {
-    Pass::graphics(name, section, "caustics/caustics-map.vert", fragment)
-        .vertices::<Ray>(&volumes.rays)
-        .indices(&water.indices)
-        .constants::<PlaneConstants>()
-}
-
-/// Draws the intersection triangles of each plane.
-///
-/// # Errors
-/// Errors of the Vulkan layer.
-pub fn draw_planes(
-    frame: &mut Frame<'_>,
-    pass: &Pass,
-    lit: &LitReceiver,
-    planes: &[Cell],
-    volumes: &IlluminationVolumes,
-) -> Result<(), Error> {
-    frame.graphics(pass, |draw| {
-        for cell in planes {
-            draw.constants(&PlaneConstants::new(lit, cell, volumes)).indices(volumes.index_count);
-        }
-    })
 }

@@ -39,7 +39,7 @@ host_block! {
         u: [f32; 3],
         vertex_count: u32,
         v: [f32; 3],
-        _pad: f32,
+        fresnel: f32,
         w: [f32; 3],
     }
 }
@@ -88,7 +88,7 @@ impl IlluminationVolumes {
             u: axes.u.as_vec3().to_array(),
             vertex_count,
             v: axes.v.as_vec3().to_array(),
-            _pad: 0.0,
+            fresnel: f32::from(u8::from(context.parameters.fresnel)),
             w: axes.w.as_vec3().to_array(),
         };
         let index_count = 3 * water.grid.triangle_count();

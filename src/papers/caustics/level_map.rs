@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::bounding_box::BoundingBox;
 use super::cast::Cast;
 use super::caustics_map::CausticsMap;
-use super::caustics_map_floor::caustics_map_floor;
 use super::combine::Combine;
 use super::depth_profile::DepthProfile;
 use super::diffuse_map::DiffuseMap;
@@ -16,9 +15,10 @@ use super::read_positions::ReadPositions;
 use super::receiver::LitReceiver;
 use super::reference_planes::ReferencePlanes;
 use super::resources::Context;
+use super::shadow_map::ShadowMap;
 use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Error, ImageView, Pass};
+use crate::gpu::{Error, ImageView};
 
 /// Passes of the variants `level-map` and `level-map-smart`.
 pub struct LevelMap {
@@ -42,8 +42,6 @@ pub struct ReceiverPasses {
     pub smart: Option<SmartSlicing>,
     /// I_c of the receiver's planes.
     pub caustics_map: CausticsMap,
-    /// The same triangles with nothing shaded.
-    pub caustics_map_floor: Pass,
     /// I_c x I_d.
     pub combine: Combine,
     /// The combined map on the receiver.
@@ -73,6 +71,7 @@ impl LevelMap {
         lit_receivers: &[LitReceiver],
         water: &WaterSurface,
         volumes: &[IlluminationVolumes],
+        shadow_maps: &[ShadowMap],
         underwater: &Underwater,
     ) -> Result<Self, Error> {
         let passes = |lit: &LitReceiver| {
@@ -91,11 +90,11 @@ impl LevelMap {
                     depth_profile: DepthProfile::new(context.parameters),
                 }),
             };
-            let caustics_map = CausticsMap::of_level_map(context, volumes, water, maps.position())?;
-            let caustics_map_floor = caustics_map_floor(context, volumes, water, &caustics_map)?;
+            let shadows = shadow_maps.get(lit.light);
+            let caustics_map = CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?;
             let combine = Combine::new(context, volumes, &caustics_map.map, maps.diffuse())?;
             let cast = Cast::new(context, lit, &combine.map, maps.position(), underwater)?;
-            Ok(ReceiverPasses { maps, smart, caustics_map, caustics_map_floor, combine, cast })
+            Ok(ReceiverPasses { maps, smart, caustics_map, combine, cast })
         };
         let receivers = lit_receivers.iter().map(passes).collect::<Result<_, Error>>()?;
         Ok(LevelMap { slicing, receivers })

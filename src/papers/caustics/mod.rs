@@ -12,13 +12,14 @@
 mod bounding_box;
 mod cast;
 mod caustics_map;
-mod caustics_map_floor;
 mod combine;
 mod combine_slices;
+mod coverage;
 mod depth_profile;
 mod diffuse_map;
 pub mod experiments;
 mod illumination_volumes;
+mod intersections;
 #[cfg(test)]
 mod layouts;
 mod level_map;
@@ -36,6 +37,7 @@ mod reference_planes;
 mod resources;
 mod sample_planes;
 pub mod setup;
+mod shadow_map;
 mod slice_images;
 mod stencil_volumes;
 mod underwater;
@@ -52,24 +54,25 @@ use ash::vk;
 use glam::{DVec2, DVec3};
 
 use self::bounding_box::{Axes, BoundingBox};
-use self::caustics_map::draw_planes;
 use self::illumination_volumes::{IlluminationVolumes, RAY_FLOATS};
+use self::intersections::Intersections;
 use self::level_map::{LevelMap, ReceiverMaps, Slicing, SmartSlicing};
 use self::receiver::{LitReceiver, Receiver};
 use self::receivers::Receivers;
 use self::reference_planes::ReferencePlanes;
 use self::resources::{Context, DEPTH, DEPTH_STENCIL};
+use self::shadow_map::ShadowMap;
 use self::stencil_volumes::StencilVolumes;
 use self::underwater::Underwater;
 use self::view::View;
 use self::volumetric::Volumetric;
 use self::water::Grid;
 use self::water_surface::{VERTEX_FLOATS, WaterSurface};
-use crate::gpu::{Error, Feature, Frame, ImageView, Pass, Sampler, ShaderLibrary};
+use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::Bounds;
 
-pub use self::parameters::{Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
+pub use self::parameters::{IntensityRule, Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;
 pub use self::water_map::WaterMap;
 
@@ -84,6 +87,8 @@ pub struct Caustics {
     illumination_volumes: Vec<IlluminationVolumes>,
     /// Each receiver under each light, light by light; none for the stencil method.
     lit_receivers: Vec<LitReceiver>,
+    /// One for each light where receivers cast shadows on one another, else none.
+    shadow_maps: Vec<ShadowMap>,
     technique: Technique,
     underwater: Underwater,
     view: View,
@@ -134,6 +139,10 @@ impl Caustics {
         let underwater = Underwater::new(context, depth_format)?;
         let view = View::new(context, &underwater, &water_surface, inputs)?;
         let (water, volumes) = (&water_surface, &illumination_volumes);
+        // The stencil method knows no occlusion.
+        let shadowed = if parameters.shadows && variant != Variant::Stencil { parameters.lights.len() } else { 0 };
+        let shadow_maps = (0..shadowed).filter_map(|light| ShadowMap::new(context, &lit_receivers, light).transpose());
+        let shadow_maps = shadow_maps.collect::<Result<Vec<_>, _>>()?;
         let technique = match variant {
             Variant::LevelMap | Variant::LevelMapSmart => {
                 let slicing = if variant == Variant::LevelMap {
@@ -141,11 +150,24 @@ impl Caustics {
                 } else {
                     Slicing::Smart(BoundingBox::new())
                 };
-                Technique::LevelMap(LevelMap::new(context, slicing, &lit_receivers, water, volumes, &underwater)?)
+                Technique::LevelMap(LevelMap::new(
+                    context,
+                    slicing,
+                    &lit_receivers,
+                    water,
+                    volumes,
+                    &shadow_maps,
+                    &underwater,
+                )?)
             }
-            Variant::Volumetric => {
-                Technique::Volumetric(Volumetric::new(context, &lit_receivers, water, volumes, &underwater)?)
-            }
+            Variant::Volumetric => Technique::Volumetric(Volumetric::new(
+                context,
+                &lit_receivers,
+                water,
+                volumes,
+                &shadow_maps,
+                &underwater,
+            )?),
             Variant::Stencil => {
                 lit_receivers.clear();
                 let receivers = Receivers::new(context, &receivers, &underwater)?;
@@ -155,7 +177,16 @@ impl Caustics {
             }
         };
         let parameters = parameters.clone();
-        Ok(Caustics { parameters, water_surface, illumination_volumes, lit_receivers, technique, underwater, view })
+        Ok(Caustics {
+            parameters,
+            water_surface,
+            illumination_volumes,
+            lit_receivers,
+            shadow_maps,
+            technique,
+            underwater,
+            view,
+        })
     }
 
     /// The mesh of the water as it was made, which may differ from the number of triangles asked for.
@@ -169,15 +200,13 @@ impl Caustics {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let floors: Vec<&Pass> = match &self.technique {
-            Technique::LevelMap(variant) => variant.receivers.iter().map(|r| &r.caustics_map_floor).collect(),
-            Technique::Volumetric(variant) => variant.receivers.iter().map(|r| &r.caustics_map_floor).collect(),
+        let floors: Vec<&Intersections> = match &self.technique {
+            Technique::LevelMap(variant) => variant.receivers.iter().map(|r| &r.caustics_map.floor).collect(),
+            Technique::Volumetric(variant) => variant.receivers.iter().map(|r| &r.caustics_map.floor).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
         let mut each = floors.iter().zip(&self.lit_receivers);
-        each.try_for_each(|(floor, lit)| {
-            draw_planes(frame, floor, lit, &lit.cells, &self.illumination_volumes[lit.light])
-        })
+        each.try_for_each(|(floor, lit)| floor.record(frame, lit, &lit.cells, &self.illumination_volumes[lit.light]))
     }
 
     /// Texels in each depth level of the first receiver under the first light, after a frame of smart slicing.
@@ -229,7 +258,7 @@ fn numbered(name: &str, indices: &[usize]) -> String {
 impl Paper for Caustics {
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         let time_s = self.time_s(number);
-        let Caustics { water_surface, illumination_volumes, lit_receivers, technique, .. } = self;
+        let Caustics { water_surface, illumination_volumes, lit_receivers, shadow_maps, technique, .. } = self;
 
         // The receivers: their planes and maps (figure 4-15, step 1), or what is seen of them.
         match technique {
@@ -262,6 +291,8 @@ impl Paper for Caustics {
             }
             Technique::Stencil { receivers, .. } => receivers.record(frame)?,
         }
+
+        shadow_maps.iter().try_for_each(|shadow_map| shadow_map.record(frame))?;
 
         // The light, refracted by the water.
         water_surface.record(frame, time_s)?;

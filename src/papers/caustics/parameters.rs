@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 
 pub use super::planes::SmartPlacement;
+use super::water::waves;
 use super::water_map::WaterMap;
 use crate::field;
 use crate::measure::parameter::{self, Choice, Cost, Field, Parameter, Range, Size};
@@ -45,6 +46,23 @@ pub struct SmartParameters {
     pub placement: SmartPlacement,
 }
 
+/// The places that the intensity of eq. 4-18 belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IntensityRule {
+    /// A water triangle, as the thesis prints it: constant over the triangle, but for angle and absorption.
+    Face,
+    /// A vertex, by the triangles around it; interpolated between vertices. The flux is the same.
+    Vertex,
+}
+
+impl Choice for IntensityRule {
+    const ALL: &'static [Self] = &[IntensityRule::Face, IntensityRule::Vertex];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("face", "That of each water triangle, constant over it"),
+        ("vertex", "That of each vertex by the triangles around it, interpolated"),
+    ];
+}
+
 /// The water's waves: a sum of sines with seeded directions and phases.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaveParameters {
@@ -76,6 +94,13 @@ pub struct Parameters {
     /// Position and diffuse map in one pass with two targets; in two passes without.
     pub mrt: bool,
     pub smart: SmartParameters,
+    /// Texels a side of the caustics map that are drawn and averaged for each of its texels, 1 to 64.
+    pub coverage: u32,
+    pub intensity: IntensityRule,
+    /// Receivers cast shadows on one another.
+    pub shadows: bool,
+    /// The water's surface reflects a part of the light.
+    pub fresnel: bool,
     /// Refraction index of water against air, above 1 and at most 4.
     pub refraction_index: f32,
     /// Absorption K of eq. 4-17 per metre, 0 to 1,000,000.
@@ -107,6 +132,10 @@ impl Default for Parameters {
             water_triangles: 10_000,
             mrt: true,
             smart: SmartParameters { levels: 100, placement: SmartPlacement::Fitted { epsilon_m: None } },
+            coverage: 1,
+            intensity: IntensityRule::Face,
+            shadows: false,
+            fresnel: false,
             refraction_index: 4.0 / 3.0,
             absorption_per_m: 0.1,
             water_depth_m: 3.0,
@@ -229,6 +258,26 @@ impl Parameters {
                 .help("Acceptance threshold of smart slicing")
                 .section("eq. 4-22")
                 .default_text("h / (2 (planes - 1)), as in table 5-4"),
+            Parameter::new("coverage", field!(Parameters.coverage))
+                .range(Range::from(1.0).to(64.0))
+                .unit("texel a side")
+                .help(
+                    "Texels of the caustics map that are drawn and averaged for each one, by every variant that samples at \
+                     texel centres; the thesis's is 1",
+                )
+                .section("4.5")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("intensity", field!(Parameters.intensity))
+                .help("The intensity of light on a plane: of triangles, as the thesis prints it, or of vertices, interpolated")
+                .section("eq. 4-18")
+                .cost(Cost::Pipelines),
+            Parameter::new("shadows", field!(Parameters.shadows))
+                .help("Receivers cast shadows on one another and on the floor, but for the stencil method's; the thesis's do not")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("fresnel", field!(Parameters.fresnel))
+                .help("The water's surface reflects a part of the light by Fresnel's equations; the thesis's reflects none"),
             Parameter::new("refraction-index", field!(Parameters.refraction_index))
                 .range(Range::above(1.0).to(4.0))
                 .help("Refraction index of water against air")
@@ -344,6 +393,12 @@ impl Parameters {
     /// The water is nowhere steeper.
     pub fn steepest_slope(&self) -> f32 {
         self.water_map.as_ref().map_or(self.waves.steepest_slope(), WaterMap::steepest_slope)
+    }
+
+    /// Root of the water's mean square slope.
+    pub fn mean_slope(&self) -> f64 {
+        let of_waves = || waves(self).iter().map(|w| (w.amplitude_m * w.vector.length()).powi(2) / 2.0).sum::<f64>();
+        self.water_map.as_ref().map_or_else(|| of_waves().sqrt(), WaterMap::mean_slope)
     }
 
     /// Width over height of the picture.

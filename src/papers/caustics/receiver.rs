@@ -168,16 +168,21 @@ impl LitReceiver {
     }
 
     pub fn box_block(&self) -> BoxBlock {
-        let ReceiverBox { axes, center, extent } = self.aligned;
-        BoxBlock {
-            u: axes.u.as_vec3().to_array(),
-            center_u: center.x as f32,
-            v: axes.v.as_vec3().to_array(),
-            center_v: center.y as f32,
-            w: axes.w.as_vec3().to_array(),
-            center_w: center.z as f32,
-            extent: extent.as_vec3().to_array(),
-            texels: self.map_size as f32,
-        }
+        box_block(&self.aligned, self.map_size)
+    }
+}
+
+/// A box with maps of so many texels a side.
+pub fn box_block(bounds: &ReceiverBox, texels: u32) -> BoxBlock {
+    let ReceiverBox { axes, center, extent } = bounds;
+    BoxBlock {
+        u: axes.u.as_vec3().to_array(),
+        center_u: center.x as f32,
+        v: axes.v.as_vec3().to_array(),
+        center_v: center.y as f32,
+        w: axes.w.as_vec3().to_array(),
+        center_w: center.z as f32,
+        extent: extent.as_vec3().to_array(),
+        texels: texels as f32,
     }
 }

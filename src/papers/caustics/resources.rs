@@ -82,6 +82,16 @@ impl<'a> Context<'a> {
         image.map_err(|error| error.set_by("map-size"))?.view()
     }
 
+    /// A square map of the [coverage](Parameters::coverage)'s multiple of a map's size.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a size that the device does not allow.
+    pub fn multiple_of_map(&self, name: &str, format: vk::Format) -> Result<Arc<ImageView>, Error> {
+        let texels = self.parameters.map_size.saturating_mul(self.parameters.coverage);
+        let desc = ImageDesc::new_2d(self.name(name), format, texels, texels).usage(COLOR_MAP);
+        Image::new(self.device(), desc).map_err(|error| error.set_by("coverage"))?.view()
+    }
+
     /// Description of a square map.
     pub fn map_desc(&self, name: &str, format: vk::Format) -> ImageDesc {
         let usage = if format == DEPTH { vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT } else { COLOR_MAP };

@@ -31,6 +31,11 @@ const FLOOR_CELLS: u32 = 8;
 /// Side of the pool's floor in receivers.
 const FLOOR_SIZE: f32 = 3.0;
 
+/// Slope of water, root of the mean square, above which point sampling is warned of.
+const STEEP: f64 = 0.12;
+/// The coverage that ends the warning.
+const AVERAGED: u32 = 4;
+
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
@@ -181,7 +186,7 @@ impl Study for Setup {
         let floors = floors_ms(machine, measured)?;
         let metrics = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Metrics {
             results: results(&built.paper, measurement, floor_ms),
-            warnings: self.small_map(&built.paper).into_iter().collect(),
+            warnings: self.small_map(&built.paper).into_iter().chain(self.steep_water(&built.paper)).collect(),
         });
         Ok(metrics.collect())
     }
@@ -369,6 +374,21 @@ impl Setup {
                 map_m.y,
                 mesh_m.x,
                 mesh_m.y
+            )
+        })
+    }
+}
+
+impl Setup {
+    /// The warning when maps are sampled at texel centres under water that folds its light strongly.
+    fn steep_water(&self, paper: &Caustics) -> Option<String> {
+        let slope = self.parameters.mean_slope();
+        let is_sampled = !paper.plane_counts().is_empty() && self.parameters.coverage < AVERAGED;
+        (is_sampled && slope > STEEP).then(|| {
+            format!(
+                "water of slope {slope:.2} (root of the mean square) folds its light: a caustics map that is sampled at texel \
+                 centres, as the thesis's is, misses slivers of folded triangles or takes them for too bright; `coverage` \
+                 {AVERAGED} or more averages them"
             )
         })
     }

@@ -5,17 +5,17 @@ use std::sync::Arc;
 
 use super::cast::Cast;
 use super::caustics_map::CausticsMap;
-use super::caustics_map_floor::caustics_map_floor;
 use super::combine_slices::CombineSlices;
 use super::illumination_volumes::IlluminationVolumes;
 use super::multiply::Multiply;
 use super::receiver::LitReceiver;
 use super::resources::Context;
 use super::sample_planes::SamplePlanes;
+use super::shadow_map::ShadowMap;
 use super::slice_images::SliceImages;
 use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Error, ImageView, Pass};
+use crate::gpu::{Error, ImageView};
 
 /// Passes of the variant.
 pub struct Volumetric {
@@ -31,8 +31,6 @@ pub struct ReceiverPasses {
     pub slice_images: SliceImages,
     /// I_c of one plane after the other.
     pub caustics_map: CausticsMap,
-    /// The same triangles with nothing shaded.
-    pub caustics_map_floor: Pass,
     /// I_c into each slice.
     pub multiply: Multiply,
     /// The slices put together.
@@ -49,17 +47,17 @@ impl Volumetric {
         lit_receivers: &[LitReceiver],
         water: &WaterSurface,
         volumes: &[IlluminationVolumes],
+        shadow_maps: &[ShadowMap],
         underwater: &Underwater,
     ) -> Result<Self, Error> {
         let passes = |lit: &LitReceiver| {
             let volumes = &volumes[lit.light];
-            let caustics_map = CausticsMap::of_sample_plane(context, volumes, water)?;
-            let caustics_map_floor = caustics_map_floor(context, volumes, water, &caustics_map)?;
+            let caustics_map = CausticsMap::new(context, volumes, water, None, shadow_maps.get(lit.light))?;
             let slice_images = SliceImages::new(context, lit)?;
             let multiply = Multiply::new(context, volumes, &caustics_map.map, &slice_images.slices)?;
             let combine_slices = CombineSlices::new(context, &slice_images.illumination_map)?;
             let cast = Cast::new(context, lit, &combine_slices.map, &combine_slices.position, underwater)?;
-            Ok(ReceiverPasses { slice_images, caustics_map, caustics_map_floor, multiply, combine_slices, cast })
+            Ok(ReceiverPasses { slice_images, caustics_map, multiply, combine_slices, cast })
         };
         let receivers = lit_receivers.iter().map(passes).collect::<Result<_, Error>>()?;
         Ok(Volumetric { sample_planes: SamplePlanes::new(context.parameters), receivers })

@@ -60,6 +60,19 @@ impl WaterMap {
         self.coefficients.iter().fold((f32::MAX, f32::MIN), |(low, high), &c| (low.min(c), high.max(c)))
     }
 
+    /// Root of the mean square of the slopes between neighbouring coefficients.
+    pub fn mean_slope(&self) -> f64 {
+        let width = self.heights.width() as usize;
+        let mean_square = |pairs: &mut dyn Iterator<Item = (&f32, &f32)>| {
+            let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (a, b)| (sum + f64::from(a - b).powi(2), count + 1.0));
+            sum / f64::max(count, 1.0)
+        };
+        let rows = self.coefficients.chunks_exact(width);
+        let along_x = mean_square(&mut rows.flat_map(|row| row.iter().zip(&row[1..])));
+        let along_z = mean_square(&mut self.coefficients.iter().zip(&self.coefficients[width..]));
+        (DVec2::new(along_x, along_z) / self.heights.spacing_m().powf(2.0)).element_sum().sqrt()
+    }
+
     /// No slope is steeper.
     pub fn steepest_slope(&self) -> f32 {
         let width = self.heights.width() as usize;
@@ -144,10 +157,12 @@ mod tests {
 
     #[test]
     fn a_ramp_is_as_steep_as_it_is() {
-        let ramp: Vec<f32> = (0..25 * 2).map(|i| 0.1 * (i % 25) as f32).collect();
-        let map = HeightMap::new(25, 2, Samples::Float(ramp)).unwrap();
+        let rising = || (0..25 * 2).map(|i| 0.1 * (i % 25) as f32).collect::<Vec<f32>>();
+        let map = HeightMap::new(25, 2, Samples::Float(rising())).unwrap();
         let slope = WaterMap::new("ramp", Arc::new(map)).steepest_slope();
         // A little more where the surface levels off at the border.
         assert!((0.1..0.13).contains(&slope), "{slope}");
+        let mean = WaterMap::new("ramp", Arc::new(HeightMap::new(25, 2, Samples::Float(rising())).unwrap())).mean_slope();
+        assert!((mean - 0.1).abs() < 0.005, "{mean}");
     }
 }

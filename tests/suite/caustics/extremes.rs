@@ -190,7 +190,7 @@ fn faces_turned_away_pass_nothing() {
             };
             let off = pairs.filter(|&pair| off(pair)).count();
             println!("{off} texels off");
-            assert!(off <= 2, "{light:?}: {off} texels off");
+            assert!(off <= 6, "{light:?}: {off} texels off");
         }
     });
 }

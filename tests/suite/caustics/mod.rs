@@ -5,6 +5,7 @@ mod drawing;
 mod extremes;
 mod laws;
 mod level_map;
+mod options;
 mod oracle;
 mod pictures;
 mod scene;

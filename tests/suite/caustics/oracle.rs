@@ -98,6 +98,12 @@ fn water(parameters: &Parameters, grid: &Grid, middle: DVec3) -> Vec<WaterVertex
         let field = HeightField::through(&heights, columns, spacing_m, DVec2::new(middle.x, middle.z));
         return places.map(|place| field.vertex(LEVEL_M, place.x, place.y)).collect();
     }
+    let surface = waves_surface(parameters);
+    places.map(|place| surface(place.x, place.y)).collect()
+}
+
+/// The waves of `parameters` at the time of the frame that is drawn, by x and z.
+pub fn waves_surface(parameters: &Parameters) -> impl Fn(f64, f64) -> WaterVertex + use<> {
     let waves: Vec<Wave> = waves(parameters)
         .iter()
         .map(|wave| Wave {
@@ -109,7 +115,7 @@ fn water(parameters: &Parameters, grid: &Grid, middle: DVec3) -> Vec<WaterVertex
         })
         .collect();
     let time_s = f64::from(FRAME) * f64::from(parameters.time_step_s);
-    places.map(|place| wave_vertex(&waves, LEVEL_M, place.x, place.y, time_s)).collect()
+    move |x, z| wave_vertex(&waves, LEVEL_M, x, z, time_s)
 }
 
 fn exact_heights(map: &HeightMap) -> Vec<f64> {

@@ -1,19 +1,17 @@
 //! The finished picture and the cast against rays that are traced in double precision: outlines, pieces that are not
 //! there, light where none can be.
 
-use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use fumarole::measure::study::Study;
-use fumarole::papers::caustics::reference::{AIR, Wave, refract, wave_vertex};
+use fumarole::papers::caustics::reference::{AIR, WaterVertex, refract};
 use fumarole::papers::caustics::setup::Setup;
-use fumarole::papers::caustics::water::{LEVEL_M, waves};
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant};
 use fumarole::scene::{Light, MeshSource};
 use glam::{DVec3, Vec3};
 
-use super::drawing::{Drawing, FRAME};
-use super::oracle::Oracle;
+use super::drawing::Drawing;
+use super::oracle::{Oracle, waves_surface};
 use super::scene::{OBLIQUE, OVERHEAD, parameters, teapot};
 use super::seen::{first_hit, first_hits, rays};
 use crate::common::gpu_test;
@@ -33,10 +31,10 @@ fn by_ambient_light(camera_above: bool) -> Parameters {
 }
 
 /// The ray from the eye refracted where it first meets the waves: from where and whereto.
-fn under_water(list: &[Wave], eye: DVec3, ray: DVec3, time_s: f64) -> Option<(DVec3, DVec3)> {
+fn under_water(surface: impl Fn(f64, f64) -> WaterVertex, eye: DVec3, ray: DVec3) -> Option<(DVec3, DVec3)> {
     let above = |t: f64| {
         let p = eye + ray * t;
-        p.y - wave_vertex(list, LEVEL_M, p.x, p.z, time_s).position.y
+        p.y - surface(p.x, p.z).position.y
     };
     let step = 0.01;
     let first = (1..4000).map(|i| f64::from(i) * step).find(|&t| above(t) <= 0.0)?;
@@ -46,28 +44,18 @@ fn under_water(list: &[Wave], eye: DVec3, ray: DVec3, time_s: f64) -> Option<(DV
         if above(middle) > 0.0 { low = middle } else { high = middle }
     }
     let p = eye + ray * high;
-    let normal = wave_vertex(list, LEVEL_M, p.x, p.z, time_s).normal;
+    let normal = surface(p.x, p.z).normal;
     Some((p, refract(ray, normal, AIR, f64::from(Parameters::default().refraction_index))?))
 }
 
 /// True for the pixels whose middles show the first receiver.
 fn traced_mask(parameters: &Parameters, receivers: &[ReceiverInput]) -> Vec<bool> {
-    let list: Vec<Wave> = waves(parameters)
-        .iter()
-        .map(|wave| Wave {
-            amplitude_m: wave.amplitude_m,
-            direction: wave.vector.normalize(),
-            wavelength_m: TAU / wave.vector.length(),
-            angular_frequency_rad_s: wave.angular_frequency,
-            phase_rad: wave.phase_rad,
-        })
-        .collect();
-    let time_s = f64::from(FRAME) * f64::from(parameters.time_step_s);
+    let surface = waves_surface(parameters);
     let eye = parameters.camera.eye.as_dvec3();
     rays(parameters)
         .map(|ray| {
             let found = if parameters.is_seen_from_above() {
-                under_water(&list, eye, ray, time_s).and_then(|(from, ray)| first_hit(receivers, from, ray))
+                under_water(&surface, eye, ray).and_then(|(from, ray)| first_hit(receivers, from, ray))
             } else {
                 first_hit(receivers, eye, ray)
             };

@@ -1,0 +1,73 @@
+#version 450
+
+// As caustics-map.vert, with an intensity of each vertex: the light that passes the faces around it over the area that they light on
+// this plane (eq. 4-18 for the fan of faces, a ray's Jacobian by differences). Interpolated over the faces it adds up to the same flux
+// as the faces' own intensities: a face lights its area times the mean of its corners, and each corner hands its fan's light out by
+// area.
+
+struct Ray {
+    vec3 origin; // along U, V, W from the light's reference point, metres
+    float enters; // 1 where the ray enters the water, else 0
+    vec2 slope; // movement along U and W per metre of descent along V
+    float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
+    float _pad_slope; // 0
+    vec3 incident; // direction of the light in air, along U, V, W, as long as the share of it that enters
+    float _pad_incident; // 0
+};
+
+layout(std430, set = 0, binding = 3) readonly buffer Rays {
+    Ray list[];
+} rays;
+
+#include "caustics/caustics-map-options.glsl"
+
+layout(location = 0) out vec4 surface; // point of the water that the ray left, and 1 for a ray that lights this plane
+layout(location = 1) out vec3 weight;
+layout(location = 2) out float vertex_intensity;
+
+vec2 place_on_plane(Ray ray) {
+    return ray.origin.xz + ray.slope * (ray.origin.y - plane.height);
+}
+
+// Steps to the six neighbours around a vertex, in order; the diagonals of the cells run from +x to +z.
+ivec2 neighbour(int i) {
+    int place = i % 3;
+    ivec2 step = place == 0 ? ivec2(1, 0) : (place == 1 ? ivec2(0, 1) : ivec2(-1, 1));
+    return i % 6 < 3 ? step : -step;
+}
+
+void main() {
+    Ray ray = rays.list[gl_VertexIndex];
+    float descent = ray.origin.y - plane.height;
+    float lit = descent > 0.0 ? ray.enters : 0.0;
+    vec2 place = place_on_plane(ray);
+    float transmitted = exp(-plane.absorption_per_m * (max(descent, 0.0) * ray.secant));
+    surface = vec4(ray.origin, lit);
+    weight = ray.incident * (ray.secant * transmitted);
+
+    float flux = 0.0;
+    float area = 0.0;
+    if (plane.by_vertex == 1u) {
+        int columns = int(plane.columns);
+        ivec2 size = ivec2(columns, int(plane.rows));
+        ivec2 node = ivec2(gl_VertexIndex % columns, gl_VertexIndex / columns);
+        for (int i = 0; i < 6; i++) {
+            ivec2 first = node + neighbour(i);
+            ivec2 second = node + neighbour(i + 1);
+            if (all(greaterThanEqual(min(first, second), ivec2(0))) && all(lessThan(max(first, second), size))) {
+                Ray b = rays.list[first.y * columns + first.x];
+                Ray c = rays.list[second.y * columns + second.x];
+                vec3 face = cross(b.origin - ray.origin, c.origin - ray.origin);
+                face *= sign(dot(face, plane.up));
+                if (min(b.enters, c.enters) > 0.0 && min(b.origin.y, c.origin.y) > plane.height) {
+                    flux += max(-dot(face, ray.incident + b.incident + c.incident) / 3.0, 0.0);
+                    vec2 to_b = place_on_plane(b) - place;
+                    vec2 to_c = place_on_plane(c) - place;
+                    area += abs(to_b.x * to_c.y - to_b.y * to_c.x);
+                }
+            }
+        }
+    }
+    vertex_intensity = area > 0.0 ? flux / area * ray.secant * transmitted : 0.0;
+    gl_Position = vec4((place - plane.center) * plane.to_clip, 0.5, 1.0);
+}

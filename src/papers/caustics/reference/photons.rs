@@ -1,0 +1,96 @@
+//! Light traced as photons through the exact water onto a plane: the truth that a caustics map approaches.
+
+use crate::papers::caustics::reference::{AIR, Medium, ReceiverBox, ReferenceLight, WaterVertex, refract};
+use glam::DVec2;
+
+/// Photons over a rectangle of the water, evenly stratified in x and z.
+#[derive(Clone, Copy, Debug)]
+pub struct Photons {
+    /// Least x and z, metres.
+    pub low: DVec2,
+    /// Greatest x and z, metres.
+    pub high: DVec2,
+    /// Strata along x and along z, one photon in each.
+    pub strata: [u32; 2],
+    /// Place of each photon in its stratum, 0 to 1: other places make an independent estimate.
+    pub place: DVec2,
+}
+
+impl Photons {
+    /// I_c (eq. 4-18: flux per area perpendicular to the beam, after absorption) of each texel of a map of `resolution`
+    /// texels a side on the plane y = `plane` of box space, row by row.
+    pub fn map(
+        &self,
+        surface: impl Fn(f64, f64) -> WaterVertex,
+        light: ReferenceLight,
+        medium: Medium,
+        receiver: &ReceiverBox,
+        plane: f64,
+        resolution: usize,
+    ) -> Vec<f64> {
+        let mut map = vec![0.0; resolution * resolution];
+        let texel_area_m2 = receiver.texel_area_m2(map.len());
+        let strata = DVec2::new(f64::from(self.strata[0]), f64::from(self.strata[1]));
+        let cell = (self.high - self.low) / strata;
+        for (i, j) in (0..self.strata[1]).flat_map(|j| (0..self.strata[0]).map(move |i| (i, j))) {
+            // Rows are shifted against each other, so that no lattice shows.
+            let shift = DVec2::new((self.place.x + f64::from(j) * 0.618_033_988_75).fract(), self.place.y);
+            let at = self.low + cell * (DVec2::new(f64::from(i), f64::from(j)) + shift);
+            let vertex = surface(at.x, at.y);
+            let incident = light.direction_at(vertex.position);
+            let Some(refracted) = refract(incident, vertex.normal, AIR, medium.refraction_index) else { continue };
+            // A stratum's piece of surface is its base over the normal's rise.
+            let flux = cell.x * cell.y * -incident.dot(vertex.normal) / vertex.normal.y;
+            let (origin, ray) = (receiver.to_box(vertex.position), receiver.direction_to_box(refracted));
+            let distance_m = (plane - origin.y) / ray.y;
+            if ray.y >= 0.0 || distance_m <= 0.0 {
+                continue;
+            }
+            let hit = origin + ray * distance_m;
+            let column = (hit.x / receiver.width + 0.5) * resolution as f64;
+            let row = (hit.z / receiver.depth + 0.5) * resolution as f64;
+            if column >= 0.0 && row >= 0.0 && (column as usize) < resolution && (row as usize) < resolution {
+                let transmitted = (-medium.absorption_per_m * distance_m).exp();
+                map[row as usize * resolution + column as usize] += flux * transmitted / (-ray.y * texel_area_m2);
+            }
+        }
+        map
+    }
+}
+
+/// Pearson's correlation of two maps.
+pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let (mean_a, mean_b) = (mean(a), mean(b));
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    for (x, y) in a.iter().zip(b) {
+        let (x, y) = (x - mean_a, y - mean_b);
+        ab += x * y;
+        aa += x * x;
+        bb += y * y;
+    }
+    ab / (aa * bb).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::papers::caustics::reference::fixtures::{OBLIQUE, WATER, horizontal};
+    use crate::papers::caustics::reference::{flat_water_intensity, wave_vertex};
+    use glam::DVec3;
+
+    #[test]
+    fn flat_water_has_one_intensity() {
+        let receiver = horizontal(1.0, -2.0).aligned(OBLIQUE);
+        let murky = Medium { absorption_per_m: 0.3, ..WATER };
+        let (low, high) = (DVec2::splat(-4.0), DVec2::splat(4.0));
+        let photons = Photons { low, high, strata: [1500, 1500], place: DVec2::splat(0.5) };
+        let map = photons.map(|x, z| wave_vertex(&[], 0.0, x, z, 0.0), OBLIQUE, murky, &receiver, 0.0, 16);
+        let distance_m = 2.0 / receiver.v.y;
+        let direction = OBLIQUE.direction_at(DVec3::ZERO);
+        let expected = flat_water_intensity(direction, murky, distance_m).unwrap();
+        let mean = map.iter().sum::<f64>() / map.len() as f64;
+        // The plane is perpendicular to the beam: d varies across it, its mean is that of the middle.
+        assert!((mean / expected - 1.0).abs() < 0.01, "{mean} {expected}");
+    }
+}
