@@ -23,38 +23,67 @@ void main() {
     if (!is_in_band(pixel)) {
         return;
     }
+    uint list = list_of(pixel);
+    if (!is_due(LIGHT_ATTENUATION, list)) {
+        return;
+    }
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
+    uint f = NONE;
     uint covered = 0u;
     bool is_shown_through = false; // by the fragment before, which it intersects
-    uint f = fragment_at(heads[list_of(pixel)]);
-    while (f != NONE) {
+    uint l = 0u; // the fragment's next light
+    State before = NO_STATE;
+    if (is_carried(LIGHT_ATTENUATION, list)) {
+        before = state_of(list);
+        f = before.a.x;
+        covered = before.a.y;
+        is_shown_through = before.a.z != 0u;
+        l = before.a.w;
+    } else {
+        f = fragment_at(heads[list]);
+    }
+    bool is_done = f == NONE;
+    bool is_stopped = false;
+    while (!is_done && !is_stopped) {
         Link link = link_at(f);
         link.next = fragment_at(link.next);
         Surface surface = surfaces[f];
-        if ((link.mask & ~covered) != 0u || is_shown_through) {
+        bool is_seen = (link.mask & ~covered) != 0u || is_shown_through;
+        if (is_seen) {
             vec3 point = frame.eye + ray * mean_depth(link);
             vec3 normal = unpack_normal(surface.normal);
             normal = dot(normal, ray) > 0.0 ? -normal : normal;
-            for (uint l = 0u; l < counts.lights; l++) {
+            while (l < counts.lights && !is_cut) {
                 float depth = 0.0;
                 if (dot(normal, ray_to_light(l, point).direction) > 0.0) {
                     depth = optical_depth_to(l, point);
                 }
-                attenuations[f * counts.lights + l] = 1.0 - exp(-depth);
-            }
-            is_shown_through = false;
-            if (link.next != NONE) {
-                Link next = link_at(link.next);
-                is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u
-                    && fraction_behind(link, next) > 0.0;
+                if (!is_cut) {
+                    attenuations[f * counts.lights + l] = 1.0 - exp(-depth);
+                    l++;
+                }
             }
         }
-        if (opacity_of(colors[f]) >= 1.0) {
-            covered |= link.mask;
+        is_stopped = is_cut || (is_seen && l < counts.lights);
+        if (!is_stopped) {
+            if (is_seen) {
+                is_shown_through = false;
+                if (link.next != NONE) {
+                    Link next = link_at(link.next);
+                    is_shown_through = surfaces[link.next].object != surface.object && (link.mask & next.mask) != 0u
+                        && fraction_behind(link, next) > 0.0;
+                }
+            }
+            if (opacity_of(colors[f]) >= 1.0) {
+                covered |= link.mask;
+            }
+            f = link.next;
+            l = 0u;
+            is_done = f == NONE || (covered == 0xffffffffu && !is_shown_through);
+            made++;
+            is_stopped = made >= MOST_MADE;
         }
-        if (covered == 0xffffffffu && !is_shown_through) {
-            break;
-        }
-        f = link.next;
     }
+    uvec4 state = uvec4(f, covered, uint(is_shown_through), l);
+    leave(LIGHT_ATTENUATION, list, is_done, before, State(state, uvec4(0u), uvec3(0u)));
 }

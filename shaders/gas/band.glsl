@@ -1,10 +1,12 @@
 // The picture is done in bands of rows, whose lists the device's buffers hold; most pictures are one band. A slow pass
-// is dispatched in parts of a band, so that no watchdog ends it.
+// is dispatched in parts of a band, so that no watchdog ends it, and several times where it does not finish at once.
 
 layout(push_constant, std430) uniform Band {
     uint list_row; // the first row of the band
     uint first_row; // the first row of this dispatch
     uint end_row; // the row after its last
+    uint call; // of the band's dispatches of the pass, from 0
+    uint calls; // their number
 } band;
 
 // The list of a pixel.

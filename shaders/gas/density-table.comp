@@ -7,6 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
+#include "gas/loops.glsl"
 #include "gas/volume.glsl"
 #include "gas/density.glsl"
 

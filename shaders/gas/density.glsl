@@ -61,19 +61,19 @@ float gas_density(uint v, vec3 world) {
     float thickness = 1.0;
     uint last = kind == CLOUDS ? 2u : (kind == FOG || kind == STEAM ? 1u : 0u);
     float value = 0.0;
-    for (uint i = 0u; i <= last; i++) {
+    uint i = 0u;
+    bool is_clear = false;
+    for (; i <= last && !is_clear; i++) {
         value = fractal(p, kind == CLOUDS && i < last);
         if (i == last) {
-            break;
+            continue;
         }
         if (kind == CLOUDS) {
             p += i == 0u ? vec3(value, 0.0, 0.0) : vec3(0.0, value, 0.0);
         } else if (kind == FOG) {
             float front = volumes[v].front_x_m + volumes[v].front_per_frame_m * number
                 + volumes[v].front_turbulence_m * value + volumes[v].front_table_m * interpolated_offset(p.z);
-            if (world.x > front) {
-                return 0.0;
-            }
+            is_clear = world.x > front;
             factor *= volumes[v].front_full_frames > 0.0 ? min(number / volumes[v].front_full_frames, 1.0) : 1.0;
             p += vec3(2.0 + value, 0.5 + value, -2.0 - value);
             p += vec3(-number * volumes[v].along_per_frame, ellipse);
@@ -81,6 +81,10 @@ float gas_density(uint v, vec3 world) {
         } else {
             p += vec3(ellipse.x + value, value - number * volumes[v].along_per_frame, ellipse.y + value);
         }
+    }
+    is_cut = is_cut || (i <= last && !is_clear);
+    if (is_clear) {
+        return 0.0;
     }
     if (kind == CLOUDS) {
         return opaque * pow(0.5 * (sin(value * volumes[v].frequency) + 1.0), power);
@@ -108,6 +112,7 @@ float volume_density(uint v, vec3 world) {
     if (inside < -1.0e-4) {
         return 0.0;
     }
+    made++;
     float density = gas_density(v, world);
     float falloff = volumes[v].falloff;
     if (falloff > 0.0) {

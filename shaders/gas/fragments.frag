@@ -11,6 +11,7 @@
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
 #include "gas/mesh.glsl"
+#include "gas/loops.glsl"
 #include "gas/volume.glsl"
 #include "gas/density.glsl"
 #include "gas/lists.glsl"

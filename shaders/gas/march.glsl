@@ -56,11 +56,15 @@ struct Gas {
     vec3 color; // premultiplied
     float transparency;
     uint increments;
-    uint evaluations; // of the density
+    uint evaluations; // of the density, in this dispatch
+    bool is_done;
 };
 
-// One section of a pixel; the samples before it are counted so that every increment has its own random number.
-Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, float before, uint first_number) {
+const Gas NOTHING = Gas(vec3(0.0), 1.0, 0u, 0u, false);
+
+// One section of a pixel, from the increments on that `begun` has; the samples before it are counted so that every
+// increment has its own random number.
+Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, float before, uint first_number, Gas begun) {
     float scale = length(ray);
     vec3 direction = ray / scale;
     vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -71,40 +75,47 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
     bool is_in[MAX_VOLUMES];
     float previous[MAX_VOLUMES]; // densities, for the normals of solids
     bool has_solid = false;
-    for (uint v = 0u; v < counts.volumes; v++) {
-        previous[v] = 0.0;
-        is_in[v] = segments[v].x <= middle && middle <= segments[v].y;
-        if (is_in[v]) {
-            step_m = min(step_m, volumes[v].step_m);
-            has_solid = has_solid || volumes[v].is_solid != 0u;
+    uint volume = 0u;
+    for (; volume < counts.volumes; volume++) {
+        previous[volume] = 0.0;
+        is_in[volume] = segments[volume].x <= middle && middle <= segments[volume].y;
+        if (is_in[volume]) {
+            step_m = min(step_m, volumes[volume].step_m);
+            has_solid = has_solid || volumes[volume].is_solid != 0u;
         }
     }
+    is_cut = is_cut || volume < counts.volumes;
     float early = has_solid ? max(frame.early_end, 1.0 - SOLID_OPACITY) : frame.early_end;
     float length_m = (extent.y - extent.x) * scale;
-    uint evaluations = 0u;
-    uint increments = 0u;
-    vec3 color = vec3(0.0);
-    float transparency = 1.0;
+    Gas gas = begun;
+    gas.evaluations = 0u;
     float previous_m = 0.0;
-    // A solid's march begins with the density at its entry, which nothing is added for.
+    // A solid's march begins with the density at its entry, or at the sample before, which nothing is added for.
     bool is_entry = has_solid;
-    float from = 0.0;
-    while (from < length_m) {
+    while (!gas.is_done && !is_cut && made < MOST_MADE) {
+        uint increments = is_entry && gas.increments > 0u ? gas.increments - 1u : gas.increments;
+        float from = float(increments) * step_m;
         float increment = min(step_m, length_m - from);
-        float at_m = is_entry ? 0.0 : from + increment * random(pixel_index, first_number + increments);
+        float at_m = from + increment * random(pixel_index, first_number + increments);
+        if (is_entry && gas.increments == 0u) {
+            at_m = 0.0;
+        }
         vec3 point = entry + direction * at_m;
         float densities[MAX_VOLUMES];
         float asides[MAX_VOLUMES];
         float aboves[MAX_VOLUMES];
         float extinction = 0.0;
         float densest = 0.0;
-        for (uint v = 0u; v < counts.volumes; v++) {
+        uint evaluations = 0u;
+        uint v = 0u;
+        for (; v < counts.volumes; v++) {
             densities[v] = 0.0;
             if (is_in[v]) {
                 // At the point, and for a solid in two directions orthogonal to the ray.
                 float apart = 0.25 * volumes[v].step_m;
                 uint count = volumes[v].is_solid != 0u ? 3u : 1u;
-                for (uint i = 0u; i < count; i++) {
+                uint i = 0u;
+                for (; i < count; i++) {
                     vec3 offset = i == 0u ? vec3(0.0) : (i == 1u ? side : up) * apart;
                     float density = volume_density(v, point + offset);
                     if (i == 0u) {
@@ -115,19 +126,22 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                         aboves[v] = density;
                     }
                 }
+                is_cut = is_cut || i < count;
                 evaluations += count;
                 densest = max(densest, densities[v]);
                 extinction += volumes[v].tau_per_m * densities[v];
             }
         }
+        is_cut = is_cut || v < counts.volumes;
+        vec3 emission = vec3(0.0);
         if (extinction > 0.0 && !is_entry) {
-            vec3 emission = vec3(0.0);
-            for (uint l = 0u; l < counts.lights; l++) {
+            uint l = 0u;
+            for (; l < counts.lights; l++) {
                 LightRay to_light = ray_to_light(l, point);
                 // For patchy gas, shadows are not computed where it is thinner than a threshold.
                 float depth = densest >= frame.shadow_threshold ? optical_depth_to(l, point) : 0.0;
                 vec3 light = irradiance(l, to_light.distance_m) * exp(-depth);
-                for (uint v = 0u; v < counts.volumes; v++) {
+                for (v = 0u; v < counts.volumes; v++) {
                     if (densities[v] > 0.0) {
                         float response = PI * phase(v, dot(to_light.direction, direction));
                         if (volumes[v].is_solid != 0u) {
@@ -142,29 +156,35 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
                         emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * light * response;
                     }
                 }
+                is_cut = is_cut || v < counts.volumes;
             }
-            for (uint v = 0u; v < counts.volumes; v++) {
+            is_cut = is_cut || l < counts.lights;
+            for (v = 0u; v < counts.volumes; v++) {
                 emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * frame.ambient;
             }
-            float passed = exp(-extinction * increment);
-            color += emission / extinction * (transparency * (1.0 - passed));
-            transparency *= passed;
+            is_cut = is_cut || v < counts.volumes;
         }
-        for (uint v = 0u; v < counts.volumes; v++) {
+        for (v = 0u; v < counts.volumes; v++) {
             previous[v] = densities[v];
         }
+        is_cut = is_cut || v < counts.volumes;
         previous_m = at_m;
-        if (is_entry) {
+        // Nothing is kept of an increment that was not done to its end.
+        if (!is_cut && is_entry) {
+            gas.evaluations += gas.increments == 0u ? evaluations : 0u;
             is_entry = false;
-            continue;
-        }
-        increments++;
-        from = float(increments) * step_m;
-        if (before * transparency < early) {
-            break;
+        } else if (!is_cut) {
+            if (extinction > 0.0) {
+                float passed = exp(-extinction * increment);
+                gas.color += emission / extinction * (gas.transparency * (1.0 - passed));
+                gas.transparency *= passed;
+            }
+            gas.evaluations += evaluations;
+            gas.increments++;
+            gas.is_done = float(gas.increments) * step_m >= length_m || before * gas.transparency < early;
         }
     }
-    return Gas(color, transparency, increments, evaluations);
+    return gas;
 }
 
 void set_next(uint list, uint node, uint next) {
@@ -185,40 +205,62 @@ void main() {
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     uint list = list_of(pixel);
     Pixel reserved = pixels[list];
-    if (reserved.section_count == 0u) {
+    if (reserved.section_count == 0u || !is_due(VOLUME, list)) {
         return;
     }
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
     float end = reserved.end_m;
     vec2 segments[MAX_VOLUMES];
     float depth = 1.0e30;
-    for (uint v = 0u; v < counts.volumes; v++) {
+    uint v = 0u;
+    for (; v < counts.volumes; v++) {
         segments[v] = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
         if (segments[v].x < segments[v].y) {
             depth = min(depth, segments[v].x);
         }
     }
+    is_cut = v < counts.volumes;
     uint previous = NONE; // fragment or section, of the list's start
     uint fragment = heads[list];
     uint used = 0u;
     uint evaluations = 0u;
     uint number = 0u;
     float transparency = 1.0;
-    while (depth < end && used < reserved.section_count) {
+    Gas begun = NOTHING;
+    State before = NO_STATE;
+    if (is_carried(VOLUME, list)) {
+        before = state_of(list);
+        depth = uintBitsToFloat(before.a.x);
+        fragment = before.a.y;
+        previous = before.a.z;
+        used = before.a.w;
+        number = before.b.x;
+        transparency = uintBitsToFloat(before.b.y);
+        evaluations = reserved.evaluations;
+        if (before.b.z > 0u) {
+            Section section = sections[reserved.first_section + used];
+            begun = Gas(section.color, section.transparency, before.b.z, 0u, false);
+        }
+    }
+    bool is_done = depth >= end || used >= reserved.section_count;
+    bool is_stopped = is_cut;
+    while (!is_done && !is_stopped) {
         float next = end;
-        while (fragment != NONE) {
+        bool is_found = false;
+        while (fragment != NONE && !is_found) {
             Link link = links[fragment];
             float cut = mean_depth(link);
-            if (cut > depth) {
+            is_found = cut > depth;
+            if (is_found) {
                 next = min(next, cut);
-                break;
+            } else {
+                previous = fragment;
+                fragment = link.next;
             }
-            previous = fragment;
-            fragment = link.next;
         }
         bool has_gas = false;
         bool has_more = false;
-        for (uint v = 0u; v < counts.volumes; v++) {
+        for (v = 0u; v < counts.volumes; v++) {
             if (segments[v].x < segments[v].y && segments[v].y > depth) {
                 has_more = true;
                 if (segments[v].x > depth) {
@@ -229,24 +271,35 @@ void main() {
                 }
             }
         }
-        if (!has_more || next <= depth) {
-            break;
-        }
-        if (has_gas) {
-            Gas gas = march(pixel_index, ray, segments, vec2(depth, next), transparency, number);
-            number += gas.increments;
-            evaluations += gas.evaluations;
-            transparency *= gas.transparency;
-            uint slot = reserved.first_section + used;
-            sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
-            set_next(list, previous, slot | SECTION);
-            previous = slot | SECTION;
-            used++;
-            if (transparency < frame.early_end) {
-                break;
+        is_stopped = (fragment != NONE && !is_found) || v < counts.volumes;
+        is_done = !is_stopped && (!has_more || next <= depth);
+        if (!is_stopped && !is_done) {
+            if (has_gas) {
+                Gas gas = march(pixel_index, ray, segments, vec2(depth, next), transparency, number, begun);
+                evaluations += gas.evaluations;
+                uint slot = reserved.first_section + used;
+                sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
+                is_stopped = !gas.is_done;
+                if (is_stopped) {
+                    begun = gas;
+                } else {
+                    begun = NOTHING;
+                    number += gas.increments;
+                    transparency *= gas.transparency;
+                    set_next(list, previous, slot | SECTION);
+                    previous = slot | SECTION;
+                    used++;
+                    is_done = transparency < frame.early_end;
+                }
+            }
+            if (!is_stopped) {
+                depth = next;
+                is_done = is_done || depth >= end || used >= reserved.section_count;
             }
         }
-        depth = next;
     }
     pixels[list].evaluations = evaluations;
+    uvec4 place = uvec4(floatBitsToUint(depth), fragment, previous, used);
+    State state = State(place, uvec4(number, floatBitsToUint(transparency), begun.increments, 0u), uvec3(0u));
+    leave(VOLUME, list, is_done, before, state);
 }

@@ -24,5 +24,6 @@ uint fragment_at(uint node) {
     while (fragment != NONE && is_section(fragment)) {
         fragment = sections[fragment & ~SECTION].next;
     }
+    is_cut = is_cut || (fragment != NONE && is_section(fragment));
     return fragment;
 }

@@ -29,14 +29,14 @@ float fractal(vec3 p, bool is_noise) {
     float sum = 0.0;
     float frequency = 1.0;
     float scale = 1.0;
-    for (uint octave = 0u; octave < counts.octaves; octave++) {
+    uint count = is_noise ? min(counts.octaves, 1u) : counts.octaves;
+    uint octave = 0u;
+    for (; octave < count; octave++) {
         float value = noise(p * frequency);
-        if (is_noise) {
-            return value;
-        }
-        sum += abs(value) * scale;
+        sum += is_noise ? value : abs(value) * scale;
         frequency *= 2.0;
         scale *= 0.5;
     }
+    is_cut = is_cut || octave < count;
     return sum;
 }

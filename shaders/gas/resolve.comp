@@ -13,6 +13,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
+#include "gas/progress.glsl"
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
 #include "gas/object.glsl"
@@ -65,7 +66,8 @@ vec3 shaded(uint f, vec3 ray) {
     float strength = objects[surface.object].highlight_strength;
     float exponent = objects[surface.object].highlight_exponent;
     vec3 sum = albedo * frame.ambient;
-    for (uint l = 0u; l < counts.lights; l++) {
+    uint l = 0u;
+    for (; l < counts.lights; l++) {
         LightRay to_light = ray_to_light(l, point);
         float facing = dot(normal, to_light.direction);
         if (facing > 0.0) {
@@ -77,6 +79,7 @@ vec3 shaded(uint f, vec3 ray) {
             sum += light * (albedo * facing + strength * pow(mirrored, exponent));
         }
     }
+    is_cut = is_cut || l < counts.lights;
     return sum;
 }
 
@@ -85,8 +88,12 @@ void main() {
     if (!is_in_band(pixel)) {
         return;
     }
+    uint list = list_of(pixel);
+    if (!is_due(RESOLVE, list)) {
+        return;
+    }
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
-    uint head = heads[list_of(pixel)];
+    uint head = heads[list];
     vec3 color = vec3(0.0);
     float opacity = 0.0;
     // Sub-pixels that all masks treat alike are composited together: the group of the lowest that is left shrinks to
@@ -97,12 +104,26 @@ void main() {
     vec3 group_color = vec3(0.0);
     float transmittance = 1.0;
     uint node = head;
-    while (remaining != 0u) {
+    State before = NO_STATE;
+    if (is_carried(RESOLVE, list)) {
+        before = state_of(list);
+        remaining = before.a.x;
+        group = before.a.y;
+        node = before.a.z;
+        transmittance = uintBitsToFloat(before.a.w);
+        group_color = uintBitsToFloat(before.b.xyz);
+        opacity = uintBitsToFloat(before.b.w);
+        color = uintBitsToFloat(before.c);
+    }
+    bool is_stopped = false;
+    while (remaining != 0u && !is_stopped) {
         uint bit = remaining & (~remaining + 1u);
         // Gas, and fragments beside the group: a loop of its own, since a processor that does many pixels in step would
         // shade whenever one of them passes through gas.
         Link link = Link(NONE, 0u, 0.0, 0.0);
-        while (node != NONE && transmittance > 0.0) {
+        bool is_met = false; // a fragment of the group
+        while (node != NONE && transmittance > 0.0 && !is_met) {
+            made++;
             if (is_section(node)) {
                 Section gas = sections[node & ~SECTION];
                 group_color += gas.color * transmittance;
@@ -110,15 +131,16 @@ void main() {
                 node = gas.next;
             } else {
                 link = link_at(node);
-                if ((link.mask & bit) != 0u) {
-                    break;
+                is_met = (link.mask & bit) != 0u;
+                if (!is_met) {
+                    group &= ~link.mask;
+                    node = link.next;
                 }
-                group &= ~link.mask;
-                node = link.next;
             }
         }
-        if (node != NONE && transmittance > 0.0) {
-            group &= link.mask;
+        bool is_passed = node == NONE || transmittance <= 0.0;
+        if (is_met && !is_passed) {
+            uint narrowed = group & link.mask;
             // The fraction of this fragment that shows its neighbour instead.
             float fraction = 0.0;
             uint behind = fragment_at(link.next);
@@ -128,22 +150,28 @@ void main() {
                 if (shown > 0.0 && object_of(behind) != object_of(node)) {
                     bool is_there = (next.mask & bit) != 0u;
                     fraction = is_there ? shown : 0.0;
-                    group &= is_there ? next.mask : ~next.mask;
+                    narrowed &= is_there ? next.mask : ~next.mask;
                 }
             }
             float taken = transmittance * opacity_of(color_at(node));
             uint count = fraction > 0.0 ? 2u : 1u;
-            for (uint i = 0u;; i++) {
+            vec3 light = vec3(0.0);
+            uint i = 0u;
+            for (; i < count; i++) {
                 float weight = i == 0u ? 1.0 - fraction : fraction;
-                group_color += shaded(i == 0u ? node : behind, ray) * (taken * weight);
-                if (i + 1u >= count) {
-                    break;
-                }
+                light += shaded(i == 0u ? node : behind, ray) * (taken * weight);
             }
-            transmittance *= 1.0 - opacity_of(color_at(node));
-            node = link.next;
+            // Nothing is kept of a fragment that was not shaded to its end.
+            is_cut = is_cut || i < count;
+            if (!is_cut) {
+                group = narrowed;
+                group_color += light;
+                transmittance *= 1.0 - opacity_of(color_at(node));
+                node = link.next;
+            }
         }
-        if (node == NONE || transmittance <= 0.0) {
+        is_stopped = is_cut || (!is_passed && !is_met);
+        if (!is_stopped && (node == NONE || transmittance <= 0.0)) {
             float size = float(bitCount(group)) / 32.0;
             color += (group_color + frame.background * transmittance) * size;
             opacity += (1.0 - transmittance) * size;
@@ -153,6 +181,11 @@ void main() {
             transmittance = 1.0;
             node = head;
         }
+        is_stopped = is_stopped || made >= MOST_MADE;
     }
     imageStore(radiance, ivec2(pixel), vec4(color, opacity));
+    uvec4 place = uvec4(remaining, group, node, floatBitsToUint(transmittance));
+    uvec4 sums = uvec4(floatBitsToUint(group_color), floatBitsToUint(opacity));
+    State state = State(place, sums, floatBitsToUint(color));
+    leave(RESOLVE, list, remaining == 0u, before, state);
 }

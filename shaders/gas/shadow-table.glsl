@@ -23,11 +23,13 @@ float table_value(uint v, uint l, vec3 point) {
 float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
-    for (uint v = 0u; v < counts.volumes; v++) {
+    uint v = 0u;
+    for (; v < counts.volumes; v++) {
         vec2 segment = intersect(bounds_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
         if (segment.x <= segment.y) {
             sum += volumes[v].tau_per_m * table_value(v, l, point + to_light.direction * segment.x);
         }
     }
+    is_cut = is_cut || v < counts.volumes;
     return sum;
 }

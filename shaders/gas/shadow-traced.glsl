@@ -5,7 +5,8 @@
 float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
     float sum = 0.0;
-    for (uint v = 0u; v < counts.volumes; v++) {
+    uint v = 0u;
+    for (; v < counts.volumes; v++) {
         vec2 segment = intersect(volume_segment(v, point, to_light.direction), vec2(0.0, to_light.distance_m));
         float length_m = segment.y - segment.x;
         if (length_m <= 0.0) {
@@ -13,12 +14,17 @@ float optical_depth_to(uint l, vec3 point) {
         }
         float step_m = volumes[v].step_m;
         float in_volume = 0.0;
-        for (float from = 0.0; from < length_m; from += step_m) {
-            float increment = min(step_m, length_m - from);
+        uint count = uint(ceil(length_m / step_m));
+        uint i = 0u;
+        for (; i < count; i++) {
+            float from = float(i) * step_m;
+            float increment = clamp(length_m - from, 0.0, step_m);
             vec3 center = point + to_light.direction * (segment.x + from + 0.5 * increment);
             in_volume += volume_density(v, center) * increment;
         }
+        is_cut = is_cut || i < count;
         sum += volumes[v].tau_per_m * in_volume;
     }
+    is_cut = is_cut || v < counts.volumes;
     return sum;
 }

@@ -10,9 +10,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
+#include "gas/progress.glsl"
 #include "gas/volume.glsl"
 #include "gas/lists.glsl"
-
 layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
 };
@@ -52,56 +52,80 @@ bool stands_before(uint a, uint b) {
         : surface_a.triangle < surface_b.triangle;
 }
 
-// Merges runs of 1, 2, 4, ... links until one run is left.
-uint sorted(uint unsorted) {
-    uint head = unsorted;
-    for (uint run = 1u; run != 0u; run *= 2u) {
-        uint p = head;
-        uint tail = NONE;
-        uint merges = 0u;
-        head = NONE;
-        while (p != NONE) {
-            merges++;
-            uint q = p;
-            uint p_left = 0u;
-            for (uint i = 0u; i < run; i++) {
-                if (q != NONE) {
-                    p_left++;
-                    q = links[q].next;
-                }
+// A merge sort on its way: runs of `run` links are merged two by two, what is merged hangs on `head`.
+struct Merge {
+    uint head;
+    uint tail;
+    uint p; // of the run in front
+    uint q; // of the run behind
+    uint p_left;
+    uint q_left;
+    uint run;
+    uint merges;
+    bool is_parted; // q has its place, so that p and q are being merged
+};
+
+// Merges runs of 1, 2, 4, ... links until one run is left; true when it is.
+bool is_sorted(inout Merge m) {
+    bool is_done = false;
+    bool is_stopped = false; // the next dispatch goes on
+    while (!is_done && !is_stopped) {
+        while (m.p != NONE && !is_stopped) {
+            while (!m.is_parted && m.p_left < m.run && m.q != NONE) {
+                m.p_left++;
+                m.q = links[m.q].next;
             }
-            uint q_left = run;
-            while (p_left > 0u || (q_left > 0u && q != NONE)) {
-                bool take_p = p_left > 0u;
-                if (take_p && q_left > 0u && q != NONE) {
-                    take_p = !stands_before(q, p);
+            bool is_parted = m.is_parted || m.p_left == m.run || m.q == NONE;
+            if (is_parted && !m.is_parted) {
+                m.is_parted = true;
+                m.q_left = m.run;
+                m.merges++;
+            }
+            while (m.is_parted && (m.p_left > 0u || (m.q_left > 0u && m.q != NONE))) {
+                bool take_p = m.p_left > 0u;
+                if (take_p && m.q_left > 0u && m.q != NONE) {
+                    take_p = !stands_before(m.q, m.p);
                 }
-                uint taken = take_p ? p : q;
+                uint taken = take_p ? m.p : m.q;
                 if (take_p) {
-                    p = links[p].next;
-                    p_left--;
+                    m.p = links[m.p].next;
+                    m.p_left--;
                 } else {
-                    q = links[q].next;
-                    q_left--;
+                    m.q = links[m.q].next;
+                    m.q_left--;
                 }
-                if (tail == NONE) {
-                    head = taken;
+                if (m.tail == NONE) {
+                    m.head = taken;
                 } else {
-                    links[tail].next = taken;
+                    links[m.tail].next = taken;
                 }
-                tail = taken;
+                m.tail = taken;
             }
-            p = q;
+            is_stopped = !m.is_parted || m.p_left > 0u || (m.q_left > 0u && m.q != NONE);
+            if (!is_stopped) {
+                made += m.run;
+                m.p = m.q;
+                m.p_left = 0u;
+                m.is_parted = false;
+                is_stopped = made >= MOST_MADE;
+            }
         }
-        if (tail != NONE) {
-            links[tail].next = NONE;
-        }
-        if (merges <= 1u) {
-            break;
+        if (m.p == NONE && !m.is_parted) {
+            if (m.tail != NONE) {
+                links[m.tail].next = NONE;
+            }
+            is_done = m.merges <= 1u;
+            if (!is_done) {
+                m = Merge(NONE, NONE, m.head, m.head, 0u, 0u, m.run * 2u, 0u, false);
+            }
         }
     }
-    return head;
+    return is_done;
 }
+
+const uint MERGING = 0u;
+const uint COVERING = 1u; // the end of the tracing is looked for
+const uint COUNTING = 2u; // of the sections
 
 void main() {
     uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
@@ -109,40 +133,78 @@ void main() {
         return;
     }
     uint at = list_of(pixel);
-    uint head = sorted(heads[at]);
-    heads[at] = head;
-
-    float end = frame.yon_m;
+    if (!is_due(SORT, at)) {
+        return;
+    }
+    uint head = heads[at];
+    Merge merge = Merge(NONE, NONE, head, head, 0u, 0u, 1u, 0u, false);
+    uint phase = MERGING;
+    uint f = NONE;
     uint covered = 0u;
-    for (uint f = head; f != NONE && covered != 0xffffffffu; f = links[f].next) {
-        if (opacity_of(colors[f]) >= 1.0) {
-            covered |= links[f].mask;
-            if (covered == 0xffffffffu) {
-                end = min(end, mean_depth(links[f]));
+    float end = frame.yon_m;
+    uint cuts = 0u;
+    State before = NO_STATE;
+    if (is_carried(SORT, at)) {
+        before = state_of(at);
+        phase = before.c.x;
+        if (phase == MERGING) {
+            merge = Merge(before.a.x, before.a.y, before.a.z, before.a.w, before.b.x, before.b.y, before.b.z, before.b.w,
+                before.c.y != 0u);
+        } else {
+            f = before.a.x;
+            covered = before.a.y;
+            end = uintBitsToFloat(before.a.z);
+            cuts = before.a.w;
+        }
+    }
+    if (phase == MERGING) {
+        if (is_sorted(merge)) {
+            head = merge.head;
+            heads[at] = head;
+            f = head;
+            phase = COVERING;
+        }
+    }
+    if (phase == COVERING) {
+        for (; f != NONE && covered != 0xffffffffu; f = links[f].next) {
+            if (opacity_of(colors[f]) >= 1.0) {
+                covered |= links[f].mask;
+                if (covered == 0xffffffffu) {
+                    end = min(end, mean_depth(links[f]));
+                }
             }
         }
     }
 
-    vec3 ray = ray_direction(vec2(pixel) + 0.5);
-    vec2 extent = vec2(1.0e30, 0.0);
-    uint cuts = 0u;
-    for (uint v = 0u; v < counts.volumes; v++) {
-        vec2 segment = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
-        if (segment.x < segment.y) {
-            extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));
-            cuts += 2u;
-        }
-    }
-    uint wanted = 0u;
-    if (cuts > 0u) {
-        for (uint f = head; f != NONE; f = links[f].next) {
-            float depth = mean_depth(links[f]);
-            if (depth > extent.x && depth < extent.y) {
-                cuts++;
+    bool is_done = false;
+    if (phase != MERGING && !(phase == COVERING && f != NONE && covered != 0xffffffffu)) {
+        vec3 ray = ray_direction(vec2(pixel) + 0.5);
+        vec2 extent = vec2(1.0e30, 0.0);
+        uint ends = 0u;
+        uint v = 0u;
+        for (; v < counts.volumes; v++) {
+            vec2 segment = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
+            if (segment.x < segment.y) {
+                extent = vec2(min(extent.x, segment.x), max(extent.y, segment.y));
+                ends += 2u;
             }
         }
-        wanted = cuts - 1u;
+        if (v == counts.volumes) {
+            if (phase == COVERING) {
+                phase = COUNTING;
+                f = ends > 0u ? head : NONE;
+                cuts = ends;
+            }
+            for (; f != NONE; f = links[f].next) {
+                float depth = mean_depth(links[f]);
+                if (depth > extent.x && depth < extent.y) {
+                    cuts++;
+                }
+            }
+            is_done = f == NONE;
+        }
     }
+    uint wanted = is_done && cuts > 0u ? cuts - 1u : 0u;
     uint first = 0u;
     if (wanted > 0u) {
         first = atomicAdd(section_count, wanted);
@@ -151,4 +213,11 @@ void main() {
         }
     }
     pixels[at] = Pixel(first, wanted, end, 0u);
+
+    State state = State(uvec4(f, covered, floatBitsToUint(end), cuts), uvec4(0u), uvec3(phase, 0u, 0u));
+    if (phase == MERGING) {
+        state = State(uvec4(merge.head, merge.tail, merge.p, merge.q),
+            uvec4(merge.p_left, merge.q_left, merge.run, merge.merges), uvec3(phase, uint(merge.is_parted), 0u));
+    }
+    leave(SORT, at, is_done, before, state);
 }

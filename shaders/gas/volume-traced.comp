@@ -5,6 +5,7 @@
 #include "gas/frame.glsl"
 #include "gas/counts.glsl"
 #include "gas/band.glsl"
+#include "gas/progress.glsl"
 #include "gas/volume.glsl"
 #include "gas/density.glsl"
 #include "gas/light.glsl"

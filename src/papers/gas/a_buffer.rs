@@ -9,6 +9,7 @@ use half::f16;
 use super::blocks::{ColorBlock, CountersBlock, LinkBlock, PixelBlock, SectionBlock, SurfaceBlock};
 use super::capacity::Capacity;
 use super::context::Context;
+use super::progress::Progress;
 use crate::gpu::transfer::{read_buffer, upload};
 use crate::gpu::{Buffer, Error, ShaderLibrary};
 
@@ -31,6 +32,8 @@ pub struct ABuffer {
     pub pixels: Arc<Buffer>,
     /// One [`CountersBlock`].
     pub counters: Arc<Buffer>,
+    /// States of pixels that a pass has not finished.
+    pub progress: Progress,
 }
 
 /// A fragment as the device left it.
@@ -70,6 +73,7 @@ impl ABuffer {
             colors: context.storage::<ColorBlock>("fragment-colors", fragment_count)?,
             pixels: context.storage::<PixelBlock>("pixels", pixel_count)?,
             counters: upload(context.shaders.device(), &context.name("counters"), usage, &zeros)?,
+            progress: Progress::new(context, pixel_count)?,
         })
     }
 

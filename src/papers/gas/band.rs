@@ -12,6 +12,8 @@ host_block! {
         list_row: u32,
         first_row: u32,
         end_row: u32,
+        call: u32,
+        calls: u32,
     }
 }
 
@@ -34,7 +36,8 @@ impl Band {
     }
 
     pub fn constants(self) -> BandConstants {
-        BandConstants { list_row: self.first_row, first_row: self.first_row, end_row: self.end_row }
+        let Band { first_row, end_row, .. } = self;
+        BandConstants { list_row: first_row, first_row, end_row, call: 0, calls: 1 }
     }
 
     /// Dispatches a thread a pixel.
@@ -47,16 +50,30 @@ impl Band {
         })
     }
 
-    /// Dispatches a thread a pixel, in dispatches that take a short time each.
+    /// Dispatches a thread a pixel `calls` times, each of which goes on with what the one before it has left.
     ///
     /// # Errors
     /// Those of Vulkan.
-    pub fn dispatch_in_parts(self, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
-        frame.compute(pass, |dispatch| {
-            for (first_row, end_row) in ranges(self.first_row, self.end_row, DISPATCH_ROWS) {
-                let constants = BandConstants { first_row, end_row, ..self.constants() };
-                dispatch.constants(&constants).threads(self.width, end_row - first_row, 1);
-            }
+    pub fn dispatch_times(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        self.dispatch_rows(self.end_row - self.first_row, calls, frame, pass)
+    }
+
+    /// As [`Band::dispatch_times`], in dispatches that take a short time each.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn dispatch_in_parts(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        self.dispatch_rows(DISPATCH_ROWS, calls, frame, pass)
+    }
+
+    fn dispatch_rows(self, rows: u32, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        (0..calls).try_for_each(|call| {
+            frame.compute(pass, |dispatch| {
+                for (first_row, end_row) in ranges(self.first_row, self.end_row, rows) {
+                    let constants = BandConstants { first_row, end_row, call, calls, ..self.constants() };
+                    dispatch.constants(&constants).threads(self.width, end_row - first_row, 1);
+                }
+            })
         })
     }
 }

@@ -1,13 +1,14 @@
 //! The rows of the picture that are done at once, and the slots of their lists.
 
-use super::blocks::{LinkBlock, PixelBlock, SectionBlock};
+use super::blocks::{LinkBlock, SectionBlock};
 use super::parameters::Parameters;
+use super::progress::StateBlock;
 use crate::gpu::{Device, Error};
 
 /// Bytes of each list's widest buffer: of a fragment, of a section, of a pixel.
 const LINK_BYTES: u64 = size_of::<LinkBlock>() as u64;
 const SECTION_BYTES: u64 = size_of::<SectionBlock>() as u64;
-const PIXEL_BYTES: u64 = size_of::<PixelBlock>() as u64;
+const PIXEL_BYTES: u64 = size_of::<StateBlock>() as u64;
 
 /// The fraction of the largest memory heap that one buffer of the lists may take: there are six of them, and the
 /// picture.

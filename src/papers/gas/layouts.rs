@@ -4,6 +4,7 @@ use super::blocks::{
     ColorBlock, CountersBlock, CountsBlock, FrameBlock, LightBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock,
     SurfaceBlock, TriangleBlock, VertexBlock, VolumeBlock,
 };
+use super::progress::UnfinishedBlock;
 use crate::papers::layout::{check_block, check_list};
 
 #[test]
@@ -22,5 +23,6 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<PixelBlock>("gas/sort.comp", "Pixels");
     check_list::<SectionBlock>("gas/volume-table.comp", "Sections");
     check_block::<CountsBlock>("gas/resolve.comp", "counts");
+    check_block::<UnfinishedBlock>("gas/sort.comp", "Unfinished");
     check_block::<CountersBlock>("gas/sort.comp", "Counters");
 }

@@ -45,12 +45,14 @@ impl LightAttenuation {
             .with("Sections", sections)
             .with("Attenuations", &attenuations)
             .with(name, buffer)
+            .with("Progress", &lists.progress.states)
+            .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>()
             .build(context.shaders)?;
         Ok(LightAttenuation { attenuations, pass })
     }
 
-    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        band.dispatch_in_parts(frame, &self.pass)
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
+        band.dispatch_in_parts(calls, frame, &self.pass)
     }
 }

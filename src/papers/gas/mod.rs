@@ -22,6 +22,7 @@ mod layouts;
 mod light_attenuation;
 pub mod model;
 pub mod parameters;
+mod progress;
 pub mod reference;
 mod resolve;
 mod scene_buffers;
@@ -44,6 +45,7 @@ use self::empty_lists::EmptyLists;
 use self::fragments::Fragments;
 use self::light_attenuation::LightAttenuation;
 use self::model::Object;
+use self::progress::{Calls, Carried};
 use self::resolve::Resolve;
 use self::scene_buffers::SceneBuffers;
 use self::shadow_table::ShadowTable;
@@ -67,6 +69,7 @@ pub struct Gas {
     parameters: Parameters,
     scene: SceneBuffers,
     passes: Passes,
+    calls: Calls,
     buffer_limit: BufferLimit,
     lacks_geometry_stage: bool,
 }
@@ -146,7 +149,7 @@ impl Gas {
         let (label, parameters) = (label.to_owned(), parameters.clone());
         let lacks_geometry_stage =
             parameters.geometry_stage && !shaders.device().physical().has(Feature::GeometryShader);
-        Ok(Gas { label, variant, parameters, scene, passes, buffer_limit, lacks_geometry_stage })
+        Ok(Gas { label, variant, parameters, scene, passes, calls: Calls::ONCE, buffer_limit, lacks_geometry_stage })
     }
 
     /// The rows that are done at once, and the most fragments and sections that they have wanted in a frame so far.
@@ -186,7 +189,7 @@ impl Paper for Gas {
         for band in Band::all(self.parameters.width, self.parameters.height, capacity.rows) {
             passes.empty_lists.record(frame, band)?;
             passes.fragments.record(frame, band)?;
-            passes.sort.record(frame, band)?;
+            passes.sort.record(frame, band, self.calls.of(Carried::Sort))?;
             // All bands look up the same tables.
             if let (Some(densities), Some(shadows), true) =
                 (&passes.density_table, &passes.shadow_table, band.is_first())
@@ -195,12 +198,12 @@ impl Paper for Gas {
                 shadows.record(frame)?;
             }
             if let Some(volume) = &passes.volume {
-                volume.record(frame, band)?;
+                volume.record(frame, band, self.calls.of(Carried::Volume))?;
             }
             if let Some(light_attenuation) = &passes.light_attenuation {
-                light_attenuation.record(frame, band)?;
+                light_attenuation.record(frame, band, self.calls.of(Carried::LightAttenuation))?;
             }
-            passes.resolve.record(frame, band)?;
+            passes.resolve.record(frame, band, self.calls.of(Carried::Resolve))?;
         }
         Ok(())
     }
@@ -212,7 +215,11 @@ impl Paper for Gas {
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         let lists = &self.passes.lists;
-        let Some(capacity) = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)? else { return Ok(true) };
+        let Some(capacity) = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)? else {
+            let raised = self.calls.raised(shaders, &lists.progress)?;
+            self.calls = raised.unwrap_or(self.calls);
+            return Ok(raised.is_none());
+        };
         let context = Context { shaders, label: &self.label, parameters: &self.parameters };
         self.passes = Passes::new(&context, &self.scene, self.variant, capacity)?;
         Ok(false)

@@ -56,12 +56,14 @@ impl Resolve {
             .with("Sections", &or_unread(sections, "no sections")?)
             .with("Attenuations", &or_unread(attenuations, "no attenuations")?)
             .with("radiance", &radiance)
+            .with("Progress", &lists.progress.states)
+            .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>()
             .build(context.shaders)?;
         Ok(Resolve { radiance, pass })
     }
 
-    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        band.dispatch(frame, &self.pass)
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
+        band.dispatch_times(calls, frame, &self.pass)
     }
 }

@@ -25,12 +25,14 @@ impl Sort {
             .with("Colors", &lists.colors)
             .with("Counters", &lists.counters)
             .with("Pixels", &lists.pixels)
+            .with("Progress", &lists.progress.states)
+            .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>()
             .build(context.shaders)?;
         Ok(Sort { pass })
     }
 
-    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        band.dispatch(frame, &self.pass)
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
+        band.dispatch_times(calls, frame, &self.pass)
     }
 }

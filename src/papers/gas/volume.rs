@@ -45,6 +45,8 @@ impl VolumeMarch {
             .with("Links", &lists.links)
             .with("Pixels", &lists.pixels)
             .with("Sections", &sections)
+            .with("Progress", &lists.progress.states)
+            .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>();
         if let Some(sums) = shadow_sums {
             pass = pass.with("ShadowTables", sums);
@@ -52,7 +54,7 @@ impl VolumeMarch {
         Ok(VolumeMarch { pass: pass.build(context.shaders)?, sections })
     }
 
-    pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        band.dispatch_in_parts(frame, &self.pass)
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
+        band.dispatch_in_parts(calls, frame, &self.pass)
     }
 }

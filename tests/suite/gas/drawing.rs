@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::transfer::read_image;
-use fumarole::gpu::{Compiler, Device, Mode, Recorder, ShaderLibrary};
+use fumarole::gpu::{Compiler, Device, Error, Mode, Recorder, ShaderLibrary};
 use fumarole::image::{Rgba8, Samples};
 use fumarole::measure::Paper;
 use fumarole::measure::picture::read_target;
@@ -20,6 +20,8 @@ pub struct Drawing {
     /// Evaluations of the density along the viewer's rays.
     pub evaluations: u64,
     pub picture: Rgba8,
+    /// Times that the frame was recorded until lists and dispatches were enough.
+    pub runs: u32,
     targets: Vec<(String, Vec<f32>)>,
 }
 
@@ -36,13 +38,38 @@ impl Drawing {
         objects: &[Object],
         number: u32,
     ) -> Self {
+        Self::tried_frame(device, compiler, variant, parameters, objects, number).unwrap()
+    }
+
+    /// As [`Drawing::of`], or the error of the drawing.
+    pub fn tried(
+        device: &Arc<Device>,
+        variant: Variant,
+        parameters: &Parameters,
+        objects: &[Object],
+    ) -> Result<Self, Error> {
+        Self::tried_frame(device, Compiler::Glslang, variant, parameters, objects, 0)
+    }
+
+    fn tried_frame(
+        device: &Arc<Device>,
+        compiler: Compiler,
+        variant: Variant,
+        parameters: &Parameters,
+        objects: &[Object],
+        number: u32,
+    ) -> Result<Self, Error> {
         parameters.validate().unwrap();
         let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
         let mut gas = Gas::new(&shaders, "test", variant, parameters, objects, None).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
-        recorder.run(Mode::Plain, |frame| gas.record_picture(frame, number)).unwrap();
-        while !gas.settle(&shaders).unwrap() {
-            recorder.run(Mode::Plain, |frame| gas.record_picture(frame, number)).unwrap();
+        let mut runs = 0;
+        loop {
+            runs += 1;
+            recorder.run(Mode::Plain, |frame| gas.record_picture(frame, number))?;
+            if gas.settle(&shaders)? {
+                break;
+            }
         }
         let targets: Vec<(String, Vec<f32>)> = gas
             .targets()
@@ -56,14 +83,15 @@ impl Drawing {
         let radiance = targets.iter().find(|(n, _)| n == "radiance").unwrap().1.clone();
         let view = gas.picture();
         let picture = Rgba8::new(view.width(), view.height(), read_image(device, view).unwrap()).unwrap();
-        Drawing {
+        Ok(Drawing {
             radiance,
             lists: gas.fragments(&shaders).unwrap(),
             demand: gas.demand(&shaders).unwrap(),
             evaluations: gas.evaluations(&shaders).unwrap(),
             picture,
+            runs,
             targets,
-        }
+        })
     }
 
     /// The values of a target of `--dump`.

@@ -3,6 +3,7 @@
 mod density;
 mod drawing;
 mod lists;
+mod long;
 mod march;
 mod pictures;
 mod resolve;

@@ -6,6 +6,7 @@ mod devices;
 mod first_pass;
 mod fixtures;
 mod indirect;
+mod loops;
 mod memory;
 mod memory_model;
 mod misuse;

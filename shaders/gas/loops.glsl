@@ -1,0 +1,10 @@
+// Loops that a driver ends: lavapipe gives a shader 65,535 iterations, shared between all its loops and the threads that
+// run in step; then every loop ends with the iteration that it is in, without a word. So every loop whose length follows
+// from the input, or that stands beside such a one, finds out from its own state, and nothing is kept of what it began.
+// Such a loop is left by its condition alone: behind one that has a second way out, what it leaves through that way may
+// not be up to date when the driver ends it.
+
+bool is_cut = false; // a loop of this thread was ended before its end
+
+uint made = 0u; // densities, or steps along a list, of this thread
+const uint MOST_MADE = 65536u; // after which a thread ends by itself, so that no dispatch is long

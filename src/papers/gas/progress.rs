@@ -1,0 +1,126 @@
+//! Work that one dispatch does not finish: a driver may end loops, and no dispatch is to be long. Each pixel's state is
+//! kept for the next dispatch of the pass, whose number is raised until the last one leaves nothing.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::context::Context;
+use crate::gpu::transfer::{read_buffer, upload};
+use crate::gpu::{Buffer, Error, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    /// The state of a pixel, as `progress.glsl` describes it.
+    pub struct StateBlock {
+        words: [u32; 12],
+    }
+}
+
+host_block! {
+    /// What is left after the last dispatch of each pass.
+    pub struct UnfinishedBlock {
+        /// The dispatches after which some pixel was not finished, 0 where all are.
+        unfinished: [u32; 4],
+        /// 1 where a dispatch got no further with some pixel.
+        stuck: [u32; 4],
+    }
+}
+
+/// Most dispatches of a pass for one band, which keeps command buffers short of a minute's recording.
+const MOST_CALLS: u32 = 4096;
+
+/// Growth of the dispatches of a pass that lacks some.
+const GROWTH: u32 = 4;
+
+/// The passes that carry work on, as `progress.glsl` numbers them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Carried {
+    Sort,
+    Volume,
+    LightAttenuation,
+    Resolve,
+}
+
+impl Carried {
+    const ALL: [Carried; 4] = [Carried::Sort, Carried::Volume, Carried::LightAttenuation, Carried::Resolve];
+
+    fn name(self) -> &'static str {
+        match self {
+            Carried::Sort => "sort",
+            Carried::Volume => "volume",
+            Carried::LightAttenuation => "light-attenuation",
+            Carried::Resolve => "resolve",
+        }
+    }
+
+    /// What makes less work of it.
+    fn way_out(self) -> &'static str {
+        match self {
+            Carried::Sort | Carried::Resolve => "give a larger `size` or an `object` of fewer triangles",
+            Carried::Volume | Carried::LightAttenuation => "lower `steps`",
+        }
+    }
+}
+
+/// The states of a band's pixels.
+pub struct Progress {
+    /// Of each pixel, a [`StateBlock`].
+    pub states: Arc<Buffer>,
+    /// One [`UnfinishedBlock`].
+    pub unfinished: Arc<Buffer>,
+}
+
+impl Progress {
+    /// # Errors
+    /// [`Error::Limit`] for a picture beyond what the device binds.
+    pub fn new(context: &Context<'_>, pixel_count: u64) -> Result<Self, Error> {
+        let zeros = [0; size_of::<UnfinishedBlock>()];
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        Ok(Progress {
+            states: context.storage::<StateBlock>("progress", pixel_count)?,
+            unfinished: upload(context.shaders.device(), &context.name("unfinished"), usage, &zeros)?,
+        })
+    }
+}
+
+/// The dispatches of each pass for a band.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Calls([u32; 4]);
+
+impl Calls {
+    /// One each, which most scenes need.
+    pub const ONCE: Calls = Calls([1; 4]);
+
+    pub fn of(self, pass: Carried) -> u32 {
+        self.0[pass as usize]
+    }
+
+    /// More of those that left pixels unfinished; nothing where all are finished.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] where more dispatches do not help, or are too many.
+    pub fn raised(self, shaders: &ShaderLibrary, progress: &Progress) -> Result<Option<Self>, Error> {
+        let bytes = read_buffer(shaders.device(), &progress.unfinished)?;
+        let Some(found) = bytemuck::pod_collect_to_vec::<u8, UnfinishedBlock>(&bytes).first().copied() else {
+            return Ok(None);
+        };
+        let mut raised = self;
+        for pass in Carried::ALL {
+            let (calls, at) = (self.of(pass), pass as usize);
+            let error = |problem: String| {
+                Err(Error::Pass { pass: pass.name().to_owned(), problem: format!("{problem}; {}", pass.way_out()) })
+            };
+            if found.stuck[at] != 0 {
+                return error("the device ends its loops before one step of some pixel is done".to_owned());
+            }
+            if found.unfinished[at] == calls {
+                if calls >= MOST_CALLS {
+                    return error(format!("{calls} dispatches do not finish some pixel"));
+                }
+                raised.0[at] = calls.saturating_mul(GROWTH).min(MOST_CALLS);
+            }
+        }
+        Ok(Some(raised).filter(|raised| *raised != self))
+    }
+}
