@@ -18,7 +18,7 @@ vec4 lit(vec3 pattern) {
         n = -n;
     }
     // `color` mixes the plain albedo with that of char; this replaces it by the pattern's.
-    vec3 albedo = color.rgb + (1.0 - normal.w) * constants.albedo * (pattern - 1.0);
+    vec3 albedo = color.rgb + (1.0 - constants.charring * normal.w) * constants.albedo * (pattern - 1.0);
     float light = view.ambient + (1.0 - view.ambient) * max(dot(n, view.to_light), 0.0);
-    return vec4(albedo * light + color.a * EMBERS, 1.0);
+    return vec4(albedo * light + constants.charring * color.a * EMBERS, 1.0);
 }

@@ -1,8 +1,8 @@
 #version 450
 
 // Normals of the mapped mesh (appendix B: summed over triangles), weighted by area, gathered by draw vertex; and the
-// colour of its charring: the albedo fades from the initial boundary to the deformed area, and what has just reached
-// combustion glows.
+// colour of its charring: the albedo of what chars fades from the initial boundary to the deformed area, and what has
+// just reached combustion glows.
 
 layout(local_size_x = 64) in;
 
@@ -100,5 +100,5 @@ void main() {
     float charred = clamp((r - distance_to_boundary) / (2.0 * width), 0.0, 1.0);
     float glow = max(0.0, 1.0 - abs(distance_to_boundary - (r - width)) / (0.5 * width));
     normals[corner] = vec4(normal, charred);
-    colors[corner] = vec4(mix(constants.albedo, CHAR, charred), glow);
+    colors[corner] = vec4(mix(constants.albedo, CHAR, constants.charring * charred), glow);
 }

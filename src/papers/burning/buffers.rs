@@ -50,6 +50,7 @@ host_block! {
         coarse_count: u32,
         fire_pool: u32,
         smoke_pool: u32,
+        charring: f32,
     }
 }
 
@@ -257,7 +258,12 @@ impl Buffers {
             mapped: empty("mapped", 16 * vertices, plain)?,
             normals: empty("normals", 16 * corners, plain)?,
             colors: empty("colors", 16 * corners, plain)?,
-            stream: empty("stream", 12 * triangles, vk::BufferUsageFlags::INDEX_BUFFER)?,
+            stream: upload(
+                device,
+                &name("stream"),
+                STORAGE | vk::BufferUsageFlags::INDEX_BUFFER,
+                &vec![0; 12 * triangles],
+            )?,
             arguments: empty("arguments", 20, vk::BufferUsageFlags::INDIRECT_BUFFER)?,
             start: Vec::new(),
         };
@@ -339,7 +345,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         floor_y: model.floor,
         block_size: model.grid.cell_size,
         mean_edge: model.mean_edge,
-        albedo: p.albedo,
+        albedo: p.albedo(variant),
         fall_per_tick: (f64::from(p.epsilon) * GRAVITY * tick_s * tick_s) as f32,
         vertex_count: model.vertex_count(),
         triangle_count: model.triangle_count(),
@@ -368,6 +374,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         coarse_count: model.coarse_count(),
         fire_pool: p.fire,
         smoke_pool: p.smoke,
+        charring: if p.chars(variant) { 1.0 } else { 0.0 },
     }
 }
 

@@ -8,7 +8,7 @@ use glam::{Mat4, Vec3};
 use super::buffers::Buffers;
 use super::framing;
 use super::model::Model;
-use super::parameters::{Material, Parameters, Shading};
+use super::parameters::{Material, Parameters, Shading, Variant};
 use super::texture::Surface;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
@@ -29,8 +29,6 @@ host_block! {
 /// Direction to the light, not of unit length, and its ambient fraction.
 const TO_LIGHT: Vec3 = Vec3::new(0.45, 0.75, 0.6);
 const AMBIENT: f32 = 0.35;
-/// Behind the object, linear RGB.
-const BACKGROUND: Load = Load::Clear([0.012, 0.014, 0.02, 1.0]);
 const FAR: Load = Load::Clear([1.0, 0.0, 0.0, 0.0]);
 
 /// The pass with its targets.
@@ -54,7 +52,7 @@ impl Draw {
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
-        parameters: &Parameters,
+        (variant, parameters): (Variant, &Parameters),
         buffers: &Buffers,
         model: &Model,
     ) -> Result<Self, Error> {
@@ -84,7 +82,7 @@ impl Draw {
             }
             Some(texture) => Some(Surface::new(shaders, label, texture, coordinates)?),
         };
-        let (vertex, fragment) = shaders_of(parameters);
+        let (vertex, fragment) = shaders_of(variant, parameters);
         let mut pass =
             Pass::graphics("draw", "3.8", &format!("burning/{vertex}.vert"), &format!("burning/{fragment}.frag"));
         pass = match parameters.shading {
@@ -110,7 +108,7 @@ impl Draw {
             .with("Colors", &buffers.colors)
             .indices(&buffers.stream)
             .indirect(&buffers.arguments)
-            .color(&picture, BACKGROUND, Blend::Replace)
+            .color(&picture, Load::Clear(parameters.background.extend(1.0).to_array()), Blend::Replace)
             .depth(&depth, FAR, DepthTest::LessWrite)
             .build(shaders)?;
         Ok(Draw { pass, camera, view, depth, picture, surface })
@@ -127,14 +125,14 @@ impl Draw {
 
 /// The pass's vertex and fragment shader: one each for what colours the surface. Devices that run both sides of a branch
 /// would pay for all of them, and drivers that fold a uniform's value into a shader compile it anew.
-fn shaders_of(parameters: &Parameters) -> (&'static str, &'static str) {
-    match (parameters.shading, &parameters.texture, parameters.material) {
+fn shaders_of(variant: Variant, parameters: &Parameters) -> (&'static str, &'static str) {
+    match (parameters.shading, parameters.material(variant)) {
         (Shading::Areas, ..) => ("draw-areas", "draw"),
         (Shading::Blocks, ..) => ("draw-blocks", "draw"),
         (Shading::Normals, ..) => ("draw-surface", "draw-normals"),
         // Edges stand out on a surface without a pattern.
-        (Shading::Wire, ..) | (Shading::Lit, None, Material::Plain) => ("draw-surface", "draw"),
-        (Shading::Lit, Some(_), _) => ("draw-textured", "draw-textured"),
-        (Shading::Lit, None, Material::Wood) => ("draw-surface", "draw-wood"),
+        (Shading::Wire, _) | (Shading::Lit, Some(Material::Plain | Material::Wax)) => ("draw-surface", "draw"),
+        (Shading::Lit, None) => ("draw-textured", "draw-textured"),
+        (Shading::Lit, Some(Material::Wood)) => ("draw-surface", "draw-wood"),
     }
 }

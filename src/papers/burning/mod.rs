@@ -118,7 +118,7 @@ impl Burning {
         let is_refined = variant.refines() && model.levels > 0;
         let refinement =
             is_refined.then(|| Refinement::new(shaders, label, parameters, &mut buffers, &model)).transpose()?;
-        let draw = Draw::new(shaders, label, parameters, &buffers, &model)?;
+        let draw = Draw::new(shaders, label, (variant, parameters), &buffers, &model)?;
         let has_wire = parameters.shading == Shading::Wire;
         let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
         let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &draw)?;
@@ -231,6 +231,11 @@ impl Burning {
     /// Ping-pong index of the buffers that the last whole tick wrote.
     fn newest(&self) -> usize {
         (self.ticks() % 2) as usize
+    }
+
+    /// The method and every number.
+    pub fn made_of(&self) -> (Variant, &Parameters) {
+        (self.variant, &self.parameters)
     }
 
     /// The object, prepared.
@@ -362,6 +367,9 @@ impl Paper for Burning {
         let buffers = &self.buffers;
         let mut targets = vec![
             Target::table("rest", &buffers.rest, 4),
+            Target::words("triangles", &buffers.triangles, 3),
+            Target::words("corners", &buffers.corners, 3),
+            Target::words("welds", &buffers.welds, 1),
             Target::table("state", state, 4),
             Target::words("labels", &buffers.labels, 1),
             Target::words("triangle-labels", &buffers.triangle_labels, 1),
@@ -370,6 +378,8 @@ impl Paper for Burning {
             Target::words("cells", &buffers.cells, 1),
             Target::integers("blocks", &buffers.blocks, 8),
             Target::table("rotations", rotations, 4),
+            Target::words("clock", &buffers.clock, 11),
+            Target::words("stream", &buffers.stream, 3),
             Target::table("mapped", &buffers.mapped, 4),
             Target::table("normals", &buffers.normals, 4),
             Target::table("colors", &buffers.colors, 4),

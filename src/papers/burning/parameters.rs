@@ -64,12 +64,17 @@ pub enum Material {
     Plain,
     /// The albedo with the rings of a tree around a vertical axis.
     Wood,
+    /// The albedo alone, which neither chars nor glows.
+    Wax,
 }
 
 impl Choice for Material {
-    const ALL: &'static [Material] = &[Material::Plain, Material::Wood];
-    const NAMES: &'static [(&'static str, &'static str)] =
-        &[("plain", "The albedo alone"), ("wood", "The albedo with the rings of a tree")];
+    const ALL: &'static [Material] = &[Material::Plain, Material::Wood, Material::Wax];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("plain", "The albedo alone"),
+        ("wood", "The albedo with the rings of a tree"),
+        ("wax", "The albedo alone, which neither chars nor glows"),
+    ];
 }
 
 /// The quantity that colours the mesh.
@@ -186,12 +191,14 @@ pub struct Parameters {
     pub particle_radius: f32,
     /// Finest level that is drawn; without, by the distance of the camera (4.5).
     pub level_of_detail: Option<u32>,
-    /// The surface's pattern.
-    pub material: Material,
+    /// The surface's pattern, and what fire does to it; without, wood, and wax where it melts.
+    pub material: Option<Material>,
     /// Covers the object in place of the material; the mesh must have texture coordinates.
     pub texture: Option<Arc<Texture>>,
-    /// Linear RGB; a factor of the texture.
-    pub albedo: Vec3,
+    /// Linear RGB; a factor of the texture. Without, the material's own.
+    pub albedo: Option<Vec3>,
+    /// Behind the object, linear RGB.
+    pub background: Vec3,
     /// The quantity that colours the mesh.
     pub shading: Shading,
     /// Without, the object fills 80 % of the picture's height.
@@ -238,9 +245,10 @@ impl Default for Parameters {
             smoke: 1800,
             particle_radius: 0.02,
             level_of_detail: None,
-            material: Material::Wood,
+            material: None,
             texture: None,
-            albedo: Vec3::new(0.36, 0.17, 0.07),
+            albedo: None,
+            background: Vec3::new(0.055, 0.06, 0.07),
             shading: Shading::Lit,
             camera: None,
             time_step_s: 1.0 / TICKS_PER_S,
@@ -373,10 +381,15 @@ impl Parameters {
                 "Finest level that is drawn of a refined object; auto is by distance",
                 "4.5",
             ),
-            row("material", p!(material), any, "Material of the surface", "").cost(Cost::Pipelines).everyday(),
+            row("material", p!(material), any, "Material of the surface", "")
+                .default_text("wood, melting wax")
+                .cost(Cost::Pipelines)
+                .everyday(),
             row("albedo", p!(albedo), R::from(0.0).to(1.0), "Linear red,green,blue; a factor of a texture", "")
                 .placeholder("R,G,B")
-                .default_text("0.36,0.17,0.07, with a texture 1,1,1"),
+                .default_text("0.36,0.17,0.07, of wax 0.8,0.66,0.4, with a texture 1,1,1"),
+            row("background", p!(background), R::from(0.0).to(1.0), "Linear red,green,blue behind the object", "")
+                .placeholder("R,G,B"),
             row("shading", p!(shading), any, "The quantity that colours the mesh", "").cost(Cost::Pipelines).everyday(),
             row("camera", CAMERA, any, "Camera: eye and target, x,y,z,x,y,z", "")
                 .unit("diagonals")
@@ -411,6 +424,29 @@ impl Parameters {
         let text = Extents(self.blocks).text();
         ParameterError::check(blocks <= 1 << 20, "blocks", text, "must be at most 1048576 in all")?;
         self.camera.as_ref().map_or(Ok(()), ParameterError::check_camera)
+    }
+
+    /// The material of the surface; a texture has none.
+    pub fn material(&self, variant: Variant) -> Option<Material> {
+        let own = if variant == Variant::Melting { Material::Wax } else { Material::Wood };
+        self.texture.is_none().then(|| self.material.unwrap_or(own))
+    }
+
+    /// Linear RGB of the surface, or the factor of its texture.
+    pub fn albedo(&self, variant: Variant) -> Vec3 {
+        self.albedo.unwrap_or(match self.material(variant) {
+            None => Vec3::ONE,
+            Some(Material::Plain | Material::Wood) => Vec3::new(0.36, 0.17, 0.07),
+            Some(Material::Wax) => Vec3::new(0.8, 0.66, 0.4),
+        })
+    }
+
+    /// True for a surface that chars and glows: not wax, nor a texture on what melts.
+    pub fn chars(&self, variant: Variant) -> bool {
+        match self.material(variant) {
+            None => variant != Variant::Melting,
+            Some(material) => material != Material::Wax,
+        }
     }
 
     /// Slices of ticks that are due after frame `number`, counted from the start of the simulation: one a tick without

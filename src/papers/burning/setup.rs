@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::experiments::{self, Options, presets};
 use super::model::with_triangles;
-use super::{BlockCounts, Burning, NEEDS, Parameters, Texture, Variant, texture};
+use super::{BlockCounts, Burning, Material, NEEDS, Parameters, Texture, Variant, texture};
 use crate::field;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{self, Feature, ShaderLibrary};
@@ -17,7 +17,7 @@ use crate::measure::config::{self, entries};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
+use crate::measure::parameter::{self, Choice, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper as _};
@@ -158,6 +158,7 @@ impl Study for Setup {
 
     fn config(&self, scene: &Scene, paper: &Burning) -> Map<String, Value> {
         let model = paper.model();
+        let (variant, parameters) = paper.made_of();
         let sources: Vec<_> = model.sources.iter().map(|s| s.to_array()).collect();
         let mut config = parameter::config(&Self::parameters(), self);
         config.extend(entries([
@@ -165,11 +166,10 @@ impl Study for Setup {
             ("levels", json!(model.levels)),
             ("source", json!(sources)),
             ("floor", json!(model.floor)),
+            ("material", json!(parameters.material(variant).map(Material::name))),
+            ("albedo", json!(parameters.albedo(variant).to_array())),
             ("camera", config::camera(paper.camera())),
         ]));
-        if scene.texture.is_some() {
-            config.insert("material".to_owned(), Value::Null);
-        }
         config
     }
 
@@ -225,10 +225,7 @@ impl Study for Setup {
         &mut self.preset
     }
 
-    fn resolve(&mut self, given: &Given) -> Result<(), Error> {
-        if given.has("texture") && !given.has("albedo") {
-            self.parameters.albedo = Vec3::ONE;
-        }
+    fn resolve(&mut self, _given: &Given) -> Result<(), Error> {
         self.check()
     }
 }

@@ -1,16 +1,18 @@
 //! The finished picture of each variant.
 
 use std::path::Path;
+use std::sync::Arc;
 
+use fumarole::gpu::Device;
 use fumarole::gpu::transfer::read_image;
-use fumarole::image::Rgba8;
 use fumarole::image::golden::{self, Tolerance};
+use fumarole::image::{Rgba8, srgb};
 use fumarole::measure::{Paper, Variant as _};
 use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Parameters, Shading, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 
-use super::fire::{Fire, quick};
+use super::fire::{Fire, ball, quick};
 use crate::common::gpu_test;
 
 /// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
@@ -89,6 +91,37 @@ fn the_pictures_are_the_golden_ones() {
             let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
             if let Err(error) = golden::check(&picture, &golden, TOLERANCE, Path::new(env!("CARGO_TARGET_TMPDIR"))) {
                 panic!("{error}");
+            }
+        }
+    });
+}
+
+/// Luminance of the background and mean luminance of what is not background, with its mean red over its mean blue, of a
+/// picture without fire.
+fn seen(fire: &Fire, device: &Arc<Device>) -> [f64; 3] {
+    let texels = read_image(device, fire.paper.picture()).unwrap();
+    let linear = |t: &[u8]| [0, 1, 2].map(|k| srgb::decode(f64::from(t[k]) / 255.0));
+    let luminance = |[r, g, b]: [f64; 3]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let mut sums = [0.0; 3];
+    let object: Vec<_> = texels.chunks_exact(4).filter(|t| t[..3] != texels[..3]).map(linear).collect();
+    object.iter().for_each(|t| (0..3).for_each(|k| sums[k] += t[k]));
+    [luminance(linear(&texels[..4])), luminance(sums) / object.len() as f64, sums[0] / sums[2]]
+}
+
+#[test]
+fn what_has_charred_stands_out_and_wax_keeps_its_colour() {
+    gpu_test(|device| {
+        let parameters = Parameters { fire: 0, smoke: 0, width: 64, height: 48, ..quick() };
+        for (variant, chars) in [(Variant::Solid, true), (Variant::Melting, false)] {
+            let mut fire = Fire::new(device, variant, &parameters, &ball());
+            fire.frame(0);
+            let [_, _, cold] = seen(&fire, device);
+            fire.frame(300);
+            let [background, burnt, warm] = seen(&fire, device);
+            assert!(fire.paper.counts().unwrap().live_vertices == 0, "it has burnt out");
+            match chars {
+                true => assert!(burnt < background / 3.0 && warm < 1.1, "{burnt} before {background}, {warm}"),
+                false => assert!(burnt > 3.0 * background && (warm / cold - 1.0).abs() < 0.05, "{cold} {warm}"),
             }
         }
     });

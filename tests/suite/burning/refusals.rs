@@ -26,7 +26,7 @@ fn bad_numbers_are_named() {
         (Parameters { time_division: 0, ..default() }, "time-division"),
         (Parameters { fire: 1_000_001, ..default() }, "fire"),
         (Parameters { smoke: 1_000_001, ..default() }, "smoke"),
-        (Parameters { albedo: Vec3::splat(2.0), ..default() }, "albedo"),
+        (Parameters { albedo: Some(Vec3::splat(2.0)), ..default() }, "albedo"),
         (Parameters { time_step_s: f64::NAN, ..default() }, "time-step"),
         (Parameters { time_step_s: -1.0, ..default() }, "time-step"),
         (Parameters { first_frame: 100_001, ..default() }, "first-frame"),

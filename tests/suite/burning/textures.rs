@@ -46,7 +46,8 @@ fn texture(width: u32, height: u32, color: impl Fn(u32, u32) -> [u8; 3]) -> (Rgb
 fn covered(texture: &Arc<Texture>) -> Parameters {
     Parameters {
         texture: Some(texture.clone()),
-        albedo: Vec3::ONE,
+        albedo: Some(Vec3::ONE),
+        background: Vec3::ZERO,
         sources: vec![Vec3::new(900.0, 0.0, 0.0)],
         fire: 0,
         smoke: 0,

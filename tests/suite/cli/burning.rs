@@ -186,6 +186,11 @@ fn counters_and_flags_are_dumped_as_the_integers_that_they_are() {
         ("alive", "u4", 1),
         ("removed", "u4", 1),
         ("cells", "u4", 1),
+        ("triangles", "u4", 3),
+        ("corners", "u4", 3),
+        ("welds", "u4", 1),
+        ("clock", "u4", 11),
+        ("stream", "u4", 3),
         ("flame-groups", "u4", 4),
         ("blocks", "i4", 8),
         ("statuses", "i4", 1),
@@ -211,7 +216,30 @@ fn counters_and_flags_are_dumped_as_the_integers_that_they_are() {
         values(name, kind, columns).into_iter().map(number).collect()
     };
     let all: Vec<Vec<i64>> = kinds.iter().map(|(name, kind, columns)| words(name, kind, *columns)).collect();
-    let [labels, triangle_labels, alive, removed, cells, _, blocks, statuses, _] = &all[..] else { panic!() };
+    let [
+        labels,
+        triangle_labels,
+        alive,
+        removed,
+        cells,
+        triangles,
+        corners,
+        welds,
+        clock,
+        stream,
+        _,
+        blocks,
+        statuses,
+        _,
+    ] = &all[..]
+    else {
+        panic!()
+    };
+    // Ticks, and of the drawn triangles, each of draw vertices, nothing beyond the object.
+    let drawn = clock[8] as usize;
+    assert!(clock[0] == 31 && (12..=12 * 16).contains(&drawn), "{clock:?}");
+    assert!(stream[..3 * drawn].iter().all(|corner| (0..welds.len() as i64).contains(corner)));
+    assert!(corners.iter().map(|corner| welds[*corner as usize]).eq(triangles.iter().copied()));
     assert!(labels.contains(&4) && labels.iter().chain(triangle_labels).all(|l| (0..=4).contains(l)));
     assert!(alive.iter().chain(removed).all(|f| (0..=1).contains(f)) && cells.iter().all(|c| (0..27).contains(c)));
     assert!((removed.len(), statuses.len()) == (12 * 16, 12 * 21) && statuses.contains(&-1) && statuses.contains(&1));

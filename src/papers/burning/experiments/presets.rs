@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::super::setup::Setup;
 use crate::measure::study::Preset;
-use crate::papers::burning::{Material, Parameters, Variant};
+use crate::papers::burning::{Parameters, Variant};
 use crate::scene::MeshSource;
 
 /// Section 3.8.
@@ -52,11 +52,7 @@ pub const MELT_40K: Preset<Setup> = Preset {
     name: "melt-40k",
     help: "Section 6.5: wax of 40,000 triangles, for melting",
     variant: Some(Variant::Melting),
-    setup: || Setup {
-        triangles: Some(40_000),
-        parameters: Parameters { material: Material::Plain, albedo: Vec3::new(0.8, 0.66, 0.4), ..few_particles() },
-        ..Setup::default()
-    },
+    setup: || Setup { triangles: Some(40_000), parameters: few_particles(), ..Setup::default() },
 };
 
 /// Every preset, in the dissertation's order.
