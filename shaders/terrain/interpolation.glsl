@@ -76,7 +76,8 @@ float touch(int shift, ivec2 cell, vec3 from, vec3 direction) {
     float start = 0.0;
     float tolerance = terrain.height_tolerance * exp2(float(shift));
     bool is_done = g[0] <= 0.0;
-    for (int step = 0; step < 40 && !is_done; step++) {
+    int step = 0;
+    for (; step < 40 && !is_done; step++) {
         float free = 2.0;
         for (int k = 1; k < 7; k++) {
             for (int i = 0; i < k; i++) {
@@ -98,7 +99,8 @@ float touch(int shift, ivec2 cell, vec3 from, vec3 direction) {
             is_done = g[0] <= tolerance;
         }
     }
-    return start;
+    // Ended before its time: see UNFINISHED. What follows must not take the place for the surface.
+    return is_done || step == 40 ? start : -1.0;
 }
 #else
 const ivec2 REACH = ivec2(0, 1);

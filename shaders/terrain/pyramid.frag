@@ -2,7 +2,8 @@
 
 // One level of the multilevel altitude map (section 3): a texel is the highest, or for the lower bound of Catmull-Rom
 // surfaces the lowest, of up to four texels of the level below it. Maps need not be powers of two: the last column and row
-// repeat where a level's size is odd.
+// repeat where a level's size is odd. The first level of the variants that walk from cell to cell has all that the surface
+// of a texel's cells reads, so that the texels of all levels bound whole cells.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -13,6 +14,8 @@ layout(push_constant, std430) uniform Level {
     ivec2 last; // its last column and row
     int is_float; // texels are bits of floats
     int is_lowest;
+    int before; // texels that are read before and after the four
+    int after;
 } level;
 
 layout(location = 0) out uint value;
@@ -28,7 +31,10 @@ uint texel_at(ivec2 texel) {
 
 void main() {
     ivec2 corner = 2 * ivec2(gl_FragCoord.xy);
-    uint north = choose(texel_at(corner), texel_at(corner + ivec2(1, 0)));
-    uint south = choose(texel_at(corner + ivec2(0, 1)), texel_at(corner + ivec2(1, 1)));
-    value = choose(north, south);
+    value = texel_at(corner);
+    for (int row = -level.before; row < 2 + level.after; row++) {
+        for (int column = -level.before; column < 2 + level.after; column++) {
+            value = choose(value, texel_at(max(corner + ivec2(column, row), ivec2(0))));
+        }
+    }
 }

@@ -17,5 +17,6 @@ float lit_at(ivec2 pixel) {
     vec3 from = terrain.eye + hit.x * direction_of(vec2(pixel)) + away_m * terrain.to_sun;
     Hit none = Hit(NO_DEPTH, vec2(0.0), float(SKY));
     Hit found = trace(from, terrain.to_sun, NO_DEPTH, none);
-    return found.depth < NO_DEPTH ? 0.0 : before;
+    float lit = found.surface == UNFINISHED.surface ? UNKNOWN_LIGHT : before;
+    return found.depth < NO_DEPTH ? 0.0 : lit;
 }

@@ -86,6 +86,12 @@ struct Hit {
     float surface; // which surface + 8 x level + 256 x map + 4096 x subsegments that were tried
 };
 
+// Of a ray whose loops the driver ended: some give a shader 65,535 iterations of all its loops together and then leave every
+// loop without a word. No map has so many levels.
+const Hit UNFINISHED = Hit(NO_DEPTH, vec2(0.0), 8.0 * 31.0);
+// The light where a ray to the sun was.
+const float UNKNOWN_LIGHT = 2.0;
+
 // The range of the fraction of a subsegment that is over the map, and the surface at its near end.
 struct Clip {
     float near;

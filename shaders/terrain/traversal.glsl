@@ -55,6 +55,7 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     int steps = 0;
     int at = 0;
     int units = first_units(ray, WHOLE);
+    bool is_cast = !done;
     while (!done) {
         bool is_last = false;
         while (!is_last && !done) {
@@ -89,6 +90,10 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
                 done = at >= WHOLE;
             }
         }
+    }
+    // Not `!done`: compilers know that the loop ends with it.
+    if (is_cast && t < 0.0 && at < WHOLE) {
+        hit = UNFINISHED;
     }
     if (t >= 0.0) {
         Clip clip = clip_to_map(subsegment);

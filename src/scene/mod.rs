@@ -22,7 +22,7 @@ mod source;
 pub use bounds::Bounds;
 pub use camera::Camera;
 pub use error::{Asset, Error, Fault, Place};
-pub use height_map::{Geographic, HeightMap, HeightMapSource, Samples, volcano};
+pub use height_map::{Geographic, HeightMap, HeightMapSource, Samples, Suspect, Voids, volcano};
 pub use identity::source_sha256;
 pub use light::Light;
 pub use mesh::Mesh;

@@ -80,6 +80,15 @@ impl Collider {
         })
     }
 
+    /// The height of the ground, world, metres, straight below the sky at a place east and south of the origin; 0 where there is
+    /// none.
+    pub fn ground_m(&self, east_m: f64, south_m: f64) -> f64 {
+        let (low, high) = (self.scene.extent.low.y, self.scene.extent.high.y);
+        let margin_m = 1.0 + 0.3 * (high - low);
+        let ends = [high + margin_m, low - margin_m].map(|y| DVec3::new(east_m, y, south_m));
+        self.segment(ends[0], ends[1]).map_or(0.0, |contact| contact.point.y)
+    }
+
     /// The contact of a sphere, world, metres, with the ground; none where the ground is farther from its centre than its radius.
     pub fn sphere(&self, center: DVec3, radius_m: f64) -> Option<Contact> {
         let mut contact = Contact {

@@ -17,8 +17,7 @@ use crate::measure::parameter::Choice;
 /// # Errors
 /// Errors of the Vulkan layer.
 pub fn depth(build: &Build<'_>, scene: &DeviceScene) -> Result<PixelPass, Error> {
-    let Parameters { base, interpolation, lod, .. } = build.parameters;
-    let program = format!("depth-{}-{}-{}", base.kind(), interpolation.name(), lod.name());
+    let program = format!("{}-{}", build.ray_program("depth"), build.parameters.lod.name());
     let first = build.image("depth", VECTOR)?;
     let second = if scene.maps.len() > 1 { build.image("depth", VECTOR)? } else { first.clone() };
     build.map_passes(("depth", "3"), &program, [&first, &second], scene, (scene.no_hits.clone(), &[]))

@@ -64,6 +64,14 @@ pub struct Hit {
 impl Hit {
     pub const SKY: Hit = Hit { depth_m: NO_DEPTH, place: [0.0; 2], surface: Surface::Sky, shift: 0, map: 0, steps: 0 };
 
+    /// The level of a ray whose loops the driver ended: no map has so many.
+    const UNFINISHED: u32 = 31;
+
+    /// True of a ray that the driver left before its end.
+    pub fn is_unfinished(&self) -> bool {
+        self.surface == Surface::Sky && self.shift == Hit::UNFINISHED
+    }
+
     pub fn from_texel(texel: [f32; 4]) -> Self {
         let code = texel[3] as u32;
         Hit {

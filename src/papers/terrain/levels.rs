@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::pyramid::{Bound, Shape};
+use super::pyramid::{Bound, Cover, Shape};
 use crate::gpu::transfer::{copy_rectangle, upload_rows};
 use crate::gpu::{Blend, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary};
 use crate::host_block;
@@ -19,6 +19,8 @@ host_block! {
         last: [i32; 2],
         is_float: i32,
         is_lowest: i32,
+        before: i32,
+        after: i32,
     }
 }
 
@@ -36,11 +38,18 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Uploads the data in strips and builds the coarser levels of each of `bounds`, which take the layers from 1 on.
+    /// Uploads the data in strips and builds the coarser levels of each of `bounds`, which take the layers from 1 on; `cover` is
+    /// what their texels answer for.
     ///
     /// # Errors
     /// [`Error::Limit`] for a map larger than the device's images, [`Error::OutOfMemory`], errors of the Vulkan layer.
-    pub fn new(shaders: &ShaderLibrary, label: &str, map: &HeightMap, bounds: &[Bound]) -> Result<Self, Error> {
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        map: &HeightMap,
+        bounds: &[Bound],
+        cover: Cover,
+    ) -> Result<Self, Error> {
         let device = shaders.device();
         let shape = Shape::new(map.width(), map.height());
         let is_float = matches!(map.samples(), Samples::Float(_));
@@ -62,13 +71,19 @@ impl Levels {
         })?;
         let levels = Levels { view: image.view()?, shape, is_float };
         for (layer, &bound) in (1..).zip(bounds) {
-            levels.build(shaders, &image, layer, bound)?;
+            levels.build(shaders, &image, layer, (bound, cover))?;
         }
         Ok(levels)
     }
 
     /// One pass a level: drawn from the level below it, then copied to its place.
-    fn build(&self, shaders: &ShaderLibrary, image: &Arc<Image>, layer: u32, bound: Bound) -> Result<(), Error> {
+    fn build(
+        &self,
+        shaders: &ShaderLibrary,
+        image: &Arc<Image>,
+        layer: u32,
+        (bound, cover): (Bound, Cover),
+    ) -> Result<(), Error> {
         let device = shaders.device();
         let target = image.layer(layer)?;
         let mut recorder = Recorder::new(device)?;
@@ -84,11 +99,14 @@ impl Levels {
                 .constants::<Level>()
                 .color(&level, Load::Discard, Blend::Replace)
                 .build(shaders)?;
+            let [before, after] = if shift == 1 { cover.more().map(|nodes| nodes as i32) } else { [0, 0] };
             let constants = Level {
                 origin: [source.0 as i32, source.1 as i32],
                 last: [columns as i32 - 1, rows as i32 - 1],
                 is_float: self.is_float.into(),
                 is_lowest: (bound == Bound::Lowest).into(),
+                before,
+                after,
             };
             recorder.run(Mode::Plain, |frame| {
                 frame.graphics(&pass, |draw| {

@@ -30,6 +30,7 @@ mod normal;
 mod object_depth;
 mod object_hits;
 mod object_shadow;
+mod object_source;
 mod objects;
 mod parameters;
 mod placement;
@@ -63,18 +64,20 @@ use self::normal::{HostNormal, normal};
 use self::object_depth::ObjectDepth;
 use self::object_hits::ObjectHits;
 use self::object_shadow::object_shadow;
+pub use self::object_source::{ObjectSource, Stand};
 use self::objects::{ObjectMesh, Objects};
 pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
-pub use self::pyramid::{Bound, Pyramid, Shape, Texel};
+pub use self::pyramid::{Bound, Cover, Pyramid, Shape, Texel};
 use self::scene::{DeviceScene, Scene};
 pub use self::scene::{Inputs, MapInput};
 use self::shadow::{HostShadow, all_lit, shadow};
 use self::show::Show;
-use self::stage::{Build, PixelPass, Stage};
+use self::stage::{Build, PixelPass, Stage, Traversal};
+use crate::gpu::transfer::read_image;
 use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
-use crate::scene::HeightMap;
+use crate::scene::{HeightMap, Suspect};
 
 /// The features that this paper needs of a device, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
@@ -145,17 +148,27 @@ impl Terrain {
                 limit: Inputs::MAPS as u64,
             });
         }
-        let stage = if variant == Variant::GpuCompute { Stage::Compute } else { Stage::Fragment };
-        let build = Build { shaders, label, parameters, stage };
+        let (stage, traversal) = match variant {
+            Variant::GpuCompute => (Stage::Compute, Traversal::Halving),
+            Variant::DdaCompute => (Stage::Compute, Traversal::Cells),
+            Variant::DdaFragment => (Stage::Fragment, Traversal::Cells),
+            Variant::Cpu | Variant::GpuFragment | Variant::Mesh => (Stage::Fragment, Traversal::Halving),
+        };
+        if traversal == Traversal::Cells && parameters.base != Base::Plane {
+            let problem =
+                "rays from cell to cell are straight; give `base` plane, or variant gpu-compute or gpu-fragment";
+            return Err(Error::Pass { pass: format!("{label}/depth"), problem: problem.into() });
+        }
+        let build = Build { shaders, label, parameters, stage, traversal };
         let scene = Scene::new(parameters, inputs);
-        let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene.maps, drape);
+        let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene.maps, (drape, traversal));
         let (device_scene, technique) = match variant {
             Variant::Cpu => {
                 let host = HostPasses::new(&build, &scene, inputs.drape)?;
                 let shades_objects = parameters.shadows && !inputs.objects.is_empty();
                 (shades_objects.then(|| on_device(None)).transpose()?, Technique::Cpu(host))
             }
-            Variant::GpuCompute | Variant::GpuFragment => {
+            Variant::GpuCompute | Variant::GpuFragment | Variant::DdaCompute | Variant::DdaFragment => {
                 let maps = on_device(inputs.drape)?;
                 let depth = depth(&build, &maps)?;
                 let shading = Shading::new(&build, &maps, &depth.target)?;
@@ -231,6 +244,21 @@ impl Terrain {
         }
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame, &view))
     }
+}
+
+/// Lines on the samples that maps leave void, and on heights that look like voids.
+pub fn void_warnings<'a>(maps: impl ExactSizeIterator<Item = &'a HeightMap>) -> Vec<String> {
+    let of = maps.len();
+    let warnings = maps.zip(1..).flat_map(|(map, number): (&HeightMap, usize)| {
+        let suspect = map.suspect().map(|Suspect { height_m, samples, next_m }| {
+            format!(
+                "{samples} samples are {height_m} m, the next is {next_m} m: they look like voids that the file does not \
+                 declare; declare them, as by gdal_translate -a_nodata {height_m}"
+            )
+        });
+        map.void_note().into_iter().chain(suspect).map(move |note| format!("`map` {number} of {of}: {note}"))
+    });
+    warnings.collect()
 }
 
 impl HostPasses {
@@ -315,18 +343,42 @@ impl Paper for Terrain {
         self.record_passes(frame, false)
     }
 
+    /// Fails where the driver left a ray before its end.
+    fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        let device = shaders.device();
+        let unfinished = |target: &Arc<ImageView>, is_one: &dyn Fn(&[f32]) -> bool, values: usize| {
+            let texels = bytemuck::pod_collect_to_vec::<u8, f32>(&read_image(device, target)?);
+            Ok::<_, Error>(texels.chunks_exact(values).filter(|texel| is_one(texel)).count())
+        };
+        let (is_hit, is_light) = (
+            |texel: &[f32]| texel.first_chunk().is_some_and(|&texel| Hit::from_texel(texel).is_unfinished()),
+            |texel: &[f32]| texel[0] > 1.0,
+        );
+        let mut counts = Vec::new();
+        if let Technique::RayCast(depth, shading) = &self.technique {
+            counts.push(("depth", unfinished(&depth.target, &is_hit, 4)?));
+            if let Some(shadow) = &shading.shadow {
+                counts.push(("shadow", unfinished(&shadow.target, &is_light, 1)?));
+            }
+        }
+        if let Some((_, shadow)) = self.objects.as_ref().and_then(|objects| objects.shadow.as_ref()) {
+            counts.push(("object-shadow", unfinished(&shadow.target, &is_light, 1)?));
+        }
+        let Some((pass, rays)) = counts.into_iter().find(|(_, rays)| *rays > 0) else { return Ok(true) };
+        let problem = format!(
+            "{rays} rays did not end: this driver leaves a shader's loops early, as after 65,535 iterations together; take a \
+             smaller map, `interpolation` bilinear, `lod` pixel or variant cpu"
+        );
+        Err(Error::Pass { pass: pass.into(), problem })
+    }
+
     fn record_picture(&mut self, frame: &mut Frame<'_>, _number: u32) -> Result<(), Error> {
         self.record_passes(frame, true)
     }
 
     fn warnings(&self) -> Vec<String> {
-        let maps = (1..).zip(&self.scene.maps).filter(|(_, map)| map.voids_filled() > 0);
-        let of = self.scene.maps.len();
-        let warning = |(number, map): (usize, &Arc<HeightMap>)| {
-            let voids = map.voids_filled();
-            format!("`map` {number} of {of}: voids are filled from their neighbours: {voids}")
-        };
-        maps.map(warning).chain(self.parameters.haze_warning(&self.scene.extent)).collect()
+        let haze = self.parameters.haze_warning(&self.scene.extent);
+        void_warnings(self.scene.maps.iter().map(|map| &**map)).into_iter().chain(haze).collect()
     }
 
     fn picture(&self) -> &Arc<ImageView> {

@@ -25,10 +25,26 @@ pub enum Variant {
     GpuFragment,
     /// The map as an indexed triangle grid, rasterised.
     Mesh,
+    /// Not the paper's: rays that go from border to border of blocks of cells, by compute stages.
+    DdaCompute,
+    /// The same as full-screen fragment passes.
+    DdaFragment,
+}
+
+impl Variant {
+    /// The paper's, and what it is compared with.
+    pub const PAPER: &[Variant] = &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh];
 }
 
 impl measure::Variant for Variant {
-    const ALL: &'static [Variant] = &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh];
+    const ALL: &'static [Variant] = &[
+        Variant::Cpu,
+        Variant::GpuCompute,
+        Variant::GpuFragment,
+        Variant::Mesh,
+        Variant::DdaCompute,
+        Variant::DdaFragment,
+    ];
 
     fn as_str(self) -> &'static str {
         match self {
@@ -36,6 +52,8 @@ impl measure::Variant for Variant {
             Variant::GpuCompute => "gpu-compute",
             Variant::GpuFragment => "gpu-fragment",
             Variant::Mesh => "mesh",
+            Variant::DdaCompute => "dda-compute",
+            Variant::DdaFragment => "dda-fragment",
         }
     }
 }

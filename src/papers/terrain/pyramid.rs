@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::parameters::Interpolation;
 use crate::scene::{HeightMap, Samples};
 
 /// Sizes of the levels of a map. The paper counts levels from the coarsest, 0, to the data, n; a shift counts from the data,
@@ -60,6 +61,26 @@ impl Shape {
 pub enum Bound {
     Highest,
     Lowest,
+}
+
+/// What the texels of the first level above the data cover; each coarser one covers four of those.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cover {
+    /// 2 x 2 nodes: the paper's.
+    Nodes,
+    /// All nodes that the surface over 2 x 2 cells reads.
+    Cells(Interpolation),
+}
+
+impl Cover {
+    /// Nodes before and after 2 x 2.
+    pub fn more(self) -> [u32; 2] {
+        match self {
+            Cover::Nodes => [0, 0],
+            Cover::Cells(Interpolation::Bilinear) => [0, 1],
+            Cover::Cells(Interpolation::Bicubic) => [1, 2],
+        }
+    }
 }
 
 /// A number that a texel holds.

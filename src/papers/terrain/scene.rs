@@ -13,7 +13,8 @@ use super::hit::NO_DEPTH;
 use super::levels::Levels;
 use super::parameters::{Interpolation, Parameters};
 use super::placement::{Extent, Placement, Rays};
-use super::pyramid::Bound;
+use super::pyramid::{Bound, Cover};
+use super::stage::Traversal;
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Image, ImageDesc, ImageView, Location, ShaderLibrary};
 use crate::scene::{HeightMap, Mesh, Samples};
@@ -124,8 +125,12 @@ impl DeviceScene {
         label: &str,
         parameters: &Parameters,
         maps: &[Arc<HeightMap>],
-        drape: Option<&Drape>,
+        (drape, traversal): (Option<&Drape>, Traversal),
     ) -> Result<Self, Error> {
+        let cover = match traversal {
+            Traversal::Halving => Cover::Nodes,
+            Traversal::Cells => Cover::Cells(parameters.interpolation),
+        };
         let bounds: &[Bound] = match parameters.interpolation {
             Interpolation::Bilinear => &[Bound::Highest],
             Interpolation::Bicubic => &[Bound::Highest, Bound::Lowest],
@@ -134,7 +139,7 @@ impl DeviceScene {
         let map = |(index, map): (usize, &Arc<HeightMap>)| {
             let name = format!("{label}/map-{index}");
             Ok(Map {
-                levels: Levels::new(shaders, &name, map, bounds)?,
+                levels: Levels::new(shaders, &name, map, bounds, cover)?,
                 terrain: block_buffer::<TerrainBlock>(device, &format!("{name}/land"))?,
             })
         };

@@ -1,5 +1,6 @@
 //! A user's configuration of the `terrain` paper: its declaration, its scene, its measured runs.
 
+use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -15,14 +16,15 @@ use crate::measure::config::entries;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::{self, Cost, Given, Parameter, Range};
+use crate::measure::parameter::{self, Cost, Given, Parameter, Range, Shape, Value, one, parse_finite};
 use crate::measure::statistics::median;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
-    Drape, Inputs, Interpolation, MapInput, NEEDS, Parameters, Placement, Terrain, Variant, View,
+    Collider, Drape, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement, Terrain, Variant,
+    View,
 };
-use crate::scene::{HeightMap, HeightMapSource, Mesh, MeshSource, volcano};
+use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, volcano};
 
 /// A user's configuration.
 #[derive(Debug, Clone)]
@@ -34,9 +36,11 @@ pub struct Setup {
     /// Of each map: metres east and south of the origin, degrees counterclockwise; 0 where there are none.
     pub places: Vec<[f32; 3]>,
     /// Polygon objects in the maps' frame, metres: x east, y up from the base, z south.
-    pub objects: Vec<MeshSource>,
+    pub objects: Vec<ObjectSource>,
     /// PNG over the first map, in place of the colour ramp.
     pub drape: Option<PathBuf>,
+    /// Heights for the samples that maps leave void.
+    pub voids: Voids,
     /// Samples a side of the synthetic volcano.
     pub resolution: u32,
     /// Metres between samples, in place of what a map says of itself.
@@ -58,11 +62,42 @@ impl Default for Setup {
             places: Vec::new(),
             objects: Vec::new(),
             drape: None,
+            voids: Voids::Fill,
             resolution: HeightMapSource::VOLCANO_SIDE,
             spacing_m: None,
             exaggeration: 1.0,
             seed: 1,
             preset: None,
+        }
+    }
+}
+
+impl Value for Voids {
+    const SHAPE: Shape = Shape::single("fill|level:M|hole");
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        match one(texts)? {
+            "fill" => Ok(Voids::Fill),
+            "hole" => Ok(Voids::Hole),
+            text => match text.split_once(':') {
+                Some(("level", metres)) => parse_finite(metres).map(Voids::Level),
+                _ => Err("give fill, level:M or hole".to_owned()),
+            },
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            Voids::Fill => "fill".to_owned(),
+            Voids::Level(level_m) => format!("level:{level_m}"),
+            Voids::Hole => "hole".to_owned(),
+        }
+    }
+
+    fn json(&self) -> Json {
+        match self {
+            Voids::Fill | Voids::Hole => json!(self.text()),
+            Voids::Level(level_m) => json!({"level": level_m}),
         }
     }
 }
@@ -109,11 +144,28 @@ impl Setup {
         gpu::Error::Limit { object, what, wanted, limit }
     }
 
+    /// The objects in their places; those that stand on the ground look for it there.
+    fn stand(&self, maps: &[MapInput]) -> Result<Vec<Mesh>, Error> {
+        let meshes = self.objects.iter().map(ObjectSource::load).collect::<Result<Vec<_>, _>>()?;
+        if self.objects.iter().all(|object| object.place.is_none()) {
+            return Ok(meshes);
+        }
+        let collider = Collider::new(&self.parameters, &Inputs { maps, ..Inputs::default() });
+        let place = |(object, mesh): (&ObjectSource, Mesh)| match &object.place {
+            None => mesh,
+            Some(stand) => stand.place(&mesh, &collider),
+        };
+        Ok(self.objects.iter().zip(meshes).map(place).collect())
+    }
+
     fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
         let mut map = match source {
             HeightMapSource::Volcano => volcano(self.resolution, self.seed)?,
             other => other.load()?,
         };
+        if let Voids::Level(_) = self.voids {
+            map = map.with_voids(self.voids, 0.0)?;
+        }
         if let Some(spacing_m) = self.spacing_m {
             map = map.with_spacing_m(DVec2::splat(spacing_m.into()))?;
         }
@@ -135,19 +187,25 @@ impl Study for Setup {
     /// Checks the parameters and loads the maps, the objects and the drape.
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
-        let input = |(source, placement)| -> Result<MapInput, Error> {
-            Ok(MapInput { map: Arc::new(self.load_map(source)?), placement })
-        };
+        let mut maps = self.maps.iter().map(|source| self.load_map(source)).collect::<Result<Vec<_>, _>>()?;
+        if self.voids == Voids::Hole {
+            let lowest_m = maps.iter().map(|map| map.range_m().0).fold(f32::INFINITY, f32::min);
+            let base_m = self.parameters.base_level_m.unwrap_or(lowest_m);
+            maps = maps.into_iter().map(|map| map.with_voids(Voids::Hole, base_m)).collect::<Result<_, _>>()?;
+        }
+        let input = |(map, placement)| MapInput { map: Arc::new(map), placement };
         let drape = self.drape.as_ref().map(|path| -> Result<Drape, Error> {
             let picture = read_png(path)?;
             let texels = picture.pixels().as_chunks().0.to_vec();
             Ok(Drape::new(picture.width(), picture.height(), texels)?)
         });
-        Ok(Scene {
-            maps: self.maps.iter().zip(self.placements()).map(input).collect::<Result<_, _>>()?,
-            objects: self.objects.iter().map(|source| source.load()).collect::<Result<_, _>>()?,
+        let mut scene = Scene {
+            maps: maps.into_iter().zip(self.placements()).map(input).collect(),
+            objects: Vec::new(),
             drape: drape.transpose()?,
-        })
+        };
+        scene.objects = self.stand(&scene.maps)?;
+        Ok(scene)
     }
 
     fn make(
@@ -175,7 +233,8 @@ impl Study for Setup {
             let Placement { center_m, turn_rad } = input.placement;
             json!({
                 "source": source.to_string(), "samples": [input.map.width(), input.map.height()],
-                "spacing": input.map.spacing_m().to_array(), "voids_filled": input.map.voids_filled(),
+                "spacing": input.map.spacing_m().to_array(), "voids": input.map.voids(), "void_share": input.map.void_share(),
+                "voids_filled": if self.voids == Voids::Fill { input.map.voids() } else { 0 },
                 "place": [center_m.x, center_m.y, turn_rad.to_degrees()],
             })
         };
@@ -215,7 +274,7 @@ impl Study for Setup {
     }
 
     const ABOUT: &'static str = "The volcano paper's terrain, ray-cast from a shape texture (Vyatkin), pass by pass";
-    const BENCHED: &'static [Variant] = <Variant as crate::measure::Variant>::ALL;
+    const BENCHED: &'static [Variant] = Variant::PAPER;
     const RENDERED: Variant = Variant::GpuCompute;
 
     type Options = Options;
@@ -257,6 +316,12 @@ impl Study for Setup {
                 .range(Range::from(1e-3).to(1e3))
                 .help("Factor of the heights")
                 .cost(Cost::Buffers),
+            Parameter::new("voids", field!(Setup.voids))
+                .help(
+                    "Samples without a height: fill, from their neighbours; level:M, at M metres; hole, no terrain, so that the \
+                     base is seen",
+                )
+                .cost(Cost::Buffers),
             Parameter::new("seed", field!(Setup.seed))
                 .help("Seed of the synthetic volcano")
                 .cost(Cost::Buffers)
@@ -266,7 +331,8 @@ impl Study for Setup {
             Parameter::new("object", field!(Setup.objects))
                 .help(
                     "Polygon mesh in the maps' frame, metres (x east, y up from the base, z south): teapot, sphere, box, \
-                     bunny, plane, or an OBJ, PLY, STL, glTF or GLB file",
+                     bunny, plane, or an OBJ, PLY, STL, glTF or GLB file; with a place, it stands on the ground there, \
+                     turned counterclockwise and scaled",
                 )
                 .section("1")
                 .cost(Cost::Buffers)

@@ -15,7 +15,6 @@ use super::ray_caster::{Footprint, RayCaster};
 use super::scene::{DeviceScene, texels};
 use super::stage::{Build, PixelPass};
 use crate::gpu::{Error, Frame, ImageView, PassInfo};
-use crate::measure::parameter::Choice;
 
 const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
@@ -41,8 +40,7 @@ pub fn shadow(
     scene: &DeviceScene,
     depth: &Arc<ImageView>,
 ) -> Result<PixelPass, Error> {
-    let Parameters { base, interpolation, .. } = build.parameters;
-    let program = format!("shadow-{}-{}", base.kind(), interpolation.name());
+    let program = build.ray_program("shadow");
     let first = build.image(&format!("{name}-0"), FORMAT)?;
     let second = if scene.maps.len() > 1 { build.image(&format!("{name}-1"), FORMAT)? } else { first.clone() };
     let prior = all_lit(build, &format!("/{name}"))?;

@@ -8,6 +8,7 @@ use super::parameters::Parameters;
 use super::scene::DeviceScene;
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
+use crate::measure::parameter::Choice;
 
 /// Format of hits and normals.
 pub const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -17,6 +18,15 @@ pub const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 pub enum Stage {
     Compute,
     Fragment,
+}
+
+/// The way of a ray through the levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Traversal {
+    /// Section 3: halves, the near one first.
+    Halving,
+    /// From border to border of blocks of cells.
+    Cells,
 }
 
 /// All that passes are built with.
@@ -30,9 +40,20 @@ pub struct Build<'a> {
     pub parameters: &'a Parameters,
     /// Of the passes over all pixels.
     pub stage: Stage,
+    /// Of all rays.
+    pub traversal: Traversal,
 }
 
 impl Build<'_> {
+    /// The name of the program of `pass` that casts rays, before what it is made of beside base and interpolation.
+    pub fn ray_program(&self, pass: &str) -> String {
+        let Parameters { base, interpolation, .. } = self.parameters;
+        match self.traversal {
+            Traversal::Halving => format!("{pass}-{}-{}", base.kind(), interpolation.name()),
+            Traversal::Cells => format!("{pass}-dda-{}", interpolation.name()),
+        }
+    }
+
     fn image_of(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Arc<ImageView>, Error> {
         let Parameters { width, height, .. } = *self.parameters;
         let desc = ImageDesc::new_2d(format!("{}/{name}", self.label), format, width, height);

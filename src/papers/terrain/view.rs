@@ -24,7 +24,7 @@ impl Parameters {
         let (eye, target, up) = match self.view {
             View::Camera(camera) => return camera,
             View::Side => {
-                let (eye, target) = self.from_the_side(extent, reach);
+                let (eye, target) = self.side_view(extent, reach);
                 (eye, target, Vec3::Y)
             }
             View::Top => {
@@ -45,7 +45,7 @@ impl Parameters {
 
     /// Eye and target: of broad low maps so near that nine rays in ten meet them, of others as far back as it takes to have the
     /// far edge, or the whole of a high one, in the picture.
-    fn from_the_side(&self, extent: &Extent, reach: f64) -> (DVec3, DVec3) {
+    fn side_view(&self, extent: &Extent, reach: f64) -> (DVec3, DVec3) {
         let (low, high) = (extent.low, extent.high);
         let center = (high + low) / 2.0;
         let is_low = high.y - low.y <= LOW * reach;
@@ -69,8 +69,9 @@ impl Parameters {
                 seen.x.abs() <= depth_m * self.aspect() && seen.dot(upward).abs() <= depth_m
             })
         };
-        let eyes = (0..80).map(|step| target + back * 1.1_f64.powi(step));
-        let eye = eyes.clone().find(|&eye| is_seen(eye)).or(eyes.last()).unwrap_or(target + back);
+        // Farther back than that, a thousand times, the picture is a point.
+        let factor = (0..80).map(|step| 1.1_f64.powi(step)).find(|factor| is_seen(target + back * *factor));
+        let eye = target + back * factor.unwrap_or(1e3);
         (eye, target)
     }
 

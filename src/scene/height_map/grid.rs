@@ -1,4 +1,5 @@
 use super::map::check_size;
+use super::void_samples::Watch;
 use super::{Geographic, HeightMap, Samples, voids};
 use crate::scene::error::{Fault, Place};
 use glam::DVec2;
@@ -42,12 +43,14 @@ impl<T: Copy + Into<f64>> Grid<T> {
         let no_data = self.no_data;
         let mut void_count = 0_usize;
         let (mut low, mut high) = (f64::MAX, f64::MIN);
+        let mut watch = Watch::new(no_data);
         for (index, value) in self.values.iter().enumerate() {
             let value = (*value).into();
             if is_void(value, no_data) {
                 void_count += 1;
             } else if (value as f32).is_finite() {
                 (low, high) = (low.min(value), high.max(value));
+                watch.see(value);
             } else {
                 let place = format!("row {}, column {}", index / width, index % width);
                 return Err(Fault::new(Place::Part(place), format!("its height is {value}, not a finite number")));
@@ -79,7 +82,7 @@ impl<T: Copy + Into<f64>> Grid<T> {
                 }
             })
             .map_err(|error| Fault::foreign(Place::Whole, &error))?;
-        Ok(map.with_voids_filled(void_places.len() as u64))
+        Ok(map.with_void_samples(&void_places).with_suspect(watch.suspect()))
     }
 }
 
@@ -138,9 +141,9 @@ mod tests {
             (f32::NEG_INFINITY, f64::NEG_INFINITY),
         ] {
             let result = map(&[1.0, void, 1.0, 1.0], false, Some(no_data));
-            assert_eq!(result.map(|map| (map.voids_filled(), map.range_m())), Ok((1, (1.0, 1.0))), "{void} {no_data}");
+            assert_eq!(result.map(|map| (map.voids(), map.range_m())), Ok((1, (1.0, 1.0))), "{void} {no_data}");
         }
-        assert_eq!(map(&[1.0, -9_998.999, 1.0, 1.0], false, Some(-9_999.0)).unwrap().voids_filled(), 0);
+        assert_eq!(map(&[1.0, -9_998.999, 1.0, 1.0], false, Some(-9_999.0)).unwrap().voids(), 0);
     }
 
     #[test]

@@ -1,4 +1,5 @@
 use super::Geographic;
+use super::void_samples::{Suspect, VoidSamples, Voids};
 use crate::scene::Error;
 use glam::DVec2;
 
@@ -14,7 +15,8 @@ pub struct HeightMap {
     range_m: (f32, f32),
     spacing_m: DVec2,
     geographic: Option<Geographic>,
-    voids_filled: u64,
+    voids: Option<VoidSamples>,
+    suspect: Option<Suspect>,
 }
 
 /// The heights of a map, row by row.
@@ -48,7 +50,16 @@ impl HeightMap {
                 unusable(format!("row {row}, column {column}: the height is not a finite number"))
             }
         })?;
-        Ok(Self { width, height, samples, range_m, spacing_m: DVec2::ONE, geographic: None, voids_filled: 0 })
+        Ok(Self {
+            width,
+            height,
+            samples,
+            range_m,
+            spacing_m: DVec2::ONE,
+            geographic: None,
+            voids: None,
+            suspect: None,
+        })
     }
 
     /// Columns.
@@ -89,9 +100,48 @@ impl HeightMap {
         self.geographic
     }
 
-    /// Number of samples that the source left void, which were filled from their neighbours.
-    pub fn voids_filled(&self) -> u64 {
-        self.voids_filled
+    /// Number of samples that the source left void.
+    pub fn voids(&self) -> u64 {
+        self.voids.as_ref().map_or(0, VoidSamples::count)
+    }
+
+    /// Fraction of the samples that the source left void.
+    pub fn void_share(&self) -> f64 {
+        self.voids() as f64 / (f64::from(self.width) * f64::from(self.height))
+    }
+
+    /// Heights that look like voids which the source does not declare.
+    pub fn suspect(&self) -> Option<Suspect> {
+        self.suspect
+    }
+
+    /// The map with its voids, which readers fill from their neighbours, as asked for; a hole lies below `base_m`.
+    ///
+    /// # Errors
+    /// A level that is not finite.
+    pub fn with_voids(self, treatment: Voids, base_m: f32) -> Result<Self, Error> {
+        let Some(voids) = self.voids.clone() else { return Ok(self) };
+        let voids = voids.treated(treatment);
+        let samples = match treatment {
+            Voids::Fill => return Ok(Self { voids: Some(voids), ..self }),
+            Voids::Level(level_m) if !level_m.is_finite() => {
+                return Err(unusable("the level of its voids is not finite"));
+            }
+            Voids::Level(level_m) => voids.at(self.samples, level_m),
+            Voids::Hole => voids.below(self.samples, base_m, self.range_m.1 - self.range_m.0),
+        };
+        let range_m = match treatment {
+            Voids::Hole => self.range_m,
+            _ => samples.range_m().map_err(|_| unusable("the level of its voids is out of range"))?,
+        };
+        Ok(Self { samples, range_m, voids: Some(voids), ..self })
+    }
+
+    /// A line on the samples that the source left void; none where it has them all.
+    pub fn void_note(&self) -> Option<String> {
+        let voids = self.voids.as_ref()?;
+        let share = 100.0 * self.void_share();
+        Some(format!("{} samples, {share:.1} %, are void: {}", voids.count(), voids.note()))
     }
 
     /// The map with another distance between columns (x) and rows (y), metres. It keeps its place on the Earth.
@@ -144,15 +194,21 @@ impl HeightMap {
             },
             Samples::Float(heights) => Samples::Float(places().map(|place| heights[place]).collect()),
         };
-        Self { width: self.width + 4, samples, geographic: None, ..*self }
+        let voids = self.voids.as_ref().map(VoidSamples::counted);
+        Self { width: self.width + 4, samples, geographic: None, voids, ..*self }
     }
 
     pub(super) fn with_geographic(self, geographic: Geographic) -> Self {
         Self { geographic: Some(geographic), ..self }
     }
 
-    pub(super) fn with_voids_filled(self, voids_filled: u64) -> Self {
-        Self { voids_filled, ..self }
+    pub(super) fn with_void_samples(self, places: &[u32]) -> Self {
+        let voids = (!places.is_empty()).then(|| VoidSamples::new(self.samples.len(), places));
+        Self { voids, ..self }
+    }
+
+    pub(super) fn with_suspect(self, suspect: Option<Suspect>) -> Self {
+        Self { suspect, ..self }
     }
 }
 
@@ -221,7 +277,7 @@ mod tests {
         assert_eq!((map.width(), map.height(), map.range_m()), (3, 2, (-5.0, 1.0)));
         assert_eq!((map.height_m(2, 0), map.height_m(0, 1)), (-4.0, 0.0));
         assert_eq!((map.height_m(9, 0), map.height_m(u32::MAX, u32::MAX)), (-4.0, 1.0));
-        assert_eq!((map.spacing_m(), map.geographic(), map.voids_filled()), (DVec2::ONE, None, 0));
+        assert_eq!((map.spacing_m(), map.geographic(), map.voids()), (DVec2::ONE, None, 0));
     }
 
     #[test]

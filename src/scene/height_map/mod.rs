@@ -1,16 +1,19 @@
 //! Height maps: what the terrain is made of.
 //!
-//! Readers keep integral sources in 16-bit steps. Voids are recognised, filled and counted.
+//! Readers keep integral sources in 16-bit steps. Voids are recognised, counted, and filled until somebody asks for another
+//! height.
 
 mod formats;
 mod geographic;
 mod grid;
 mod map;
 mod source;
+mod void_samples;
 mod voids;
 mod volcano;
 
 pub use geographic::Geographic;
 pub use map::{HeightMap, Samples};
 pub use source::HeightMapSource;
+pub use void_samples::{Suspect, Voids};
 pub use volcano::volcano;

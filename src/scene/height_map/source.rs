@@ -89,7 +89,7 @@ mod tests {
             assert_eq!((map.width(), map.height()), (width, height), "{source}");
             let (low, high) = map.range_m();
             assert!((low - low_m).abs() < 1.0 && (high - high_m).abs() < 1.0, "{source}: {low} to {high}");
-            assert_eq!(map.voids_filled(), 0);
+            assert_eq!(map.voids(), 0);
         }
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use fumarole::image::read_png;
+use fumarole::scene::random::Random;
 
 use super::program::{ONCE, Program, assert_schema, entries, file, folder, read_json, terrain};
 
@@ -208,12 +209,106 @@ fn voids_are_filled_and_reported() {
     let run = &bench.json()["runs"][0];
     assert_eq!(run["config"]["maps"][0]["voids_filled"], 2);
     assert!(
-        run["warnings"].to_string().contains("--map 1 of 1: voids are filled from their neighbours: 2"),
+        run["warnings"].to_string().contains("--map 1 of 1: 2 samples, 33.3 %, are void: they are filled from"),
         "{}",
         run["warnings"]
     );
     let render = small("render --map hole.asc --image hole.png").inside(out.path()).run().succeeded();
-    assert!(render.stderr.contains("--map 1 of 1: voids are filled from their neighbours: 2"), "{}", render.stderr);
+    assert!(render.stderr.contains("--map 1 of 1: 2 samples, 33.3 %, are void: they are filled"), "{}", render.stderr);
+}
+
+/// Not the paper's: they stand for nothing that was not asked for, and refuse what bends rays.
+#[test]
+fn the_variants_that_walk_from_cell_to_cell_are_asked_for_by_name() {
+    let listed = small("passes --json --resolution 64 --shadows --variant dda-compute,dda-fragment").run().succeeded();
+    for (variant, kind) in listed.json().as_array().unwrap().iter().zip(["compute", "graphics"]) {
+        let passes = variant["passes"].as_array().unwrap();
+        let depth = passes.iter().find(|pass| pass["name"] == "depth").unwrap();
+        assert_eq!(depth["kind"], kind);
+        assert!(depth["shaders"].to_string().contains("depth-dda-bilinear-pixel"), "{depth}");
+    }
+    let benched = small("bench --json --quiet --resolution 64").args(ONCE).run().succeeded().json();
+    assert_eq!(benched["runs"].as_array().unwrap().len(), 4);
+    let curved = "bench --resolution 64 --base earth --variant dda-fragment";
+    small(curved).args(ONCE).run().refused(1, &["depth", "--base plane"]);
+}
+
+/// A canyon of 16,384 cells that ends at a wall, seen along it by bicubic rays: more iterations than lavapipe gives a shader. The
+/// processor has no such end.
+#[test]
+fn rays_whose_loops_the_driver_ends_are_no_picture() {
+    let out = folder();
+    let side = 16_384;
+    let mut random = Random::new(1);
+    let mut row = |is_floor: bool| -> String {
+        let height = |column| {
+            let is_low = is_floor && column < side - 3;
+            format!("{} ", if is_low { 0 } else { 90 + (random.unit() * 20.0) as u32 })
+        };
+        (0..side).map(height).collect::<String>() + "\n"
+    };
+    let rows: String = [false, false, true, false, false].map(&mut row).concat();
+    let head = format!("ncols {side}\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
+    file(&out, "canyon.asc", head + &rows);
+    let render = "render --quiet --map canyon.asc --lod exact --interpolation bicubic --size 33x25 --image x.png \
+                  --camera=-81820,50,0,-81819,50,0 --variant";
+    for variant in ["gpu-compute", "gpu-fragment", "dda-fragment"] {
+        terrain(&format!("{render} {variant}"))
+            .on_test_device()
+            .inside(out.path())
+            .run()
+            .refused(1, &["depth", "rays did not end"]);
+        assert_eq!(entries(out.path()), ["canyon.asc"]);
+    }
+    terrain(&format!("{render} cpu")).on_test_device().inside(out.path()).run().succeeded();
+}
+
+/// An object's place follows its name; it is drawn there, and the record has it.
+#[test]
+fn objects_stand_where_they_are_named() {
+    let out = folder();
+    let picture = |object: &str, name: &str| {
+        let render = format!("render --resolution 64 --camera=0,2500,6000,0,800,0 --object {object} --image {name}");
+        small(&render).inside(out.path()).run().succeeded();
+        read_png(&out.path().join(name)).unwrap()
+    };
+    let here = picture("box@0,3000,0,300", "here.png");
+    assert!(here != picture("box@900,3000,0,300", "there.png"));
+    assert!(here != picture("box@0,3000,30,300", "turned.png"));
+    let bench =
+        small("bench --json --quiet --resolution 64 --variant gpu-fragment --object box@0,3000,0,300").args(ONCE);
+    let run = bench.run().succeeded().json();
+    assert_eq!(run["runs"][0]["config"]["object"], serde_json::json!(["box@0,3000,0,300"]));
+    for (object, part) in [("box@1,2,3", "scale"), ("box@1,2,3,0", "scale"), ("box@1,2,3,4,5", "scale")] {
+        small("bench --resolution 64").arg(format!("--object={object}")).run().misused(&["--object", part]);
+    }
+    small("bench --object a@b.obj").args(ONCE).run().refused(2, &["a@b.obj"]);
+}
+
+/// Voids under a point of the middle column: at a level, or without terrain, so that the base is met.
+#[test]
+fn voids_lie_at_a_level_or_are_holes() {
+    let out = folder();
+    let head = "ncols 5\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+    file(&out, "hole.asc", format!("{head}NODATA_value -1\n{}", "30 -1 -1 -1 90\n".repeat(5)));
+    file(&out, "undeclared.asc", format!("{head}{}", "30 -9999 40 60 90\n".repeat(5)));
+    for (voids, surface, height_m) in
+        [("level:35.5", "terrain", 15.5), ("hole", "base", 0.0), ("level:10", "base", 0.0)]
+    {
+        let collide = "collide --map hole.asc --base-level 20 --json --segment 0,900,0,0,-9,0 --voids";
+        let ended = terrain(collide).arg(voids).inside(out.path()).run().succeeded();
+        let meets = &ended.json()["collisions"][0]["meets"];
+        assert_eq!(meets["surface"], surface, "{voids}: {meets}");
+        assert!((meets["point"][1].as_f64().unwrap() - height_m).abs() < 1e-3, "{voids}: {meets}");
+        assert!(ended.stderr.contains("--map 1 of 1: 15 samples, 60.0 %, are void"), "{}", ended.stderr);
+    }
+    let drawn = small("render --image x.png --map hole.asc --voids hole").inside(out.path()).run().succeeded();
+    assert!(drawn.stderr.contains("15 samples, 60.0 %, are void: there is no terrain"), "{}", drawn.stderr);
+    let drawn = small("render --image x.png --map undeclared.asc").inside(out.path()).run().succeeded();
+    assert!(drawn.stderr.contains("5 samples are -9999 m, the next is 30 m: they look like voids"), "{}", drawn.stderr);
+    for voids in ["level", "level:", "level:nan", "sea"] {
+        terrain("bench").arg(format!("--voids={voids}")).run().misused(&["--voids"]);
+    }
 }
 
 #[test]

@@ -4,9 +4,12 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fumarole::papers::terrain::reference::Ray;
-use fumarole::papers::terrain::{Base, Collider, Inputs, Interpolation, MapInput, Parameters, Placement, Surface};
+use fumarole::papers::terrain::{
+    Base, Collider, Inputs, Interpolation, MapInput, Parameters, Placement, Stand, Surface,
+};
 use fumarole::scene::random::Random;
-use glam::{DVec2, DVec3};
+use fumarole::scene::shapes;
+use glam::{DVec2, DVec3, Mat4, Vec3};
 
 use super::maps::{alone, volcano};
 use super::world::{Relief, World, random_map};
@@ -231,6 +234,30 @@ fn the_pyramid_leaves_nearly_all_cells_out() {
         let contact = collider.segment(above, DVec3::new(z, -10.0, x)).unwrap();
         assert!((1..500).contains(&contact.steps), "{contact:?}");
     }
+}
+
+/// An object stands with its lowest point on the ground, turned and scaled, wherever its mesh lies.
+#[test]
+fn objects_stand_on_the_ground() {
+    let maps = alone(volcano(65));
+    let collider = Collider::new(&Parameters::default(), &Inputs { maps: &maps, ..Inputs::default() });
+    let (map, spacing_m) = (&maps[0].map, maps[0].map.spacing_m().x);
+    let mesh = shapes::cuboid().transformed(&Mat4::from_translation(Vec3::new(0.0, 7.0, 0.0)));
+    let [width, length] = [0, 2].map(|axis| mesh.bounds().diagonal()[axis]);
+    for (column, row) in [(32, 32), (20, 40), (50, 11)] {
+        let [east_m, south_m] = [column, row].map(|node: u32| ((f64::from(node) - 32.0) * spacing_m) as f32);
+        let placed = Stand { east_m, south_m, turn_deg: 90.0, scale: 25.0 }.place(&mesh, &collider);
+        let bounds = placed.bounds();
+        let ground_m = map.height_m(column, row) - map.range_m().0;
+        assert!((bounds.min.y - ground_m).abs() < 1e-2, "{column}, {row}: {bounds:?} over {ground_m}");
+        let middle = bounds.min + bounds.diagonal() / 2.0;
+        assert!((middle.x - east_m).abs() < 1e-2 && (middle.z - south_m).abs() < 1e-2, "{bounds:?}");
+        let [across, along] = [0, 2].map(|axis| bounds.diagonal()[axis]);
+        assert!((across - 25.0 * length).abs() < 1e-2 && (along - 25.0 * width).abs() < 1e-2, "{bounds:?}");
+    }
+    // Beside the map there is the base.
+    let beside = Stand { east_m: 40_000.0, south_m: 0.0, turn_deg: 0.0, scale: 1.0 }.place(&mesh, &collider);
+    assert!(beside.bounds().min.y.abs() < 1e-3, "{:?}", beside.bounds());
 }
 
 #[test]

@@ -11,6 +11,7 @@ use fumarole::scene::random::Random;
 use rayon::prelude::*;
 
 use super::drawing::Painter;
+use super::oracle::is_cast_by;
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
@@ -112,7 +113,12 @@ fn a_pixel_s_height_is_that_of_its_footprint() {
                     (Variant::Cpu, Compiler::Glslang),
                     (Variant::GpuCompute, Compiler::Glslang),
                     (Variant::GpuFragment, Compiler::Naga),
+                    (Variant::DdaCompute, Compiler::Naga),
+                    (Variant::DdaFragment, Compiler::Glslang),
                 ] {
+                    if !is_cast_by(variant, base) {
+                        continue;
+                    }
                     let mut painter = Painter::new(device, compiler, variant, &parameters, &inputs);
                     for (stand, camera) in cameras {
                         let rays = Rays::new(&camera, width, height);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use fumarole::gpu::Compiler;
+use fumarole::measure::Variant as _;
 use fumarole::measure::parameter::Choice;
 use fumarole::papers::terrain::reference::{is_lit, lambert};
 use fumarole::papers::terrain::{
@@ -14,6 +15,7 @@ use glam::{DVec2, DVec3, Mat4, Vec3};
 
 use super::drawing::{Drawing, Painter, differing};
 use super::maps::map;
+use super::oracle::is_cast_by;
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
@@ -43,6 +45,8 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
                 let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
                 let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
                 let mut painters = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu].map(paint);
+                let dda = [Variant::DdaCompute, Variant::DdaFragment].into_iter().filter(|v| is_cast_by(*v, base));
+                let mut dda: Vec<Painter> = dda.map(paint).collect();
                 let (mut lit, mut dark) = (0, 0);
                 for camera in cameras {
                     let rays = Rays::new(&camera, SIZE.0, SIZE.1);
@@ -67,7 +71,8 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
                             assert!(!is_lit(&world.terrain, moved(-HAIR_CELLS), to_sun), "{} in the shadow", name());
                         }
                     }
-                    for (other, drawing) in [("fragment", fragment), ("cpu", cpu)] {
+                    let dda = dda.iter_mut().map(|painter| ("dda", painter.from(camera)));
+                    for (other, drawing) in [("fragment", fragment), ("cpu", cpu)].into_iter().chain(dda) {
                         let differing = differing(&compute, &drawing);
                         assert!(
                             differing * 200 <= drawing.hits.len(),
@@ -164,7 +169,7 @@ fn objects_stand_in_the_terrain_s_shadow() {
         let (width, height) = (160, 120);
         let rays = Rays::new(&camera, width, height);
         let inputs = Inputs { maps: &maps, objects: &objects, ..Inputs::default() };
-        for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh] {
+        for &variant in Variant::ALL {
             for &lod in Lod::ALL {
                 let view = View::Camera(camera);
                 let base_level_m = Some(0.0);

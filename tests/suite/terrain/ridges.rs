@@ -1,5 +1,6 @@
 //! Rough land: crests narrower than a piece of a ray must neither be passed through nor moved.
 
+use fumarole::measure::Variant as _;
 use fumarole::papers::terrain::reference::{Part, Ray};
 use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, Parameters, Rays, Surface, Variant};
 use fumarole::scene::random::Random;
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 
 use super::drawing::Drawing;
 use super::maps::ridges;
-use super::oracle::{THOUSANDTH, Trials};
+use super::oracle::{THOUSANDTH, Trials, is_cast_by};
 use super::world::World;
 use crate::common::gpu_test;
 
@@ -65,7 +66,7 @@ fn silhouette(is_terrain: &[bool], (width, height): (u32, u32)) -> Vec<u32> {
 fn far_silhouettes_are_within_a_pixel_of_brute_force() {
     gpu_test(|device| {
         let mut random = Random::new(61);
-        let size = (120, 60);
+        let size = (88, 44);
         for (base, interpolation) in BASES.into_iter().flat_map(|base| INTERPOLATIONS.map(|i| (base, i))) {
             let map = ridges(&mut random, (200, 161), 3000.0);
             let world = World::alone("ridges", base, interpolation, None, map);
@@ -92,7 +93,8 @@ fn far_silhouettes_are_within_a_pixel_of_brute_force() {
                 let expected: Vec<bool> = (0..size.0 * size.1).into_par_iter().map(is_terrain).collect();
                 let expected = silhouette(&expected, size);
                 let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
-                for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu] {
+                let ray_casts = Variant::ALL.iter().filter(|v| **v != Variant::Mesh && is_cast_by(**v, base));
+                for &variant in ray_casts {
                     let parameters = Parameters { lod: Lod::Pixel, ..world.parameters(camera, size) };
                     let drawing = Drawing::with(device, variant, &parameters, &inputs);
                     let is_ground = |surface| !matches!(surface, Surface::Sky | Surface::Base);
@@ -101,8 +103,12 @@ fn far_silhouettes_are_within_a_pixel_of_brute_force() {
                     let name = format!("{base:?} {interpolation:?} {variant:?} {sides} sides");
                     let seen = expected.iter().filter(|row| **row < size.1).count();
                     assert!(seen > 20, "{name}: only {seen} columns show land");
-                    for (column, (found, expected)) in found.iter().zip(&expected).enumerate() {
-                        assert!(found.abs_diff(*expected) <= 1, "{name}: column {column}: {found}, not {expected}");
+                    for (column, row) in found.iter().enumerate() {
+                        // Where land rises steeply a pixel to the side is several up or down.
+                        let beside = &expected[column.saturating_sub(1)..(column + 2).min(expected.len())];
+                        let (highest, lowest) = (beside.iter().min().unwrap(), beside.iter().max().unwrap());
+                        let is_near = (highest.saturating_sub(1)..=lowest + 1).contains(row);
+                        assert!(is_near, "{name}: column {column}: {row}, not {beside:?}");
                     }
                 }
             }

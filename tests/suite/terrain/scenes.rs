@@ -11,7 +11,8 @@ use super::maps::{alone, map, volcano};
 use super::variants::{assert_agree, small};
 use crate::common::gpu_test;
 
-const VARIANTS: [Variant; 4] = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh];
+const VARIANTS: [Variant; 6] =
+    [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu, Variant::Mesh, Variant::DdaCompute, Variant::DdaFragment];
 
 fn camera(eye: Vec3, target: Vec3) -> View {
     let up = Vec3::Y;

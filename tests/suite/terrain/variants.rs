@@ -31,7 +31,10 @@ fn all_variants_find_the_same_hits() {
                 for view in [View::Side, View::Top] {
                     let parameters = small(view, lod);
                     let compute = Drawing::of(device, Variant::GpuCompute, &parameters, &maps);
-                    for variant in [Variant::GpuFragment, Variant::Cpu] {
+                    // Of two traversals that end at a pixel's footprint each ends at its own place in it.
+                    let dda: &[Variant] =
+                        if lod == Lod::Exact { &[Variant::DdaCompute, Variant::DdaFragment] } else { &[] };
+                    for &variant in [Variant::GpuFragment, Variant::Cpu].iter().chain(dda) {
                         let other = Drawing::of(device, variant, &parameters, &maps);
                         assert_agree(&format!("{name} {lod:?} {view:?} {}", variant.as_str()), &compute, &other);
                     }
@@ -92,7 +95,7 @@ fn both_compilers_draw_one_picture() {
         .transformed(&(Mat4::from_translation(2500.0 * Vec3::Y) * Mat4::from_scale(Vec3::splat(700.0))));
     gpu_test(|device| {
         for lod in [Lod::Exact, Lod::Pixel] {
-            for variant in [Variant::GpuCompute, Variant::GpuFragment] {
+            for variant in [Variant::GpuCompute, Variant::GpuFragment, Variant::DdaCompute, Variant::DdaFragment] {
                 let of = |compiler| {
                     let maps = alone(volcano(60));
                     let objects = [ball.clone()];

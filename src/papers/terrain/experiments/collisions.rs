@@ -7,7 +7,7 @@ use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::ParameterError;
 use crate::measure::study::Study;
-use crate::papers::terrain::{Collider, Contact, Inputs, Surface};
+use crate::papers::terrain::{Collider, Contact, Inputs, Surface, void_warnings};
 
 /// A coordinate's and a radius' largest value, metres.
 const FAR_M: f64 = 1.0e8;
@@ -86,15 +86,16 @@ impl std::fmt::Display for Body {
     }
 }
 
-/// The first contacts of bodies, in their order.
+/// The first contacts of bodies, in their order, and warnings of the maps.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a body without extent or too far away, [`Error::Scene`].
-pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<Vec<Collision>, Error> {
+pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<(Vec<Collision>, Vec<String>), Error> {
     bodies.iter().try_for_each(Body::check)?;
     let scene = setup.load()?;
     let collider = Collider::new(&setup.parameters, &Inputs { maps: &scene.maps, ..Inputs::default() });
-    Ok(bodies.iter().map(|body| Collision { body: *body, contact: body.meet(&collider) }).collect())
+    let collisions = bodies.iter().map(|body| Collision { body: *body, contact: body.meet(&collider) });
+    Ok((collisions.collect(), void_warnings(scene.maps.iter().map(|input| &*input.map))))
 }
 
 impl Collision {

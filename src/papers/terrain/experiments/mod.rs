@@ -38,9 +38,12 @@ impl Options {
         if self.counts.is_empty() { default.to_vec() } else { self.counts.clone() }
     }
 
-    /// Each variant that was named, once, in the paper's order.
+    /// Each variant that was named, once, in the paper's order; the paper's where none was.
     fn variants(&self) -> Vec<Variant> {
-        let is_all = self.variants.is_empty() || self.variants.contains(&Listed(None));
+        if self.variants.is_empty() {
+            return Variant::PAPER.to_vec();
+        }
+        let is_all = self.variants.contains(&Listed(None));
         Variant::ALL.iter().copied().filter(|v| is_all || self.variants.contains(&Listed(Some(*v)))).collect()
     }
 }
@@ -55,10 +58,19 @@ impl Choice for Listed {
         Listed(Some(Variant::GpuCompute)),
         Listed(Some(Variant::GpuFragment)),
         Listed(Some(Variant::Mesh)),
+        Listed(Some(Variant::DdaCompute)),
+        Listed(Some(Variant::DdaFragment)),
         Listed(None),
     ];
-    const NAMES: &'static [(&'static str, &'static str)] =
-        &[("cpu", ""), ("gpu-compute", ""), ("gpu-fragment", ""), ("mesh", ""), ("all", "")];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("cpu", ""),
+        ("gpu-compute", ""),
+        ("gpu-fragment", ""),
+        ("mesh", ""),
+        ("dda-compute", ""),
+        ("dda-fragment", ""),
+        ("all", ""),
+    ];
 }
 
 /// The options of the experiments and of `collide`.
@@ -71,7 +83,7 @@ pub fn options() -> Vec<Parameter<Options>> {
         Parameter::new("variant", field!(Options.variants))
             .placeholder("VARIANT,..")
             .help("Variants of a sweep, comma-separated, or all; a figure shows the first")
-            .default_text("all"),
+            .default_text("the paper's and mesh"),
         Parameter::new("segment", field!(Options.segments))
             .placeholder("X,Y,Z,X,Y,Z")
             .help("From a place to another, metres: east, up from the base, south")
@@ -219,8 +231,10 @@ fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
     let json = context.destinations.json.as_deref();
     let file = json.filter(|path| path.as_os_str() != "-");
     file.map_or(Ok(()), check_writable)?;
-    let collisions = collide(&context.setup, &bodies)?;
-    let record = json!({"collisions": collisions.iter().map(Collision::json).collect::<Vec<_>>()});
+    let (collisions, warnings) = collide(&context.setup, &bodies)?;
+    warnings.iter().for_each(|warning| context.console.say(&format!("warning: {warning}")));
+    let record =
+        json!({"collisions": collisions.iter().map(Collision::json).collect::<Vec<_>>(), "warnings": warnings});
     let record = experiment::json_text(&record)?;
     match file {
         Some(path) => write(path, record.as_bytes())?,

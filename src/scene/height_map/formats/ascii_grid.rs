@@ -196,7 +196,7 @@ mod tests {
         .unwrap();
         let Samples::Steps { values, origin_m, step_m } = map.samples() else { panic!("{map:?}") };
         assert_eq!((values.as_slice(), *origin_m, *step_m), ([3, 0, 30_002, 6, 5, 8].as_slice(), -2.0, 1.0));
-        assert_eq!((map.voids_filled(), map.spacing_m(), map.geographic()), (1, DVec2::splat(10.0), None));
+        assert_eq!((map.voids(), map.spacing_m(), map.geographic()), (1, DVec2::splat(10.0), None));
     }
 
     #[test]

@@ -81,7 +81,7 @@ mod tests {
             (0..1_201 * 1_201).flat_map(|i: i32| (i % 1_201 - 500).to_be_bytes()[2..].to_vec()).collect();
         bytes[2 * (1_201 * 7 + 5)..][..2].copy_from_slice(&i16::MIN.to_be_bytes());
         let map = parse("N37E140.hgt", bytes.len() as u64, bytes.as_slice()).unwrap();
-        assert_eq!((map.width(), map.height(), map.voids_filled()), (1_201, 1_201, 1));
+        assert_eq!((map.width(), map.height(), map.voids()), (1_201, 1_201, 1));
         assert_eq!(map.range_m(), (-500.0, 700.0));
         assert_eq!((map.height_m(0, 0), map.height_m(1_200, 3), map.height_m(5, 7)), (-500.0, 700.0, -495.0));
         let place = map.geographic().unwrap();

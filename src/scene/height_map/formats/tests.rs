@@ -26,7 +26,7 @@ fn is_void(column: u32, row: u32) -> bool {
 #[test]
 fn files_written_by_gdal_hold_the_same_heights() {
     let reference = load_asset("topobathy-int16.asc");
-    assert_eq!((reference.width(), reference.height(), reference.voids_filled()), (120, 91, 77));
+    assert_eq!((reference.width(), reference.height(), reference.voids()), (120, 91, 77));
     // The first line of the text file.
     assert_eq!([0, 1, 2, 119].map(|column| reference.height_m(column, 0)), [989.0, 943.0, 635.0, 1_015.0]);
     assert!(matches!(reference.samples(), Samples::Steps { step_m: 1.0, .. }));
@@ -39,7 +39,7 @@ fn files_written_by_gdal_hold_the_same_heights() {
     ] {
         let map = load_asset(name);
         assert_eq!(map.samples(), reference.samples(), "{name}");
-        assert_eq!(map.voids_filled(), 77, "{name}");
+        assert_eq!(map.voids(), 77, "{name}");
         let (place, expected) = (map.geographic().unwrap(), reference.geographic().unwrap());
         assert!(
             (place.west_deg - expected.west_deg).abs() < 1e-9 && (place.north_deg - expected.north_deg).abs() < 1e-9
@@ -48,7 +48,7 @@ fn files_written_by_gdal_hold_the_same_heights() {
     }
     let raised: Vec<f32> = heights(&reference).iter().map(|height| height + 2_000.0).collect();
     let png = load_asset("topobathy-2000m-uint16.png");
-    assert_eq!((heights(&png), png.voids_filled(), png.spacing_m()), (raised, 77, DVec2::ONE));
+    assert_eq!((heights(&png), png.voids(), png.spacing_m()), (raised, 77, DVec2::ONE));
     let coarse = load_asset("topobathy-uint8.png");
     for (row, column) in (0..91).flat_map(|row| (0..120).map(move |column| (row, column))) {
         let expected = ((reference.height_m(column, row) + 1_500.0) / 15.0).floor();
@@ -59,7 +59,7 @@ fn files_written_by_gdal_hold_the_same_heights() {
 #[test]
 fn floating_point_files_written_by_gdal_are_exact() {
     let reference = load_asset("topobathy-float.bil");
-    assert_eq!((reference.range_m(), reference.voids_filled()), ((-1_437.0, 2_205.0), 0));
+    assert_eq!((reference.range_m(), reference.voids()), ((-1_437.0, 2_205.0), 0));
     assert!(matches!(reference.samples(), Samples::Float(_)));
     for name in ["topobathy-float-deflate.tif", "topobathy-float-lzw-tiled.tif"] {
         assert_eq!(load_asset(name).samples(), reference.samples(), "{name}");
@@ -92,7 +92,7 @@ fn a_tile_written_by_gdal_is_read() {
     std::fs::write(&path, bytes).unwrap();
     let tile = load(&path).unwrap();
     let voids = places.clone().filter(|(column, row)| sample(*column, *row) == i16::MIN).count();
-    assert_eq!((tile.width(), tile.height(), tile.voids_filled()), (1_201, 1_201, voids as u64));
+    assert_eq!((tile.width(), tile.height(), tile.voids()), (1_201, 1_201, voids as u64));
     for (column, row) in places {
         let expected = sample(column, row);
         assert!(expected == i16::MIN || tile.height_m(column, row) == f32::from(expected), "{column}, {row}");
@@ -302,7 +302,7 @@ fn tiffs_and_pngs_that_are_no_height_map_are_refused() {
             image.write_data(&[1, 2, 7, 4]).unwrap();
         })
     };
-    assert_eq!(tagged(42_113, " 7 ").unwrap().voids_filled(), 1);
+    assert_eq!(tagged(42_113, " 7 ").unwrap().voids(), 1);
     assert_eq!(tagged(42_113, "void").unwrap_err().to_string(), "GDAL_NODATA: it is \"void\", not a number");
     let metadata = "<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.1</Item></GDALMetadata>";
     assert!(tagged(42_112, metadata).unwrap_err().to_string().contains("gdal_translate -unscale"));

@@ -1,0 +1,18 @@
+#version 450
+
+#pragma variants INTERPOLATION=bilinear,bicubic
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "terrain/terrain.glsl"
+#include "terrain/base-plane.glsl"
+#include "terrain/interpolation.glsl"
+#include "terrain/leaf-shadow.glsl"
+#include "terrain/traversal-dda.glsl"
+#include "terrain/shadow.glsl"
+
+layout(location = 0) out float shadow;
+
+void main() {
+    shadow = lit_at(ivec2(gl_FragCoord.xy));
+}

@@ -1,0 +1,130 @@
+// The traversal of the variants `dda-compute` and `dda-fragment`, beside the paper's: blocks of cells are walked one after the
+// other, from border to border. A texel of a level k above the data bounds the surface over all of its 2^k x 2^k cells, so that
+// one read answers for a step: maximum mipmaps (Tevs, Ihrke, Seidel 2008) and quadtree displacement mapping (Drobot 2010). The
+// ray climbs a level where it leaves a block of the level above as well, and goes at once to where it comes down to a block's
+// height.
+//
+// Before this file stand those of a plane's base, of an interpolation and of a level of detail: a curved base bends rays.
+
+#include "terrain/crossing.glsl"
+
+// A height above the surface over a block of cells.
+float highest_over(int level, ivec2 block) {
+    float highest = highest_at(level, block);
+#ifdef INTERPOLATION_BICUBIC
+    highest += 9.0 / 32.0 * (highest - lowest_at(level, block));
+#endif
+    return highest;
+}
+
+// The part of a line over one block, 0 to 1, at which it meets the surface of the level that is seen; -1 where it does not.
+float part_in(int shift, ivec2 cell, vec3 from, vec3 direction) {
+#ifdef LOD_EXACT
+    return touch(0, cell, vec3(from.xy - vec2(cell), from.z), direction);
+#else
+    return crossing_of(shift, from, from + direction);
+#endif
+}
+
+// The cell of a block in which a place lies.
+ivec2 cell_in(ivec2 block, int level, vec2 place, ivec2 last_cell) {
+    ivec2 first = block << level;
+    return clamp(ivec2(floor(place)), first, min(first + ((1 << level) - 1), last_cell));
+}
+
+// The cell and the level at which a ray goes on that leaves a block at a place: over the nearer of the two borders ahead, and a
+// level up where that is a border of the level above as well.
+ivec3 beyond(ivec2 block, int level, ivec2 forward, vec2 at_border, vec2 place, ivec2 last_cell) {
+    ivec2 border = (block + forward) << level;
+    ivec2 next = border + forward - 1;
+    ivec2 inside = cell_in(block, level, place, last_cell);
+    bool along_x = at_border.x < at_border.y;
+    int up = (((along_x ? border.x : border.y) >> level) & 1) == 0 ? 1 : 0;
+    return ivec3(along_x ? next.x : inside.x, along_x ? inside.y : next.y, min(level + up, map.top));
+}
+
+// The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
+Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
+    RaySegment ray = ray_segment(eye, direction, limit_m);
+    Hit hit = before;
+    bool done = !(ray.near_m < ray.far_m);
+    if (!done) {
+        int shift = finest_shift(ray.near_m);
+        int surface = entry_surface(ray, height_at(shift, ray.from.xy));
+        if (surface != 0) {
+            hit = Hit(ray.near_m, ray.from.xy, surface_code(surface, shift, 1));
+            done = true;
+        }
+    }
+    vec3 from = ray.from;
+    vec3 whole = ray.whole;
+    // A ray along the grid never comes to the borders beside it: their part of the ray is beyond its end.
+    vec2 never = vec2(abs(whole.x) < 1.0e-6 ? 2.0 : 0.0, abs(whole.y) < 1.0e-6 ? 2.0 : 0.0);
+    vec2 inverse = vec2(never.x > 0.0 ? 0.0 : 1.0 / whole.x, never.y > 0.0 ? 0.0 : 1.0 / whole.y);
+    ivec2 forward = ivec2(whole.x > 0.0 ? 1 : 0, whole.y > 0.0 ? 1 : 0);
+    bool falls = whole.z < 0.0;
+    float margin = terrain.rounding_height;
+    ivec2 last_cell = max(map.last - 1, ivec2(0));
+    ivec2 cell = clamp(ivec2(floor(from.xy)), ivec2(0), last_cell);
+    int level = max(map.top - 2, 1);
+    int finest = 0;
+    int steps = 0;
+    float t = 0.0; // what is free of the ray
+    float end = 0.0; // of the block
+    float met = -1.0;
+    bool is_cast = !done;
+    while (!done) {
+        bool is_last = false;
+        while (!is_last && !done) {
+            ivec2 block = cell >> level;
+            vec2 at_border = (vec2((block + forward) << level) - from.xy) * inverse + never;
+            end = max(min(min(at_border.x, at_border.y), 1.0), t);
+            steps += 1;
+            is_last = level == 0;
+            if (!is_last) {
+                float lowest = from.z + whole.z * (falls ? end : t) - margin;
+                float highest = highest_over(level, block);
+                if (lowest > highest) {
+                    t = end;
+                    ivec3 next = beyond(block, level, forward, at_border, from.xy + t * whole.xy, last_cell);
+                    cell = next.xy;
+                    level = next.z;
+                    done = t >= 1.0 || any(lessThan(cell, ivec2(0))) || any(greaterThan(cell, last_cell));
+                } else {
+                    float jump = falls ? min((highest + margin - from.z) / whole.z, end) : t;
+                    if (jump > t) {
+                        t = jump;
+                        cell = cell_in(block, level, from.xy + t * whole.xy, last_cell);
+                    }
+                    is_last = level <= finest_shift(ray.near_m + t * (ray.far_m - ray.near_m));
+                    level -= is_last ? 0 : 1;
+                }
+            }
+        }
+        if (is_last) {
+            finest = finest_shift(ray.near_m + t * (ray.far_m - ray.near_m));
+            float part = part_in(max(finest, level), cell, from + t * whole, (end - t) * whole);
+            done = part >= 0.0;
+            met = done ? t + part * (end - t) : -1.0;
+            if (!done) {
+                ivec2 block = cell >> level;
+                vec2 at_border = (vec2((block + forward) << level) - from.xy) * inverse + never;
+                t = end;
+                ivec3 next = beyond(block, level, forward, at_border, from.xy + t * whole.xy, last_cell);
+                cell = next.xy;
+                level = next.z;
+                done = t >= 1.0 || any(lessThan(cell, ivec2(0))) || any(greaterThan(cell, last_cell));
+            }
+        }
+    }
+    // Not `!done`: compilers know that the loop ends with it.
+    bool is_over = all(greaterThanEqual(cell, ivec2(0))) && all(lessThanEqual(cell, last_cell));
+    if (is_cast && met < 0.0 && t < 1.0 && is_over) {
+        hit = UNFINISHED;
+    }
+    if (met >= 0.0) {
+        float depth_m = depth_at(ray, met);
+        hit = Hit(depth_m, from.xy + met * whole.xy, surface_code(TERRAIN, finest_shift(depth_m), steps));
+    }
+    return hit;
+}
