@@ -53,6 +53,9 @@ fn measure<S: Study>(
     if output.json_to_stdout() {
         outcome::say_device(output, &machine);
     }
+    for &variant in variants {
+        outcome::foretell(output, &study.estimate(&loaded.scene, variant), &machine);
+    }
     let limits = measure.limits(&mut machine)?;
     let bench = Bench { study, loaded: &loaded, variants, schedule, limits: limits.as_ref() };
     let measured = watched(output.quiet, S::PAPER, |watch| bench.measure(&mut machine, watch))?;

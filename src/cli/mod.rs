@@ -66,11 +66,24 @@ impl Visitor for Papers {
     }
 }
 
+/// The command line of `fumarole`, parsed; the first of `arguments` is the program's name.
+///
+/// # Errors
+/// Help that was asked for, and what the parser refuses.
+pub fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
+    all_papers().command.try_get_matches_from(arguments)
+}
+
+fn all_papers() -> Papers {
+    let mut papers = Papers { command: Umbrella::command(), run: Vec::new() };
+    let Ok(()) = papers::each(&mut papers);
+    papers
+}
+
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
     gpu::pin_software_threads();
-    let mut papers = Papers { command: Umbrella::command(), run: Vec::new() };
-    let Ok(()) = papers::each(&mut papers);
+    let papers = all_papers();
     spelling::learn(&papers.command);
     let matches = match papers.command.try_get_matches_from(std::env::args_os()) {
         Ok(matches) => matches,

@@ -10,6 +10,7 @@ use super::watch::watched;
 use crate::file::{check_writable, write};
 use crate::image;
 use crate::measure::Error;
+use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Console;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Watch;
@@ -59,6 +60,14 @@ pub fn usage(error: &clap::Error) -> u8 {
 pub fn say_device(output: &OutputArgs, machine: &Machine) {
     if !output.quiet {
         say(&format!("device: {}", machine.description()));
+    }
+}
+
+/// Says that a frame will take long.
+pub fn foretell(output: &OutputArgs, estimate: &Estimate, machine: &Machine) {
+    let is_made = !output.quiet && estimate.check(&machine.device, "").is_ok();
+    if let Some(note) = estimate.patience(&machine.device).filter(|_| is_made) {
+        say(&note);
     }
 }
 

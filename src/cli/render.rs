@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
@@ -108,6 +109,7 @@ pub fn draw<S: Study>(
     let scene = study.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(0), S::NEEDS)?;
     outcome::say_device(&output, &machine);
+    outcome::foretell(&output, &study.estimate(&scene, variant), &machine);
     let mut built = build(&machine, &study, &scene, variant)?;
     let targets = built.paper.targets();
     for dump in &arguments.dump {
@@ -121,9 +123,17 @@ pub fn draw<S: Study>(
     bar.set_length(u64::from(frames.end - frames.first));
     let mut written = Vec::new();
     for number in frames.first..frames.end {
-        if interrupted().load(std::sync::atomic::Ordering::Relaxed) {
+        if interrupted().load(Ordering::Relaxed) {
             break;
         }
+        let is_wanted = |left: u32| {
+            bar.set_message(format!("{}: {left} steps to frame {number}", S::PAPER));
+            !interrupted().load(Ordering::Relaxed)
+        };
+        if !picture::advance(&mut machine, &mut built.paper, number, is_wanted)? {
+            break;
+        }
+        bar.set_message(S::PAPER);
         let rendered = picture::render(&mut machine, &mut built.paper, number)?;
         let path = picture_path(number);
         image::write_png(&path, &rendered)?;

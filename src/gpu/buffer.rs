@@ -318,8 +318,11 @@ pub(crate) fn allocate(
 ) -> Result<Allocation, Error> {
     let heap_bytes = largest_heap_bytes(device);
     let out_of_memory = || Error::OutOfMemory { object: name.to_owned(), bytes: requirements.size };
-    if requirements.size > heap_bytes {
-        return Err(out_of_memory());
+    // Some drivers promise more than there is, and fail where it is written to.
+    let wanted = device.live().total_bytes().saturating_add(requirements.size);
+    if wanted > heap_bytes {
+        let what = "size in bytes, together with all that is allocated already,";
+        return Err(Error::Limit { object: name.to_owned(), what, wanted, limit: heap_bytes });
     }
     device
         .allocator()

@@ -127,6 +127,11 @@ impl LiveObjects {
         self.lock().memory.clone()
     }
 
+    /// Sum of live memory, bytes.
+    pub fn total_bytes(&self) -> u64 {
+        self.lock().total_bytes
+    }
+
     /// The highest sum of live memory since the start or the last [`LiveObjects::reset_peak`], in bytes.
     pub fn peak_bytes(&self) -> u64 {
         self.lock().peak_bytes

@@ -51,12 +51,13 @@ pub struct Built<S: Study> {
 /// Makes the resources of a variant.
 ///
 /// # Errors
-/// [`Error::Gpu`].
+/// [`Error::Gpu`]; a limit by its parameter for what is larger than the device, before anything is allocated.
 pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: S::Variant) -> Result<Built<S>, Error> {
     let live = Arc::clone(machine.device.live());
     let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
     live.reset_peak();
     let started = Instant::now();
+    study.estimate(scene, variant).check(&machine.device, variant.as_str())?;
     let made = study.make(&machine.shaders, variant.as_str(), scene, variant);
     let paper = made.map_err(|error| machine.shaders.blamed(error))?;
     let build_ms = started.elapsed().as_secs_f64() * 1e3;

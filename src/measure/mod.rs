@@ -5,6 +5,7 @@ pub mod bench;
 pub mod compare;
 pub mod config;
 mod error;
+pub mod estimate;
 pub mod experiment;
 pub mod limits;
 pub mod machine;

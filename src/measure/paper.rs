@@ -31,6 +31,15 @@ pub trait Paper {
     /// Any error of the Vulkan layer.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
 
+    /// Advances a state that goes step by step towards frame `number`, by at most `most` steps, and gives the number of
+    /// those that are left. So a late frame is many submissions, not one.
+    ///
+    /// # Errors
+    /// Any error of the Vulkan layer.
+    fn advance(&mut self, _frame: &mut Frame<'_>, _number: u32, _most: u32) -> Result<u32, Error> {
+        Ok(0)
+    }
+
     /// Records frame `number` with what a finished picture needs beyond the passes that the paper times.
     ///
     /// # Errors

@@ -11,11 +11,41 @@ use crate::gpu::{Device, Mode, transfer};
 use crate::image::{Raster, Rgba8};
 use crate::measure::{Kind, Paper, Target};
 
+/// Steps of a state in one submission.
+const STEPS: u32 = 128;
+
+/// Brings a paper's state to where frame `number` can be recorded, in submissions of bounded length; `proceed` is told
+/// the steps that are left after each and says whether to go on. False when it did not.
+///
+/// # Errors
+/// [`Error::Gpu`].
+pub fn advance(
+    machine: &mut Machine,
+    paper: &mut dyn Paper,
+    number: u32,
+    mut proceed: impl FnMut(u32) -> bool,
+) -> Result<bool, Error> {
+    loop {
+        let mut left = 0;
+        machine.recorder.run(Mode::Plain, |frame| {
+            left = paper.advance(frame, number, STEPS)?;
+            Ok::<(), Error>(())
+        })?;
+        if left == 0 {
+            return Ok(true);
+        }
+        if !proceed(left) {
+            return Ok(false);
+        }
+    }
+}
+
 /// Records frame `number` and reads its picture; numbers rise, unless the paper is restarted.
 ///
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
 pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
+    advance(machine, paper, number, |_| true)?;
     loop {
         machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
         if paper.settle(&machine.shaders)? {

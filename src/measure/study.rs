@@ -4,6 +4,7 @@ use serde_json::{Map, Value};
 
 use super::bench::Built;
 use super::error::Error;
+use super::estimate::Estimate;
 use super::experiment::Experiment;
 use super::machine::Machine;
 use super::measure::Measurement;
@@ -51,6 +52,11 @@ pub trait Study: Clone + Default + 'static {
         scene: &Self::Scene,
         variant: Self::Variant,
     ) -> Result<Self::Paper, gpu::Error>;
+
+    /// Sizes of a variant, as far as they follow from the parameters; [`Study::make`] is not asked for what is too large.
+    fn estimate(&self, _scene: &Self::Scene, _variant: Self::Variant) -> Estimate {
+        Estimate::default()
+    }
 
     fn identity(&self) -> Identity;
 

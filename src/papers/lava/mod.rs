@@ -17,6 +17,7 @@ mod animate;
 mod blending;
 mod cluster;
 mod density;
+mod estimate;
 pub mod experiments;
 mod extract;
 #[cfg(test)]
@@ -193,13 +194,19 @@ impl Paper for Lava {
             let problem = format!("frame {number} comes before frame {steps}, the next; restart the paper first");
             return Err(Error::Pass { pass: "animate".into(), problem });
         }
-        for _ in steps..number {
-            self.animation.animate.record(frame)?;
-        }
+        self.advance(frame, number, u32::MAX)?;
         self.animation.record(frame)?;
         self.isosurface.record(frame, &self.animation.cluster.clusters.particles)?;
         self.splatting.record(frame, self.drift_m(number))?;
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
+    }
+
+    fn advance(&mut self, frame: &mut Frame<'_>, number: u32, most: u32) -> Result<u32, Error> {
+        let animate = &mut self.animation.animate;
+        for _ in 0..number.saturating_sub(animate.steps()).min(most) {
+            animate.record(frame)?;
+        }
+        Ok(number.saturating_sub(animate.steps()))
     }
 
     /// The thesis's last pass is the picture, but where it shows particles.

@@ -13,6 +13,7 @@ use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
 use crate::measure::config::entries;
+use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -90,6 +91,10 @@ impl Study for Setup {
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, _: Variant) -> Result<Lava, gpu::Error> {
         Lava::new(shaders, label, &self.parameters, &scene.particles, &scene.rock, &scene.objects)
+    }
+
+    fn estimate(&self, _: &Scene, _: Variant) -> Estimate {
+        self.parameters.estimate()
     }
 
     fn identity(&self) -> Identity {

@@ -20,6 +20,7 @@ mod outputs;
 mod pages;
 mod passes;
 mod program;
+mod properties;
 mod render;
 mod shaders;
 mod streams;

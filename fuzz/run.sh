@@ -1,0 +1,19 @@
+#!/bin/sh
+# Fuzzes one reader, or all in turn: run.sh [TARGET|all] [SECONDS each]. Needs the stable compiler alone.
+# A finding is written to fuzz/artifacts; new inputs to fuzz/found, of which the best go into fuzz/corpus by hand.
+set -eu
+cd "$(dirname "$0")"
+host=$(rustc -vV | sed -n 's/^host: //p')
+llvm() { printf ' -Cllvm-args=-sanitizer-coverage-%s' "$1"; }
+RUSTFLAGS="-Cpasses=sancov-module$(llvm level=4)$(llvm inline-8bit-counters)$(llvm pc-table)$(llvm trace-compares) --cfg fuzzing" \
+    cargo build --release --locked --target "$host"
+targets=${1:-all}
+[ "$targets" != all ] || targets=$(ls corpus)
+for target in $targets; do
+    mkdir -p "found/$target" artifacts
+    echo "== $target"
+    # The cost rule: 1 s and 64 MiB beside the program's own, for files of less than a megabyte.
+    FUMAROLE_FUZZ_TARGET=$target "target/$host/release/fuzz" "found/$target" "corpus/$target" -max_total_time="${2:-60}" \
+        -timeout=2 -malloc_limit_mb=80 -rss_limit_mb=1024 -max_len=65536 -artifact_prefix="artifacts/$target-" \
+        -print_final_stats=1 -verbosity=1 2>&1 | grep -E 'DONE|stat::|ERROR|panicked|SUMMARY' || true
+done

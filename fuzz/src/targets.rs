@@ -1,0 +1,129 @@
+//! Every reader of the program, fed with bytes: a result or one clear line, whatever they are.
+
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fumarole::scene::{HeightMapSource, MeshSource};
+use fumarole::{cli, image, report, shader_build};
+
+/// A reader.
+pub type Target = fn(&[u8]);
+
+/// Readers under the names of their corpora.
+pub const ALL: [(&str, Target); 14] = [
+    ("obj", |data| mesh(&[("a.obj", data)])),
+    ("ply", |data| mesh(&[("a.ply", data)])),
+    ("stl", |data| mesh(&[("a.stl", data)])),
+    ("gltf", gltf),
+    ("glb", |data| mesh(&[("a.glb", data)])),
+    ("asc", |data| height_map(&[("a.asc", data)])),
+    ("esri", esri),
+    ("hgt", |data| height_map(&[("N37E140.hgt", data)])),
+    ("tif", |data| height_map(&[("a.tif", data)])),
+    ("map-png", |data| height_map(&[("a.png", data)])),
+    ("png", picture),
+    ("record", record),
+    ("include", include),
+    ("arguments", arguments),
+];
+
+/// Writes the files into a folder of this thread, and gives the first one's path.
+fn written(files: &[(&str, &[u8])]) -> PathBuf {
+    thread_local! {
+        static FOLDER: tempfile::TempDir = {
+            let memory = Path::new("/dev/shm");
+            let place = if memory.is_dir() { memory.to_owned() } else { std::env::temp_dir() };
+            tempfile::tempdir_in(place).expect("a folder for the files")
+        };
+    }
+    FOLDER.with(|folder| {
+        for (name, data) in files {
+            fs::write(folder.path().join(name), data).expect("room for the files");
+        }
+        folder.path().join(files[0].0)
+    })
+}
+
+fn is_one_line(error: &impl Display) {
+    let text = error.to_string();
+    assert!(text.len() < 2_000, "{} characters: {text:.200}", text.len());
+    assert!(!text.contains(char::is_control), "{text:?}");
+}
+
+fn mesh(files: &[(&str, &[u8])]) {
+    match MeshSource::File(written(files)).load() {
+        Ok(mesh) => assert!(mesh.validate().is_ok()),
+        Err(error) => is_one_line(&error),
+    }
+}
+
+/// The document up to the first zero byte, and a file beside it.
+fn gltf(data: &[u8]) {
+    let (document, buffer) = parted(data);
+    mesh(&[("a.gltf", document), ("a.bin", buffer)]);
+}
+
+fn height_map(files: &[(&str, &[u8])]) {
+    match HeightMapSource::File(written(files)).load() {
+        Ok(map) => assert!(map.samples().len() == map.width() as usize * map.height() as usize),
+        Err(error) => is_one_line(&error),
+    }
+}
+
+/// The header up to the first zero byte, and the samples.
+fn esri(data: &[u8]) {
+    let (header, samples) = parted(data);
+    height_map(&[("b.hdr", header), ("b.bil", samples)]);
+}
+
+fn parted(data: &[u8]) -> (&[u8], &[u8]) {
+    let end = data.iter().position(|byte| *byte == 0).unwrap_or(data.len());
+    (&data[..end], data.get(end + 1..).unwrap_or_default())
+}
+
+fn picture(data: &[u8]) {
+    match image::read_png(&written(&[("c.png", data)])) {
+        Ok(picture) => assert!(picture.pixels().len() == 4 * picture.width() as usize * picture.height() as usize),
+        Err(error) => is_one_line(&error),
+    }
+}
+
+fn record(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    if let Ok(record) = report::json::parse(text, Path::new("a.json")) {
+        // What was read is written, shown and read again.
+        let written = report::json::to_string(&record).expect("a record is JSON");
+        assert!(report::json::parse(&written, Path::new("b.json")).is_ok());
+        let style = report::table::Style::default();
+        assert!(!report::console::record(&record, style).is_empty() && !report::csv::to_string(&record).is_empty());
+    }
+}
+
+/// A shader and two files that it may include, between zero bytes.
+fn include(data: &[u8]) {
+    let (shader, rest) = parted(data);
+    let (first, second) = parted(rest);
+    let path = written(&[("a.frag", shader), ("b.glsl", first), ("c.glsl", second)]);
+    let folder = path.parent().expect("it lies in a folder");
+    match shader_build::Source::read_variants(folder, "a.frag") {
+        Ok(sources) => {
+            for (_, source) in sources {
+                let lines = source.text.lines().count();
+                assert!((1..=lines).all(|line| source.origin(line).is_some()) && source.text.is_ascii());
+            }
+        }
+        Err(error) => assert!(error.to_string().len() < 100_000),
+    }
+}
+
+/// A command line, its words between zero bytes.
+fn arguments(data: &[u8]) {
+    let words = data.split(|byte| *byte == 0);
+    #[cfg(unix)]
+    let words = words.map(|word| std::os::unix::ffi::OsStringExt::from_vec(word.to_vec()));
+    #[cfg(not(unix))]
+    let words = words.map(|word| OsString::from(String::from_utf8_lossy(word).into_owned()));
+    let _result = cli::parsed(std::iter::once(OsString::from("fumarole")).chain(words));
+}

@@ -1,0 +1,65 @@
+//! Sizes of a configuration, known before anything of it is allocated.
+
+use crate::gpu::physical::DeviceType;
+use crate::gpu::{Device, Error};
+
+/// Most passes of one frame: command buffers of more take gigabytes.
+const MOST_PASSES: u64 = 1 << 16;
+
+/// Invocations of fragment and compute shaders that a CPU finishes in a second, and any other device, roughly.
+const PER_SECOND: (f64, f64) = (1e8, 2e10);
+
+/// Memory, passes and shader invocations of a frame, each by the parameter that sets it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Estimate {
+    /// Bytes on the device.
+    pub bytes: Vec<(&'static str, f64)>,
+    /// Passes of one frame, with the parameter that they follow.
+    pub passes: Option<(&'static str, u64)>,
+    /// Invocations of fragment and compute shaders in one frame.
+    pub invocations: Vec<(&'static str, f64)>,
+}
+
+impl Estimate {
+    /// Passes for a configuration that the device can hold.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for more bytes than its largest heap has, or more passes than a frame may have.
+    pub fn check(&self, device: &Device, label: &str) -> Result<(), Error> {
+        let memory = &device.physical().memory;
+        let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
+        let limit = heaps.iter().map(|heap| heap.size).max().unwrap_or(0);
+        let refused = |what, wanted, limit, parameter: &str| {
+            Err(Error::Limit { object: label.to_owned(), what, wanted, limit }.set_by(parameter))
+        };
+        let total: f64 = self.bytes.iter().map(|(_, bytes)| bytes).sum();
+        if let Some((parameter, _)) = largest(&self.bytes).filter(|_| total > limit as f64) {
+            return refused("size in bytes of all buffers and images", total as u64, limit, parameter);
+        }
+        match self.passes {
+            Some((parameter, passes)) if passes > MOST_PASSES => {
+                refused("count of passes in a frame", passes, MOST_PASSES, parameter)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A line for whoever waits, where a frame takes long on the device.
+    pub fn patience(&self, device: &Device) -> Option<String> {
+        /// Seconds.
+        const LONG: f64 = 10.0;
+        let is_cpu = device.physical().device_type == DeviceType::Cpu;
+        let per_second = if is_cpu { PER_SECOND.0 } else { PER_SECOND.1 };
+        let total: f64 = self.invocations.iter().map(|(_, count)| count).sum();
+        let (parameter, _) = largest(&self.invocations).filter(|_| total > LONG * per_second)?;
+        Some(format!(
+            "note: a frame runs some {:.0e} shader invocations and may take {:.0} s here; lower `{parameter}` for less",
+            total,
+            total / per_second
+        ))
+    }
+}
+
+fn largest(items: &[(&'static str, f64)]) -> Option<(&'static str, f64)> {
+    items.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))
+}

@@ -1,0 +1,68 @@
+//! Sizes that follow from the parameters.
+
+use super::cluster::Point;
+use super::parameters::Parameters;
+use crate::measure::estimate::Estimate;
+
+/// Bytes of a texel of four floats.
+const TEXEL: f64 = 16.0;
+
+impl Parameters {
+    /// Device memory, passes and fragments of a frame.
+    pub fn estimate(&self) -> Estimate {
+        let [columns, planes, rows] = self.density.map(f64::from);
+        let particles = f64::from(self.particles);
+        let clusters = f64::from(self.clusters());
+        let splats = f64::from(self.splats[0]) * f64::from(self.splats[1]);
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let point = size_of::<Point>() as f64;
+        // A particle is drawn into every cluster that its radius reaches, as a square of eq. 6.1.
+        let reached = (2.0 * f64::from(self.radius_m / self.space_m.y) * clusters + 1.0).min(clusters);
+        let point_pixels = f64::from(self.point_size_px()).powi(2).min(columns * rows);
+        // Each accepted grid point, at most all of them, as a disc of a particle's radius.
+        let disc = std::f64::consts::PI * point_pixels / 4.0;
+        Estimate {
+            bytes: vec![
+                ("particles", 5.0 * TEXEL * particles),
+                ("density", clusters * (point * particles + TEXEL * columns * rows)),
+                ("density", point * columns * planes * rows + 3.0 * TEXEL * columns * rows),
+                ("splats", 8.0 * splats),
+                ("size", (TEXEL + 12.0) * pixels),
+            ],
+            passes: Some(("density", 3 * u64::from(self.clusters()) + 16)),
+            invocations: vec![
+                ("radius", particles * reached * point_pixels),
+                ("density", columns * rows * planes.sqrt() * disc),
+                ("splat-radius", 2.0 * splats * (1.0 + self.splat_pixels().min(pixels))),
+                ("splats", 8.0 * splats),
+            ],
+        }
+    }
+
+    /// Pixels of a splat in the middle of the space.
+    fn splat_pixels(&self) -> f64 {
+        let distance_m = self.camera.eye.distance(0.5 * self.space_m).max(self.camera.near_m);
+        let pixels_per_m = 0.5 * self.height as f32 / (0.5 * self.camera.vertical_fov_rad).tan() / distance_m;
+        std::f64::consts::PI * f64::from(self.splat_radius_m * pixels_per_m).powi(2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn total(items: &[(&str, f64)]) -> f64 {
+        items.iter().map(|(_, count)| count).sum()
+    }
+
+    #[test]
+    fn what_is_set_higher_is_estimated_higher() {
+        let default = Parameters::default().estimate();
+        // 40,000 particles in six clusters, 600 x 150 splats and 800 x 600 pixels are some tens of megabytes.
+        assert!((20e6..100e6).contains(&total(&default.bytes)), "{default:?}");
+        let vast = Parameters { density: [1, 67_108_864, 1], ..Parameters::default() }.estimate();
+        assert!(total(&vast.bytes) > 8e12 && vast.passes.is_some_and(|(_, count)| count > 50_000_000), "{vast:?}");
+        let wide = Parameters { splat_radius_m: 1.0, ..Parameters::default() }.estimate();
+        assert!(total(&wide.invocations) > 100.0 * total(&default.invocations), "{wide:?}");
+    }
+}

@@ -1,0 +1,171 @@
+//! Random parameters from the ranges that the declarations state: every run ends with a picture or with one clear line,
+//! in bounded memory, and says so beforehand where it takes long.
+
+use std::convert::Infallible;
+use std::fs;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use fumarole::measure::parameter::{Parameter, Range};
+use fumarole::measure::study::{Study, Visitor};
+use fumarole::papers;
+use fumarole::scene::random::Random;
+
+use super::program::{Program, folder, fumarole};
+use crate::common::beside_others;
+
+/// Draws of each paper; more with this variable.
+const CASES_VARIABLE: &str = "FUMAROLE_CASES";
+const CASES: u32 = 12;
+
+/// Address space that no run may pass: the heap of lavapipe twice (the device's memory and what the host makes of it),
+/// the driver and its threads.
+const LIMIT_KIB: u64 = 8 << 20;
+
+/// Longest run that said nothing beforehand.
+const SILENT: Duration = Duration::from_secs(60);
+
+/// A case: what was typed.
+struct Cases(Vec<(&'static str, Vec<String>)>);
+
+impl Visitor for Cases {
+    type Error = Infallible;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Infallible> {
+        let count = std::env::var(CASES_VARIABLE).ok().and_then(|text| text.parse().ok()).unwrap_or(CASES);
+        let mut random = Random::new(u64::from(S::PAPER.as_bytes()[0]));
+        let parameters: Vec<_> = S::parameters().into_iter().filter(|p| draw(p, &mut random).is_some()).collect();
+        for _ in 0..count {
+            let mut options: Vec<String> = vec![];
+            for _ in 0..=random.next_u32() % 3 {
+                let parameter = &parameters[random.next_u32() as usize % parameters.len()];
+                let option = format!("--{}=", parameter.name);
+                let Some(value) = draw(parameter, &mut random) else { continue };
+                if !options.iter().any(|given| given.starts_with(&option)) {
+                    options.push(option + &value);
+                }
+            }
+            self.0.push((S::PAPER, options));
+        }
+        Ok(())
+    }
+}
+
+/// A value inside the range; none for flags, files and words, which have no numbers.
+fn draw<S: Study>(parameter: &Parameter<S>, random: &mut Random) -> Option<String> {
+    let shape = parameter.shape();
+    if shape.is_flag || parameter.name == "size" {
+        return None;
+    }
+    if !shape.choices.is_empty() {
+        return Some(shape.choices[random.next_u32() as usize % shape.choices.len()].0.to_owned());
+    }
+    let default = parameter.text(&S::default());
+    // Of a list that is typed one by one, one.
+    let default = default.split(' ').next().unwrap_or_default();
+    let is_numeric = |text: &str| text.split([',', 'x']).all(|part| part.parse::<f64>().is_ok());
+    if !is_numeric(default) {
+        return None;
+    }
+    let is_whole =
+        default.split([',', 'x']).all(|part| part.parse::<u64>().is_ok()) && !shape.placeholder.contains('F');
+    let mut text = String::new();
+    let mut rest = default;
+    while !rest.is_empty() {
+        let end = rest.find([',', 'x']).unwrap_or(rest.len());
+        let value = number(&parameter.range, random);
+        text += &if is_whole { format!("{}", value.round().max(0.0) as u64) } else { format!("{value}") };
+        let separator = rest.get(end..end + 1).unwrap_or_default();
+        text += separator;
+        rest = &rest[end + separator.len()..];
+    }
+    Some(text)
+}
+
+/// An end of the range, or a number between them by the logarithm.
+fn number(range: &Range, random: &mut Random) -> f64 {
+    let (low, high) = range.ends();
+    let (low, high) = (low.unwrap_or(-1e3), high.unwrap_or(4e9));
+    let between = |random: &mut Random| {
+        let share = f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let from = if low > 0.0 { low } else { (high.abs() * 1e-6).max(1e-9) };
+        (from.ln() + share * (high.ln() - from.ln())).exp()
+    };
+    let value = match random.next_u32() % 4 {
+        0 => low,
+        1 => high,
+        _ => between(random),
+    };
+    // Small enough numbers behind the point for any type.
+    f64::from(value as f32)
+}
+
+#[test]
+fn whatever_the_ranges_hold_ends_well() {
+    let mut cases = Cases(vec![]);
+    let Ok(()) = papers::each(&mut cases);
+    // Found by hand: eight terabytes, minutes of one frame, and a command buffer of 2,000 steps.
+    for words in ["--density=1x67108864x1", "--splats=4000x4000", "--splat-radius=1", "--frame=2000 --particles=100"] {
+        cases.0.push(("lava", words.split(' ').map(str::to_owned).collect()));
+    }
+    let (mut drawn, mut failures) = (0, vec![]);
+    for (paper, options) in &cases.0 {
+        let out = folder();
+        let picture = out.path().join("a.png");
+        let mut program = fumarole(paper).args("render --size 32x24").on_test_device().arg("--image").arg(&picture);
+        for option in options {
+            program = program.arg(option);
+        }
+        match ends_well(&program) {
+            Ok(is_drawn) => drawn += u32::from(is_drawn),
+            Err(failure) => failures.push(format!("{paper} {}: {failure}", options.join(" "))),
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    // Neither all refused nor all drawn, or the draws test nothing.
+    assert!(drawn > 4 && (drawn as usize) < cases.0.len(), "{drawn} of {}", cases.0.len());
+}
+
+/// Runs to its end, or to where it has said that it takes long. True for exit code 0.
+fn ends_well(program: &Program) -> Result<bool, String> {
+    let out = folder();
+    let (stdout, stderr) = (out.path().join("stdout"), out.path().join("stderr"));
+    let script = format!("ulimit -v {LIMIT_KIB}; exec {}", program.for_shell());
+    let said = || fs::read_to_string(&stderr).unwrap_or_default();
+    beside_others(|| {
+        let mut child = Command::new("sh")
+            .arg("-c")
+            .arg(&script)
+            .stdin(Stdio::null())
+            .stdout(fs::File::create(&stdout).unwrap())
+            .stderr(fs::File::create(&stderr).unwrap())
+            .spawn()
+            .unwrap();
+        let started = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().unwrap() {
+                break status;
+            }
+            let has_foretold = said().contains("note: a frame runs") && started.elapsed() > Duration::from_secs(3);
+            if has_foretold || started.elapsed() > SILENT {
+                child.kill().unwrap();
+                child.wait().unwrap();
+                return if has_foretold { Ok(true) } else { Err(format!("runs on without a word: {}", said())) };
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        };
+        let text = said();
+        let errors: Vec<&str> = text.lines().filter(|line| !is_remark(line)).collect();
+        let is_one_line = errors.len() == 1 && errors[0].starts_with("error: ");
+        match status.code() {
+            Some(0) if errors.is_empty() => Ok(true),
+            // It names an option.
+            Some(2) if is_one_line && errors[0].contains("--") => Ok(false),
+            _ => Err(format!("{status}: {text}")),
+        }
+    })
+}
+
+fn is_remark(line: &str) -> bool {
+    ["device: ", "wrote ", "warning: ", "note: "].iter().any(|start| line.starts_with(start))
+}
