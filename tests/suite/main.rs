@@ -5,6 +5,7 @@ mod burning;
 mod caustics;
 mod cli;
 mod common;
+mod corpus;
 mod gas;
 mod gpu;
 mod lava;

@@ -133,9 +133,25 @@ fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) 
     Ok(())
 }
 
+/// True for a text that says that it is of version 1.
+fn is_version_1(bytes: &[u8]) -> bool {
+    #[derive(serde::Deserialize)]
+    struct Root {
+        asset: Asset,
+    }
+    #[derive(serde::Deserialize)]
+    struct Asset {
+        version: String,
+    }
+    serde_json::from_slice(bytes).is_ok_and(|root: Root| root.asset.version.starts_with("1."))
+}
+
 fn read_document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
     let foreign = |error: ::gltf::Error| Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"));
-    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(foreign)?;
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|error| {
+        let reason = "it is glTF 1.0, whose meshes are written otherwise; convert it to 2.0";
+        if is_version_1(bytes) { Fault::new(Place::Whole, reason) } else { foreign(error) }
+    })?;
     let json = document.into_json();
     // The validation that follows looks at the accessor of the positions before it looks whether
     // there is one.

@@ -68,6 +68,9 @@ fn plain(message: &str) -> String {
     let mut parts = parts.map(|part| part.trim_start_matches("Error: ").trim_end_matches(['.', ':', ',', ' ']));
     let first = parts.next().unwrap_or("it is not understood");
     let part = if first == "Couldn't read element line" { parts.next_back().unwrap_or(first) } else { first };
+    if part.starts_with("Expected element of type") {
+        return "a value is missing".to_owned();
+    }
     match part.split_once(" with declared type ") {
         Some((property, _)) => format!("{property} has a type that cannot be used"),
         None => part.to_owned(),
@@ -354,6 +357,7 @@ mod tests {
             ("element vertex 3\nproperty foo x\nend_header\n", 4, "Couldn't parse line"),
             ("format binary_little_endian 1.0\n", 3, "Found contradicting format definition"),
             ("property float x\n", 3, "it is not understood"),
+            (&format!("{cut}\n3 0 1 2\n\n"), 12, "a value is missing"),
             (&format!("{cut}x\n3 0 1 2\n"), 12, "Couldn't parse element line"),
             (&format!("{cut}0\n3 0 1\n\n"), 13, "Expected 3 list elements, but found only 2"),
             (

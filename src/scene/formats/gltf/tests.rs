@@ -252,3 +252,9 @@ fn buffers_of_one_file_share_it() {
     assert_eq!(Buffers::read(&document, None, folder.path()).unwrap().total_bytes(), 54);
     assert_eq!(parse(json.as_bytes(), folder.path()).unwrap().triangle_count(), 2);
 }
+
+#[test]
+fn version_1_is_named() {
+    let json = r#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "buffers": {}}"#;
+    assert!(parse(json.as_bytes(), Path::new("")).unwrap_err().to_string().contains("glTF 1.0"));
+}
