@@ -316,13 +316,19 @@ pub(crate) fn allocate(
     location: Location,
     linear: bool,
 ) -> Result<Allocation, Error> {
-    let heap_bytes = largest_heap_bytes(device);
     let out_of_memory = || Error::OutOfMemory { object: name.to_owned(), bytes: requirements.size };
+    let memory = &device.physical().memory;
+    let heaps = memory.memory_heaps[..memory.memory_heap_count as usize].iter().map(|heap| heap.size);
+    let (largest, all) = (heaps.clone().max().unwrap_or(0), heaps.sum());
     // Some drivers promise more than there is, and fail where it is written to.
-    let wanted = device.live().total_bytes().saturating_add(requirements.size);
-    if wanted > heap_bytes {
-        let what = "size in bytes, together with all that is allocated already,";
-        return Err(Error::Limit { object: name.to_owned(), what, wanted, limit: heap_bytes });
+    let total = device.live().total_bytes().saturating_add(requirements.size);
+    let (what, wanted, limit) = if requirements.size > largest {
+        ("size in bytes", requirements.size, largest)
+    } else {
+        ("size in bytes, together with all that is allocated already,", total, all)
+    };
+    if wanted > limit {
+        return Err(Error::Limit { object: name.to_owned(), what, wanted, limit });
     }
     device
         .allocator()
@@ -341,9 +347,4 @@ pub(crate) fn allocate(
             gpu_allocator::AllocationError::OutOfMemory => out_of_memory(),
             other => Error::Allocation { object: name.to_owned(), reason: other.to_string() },
         })
-}
-
-fn largest_heap_bytes(device: &Device) -> u64 {
-    let memory = &device.physical().memory;
-    memory.memory_heaps[..memory.memory_heap_count as usize].iter().map(|h| h.size).max().unwrap_or(0)
 }
