@@ -205,7 +205,7 @@ mod tests {
 
     /// Teeth on one handle, and a spiral of two arms.
     #[test]
-    fn long_concave_polygons_are_cut_or_refused_within_a_second() {
+    fn long_concave_polygons_are_cut_or_refused_within_seconds() {
         let comb = |count: usize| -> Vec<Vec3> {
             let tooth = |i: usize| Vec3::new(i as f32, ((i + 1) % 2) as f32, 0.0);
             (1..count).map(tooth).chain([Vec3::new(count as f32 / 2.0, -5.0, 0.0)]).collect()
@@ -226,7 +226,8 @@ mod tests {
                 let started = std::time::Instant::now();
                 let cut = polygons.into_mesh(0);
                 assert_eq!(cut.is_ok(), is_cut, "{count} {:?}", cut.err());
-                assert!(started.elapsed().as_secs_f64() < 2.0, "{count}: {:?}", started.elapsed());
+                // Twenty times what it takes on an idle machine, and less than it took.
+                assert!(started.elapsed().as_secs_f64() < 10.0, "{count}: {:?}", started.elapsed());
             }
         }
     }

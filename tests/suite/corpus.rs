@@ -20,7 +20,7 @@ fn every_input_of_every_corpus_ends_well() {
             // The harness tells which test panicked, not on which input.
             println!("{}", input.display());
             target(&fs::read(&input).unwrap());
-            assert!(started.elapsed().as_secs_f64() < 2.0, "{}: {:?}", input.display(), started.elapsed());
+            assert!(started.elapsed().as_secs_f64() < 10.0, "{}: {:?}", input.display(), started.elapsed());
         }
     }
 }

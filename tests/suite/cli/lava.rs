@@ -205,7 +205,7 @@ fn what_cannot_be_is_refused_by_its_option() {
 
 #[test]
 fn points_larger_than_the_device_s_are_refused_with_both_figures() {
-    let program = lava("bench --density 4096x4x1024 --radius 0.5 --splats 4x4").args(ONCE).on_test_device();
+    let program = lava("bench --quiet --density 4096x4x1024 --radius 0.5 --splats 4x4").args(ONCE).on_test_device();
     program.run().refused(2, &["point", "limit"]);
 }
 

@@ -228,7 +228,7 @@ fn small_files_make_no_vast_scenes() {
         let started = std::time::Instant::now();
         let fault = parse(&glb, Path::new("")).unwrap_err().to_string();
         assert!(fault.contains("has more than the 16777216 vertices"), "{fault}");
-        assert!(started.elapsed().as_secs_f64() < 1.0, "{nodes} x {primitives}: {:?}", started.elapsed());
+        assert!(started.elapsed().as_secs_f64() < 5.0, "{nodes} x {primitives}: {:?}", started.elapsed());
     }
     // A few are read, and only then seen to make no triangle.
     let fault = parse(&binary(&document(10, 10), &bytes), Path::new("")).unwrap_err().to_string();
