@@ -1,15 +1,22 @@
 #version 450
 
 // Eq. 7.2's quotient (section 7.3); black where no splat was drawn. Colours are those of the display from the rock's
-// texels to here, as in the thesis's OpenGL: nothing is decoded or encoded.
+// texels to here, as in the thesis's OpenGL: nothing is decoded or encoded. Exposure and tone are ours.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
+#include "lava/tone.glsl"
+
 layout(set = 0, binding = 0) uniform texture2D accumulated_colors;
+
+layout(push_constant, std430) uniform Tone {
+    float exposure;
+    float knee;
+} tone;
 
 layout(location = 0) out vec4 color;
 
 void main() {
     vec4 sums = texelFetch(accumulated_colors, ivec2(gl_FragCoord.xy), 0);
-    color = vec4(sums.a > 0.0 ? sums.rgb / sums.a : vec3(0.0), 1.0);
+    color = vec4(toned(sums.a > 0.0 ? sums.rgb / sums.a : vec3(0.0), tone.exposure, tone.knee), 1.0);
 }

@@ -7,6 +7,7 @@
 
 #include "lava/scene.glsl"
 #include "lava/object.glsl"
+#include "lava/tone.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D visibility;
 
@@ -27,5 +28,6 @@ void main() {
     }
     vec3 normal = facing / max(length(facing), 1.0e-20);
     normal = dot(normal, world_m - object.eye_m) > 0.0 ? -normal : normal;
-    color = vec4(PAINT * mix(OF_THE_GLOW * scene.glow, SKY, 0.5 + 0.5 * normal.y), 1.0);
+    vec3 lit = PAINT * mix(OF_THE_GLOW * scene.glow, SKY, 0.5 + 0.5 * normal.y);
+    color = vec4(toned(lit, object.exposure, object.knee), 1.0);
 }

@@ -2,4 +2,6 @@
 
 layout(push_constant, std430) uniform Object {
     vec3 eye_m;
+    float exposure;
+    float knee;
 } object;

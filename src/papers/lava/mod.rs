@@ -28,6 +28,7 @@ mod objects;
 pub mod parameters;
 mod particles;
 mod pattern;
+mod placement;
 mod read_density;
 mod read_positions;
 pub mod reference;
@@ -61,7 +62,8 @@ use crate::scene::Mesh;
 
 pub use self::animate::State;
 pub use self::cluster::{Clusters, Point};
-pub use self::parameters::{CAMERAS, Parameters, Shading, Variant};
+pub use self::parameters::{CAMERAS, Parameters, Shading, Tone, Variant};
+pub use self::placement::{Object, Place};
 pub use self::rock::Rock;
 pub use self::splats::depth_range_m;
 pub use self::start::Particles;
@@ -90,6 +92,8 @@ pub struct Lava {
     pub splatting: Splatting,
     /// `None` without polygon objects.
     objects: Option<Objects>,
+    /// On objects that the camera cannot show.
+    object_warnings: Vec<String>,
     /// `None` but for a picture of particles instead of the surface.
     points: Option<ParticlePoints>,
     lacks_geometry_stage: bool,
@@ -219,7 +223,7 @@ impl Paper for Lava {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let mut warnings = self.object_warnings.clone();
         if self.lacks_geometry_stage {
             warnings.push(
                 "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \
@@ -278,6 +282,7 @@ impl Lava {
         let isosurface = Isosurface::new(context, &animation.cluster.vertices, instanced)?;
         let splatting = Splatting::new(shaders, label, parameters, &isosurface.normal_height.surface, rock, instanced)?;
         let Splatting { splats, visibility, normalisation, .. } = &splatting;
+        let object_warnings = placement::warnings(objects, &parameters.camera, parameters.aspect());
         let objects = match objects {
             [] => None,
             meshes => Some(Objects::new(context, meshes, splats, visibility, normalisation)?),
@@ -288,7 +293,16 @@ impl Lava {
             .transpose()?;
         let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
         let parameters = parameters.clone();
-        Ok(Lava { parameters, animation, isosurface, splatting, objects, points, lacks_geometry_stage })
+        Ok(Lava {
+            parameters,
+            animation,
+            isosurface,
+            splatting,
+            objects,
+            object_warnings,
+            points,
+            lacks_geometry_stage,
+        })
     }
 
     /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what

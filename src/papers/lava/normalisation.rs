@@ -4,12 +4,22 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::parameters::{Shading, Tone};
 use super::targets::Context;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
+use crate::host_block;
+
+host_block! {
+    struct ToneConstants {
+        exposure: f32,
+        knee: f32,
+    }
+}
 
 /// The pass.
 pub struct Normalisation {
     pass: Pass,
+    constants: ToneConstants,
     /// 8-bit sRGB, though its format does not say so.
     pub picture: Arc<ImageView>,
 }
@@ -23,17 +33,25 @@ impl Normalisation {
         let desc = ImageDesc::new_2d(context.name("picture"), vk::Format::R8G8B8A8_UNORM, width, height);
         let picture = Image::new(context.device(), desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
         let pass = Pass::graphics("normalisation", "7.3", "common/fullscreen.vert", "lava/normalisation.frag")
+            .constants::<ToneConstants>()
             .with("accumulated_colors", accumulated_colors)
             .color(&picture, Load::Discard, Blend::Replace)
             .build(context.shaders)?;
-        Ok(Normalisation { pass, picture })
+        // The parts of the picture show their values as they are.
+        let constants = match context.parameters.shading {
+            Shading::Lava | Shading::Color => {
+                ToneConstants { exposure: context.parameters.exposure, knee: context.parameters.tone.knee() }
+            }
+            _ => ToneConstants { exposure: 1.0, knee: Tone::Clip.knee() },
+        };
+        Ok(Normalisation { pass, constants, picture })
     }
 
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
-            draw.vertices(3);
+            draw.constants(&self.constants).vertices(3);
         })
     }
 }

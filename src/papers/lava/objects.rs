@@ -21,6 +21,8 @@ host_block! {
 host_block! {
     struct ObjectConstants {
         eye_m: [f32; 3],
+        exposure: f32,
+        knee: f32,
     }
 }
 
@@ -73,7 +75,9 @@ impl Objects {
             };
             passes.push((pass, mesh.indices.len() as u32));
         }
-        Ok(Objects { passes, constants: ObjectConstants { eye_m: parameters.camera.eye.to_array() } })
+        let eye_m = parameters.camera.eye.to_array();
+        let constants = ObjectConstants { eye_m, exposure: parameters.exposure, knee: parameters.tone.knee() };
+        Ok(Objects { passes, constants })
     }
 
     /// # Errors

@@ -64,6 +64,33 @@ impl Shading {
     }
 }
 
+/// Fate of what is brighter than the display.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Tone {
+    /// Bent above 0.6, so that nothing reaches the display's end.
+    Shoulder,
+    /// Clipped at the display's end.
+    Clip,
+}
+
+impl Choice for Tone {
+    const ALL: &'static [Self] = &[Tone::Shoulder, Tone::Clip];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("shoulder", "As it is up to 0.6 of the display's range, above it ever less, so that nothing clips"),
+        ("clip", "Clipped, as by a frame buffer"),
+    ];
+}
+
+impl Tone {
+    /// The value from which `lava/tone.glsl` bends, as a fraction of the display's range.
+    pub(super) fn knee(self) -> f32 {
+        match self {
+            Tone::Shoulder => 0.6,
+            Tone::Clip => 1.0,
+        }
+    }
+}
+
 /// Every number of a configuration, in the ranges of [`Parameters::declared`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
@@ -89,6 +116,10 @@ pub struct Parameters {
     pub speed_m_s: f32,
     /// The constant orange of section 7.2 in the display's RGB, each 0 to 1000.
     pub color: Vec3,
+    /// Factor of the colours of lava and objects, above 0 and at most 1000.
+    pub exposure: f32,
+    /// Fate of what is brighter than the display.
+    pub tone: Tone,
     /// Side of the square that the rock texture covers once in metres, above 0 and at most 1000.
     pub rock_tile_m: f32,
     /// Colour of the splats.
@@ -121,6 +152,8 @@ impl Default for Parameters {
             border_m: 0.2,
             speed_m_s: 0.2,
             color: Vec3::new(2.5, 1.2, 0.28),
+            exposure: 1.0,
+            tone: Tone::Shoulder,
             rock_tile_m: 2.0,
             shading: Shading::Lava,
             geometry_stage: true,
@@ -262,6 +295,10 @@ impl Parameters {
                 .range(Range::from(0.0).to(1000.0))
                 .help("The constant orange as the display takes it: red, green, blue")
                 .section("7.2"),
+            Parameter::new("exposure", field!(Parameters.exposure))
+                .range(up_to_1000)
+                .help("Factor of the colours of lava and objects"),
+            Parameter::new("tone", field!(Parameters.tone)).help("Fate of what is brighter than the display"),
             Parameter::new("rock-tile", field!(Parameters.rock_tile_m))
                 .range(up_to_1000)
                 .unit("metres")

@@ -7,6 +7,7 @@ use ash::vk;
 use super::targets::Context;
 use crate::gpu::transfer::upload_rows;
 use crate::gpu::{Error, ImageView};
+use crate::image::{self, Rgba8};
 use crate::measure::ParameterError;
 
 /// Texels of a rock, rows from the top, sRGB with an alpha that is ignored. It repeats in both directions.
@@ -39,6 +40,15 @@ impl Rock {
             value: format!("{}x{}", self.width, self.height),
             range: "must have 2 to 4096 texels a side".to_owned(),
         })
+    }
+
+    /// The texels as an opaque picture.
+    ///
+    /// # Errors
+    /// Another number of texels than width and height say.
+    pub fn picture(&self) -> Result<Rgba8, image::Error> {
+        let texels = self.texels.iter().flat_map(|&[r, g, b, _]| [r, g, b, 255]).collect();
+        Rgba8::new(self.width, self.height, texels)
     }
 
     /// The rock on the device, with a border of one texel that repeats the opposite side, so

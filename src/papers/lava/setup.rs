@@ -17,11 +17,12 @@ use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
+use crate::measure::parameter::Value as _;
 use crate::measure::parameter::{self, Cost, Parameter};
 use crate::measure::statistics::median;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Shading, Variant};
-use crate::scene::{Mesh, MeshSource};
+use crate::papers::lava::{Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Variant};
+use crate::scene::Mesh;
 
 /// A user's choice of everything.
 #[derive(Debug, Clone, Default)]
@@ -30,8 +31,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// PNG of the rock texture; the built-in one without.
     pub rock: Option<PathBuf>,
-    /// Polygon meshes in the simulation space, at their own size and place.
-    pub objects: Vec<MeshSource>,
+    /// Polygon meshes in the simulation space.
+    pub objects: Vec<Object>,
     /// Name of the preset or experiment that they come from.
     pub preset: Option<String>,
 }
@@ -46,7 +47,7 @@ impl Setup {
         match (self.objects.first(), self.parameters.shading) {
             (Some(object), Shading::Particles) => {
                 let problem = "particles are points, without a surface that could hide it; choose another `shading`";
-                Err(Error::Input(format!("`object` {object}: {problem}")))
+                Err(Error::Input(format!("`object` {}: {problem}", object.text())))
             }
             _ => Ok(()),
         }
@@ -85,7 +86,8 @@ impl Study for Setup {
                 Cow::Owned(rock)
             }
         };
-        let objects = self.objects.iter().map(MeshSource::load).collect::<Result<_, _>>()?;
+        let space_m = self.parameters.space_m;
+        let objects = self.objects.iter().map(|object| object.load(space_m)).collect::<Result<_, _>>()?;
         Ok(Scene { particles: Particles::seeded(&self.parameters), rock, objects })
     }
 
@@ -147,8 +149,9 @@ impl Study for Setup {
                 .cost(Cost::Buffers),
             Parameter::new("object", field!(Setup.objects))
                 .help(
-                    "Polygon mesh in the simulation space, metres: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF \
-                     or GLB file",
+                    "Polygon mesh in the simulation space: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or \
+                     GLB file. Without a place it is fitted into the middle; @own: at its own coordinates; @X,Y,Z[,DEGREES[,SCALE]]: \
+                     the middle of its lower side in metres, its turn about the vertical, the factor of its own size",
                 )
                 .cost(Cost::Buffers)
                 .everyday(),

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use fumarole::image::read_png;
+use fumarole::papers::lava::Rock;
 use serde_json::Value;
 
 use super::program::{ONCE, Program, assert_schema, device, entries, file, folder, fumarole, lava, read_json};
@@ -90,13 +92,19 @@ fn objects_stand_in_the_picture_and_in_the_record() {
     };
     let alone = picture("", "alone.png");
     assert!(picture("", "again.png") == alone);
-    assert!(picture("--object wall.obj", "wall.png") != alone);
-    assert!(picture("--object wall.obj --object box", "both.png") != picture("--object wall.obj", "wall.png"));
-    let bench = small("bench --json --quiet --validate --object wall.obj").args(ONCE).inside(out.path());
+    assert!(picture("--object wall.obj@own", "wall.png") != alone);
+    let boxed = picture("--object wall.obj@own --object box", "both.png");
+    assert!(boxed != picture("--object wall.obj@own", "wall.png"));
+    assert!(picture("--object wall.obj@own --object box@3,0.5,0.5,30,0.2", "placed.png") != boxed);
+    let bench = small("bench --json --quiet --validate --object wall.obj@own --object box@99,0,0")
+        .args(ONCE)
+        .inside(out.path());
     let record = bench.run().succeeded().json();
     assert_schema(&record);
     let run = &record["runs"][0];
-    assert_eq!(run["config"]["object"], serde_json::json!(["wall.obj"]));
+    assert_eq!(run["config"]["object"], serde_json::json!(["wall.obj@own", "box@99,0,0,0"]));
+    let warnings = run["warnings"].to_string();
+    assert!(warnings.contains("--object 2 of 2, box, is outside the picture"), "{warnings}");
     assert_eq!(names(&run["passes"]).last(), Some(&"objects"));
     small("render --object broken.obj").inside(out.path()).run().refused(2, &["broken.obj", "line 2"]);
 }
@@ -118,6 +126,8 @@ fn figures_are_pictures_and_textures() {
     let figures = [
         ("fig-4.1", &["lava-fig-4.1-position.png", "lava-fig-4.1-velocity.png"][..]),
         ("fig-4.2", &["lava-fig-4.2a-density.png", "lava-fig-4.2b-normal-height.png", "lava-fig-4.2c-heights.png"]),
+        ("fig-6.3", &["lava-fig-6.3-heights.png", "lava-fig-6.3-normal-height.png"]),
+        ("fig-7.2", &["lava-fig-7.2.png"]),
         ("fig-8.3", &["lava-fig-8.3.png"]),
     ];
     for (name, files) in figures {
@@ -125,6 +135,14 @@ fn figures_are_pictures_and_textures() {
         small(&format!("experiment {name} --quiet")).arg("--out").arg(&folder).run().succeeded();
         assert_eq!(entries(&folder), files);
     }
+    let picture = |name: &str| read_png(&out.path().join(name)).unwrap();
+    // The texture itself, and one texel of a height for each column of the grid.
+    let rock = Rock::built_in();
+    assert_eq!(picture("fig-7.2/lava-fig-7.2.png").pixels(), rock.texels.as_flattened());
+    let heights = picture("fig-6.3/lava-fig-6.3-heights.png");
+    assert_eq!((heights.width(), heights.height()), (16, 8));
+    assert!(heights.pixels().chunks_exact(4).all(|p| p[0] == p[1] && p[1] == p[2]));
+    assert!(heights.pixels().chunks_exact(4).any(|p| p[0] > 64));
 }
 
 #[test]
@@ -174,6 +192,7 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--density 4x20000x4 --particles 10", &["density", "5000", "limit of 2048"]),
         ("--size 20000x20", &["20000", "limit of 16384"]),
         ("--object no-such.obj", &["no-such.obj"]),
+        ("--exposure 0", &["--exposure 0"]),
         ("--object box --shading particles", &["--object box", "--shading"]),
         ("--splats 0x10", &["--splats 0x10"]),
         ("--splat-radius 0", &["--splat-radius 0"]),
@@ -196,9 +215,16 @@ fn what_cannot_be_is_refused_by_its_option() {
     {
         lava("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
     }
-    for (option, value) in
-        [("space", "1x1"), ("density", "4x4"), ("splats", "ax4"), ("color", "1,2"), ("camera", "fig-9")]
-    {
+    for (option, value) in [
+        ("object", "box@1,2"),
+        ("object", "box@1,2,3,0,-1"),
+        ("tone", "dim"),
+        ("space", "1x1"),
+        ("density", "4x4"),
+        ("splats", "ax4"),
+        ("color", "1,2"),
+        ("camera", "fig-9"),
+    ] {
         lava("bench").arg(format!("--{option}={value}")).run().misused(&[&format!("--{option}")]);
     }
 }

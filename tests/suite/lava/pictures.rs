@@ -7,7 +7,7 @@ use fumarole::gpu::Device;
 use fumarole::image::Rgba8;
 use fumarole::image::golden::{self, Tolerance};
 use fumarole::measure::Paper;
-use fumarole::papers::lava::{CAMERAS, Lava, Parameters, Shading};
+use fumarole::papers::lava::{CAMERAS, Lava, Parameters, Shading, Tone};
 use fumarole::scene::Camera;
 use glam::{Mat4, Vec3};
 
@@ -120,6 +120,21 @@ fn the_pictures_are_the_golden_ones() {
             if let Err(error) = golden::check(&picture, &golden, TOLERANCE, Path::new(env!("CARGO_TARGET_TMPDIR"))) {
                 panic!("{error}");
             }
+        }
+    });
+}
+
+/// By default nothing reaches the display's end; clipped, the red of many pixels does.
+#[test]
+fn nothing_clips_by_default() {
+    gpu_test(|device| {
+        for (name, camera) in CAMERAS {
+            let share = [Tone::Shoulder, Tone::Clip].map(|tone| {
+                let picture = picture(device, &Parameters { camera, tone, ..reduced() });
+                let lit = || picture.pixels().chunks_exact(4).filter(|pixel| pixel[..3] != [0; 3]);
+                lit().filter(|pixel| pixel[..3].contains(&255)).count() as f64 / lit().count() as f64
+            });
+            assert!(share[0] == 0.0 && share[1] > 0.05, "{name}: {share:?}");
         }
     });
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use ash::vk;
 use fumarole::gpu::transfer::upload_rows;
 use fumarole::gpu::{Device, Image, ImageDesc, ImageView, Mode, Recorder};
-use fumarole::papers::lava::reference::{Splats, Surface};
-use fumarole::papers::lava::{Parameters, Rock, Shading, Splatting, depth_range_m};
+use fumarole::papers::lava::reference::{Splats, Surface, toned};
+use fumarole::papers::lava::{Parameters, Rock, Shading, Splatting, Tone, depth_range_m};
 use fumarole::scene::Camera;
 use glam::{DVec3, Vec3};
 
@@ -121,14 +121,23 @@ fn the_front_blends_and_the_back_does_not() {
     });
 }
 
-/// Eq. 7.2 is a weighted mean: of one colour it is that colour, wherever anything was drawn.
+/// Eq. 7.2 is a weighted mean: of one colour it is that colour, wherever anything was drawn; the display's tone follows.
 #[test]
 fn a_constant_colour_comes_out_constant() {
     gpu_test(|device| {
         let rock = Rock { width: 2, height: 2, texels: vec![[200, 100, 50, 255]; 4] };
-        for (shading, space_y) in [(Shading::Rock, 1.0), (Shading::Color, 1.0), (Shading::Lava, 0.5)] {
+        for (shading, space_y, exposure, tone) in [
+            // The rock alone is shown as it is.
+            (Shading::Rock, 1.0, 0.3, Tone::Shoulder),
+            (Shading::Color, 1.0, 1.0, Tone::Clip),
+            (Shading::Color, 1.0, 0.7, Tone::Shoulder),
+            (Shading::Lava, 0.5, 4.0, Tone::Shoulder),
+            (Shading::Lava, 0.5, 2.0, Tone::Clip),
+        ] {
             let parameters = Parameters {
                 shading,
+                exposure,
+                tone,
                 camera: low_camera(),
                 space_m: Vec3::new(2.0, space_y, 1.2),
                 splat_radius_m: 0.03,
@@ -158,7 +167,11 @@ fn a_constant_colour_comes_out_constant() {
                 drawn += 1;
                 let found = Vec3::from_slice(sums) / sums[3];
                 assert!((found / expected - 1.0).abs().max_element() < 1e-5, "{found} {expected}");
-                let bytes = expected.clamp(Vec3::ZERO, Vec3::ONE) * 255.0;
+                let shown = |value: f32| match shading {
+                    Shading::Rock => f64::from(value),
+                    _ => toned(f64::from(value * exposure), tone == Tone::Shoulder),
+                };
+                let bytes = (255.0 * DVec3::from_array(expected.to_array().map(shown))).as_vec3();
                 let off = (Vec3::new(pixel[0].into(), pixel[1].into(), pixel[2].into()) - bytes).abs();
                 assert!(off.max_element() < 0.51, "{pixel:?} {bytes}");
             }

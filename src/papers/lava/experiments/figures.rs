@@ -20,6 +20,10 @@ enum Part {
     Shaded(Shading),
     /// The picture with splats of this radius in metres.
     Splats(f32),
+    /// The heights of the normal/height texture as grey, the height of the space white.
+    Heights,
+    /// The rock texture itself.
+    Rock,
 }
 
 /// A figure of the thesis.
@@ -39,7 +43,7 @@ const fn figure(name: &'static str, help: &'static str, parts: &'static [(&'stat
 
 /// In the thesis's order.
 pub const FIGURES: [Figure; 16] = {
-    use Part::{Shaded, Splats, Texture};
+    use Part::{Heights, Rock, Shaded, Splats, Texture};
     const PICTURE: &[(&str, Part)] = &[("", Shaded(Shading::Lava))];
     [
         figure(
@@ -50,11 +54,7 @@ pub const FIGURES: [Figure; 16] = {
         figure(
             "fig-4.2",
             "Figure 4.2: the density texture, the normal/height texture, the heights as colour",
-            &[
-                ("a-density", Texture("density")),
-                ("b-normal-height", Texture("normal-height")),
-                ("c-heights", Shaded(Shading::Heights)),
-            ],
+            &[("a-density", Texture("density")), ("b-normal-height", Texture("normal-height")), ("c-heights", Heights)],
         ),
         figure(
             "fig-4.3",
@@ -62,21 +62,25 @@ pub const FIGURES: [Figure; 16] = {
             &[
                 ("a-depth", Texture("visibility")),
                 ("b-color", Shaded(Shading::Color)),
-                ("b-rock", Shaded(Shading::Rock)),
+                ("b-rock", Rock),
                 ("c-lava", Shaded(Shading::Lava)),
             ],
         ),
         figure("fig-5.1", "Figure 5.1: the texture of 65,536 particles", &[("", Texture("positions"))]),
         figure("fig-5.2", "Figure 5.2: the particles as points", &[("", Shaded(Shading::Particles))]),
         figure("fig-6.2", "Figure 6.2: a density texture", &[("", Texture("density"))]),
-        figure("fig-6.3", "Figure 6.3: the normal/height texture", &[("", Texture("normal-height"))]),
+        figure(
+            "fig-6.3",
+            "Figure 6.3: the normal/height texture, and its heights as colour",
+            &[("-normal-height", Texture("normal-height")), ("-heights", Heights)],
+        ),
         figure(
             "fig-6.4",
             "Figure 6.4: normals and heights on the lava's surface",
             &[("-normals", Shaded(Shading::Normals)), ("-heights", Shaded(Shading::Heights))],
         ),
         figure("fig-7.1", "Figure 7.1: the depth texture of the visibility pass", &[("", Texture("visibility"))]),
-        figure("fig-7.2", "Figure 7.2: the rock texture on the surface", &[("", Shaded(Shading::Rock))]),
+        figure("fig-7.2", "Figure 7.2: the rock texture", &[("", Rock)]),
         figure(
             "fig-7.3",
             "Figure 7.3: the calculated colours, and with the rock",
@@ -134,7 +138,7 @@ impl Figure {
         self.parts.iter().map(move |(_, part)| {
             let mut setup = setup.clone();
             match *part {
-                Part::Texture(_) => {}
+                Part::Texture(_) | Part::Heights | Part::Rock => {}
                 Part::Shaded(shading) => setup.parameters.shading = shading,
                 Part::Splats(radius_m) => setup.parameters.splat_radius_m = radius_m,
             }
@@ -160,16 +164,25 @@ impl Figure {
         let mut warnings = Vec::new();
         for (&(suffix, part), setup) in self.parts.iter().zip(self.setups(setup)) {
             setup.check()?;
+            if part == Part::Rock {
+                parts.push((suffix, Drawn::Picture(scene.rock.picture()?)));
+                continue;
+            }
             let mut built = build(machine, &setup, &scene, Variant::Paper)?;
             let picture = picture::render(machine, &mut built.paper, number)?;
             warnings.extend(built.paper.warnings());
             let targets = built.paper.targets();
             let texture = match part {
                 Part::Texture(name) => targets.iter().find(|t| t.name == name),
+                Part::Heights => targets.iter().find(|t| t.name == "normal-height"),
                 _ => None,
             };
+            let texture = texture.map(|target| picture::read_target(&machine.device, target)).transpose()?;
             parts.push(match texture {
-                Some(target) => (suffix, Drawn::Texture(visible(picture::read_target(&machine.device, target)?)?)),
+                Some(texture) if part == Part::Heights => {
+                    (suffix, Drawn::Texture(heights(texture, setup.parameters.space_m.y)?))
+                }
+                Some(texture) => (suffix, Drawn::Texture(visible(texture)?)),
                 None => (suffix, Drawn::Picture(picture)),
             });
         }
@@ -182,6 +195,17 @@ impl Figure {
 fn set_unless<T>(is_given: bool, value: &mut T, of_figure: T) {
     if !is_given {
         *value = of_figure;
+    }
+}
+
+/// The last of four channels over `highest`.
+fn heights(texture: Raster, highest: f32) -> Result<Raster, Error> {
+    match (texture.shape(), texture.samples()) {
+        (Shape::Image { layers, height, width, channels: 4 }, Samples::F32(values)) => {
+            let shown: Vec<f32> = values.iter().skip(3).step_by(4).map(|height| height / highest).collect();
+            Ok(Raster::image(width, height, 1, layers, shown)?)
+        }
+        _ => Ok(texture),
     }
 }
 

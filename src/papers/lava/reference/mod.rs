@@ -1,7 +1,8 @@
 //! The oracle of `lava`: the thesis's equations in `f64`, for the tests. It shares nothing with the shaders.
 //!
 //! [`step`] is listing 5.1, [`clusters`] section 5.2, [`density`] eq. 6.2, [`Grid::accepted`] section 6.2,
-//! [`Surface`] eq. 6.3 and section 6.4, [`Splats`] chapter 7.
+//! [`Surface`] eq. 6.3 and section 6.4, [`Splats`] chapter 7, [`toned`] the display's
+//! tone, which is ours.
 
 mod animation;
 mod density;
@@ -10,5 +11,5 @@ mod surface;
 
 pub use animation::{clusters, step};
 pub use density::{Grid, density};
-pub use splats::{Pixel, Splats};
+pub use splats::{Pixel, Splats, toned};
 pub use surface::Surface;

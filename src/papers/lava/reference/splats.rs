@@ -5,6 +5,18 @@ use glam::{DMat4, DVec2, DVec3};
 use super::surface::{Surface, gaussian};
 use crate::scene::Camera;
 
+/// The display's share of an exposed value: clipped at 1, or from 0.6 on approaching 1 with a slope that begins at 1.
+pub fn toned(value: f64, has_shoulder: bool) -> f64 {
+    let beyond = (value - 0.6) / 0.4;
+    if !has_shoulder {
+        value.min(1.0)
+    } else if beyond < 0.0 {
+        value
+    } else {
+        1.0 - 0.4 * (-beyond).exp()
+    }
+}
+
 /// A flat, round splat.
 #[derive(Debug, Clone, Copy)]
 struct Splat {
