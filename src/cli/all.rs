@@ -1,5 +1,6 @@
 //! `all`: every paper's quick benchmark, one record and a picture of each.
 
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use clap::{Args, Parser};
@@ -8,6 +9,7 @@ use super::bench;
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs};
 use super::outcome;
+use super::report;
 use super::spelling;
 use super::watch::{interrupted, watched};
 use crate::measure::bench::{Bench, load};
@@ -26,6 +28,9 @@ pub struct AllArgs {
     machine: MachineArgs,
     #[command(flatten)]
     output: OutputArgs,
+    /// Write the page of the report [default of FILE: report.html in --out]
+    #[arg(long, value_name = "FILE")]
+    report: Option<Option<PathBuf>>,
 }
 
 impl AllArgs {
@@ -60,6 +65,8 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let json = arguments.output.json.clone().unwrap_or_else(|| arguments.output.out.join("fumarole.json"));
     let output = OutputArgs { json: Some(json), ..arguments.output.clone() };
     outcome::check(&output)?;
+    let page = arguments.report.clone().map(|page| page.unwrap_or_else(|| output.out.join("report.html")));
+    page.iter().try_for_each(|page| outcome::check_file(page))?;
 
     // Every paper runs on one device, so that their figures compare.
     let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
@@ -68,6 +75,9 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     let record = Record::new(machine.environment(), environment::command(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)?;
+    if let (Some(page), Some(json)) = (page, &output.json) {
+        report::write_record(&record, json, &page, output.quiet)?;
+    }
     if !output.quiet {
         summary(&record, &output).iter().for_each(|line| outcome::say(line));
     }

@@ -56,9 +56,21 @@ pub struct VerdictArgs {
 
 /// The records of one side.
 #[derive(Debug, Clone)]
-struct Side(Vec<PathBuf>);
+pub struct Side(Vec<PathBuf>);
 
-fn parse_side(text: &OsStr) -> Result<Side, String> {
+impl Side {
+    /// Reads its records.
+    ///
+    /// # Errors
+    /// The first that cannot be read.
+    pub fn read(&self) -> Result<Vec<Input>, Failure> {
+        let input = |path: &PathBuf| Ok(Input { name: path.display().to_string(), record: json::read(path)? });
+        self.0.iter().map(input).collect()
+    }
+}
+
+/// Files, separated by commas.
+pub fn parse_side(text: &OsStr) -> Result<Side, String> {
     let files = split(text, b',');
     if files.iter().any(|file| file.is_empty()) {
         return Err("give files, separated by commas".to_owned());
@@ -109,9 +121,6 @@ impl VerdictArgs {
 }
 
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
-    let read = |side: &Side| -> Result<Vec<Input>, Failure> {
-        side.0.iter().map(|path| Ok(Input { name: path.display().to_string(), record: json::read(path)? })).collect()
-    };
     let options = arguments.verdict.options(Design::Processes);
-    arguments.verdict.publish(&compare(&read(&arguments.a)?, &read(&arguments.b)?, &options)?)
+    arguments.verdict.publish(&compare(&arguments.a.read()?, &arguments.b.read()?, &options)?)
 }

@@ -13,6 +13,7 @@ mod page;
 mod passes;
 mod processes;
 mod render;
+mod report;
 mod spelling;
 mod watch;
 
@@ -43,6 +44,8 @@ enum Command {
     All(all::AllArgs),
     /// Compare records: is B faster or slower than A?
     Compare(compare::CompareArgs),
+    /// Records, pictures and plots as one page that opens without a network
+    Report(report::ReportArgs),
     /// Measure two sides in turn, in fresh processes, until it is certain which is faster
     Ab(ab::AbArgs),
 }
@@ -104,6 +107,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Ab(arguments)) => ab::run(arguments),
+        Some(Command::Report(arguments)) => report::run(arguments),
     })
 }
 

@@ -7,6 +7,7 @@
 //! ```text
 //! Record --> console (String)     json (String, and back)     csv (String)
 //! TraceRun --> trace (String)   plot::LineChart, plot::BarChart --> SVG (String)
+//! Records, pictures, plots --> html::page (String)
 //! any text --> file::write (temporary file, renamed)
 //! ```
 
@@ -16,6 +17,7 @@ pub mod csv;
 pub mod environment;
 #[cfg(test)]
 pub(crate) mod example;
+pub mod html;
 pub mod json;
 pub mod plot;
 pub mod record;

@@ -93,6 +93,17 @@ impl Table {
         }
     }
 
+    /// Name of each column, and whether it holds numbers.
+    pub fn columns(&self) -> Vec<(String, bool)> {
+        let names = self.table.header().into_iter().flat_map(|header| header.cell_iter().map(|cell| cell.content()));
+        names.zip(&self.alignment).map(|(name, align)| (name, *align == Align::Right)).collect()
+    }
+
+    /// Cells of each row.
+    pub fn rows(&self) -> Vec<Vec<String>> {
+        self.table.row_iter().map(|row| row.cell_iter().map(|cell| cell.content()).collect()).collect()
+    }
+
     /// The table in Markdown.
     pub fn markdown(&self) -> String {
         let line = |row: &comfy_table::Row| {

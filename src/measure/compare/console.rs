@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{Clock, Comparison, Design, Difference, Gate, Quantity, RunComparison, Verdict};
+use crate::report::html::Section;
 use crate::report::table::{Align, Style, Table, markdown_text};
 
 /// Passes with the same value of what differs are shown as one line from this many on.
@@ -52,6 +53,20 @@ pub fn markdown(comparison: &Comparison) -> String {
     }
     let _ = writeln!(text, "\n{}", markdown_text(&legend(comparison)));
     text
+}
+
+/// The same for the page of a report.
+pub fn sections(comparison: &Comparison) -> Vec<Section> {
+    let compared = Section { title: "What is compared".to_owned(), lines: differences(comparison), table: None };
+    let runs = comparison.runs.iter().map(|run| Section {
+        title: title(run),
+        lines: vec![headline(run, comparison, Style::default())],
+        table: (!run.passes.is_empty()).then(|| passes(run)),
+    });
+    let rest = missing(comparison).chain(comparison.warnings.iter().map(|warning| format!("Warning: {warning}")));
+    let legend =
+        Section { title: "How to read it".to_owned(), lines: rest.chain([legend(comparison)]).collect(), table: None };
+    std::iter::once(compared).chain(runs).chain([legend]).collect()
 }
 
 fn differences(comparison: &Comparison) -> Vec<String> {

@@ -18,7 +18,7 @@ mod synthetic;
 mod tests;
 mod within;
 
-pub use console::{markdown, render};
+pub use console::{markdown, render, sections};
 pub use decision::{CONFIDENCE, Gate, Rules, SAME_MARGIN, Verdict, decide, gate, needed};
 pub use evidence::Evidence;
 pub use matching::{CompareError, Difference};

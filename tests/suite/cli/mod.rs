@@ -22,6 +22,7 @@ mod passes;
 mod program;
 mod properties;
 mod render;
+mod report;
 mod shaders;
 mod streams;
 mod terrain;

@@ -1,0 +1,189 @@
+//! `report`: records, pictures and plots as one page.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::compare::{Side, parse_side};
+use super::failure::Failure;
+use super::outcome;
+use crate::content;
+use crate::file;
+use crate::image::{self, Rgba8};
+use crate::measure::compare::{Comparison, Design, Input, Options, compare, sections};
+use crate::report::html::{Contents, Picture, PictureDifference, Plot, Source, page};
+use crate::report::json::{self, ReadError};
+use crate::report::{Record, Run};
+
+#[derive(Debug, Clone, Args)]
+pub struct ReportArgs {
+    /// Records, or folders with records and plots
+    #[arg(value_name = "DIR|FILE.json")]
+    sources: Vec<PathBuf>,
+    /// Records of side A, comma-separated, for verdicts
+    #[arg(long, value_name = "A.json[,..]", value_parser = side(), requires = "b")]
+    a: Option<Side>,
+    /// Records of side B
+    #[arg(long, value_name = "B.json[,..]", value_parser = side(), requires = "a")]
+    b: Option<Side>,
+    /// The page
+    #[arg(long, short, value_name = "FILE.html", default_value = "fumarole-out/report.html")]
+    output: PathBuf,
+    /// Print nothing but errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Largest plot that is shown, bytes.
+const MAX_PLOT_BYTES: u64 = 16 << 20;
+/// Largest picture that is shown, bytes.
+const MAX_PICTURE_BYTES: u64 = 64 << 20;
+
+fn side() -> impl clap::builder::TypedValueParser<Value = Side> {
+    use clap::builder::{OsStringValueParser, TypedValueParser};
+    OsStringValueParser::new().try_map(|text| parse_side(&text))
+}
+
+pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
+    if arguments.sources.is_empty() && arguments.a.is_none() {
+        return Err(Failure::Input("report: name records or a folder, as in: fumarole report fumarole-out".into()));
+    }
+    file::check_writable(&arguments.output)?;
+    let mut contents = Contents { title: "fumarole".to_owned(), ..Contents::default() };
+    for source in &arguments.sources {
+        if source.is_dir() {
+            add_folder(&mut contents, source)?;
+        } else {
+            let record = json::read(source)?;
+            add_record(&mut contents, source, record);
+        }
+    }
+    if let (Some(a), Some(b)) = (&arguments.a, &arguments.b) {
+        let (a, b) = (a.read()?, b.read()?);
+        contents.verdicts.extend(sections(&compare(&a, &b, &Options::default())?));
+        for input in a.into_iter().chain(b) {
+            add_record(&mut contents, Path::new(&input.name), input.record);
+        }
+    }
+    if contents.records.is_empty() && contents.plots.is_empty() {
+        return Err(Failure::Input("report: no record and no plot was found; write one with --json".into()));
+    }
+    write(&contents, &arguments.output, arguments.quiet)
+}
+
+/// A record that was just measured, as a page.
+pub fn write_record(record: &Record, name: &Path, output: &Path, quiet: bool) -> Result<(), Failure> {
+    let mut contents = Contents { title: "fumarole".to_owned(), ..Contents::default() };
+    add_record(&mut contents, name, record.clone());
+    write(&contents, output, quiet)
+}
+
+fn write(contents: &Contents, output: &Path, quiet: bool) -> Result<(), Failure> {
+    file::write(output, page(contents).as_bytes())?;
+    if !quiet {
+        contents.warnings.iter().for_each(|warning| outcome::say(&format!("warning: {warning}")));
+        outcome::say(&format!("wrote {}", output.display()));
+    }
+    Ok(())
+}
+
+/// All records and plots of a folder by their names; what `ab` left there is compared.
+fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
+    let failed = |e: std::io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
+    let mut files = fs::read_dir(folder)
+        .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect::<Result<Vec<_>, _>>())
+        .map_err(failed)?;
+    files.sort();
+    let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
+    for path in &files {
+        let ending = path.extension().unwrap_or_default();
+        if ending == "svg" {
+            match file::read(path, MAX_PLOT_BYTES) {
+                Ok(svg) => contents.plots.push(Plot { name: name_of(path), svg }),
+                Err(e) => contents.warnings.push(format!("{}: {e}", path.display())),
+            }
+        } else if ending == "json" {
+            match json::read(path) {
+                Ok(record) => {
+                    if let Some(side) = ["ab-a.json", "ab-b.json"].into_iter().find(|side| path.ends_with(side)) {
+                        sides.insert(side, by_process(path, &record));
+                    }
+                    add_record(contents, path, record);
+                }
+                // Other documents of ours lie there too.
+                Err(ReadError::WrongSchema { .. }) => {}
+                Err(e) => contents.warnings.push(e.to_string()),
+            }
+        }
+    }
+    if let (Some(a), Some(b)) = (sides.get("ab-a.json"), sides.get("ab-b.json")) {
+        let options = Options { design: Design::Blocks, ..Options::default() };
+        match compare(a, b, &options) {
+            Ok(comparison) => contents.verdicts.extend(named_sections(folder, &comparison)),
+            Err(e) => contents.warnings.push(e.to_string()),
+        }
+    }
+    Ok(())
+}
+
+fn named_sections(folder: &Path, comparison: &Comparison) -> Vec<crate::report::html::Section> {
+    let mut sections = sections(comparison);
+    if let Some(first) = sections.first_mut() {
+        first.title = format!("{}: {}", folder.display(), first.title);
+    }
+    sections
+}
+
+/// A joined record as one input a process, in their order.
+fn by_process(path: &Path, record: &Record) -> Vec<Input> {
+    let mut processes: Vec<u32> = record.runs.iter().map(|run| run.process).collect();
+    processes.sort_unstable();
+    processes.dedup();
+    let of = |process: u32| {
+        let mut one = record.clone();
+        one.runs.retain(|run| run.process == process);
+        Input { name: path.display().to_string(), record: one }
+    };
+    processes.into_iter().map(of).collect()
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn add_record(contents: &mut Contents, path: &Path, record: Record) {
+    let mut found: Vec<(Picture, Rgba8)> = vec![];
+    for (index, run) in record.runs.iter().enumerate() {
+        match picture(path, run) {
+            None => {}
+            Some(Err(problem)) => contents.warnings.push(problem),
+            Some(Ok((png, decoded))) => {
+                let base = found.iter().find(|(other, _)| record.runs[other.run].paper == run.paper);
+                let difference = base.and_then(|(other, base)| {
+                    let difference = image::compare(base, &decoded, None).ok()?;
+                    Some(PictureDifference { base: other.run, mean: difference.mean, p99: difference.p99 })
+                });
+                found.push((Picture { run: index, png, difference }, decoded));
+            }
+        }
+    }
+    let pictures = found.into_iter().map(|(picture, _)| picture).collect();
+    contents.records.push(Source { name: path.display().to_string(), record, pictures });
+}
+
+/// A run's picture, if it is still the one that the record names: where it was written, or beside the record.
+fn picture(record: &Path, run: &Run) -> Option<Result<(Vec<u8>, Rgba8), String>> {
+    let named = run.image.as_ref()?;
+    let written = PathBuf::from(&named.path);
+    let beside = record.with_file_name(written.file_name()?);
+    let is_it = |path: &&PathBuf| content::file_sha256(path).is_ok_and(|found| found == named.sha256);
+    let is_small = |path: &&PathBuf| fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() <= MAX_PICTURE_BYTES);
+    let found = [&written, &beside].into_iter().filter(is_small).find(is_it);
+    let Some(path) = found else {
+        return Some(Err(format!("{}: the picture of the record is not there, or has changed since", named.path)));
+    };
+    let read = file::read(path, MAX_PICTURE_BYTES).map_err(|e| format!("{}: {e}", path.display()));
+    Some(read.and_then(|png| Ok((png, image::read_png(path).map_err(|e| e.to_string())?))))
+}

@@ -1,0 +1,88 @@
+//! Records as one page that opens from disk, without a network: for each run its passes as bars and as a table, the
+//! paper's rows beside ours, memory, limits, environment and the command of every number; pictures under a divider; the
+//! plots of experiments; verdicts first where two sides are compared.
+//!
+//! Everything that comes from a record is escaped by the template; pictures and plots are images, which run nothing; the
+//! page's policy lets no script run but its own.
+
+mod bars;
+mod page;
+mod run;
+#[cfg(test)]
+mod tests;
+
+pub use page::page;
+
+use super::record::{Record, Run};
+use super::table::Table;
+
+/// All that a page shows.
+#[derive(Default)]
+pub struct Contents {
+    /// Above all else.
+    pub title: String,
+    /// Verdicts on two sides, first on the page.
+    pub verdicts: Vec<Section>,
+    /// Records in the order in which they are shown.
+    pub records: Vec<Source>,
+    /// Plots of experiments.
+    pub plots: Vec<Plot>,
+    /// Files that could not be shown, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// A heading with lines and a table below it.
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// Lines of text.
+    pub lines: Vec<String>,
+    /// A table, where there is one.
+    pub table: Option<Table>,
+}
+
+/// A record with the file that it came from.
+pub struct Source {
+    /// Path of the file.
+    pub name: String,
+    /// Its contents.
+    pub record: Record,
+    /// The runs' pictures, as far as they are there unchanged.
+    pub pictures: Vec<Picture>,
+}
+
+/// A run's picture.
+pub struct Picture {
+    /// Index of the run in its record.
+    pub run: usize,
+    /// The PNG file's bytes.
+    pub png: Vec<u8>,
+    /// Difference to the paper's first picture of the same size in the record; absent for that one.
+    pub difference: Option<PictureDifference>,
+}
+
+/// CIE Luv difference of two pictures.
+#[derive(Clone, Copy)]
+pub struct PictureDifference {
+    /// Index of the run that it is compared with.
+    pub base: usize,
+    /// Mean over the pixels.
+    pub mean: f64,
+    /// 99th percentile over the pixels.
+    pub p99: f64,
+}
+
+/// A plot of an experiment.
+pub struct Plot {
+    /// Name of its file.
+    pub name: String,
+    /// The SVG file's bytes.
+    pub svg: Vec<u8>,
+}
+
+/// A run's name: paper, variant, preset, and what tells repeated ones apart.
+fn title(run: &Run) -> String {
+    let preset = run.preset.as_ref().map_or_else(String::new, |preset| format!(", {preset}"));
+    let process = if run.process > 0 { format!(", process {}", run.process) } else { String::new() };
+    format!("{} {}{preset}: {} × {}{process}", run.paper, run.variant, run.width, run.height)
+}

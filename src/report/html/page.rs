@@ -1,0 +1,195 @@
+//! The page around the runs.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sha2::{Digest, Sha256};
+
+use super::run::{number, run};
+use super::{Contents, Picture, Section, Source, title};
+use crate::report::record::Record;
+
+const STYLE: &str = include_str!("style.css");
+const SCRIPT: &str = include_str!("script.js");
+
+/// The whole page as HTML.
+pub fn page(contents: &Contents) -> String {
+    let script_sha256 = STANDARD.encode(Sha256::digest(SCRIPT));
+    let policy =
+        format!("default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{script_sha256}'");
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(policy);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (contents.title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header { h1 { (contents.title) } (navigation(contents)) }
+                main {
+                    @if !contents.verdicts.is_empty() {
+                        section id="verdicts" { h2 { "Verdicts" } @for verdict in &contents.verdicts { (section(verdict)) } }
+                    }
+                    @for (index, source) in contents.records.iter().enumerate() { (record(source, index)) }
+                    @if !contents.plots.is_empty() {
+                        section id="plots" {
+                            h2 { "Plots of the experiments" }
+                            @for plot in &contents.plots {
+                                figure {
+                                    img src=(data("image/svg+xml", &plot.svg)) alt=(format!("plot {}", plot.name));
+                                    figcaption { (plot.name) }
+                                }
+                            }
+                        }
+                    }
+                    @for warning in &contents.warnings { p.warning { "Warning: " (warning) } }
+                }
+                footer {
+                    p { "Times are medians in milliseconds: GPU times of a pass between two full barriers, frames on the host's clock
+                        without time stamps. Hold the pointer over a number for all its digits; a click on a heading sorts." }
+                }
+                script { (PreEscaped(SCRIPT)) }
+            }
+        }
+    };
+    markup.into_string()
+}
+
+fn data(kind: &str, bytes: &[u8]) -> String {
+    format!("data:{kind};base64,{}", STANDARD.encode(bytes))
+}
+
+fn navigation(contents: &Contents) -> Markup {
+    html! {
+        nav aria-label="Contents" {
+            @if !contents.verdicts.is_empty() { a href="#verdicts" { "Verdicts" } }
+            @for (index, source) in contents.records.iter().enumerate() {
+                @for (at, item) in source.record.runs.iter().enumerate() {
+                    a href=(format!("#run-{index}-{at}")) { (item.paper) " " (item.variant) }
+                }
+            }
+            @if !contents.plots.is_empty() { a href="#plots" { "Plots" } }
+        }
+    }
+}
+
+fn section(section: &Section) -> Markup {
+    html! {
+        h3 { (section.title) }
+        @for line in &section.lines { p { (line) } }
+        @if let Some(table) = &section.table {
+            div.wide { table.sortable {
+                thead { tr { @for (name, is_number) in table.columns() {
+                    th.number[is_number] { button type="button" { (name) } }
+                } } }
+                tbody { @for row in table.rows() { tr {
+                    @for ((_, is_number), text) in table.columns().into_iter().zip(row) { td.number[is_number] { (text) } }
+                } } }
+            } }
+        }
+    }
+}
+
+fn record(source: &Source, index: usize) -> Markup {
+    let record = &source.record;
+    html! {
+        section.record {
+            h2 { (source.name) }
+            (environment(record))
+            (experiment(record))
+            (pictures(source))
+            @for (at, item) in record.runs.iter().enumerate() { (run(item, &format!("run-{index}-{at}"))) }
+        }
+    }
+}
+
+fn environment(record: &Record) -> Markup {
+    let (device, host, build) = (&record.environment.device, &record.environment.host, &record.environment.build);
+    let text = |value: &Option<String>| value.clone().unwrap_or_default();
+    let command = record.command.join(" ");
+    let rows = [
+        ("device", format!("{} ({})", device.name, device.kind.name())),
+        ("driver", format!("{} {}", text(&device.driver), text(&device.driver_version))),
+        ("system", format!("{} {}", host.os, text(&host.kernel))),
+        ("processor", text(&host.cpu)),
+        ("cores", host.logical_cores.map_or_else(String::new, |cores| cores.to_string())),
+        ("LP_NUM_THREADS", host.lp_num_threads.map_or_else(String::new, |threads| threads.to_string())),
+        ("layers", record.environment.layers.join(", ")),
+        ("program", format!("{} {} {}", build.version, text(&build.git_commit), text(&build.profile))),
+        ("measured", record.environment.date.clone()),
+    ];
+    html! {
+        @if !record.command.is_empty() {
+            p.command { code { (command) } button.copy type="button" { "Copy" } }
+        }
+        details {
+            summary { "Environment" }
+            table { tbody {
+                @for (name, value) in rows.iter().filter(|(_, value)| !value.trim().is_empty()) {
+                    tr { th scope="row" { (name) } td { (value) } }
+                }
+                @for (name, value) in &host.variables { tr { th scope="row" { (name) } td { (value) } } }
+            } }
+        }
+    }
+}
+
+/// The paper's rows beside ours.
+fn experiment(record: &Record) -> Markup {
+    let rows: Vec<_> = record.runs.iter().filter_map(|run| Some((run, run.experiment.as_ref()?))).collect();
+    let cell = |value: Option<f64>| html! { td.number data-value=[value] { @if let Some(value) = value { (format!("{value:.3}")) } } };
+    html! {
+        @if !rows.is_empty() {
+            h3 { "The paper's table beside ours" }
+            div.wide { table.sortable {
+                thead { tr {
+                    th { button type="button" { "row" } }
+                    th { button type="button" { "variant" } }
+                    @for name in ["paper", "ours", "ours / paper", "frame ms"] { th.number { button type="button" { (name) } } }
+                } }
+                tbody { @for (run, row) in rows { tr {
+                    td { (row.row) }
+                    td { (run.variant) }
+                    (cell(row.paper)) (cell(row.ours)) (cell(row.ratio)) (cell(run.median_frame_ms()))
+                } } }
+            } }
+        }
+    }
+}
+
+/// Pictures; one that has a difference lies over what it is compared with, under a divider.
+fn pictures(source: &Source) -> Markup {
+    let name = |at: usize| source.record.runs.get(at).map_or_else(String::new, title);
+    let image = |picture: &Picture| {
+        html! { img src=(data("image/png", &picture.png)) alt=(format!("picture of {}", name(picture.run))); }
+    };
+    html! {
+        div.pictures {
+            @for picture in &source.pictures {
+                figure {
+                    @if let Some(difference) = &picture.difference {
+                        @if let Some(base) = source.pictures.iter().find(|other| other.run == difference.base) {
+                            div.divided {
+                                (image(base))
+                                div.over { (image(picture)) }
+                                input type="range" min="0" max="100" value="50"
+                                    aria-label="divider: left of it the one picture, right of it the other";
+                            }
+                        }
+                        figcaption {
+                            (name(picture.run)) " over " (name(difference.base)) "; CIE Luv difference: mean "
+                            (number(difference.mean, 3)) ", 99th percentile " (number(difference.p99, 3))
+                        }
+                    } @else {
+                        (image(picture))
+                        figcaption { (name(picture.run)) }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! `fumarole report`: one page from what lies on the disk.
+
+use std::fs;
+
+use super::program::{ONCE, caustics, file, folder, fumarole};
+
+#[test]
+fn a_folder_becomes_a_page_with_pictures_plots_and_numbers() {
+    let out = folder();
+    let path = |name: &str| out.path().join(name);
+    let bench = caustics("bench").tiny().args(ONCE).args("--quiet --variant level-map,volumetric");
+    bench.arg("--json").arg(path("run.json")).arg("--image").arg(path("run.png")).run().succeeded();
+    file(&out, "plot.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    file(&out, "other.json", "{\"schema\": \"fumarole.compare/2\"}");
+    file(&out, "broken.json", "{");
+    let page = path("page.html");
+    let ended = fumarole("report").arg(out.path()).arg("--output").arg(&page).run().succeeded();
+    assert!(ended.stderr.contains("broken.json"), "what could not be read is named: {}", ended.stderr);
+    let text = fs::read_to_string(&page).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&fs::read_to_string(path("run.json")).unwrap()).unwrap();
+    for run in record["runs"].as_array().unwrap() {
+        let median = &run["frame_ms"]["median"];
+        assert!(text.contains(&format!("data-value=\"{median}\"")), "{median}");
+        for pass in run["passes"].as_array().unwrap() {
+            assert!(text.contains(&format!("<td>{}</td>", pass["name"].as_str().unwrap())));
+        }
+    }
+    assert_eq!(text.matches("data:image/png").count(), 1);
+    assert_eq!(text.matches("data:image/svg+xml").count(), 1);
+
+    // A picture that has changed since is not shown as the record's.
+    fs::write(path("run.png"), "other").unwrap();
+    let ended = fumarole("report").arg(path("run.json")).arg("--output").arg(&page).run().succeeded();
+    assert!(ended.stderr.contains("changed since"), "{}", ended.stderr);
+    assert!(!fs::read_to_string(&page).unwrap().contains("data:image/png"));
+}
+
+#[test]
+fn verdicts_come_first_and_nothing_to_show_is_refused() {
+    let out = folder();
+    let record = out.path().join("a.json");
+    caustics("bench").tiny().args(ONCE).args("--quiet --variant level-map --json").arg(&record).run().succeeded();
+    let page = out.path().join("page.html");
+    let sides = fumarole("report --quiet").arg("--a").arg(&record).arg("--b").arg(&record);
+    sides.arg("--output").arg(&page).run().succeeded();
+    let text = fs::read_to_string(&page).unwrap();
+    let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part}"));
+    assert!(place("SAME: frame") < place("<h3>caustics level-map: 96 × 64</h3><p class=\"frame\">"), "{text}");
+
+    let empty = folder();
+    fumarole("report").arg(empty.path()).run().refused(2, &["no record"]);
+    fumarole("report").arg(out.path().join("none.json")).arg("--output").arg(&page).run().refused(2, &["none.json"]);
+    assert_eq!(fumarole("report").run().status.code(), Some(2));
+}
