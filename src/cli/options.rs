@@ -16,10 +16,13 @@ use crate::report::record::Limits;
 /// The options of a verb that measures.
 #[derive(Debug, Clone, Args)]
 pub struct CommonArgs {
+    /// The device and its shaders.
     #[command(flatten)]
     pub machine: MachineArgs,
+    /// Frames, repetitions, processes.
     #[command(flatten)]
     pub measure: MeasureArgs,
+    /// Files, and what is printed.
     #[command(flatten)]
     pub output: OutputArgs,
 }

@@ -64,6 +64,7 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
 
 /// Exit status of a process, and its standard error.
 pub struct Ended {
+    /// As the system tells it.
     pub status: ExitStatus,
     errors: String,
 }

@@ -26,10 +26,13 @@ enum Phase {
 
 /// A command pool of one buffer.
 pub(crate) struct Commands {
+    /// The device that it records for.
     pub device: Arc<Device>,
     pool: vk::CommandPool,
+    /// The buffer that is recorded into.
     pub buffer: vk::CommandBuffer,
     fence: vk::Fence,
+    /// The submission that it will be part of.
     pub submission: SubmissionId,
     phase: Phase,
     barriers: Barriers,

@@ -11,6 +11,7 @@ pub(crate) struct FormatInfo {
     pub texel_bytes: u64,
     /// Type of the values that a shader sees.
     pub scalar: Scalar,
+    /// Aspects that an image of the format has.
     pub aspect: vk::ImageAspectFlags,
     /// The format's name in a shader's storage image.
     pub storage: Option<ImageFormat>,

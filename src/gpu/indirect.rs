@@ -22,6 +22,7 @@ crate::host_block! {
 
 /// The kernel before an indirect draw: the host does not see the parameters, and Vulkan does not check them.
 pub(crate) struct ClampDraw {
+    /// The kernel, bound to the arguments.
     pub pass: Pass,
     limits: DrawLimits,
     /// A `VkDrawIndexedIndirectCommand` that the draw may use as it is.

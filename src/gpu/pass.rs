@@ -27,16 +27,21 @@ pub struct Pass {
 }
 
 pub(crate) struct Inner {
+    /// The device of all its objects.
     pub device: Arc<Device>,
     /// `None` for a copy.
     pub pipeline: Option<Arc<Pipeline>>,
     /// The pipeline of the draws that count into the stencil, where there are such.
     pub counting: Option<Arc<Pipeline>>,
+    /// Descriptor set; absent where no shader names a resource.
     pub bindings: Option<Arc<Bindings>>,
+    /// Every access, in the order of declaration.
     pub uses: Vec<Use>,
+    /// Commands of the pass.
     pub body: Body,
     /// From one element of the vertex buffer to the next; 0 without one.
     pub stride_bytes: u32,
+    /// The description that it was built from.
     pub desc: PassDesc,
 }
 
@@ -182,7 +187,10 @@ impl DrawBounds {
 /// Elements up to which a draw fetches.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DrawCounts {
+    /// Vertices that are bound; any number where none are needed.
     pub vertices: u64,
+    /// Instances that are bound.
     pub instances: u64,
+    /// Indices that are bound.
     pub indices: u64,
 }

@@ -24,26 +24,40 @@ use crate::shader_build::HostBlock;
 /// Everything that the builder was told; kept so that a pass can be rebound to other resources.
 #[derive(Clone)]
 pub(crate) struct PassDesc {
+    /// Name of the pass: its debug label and the record's.
     pub name: &'static str,
+    /// Section of the paper; empty for what is ours.
     pub section: &'static str,
+    /// Kind of the work.
     pub kind: PassKind,
+    /// Paths under `shaders/`, in the order of the stages.
     pub shaders: Vec<String>,
+    /// Resources by the names that the shaders give them.
     pub resources: Vec<(&'static str, Resource)>,
     /// The host struct of the push constants.
     pub constants: Option<Constants>,
+    /// Attachments with their blend and depth states.
     pub targets: Targets,
+    /// Vertex buffer; absent where vertices come from their index alone.
     pub vertices: Option<BufferView>,
+    /// Step of the vertex buffer: a vertex or an instance.
     pub vertex_rate: vk::VertexInputRate,
+    /// Index buffer of 32-bit indices.
     pub indices: Option<BufferView>,
+    /// Arguments of an indirect draw.
     pub indirect: Option<BufferView>,
+    /// Primitives that vertices make up.
     pub topology: Topology,
+    /// Fragment shader and depth state of the draws that alternate with the pass's own.
     pub counting: Option<(String, DepthTest)>,
 }
 
 /// A declared type of push constants.
 #[derive(Clone, Copy)]
 pub(crate) struct Constants {
+    /// The host struct of the constants.
     pub id: TypeId,
+    /// Its type's name, for messages.
     pub name: &'static str,
     check: fn(&str, &[Arc<ShaderModule>]) -> Result<(), Error>,
 }
@@ -266,7 +280,9 @@ impl PassBuilder {
 
 /// The pipelines of a pass that draws or dispatches.
 pub(super) struct Pipelines {
+    /// Pipeline of the pass's own draws.
     pub own: Arc<Pipeline>,
+    /// Pipeline of the draws that alternate with them.
     pub counting: Option<Arc<Pipeline>>,
     /// From one element of the vertex buffer to the next; 0 without one.
     pub stride_bytes: u32,

@@ -29,6 +29,7 @@ impl Counter {
 
 /// A pool of queries used from the front on, reset on the host.
 pub(crate) struct QueryPool {
+    /// The pool.
     pub raw: vk::QueryPool,
     device: Arc<Device>,
     counter: Counter,

@@ -43,6 +43,7 @@ impl crate::measure::Variant for Variant {
 pub struct SmartParameters {
     /// Depth levels of the profile, 1 to 65,536.
     pub levels: u32,
+    /// Distribution of the planes over the sub-boxes.
     pub placement: SmartPlacement,
 }
 
@@ -93,6 +94,7 @@ pub struct Parameters {
     pub water_triangles: u32,
     /// Position and diffuse map in one pass with two targets; in two passes without.
     pub mrt: bool,
+    /// Smart slicing, section 3.4.
     pub smart: SmartParameters,
     /// Texels a side of the caustics map that are drawn and averaged for each of its texels, 1 to 64.
     pub coverage: u32,
@@ -107,20 +109,25 @@ pub struct Parameters {
     pub absorption_per_m: f32,
     /// Depth of the pool's floor below the water's level in metres, above 0.
     pub water_depth_m: f32,
+    /// The water.
     pub waves: WaveParameters,
     /// A still surface in place of the waves: within 10 m of the water's level, slopes up to 10.
     pub water_map: Option<WaterMap>,
+    /// Parallel and point lights, at least one.
     pub lights: Vec<Light>,
     /// Ambient light I_a, linear RGB, at least 0.
     pub ambient: Vec3,
     /// Time between two frames in seconds, at least 0.
     pub time_step_s: f32,
+    /// Seed of the waves' directions and phases.
     pub seed: u64,
+    /// The eye.
     pub camera: Camera,
     /// Rays of the picture in each pixel, 1 to 64.
     pub samples: u32,
     /// Size of the picture in pixels.
     pub width: u32,
+    /// Pixels of the picture.
     pub height: u32,
 }
 

@@ -39,13 +39,17 @@ const AVERAGED: u32 = 4;
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
 pub struct Setup {
+    /// The numbers.
     pub parameters: Parameters,
+    /// Receivers, at least one.
     pub meshes: Vec<MeshSource>,
     /// The pool's floor receives caustics as well.
     pub floor: bool,
+    /// Name of the preset that it began with.
     pub preset: Option<String>,
     /// Directions of parallel light and places of point lights; the default light where there are neither.
     pub parallel_lights: Vec<Vec3>,
+    /// Positions of point lights, metres.
     pub point_lights: Vec<Vec3>,
     /// Height map in place of the waves.
     pub water_map: Option<HeightMapSource>,
@@ -53,6 +57,7 @@ pub struct Setup {
     pub water_map_spacing_m: Option<f32>,
     /// Metres that its heights are scaled to span.
     pub water_map_range_m: Option<f32>,
+    /// Side of the water that the picture is taken from.
     pub view: View,
 }
 
@@ -109,6 +114,7 @@ impl Default for Setup {
 
 /// A setup with its meshes loaded and placed.
 pub struct Scene {
+    /// Receivers, placed.
     pub receivers: Vec<ReceiverInput>,
 }
 
@@ -415,6 +421,7 @@ fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
 /// A mesh of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedMesh {
+    /// Its mesh.
     pub source: MeshSource,
     /// Its word, or its file's name without folder and ending: what the thesis's tables may know it by.
     pub model: String,

@@ -18,15 +18,20 @@ use crate::scene::MeshSource;
 /// A row of pictures: one object by one method.
 #[derive(Debug, Clone)]
 pub struct Sheet {
+    /// The model and its constants.
     pub setup: Setup,
+    /// Variant that is drawn.
     pub variant: Variant,
 }
 
 /// A figure of the dissertation: rows below each other, all at the same frames.
 #[derive(Debug, Clone)]
 pub struct Figure {
+    /// Name of its file.
     pub name: &'static str,
+    /// Frames that are drawn, ascending.
     pub frames: Vec<u32>,
+    /// Sheets of one file.
     pub sheets: Vec<Sheet>,
 }
 

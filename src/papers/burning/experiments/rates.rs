@@ -14,6 +14,7 @@ use crate::report::table::{Align, Style, Table, number};
 /// A frame rate that the dissertation reports, by a GeForce 9800 GTS.
 pub struct Claim {
     section: &'static str,
+    /// The model and its constants.
     pub preset: Preset<Setup>,
     frames_per_s: f64,
 }

@@ -96,7 +96,9 @@ pub fn block_table(rows: &mut [Row]) -> ResultTable {
 
 /// A fire under a limit of active vertices, and its snapshots.
 pub struct Limited {
+    /// Most triangles that the limit of section 3.7.1 lets burn.
     pub limit: u32,
+    /// States over time.
     pub snapshots: Vec<Snapshot>,
 }
 

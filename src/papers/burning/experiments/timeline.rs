@@ -19,9 +19,11 @@ const MOST_TICKS: u32 = 20_000;
 /// The counts of a fire after some tick.
 #[derive(Debug, Clone, Copy)]
 pub struct Snapshot {
+    /// Counts of the state.
     pub counts: Counts,
     /// Coarse triangles that are refined; absent where none ever are.
     pub refined: Option<u32>,
+    /// Triangles before division.
     pub coarse: u32,
 }
 

@@ -14,6 +14,7 @@ pub struct Welded {
     pub texture_coordinates: Vec<[f32; 2]>,
     /// The simulated vertex of each draw vertex, numbered in order of first use.
     pub welds: Vec<u32>,
+    /// Distinct positions.
     pub vertex_count: u32,
     /// Draw vertices of each triangle with three different simulated vertices.
     pub triangles: Vec<[u32; 3]>,

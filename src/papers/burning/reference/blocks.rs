@@ -14,6 +14,7 @@ const FREE_BOUND: f64 = 15.0;
 /// Blocks of equal size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
+    /// Corner of the grid with the smallest coordinates.
     pub low: DVec3,
     /// Sides of one block.
     pub size: DVec3,

@@ -51,8 +51,11 @@ pub fn sphere(levels: u32) -> (Vec<DVec3>, Vec<[usize; 3]>) {
 
 /// A model with constants that fit it.
 pub struct Scene {
+    /// Variant under test.
     pub variant: Variant,
+    /// Its model.
     pub model: Model,
+    /// Its constants.
     pub constants: Constants,
 }
 

@@ -39,6 +39,7 @@ pub struct Pools {
     pub sizes: [u32; 2],
     /// Of a particle.
     pub radius: f64,
+    /// Seed of the births.
     pub seed: u32,
 }
 
@@ -59,6 +60,7 @@ pub type Whole = (u32, f64);
 /// A particle of fire or smoke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Particle {
+    /// Position of the particle in the object's frame.
     pub position: DVec3,
     /// In ticks.
     pub age: u32,

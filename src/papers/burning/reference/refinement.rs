@@ -22,6 +22,7 @@ pub struct Pattern<'a> {
     model: &'a Model,
     /// Nodes on each edge, by the edge's sorted vertices.
     on_edge: HashMap<(usize, usize), Vec<usize>>,
+    /// Nodes that are divided.
     pub is_split: Vec<bool>,
 }
 

@@ -88,8 +88,11 @@ pub fn actual_planes(
 
 /// A frame's picture by normal slicing and by smart slicing, and how far they differ over the object's pixels.
 pub struct PicturePair {
+    /// Picture with planes at equal distances.
     pub normal: Rgba8,
+    /// Picture with smart planes.
     pub smart: Rgba8,
+    /// Luv difference of the two.
     pub difference: Difference,
 }
 

@@ -19,9 +19,11 @@ use crate::scene::MeshSource;
 /// The methods that a sweep compares.
 #[derive(Debug, Clone, Copy)]
 pub struct Comparison {
+    /// Heading of the table.
     pub title: &'static str,
     /// The method that ratios are taken against.
     pub base: Variant,
+    /// Variants that are measured beside the first.
     pub others: &'static [Variant],
 }
 
