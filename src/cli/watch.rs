@@ -3,7 +3,7 @@
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -40,14 +40,23 @@ pub fn progress_bar(quiet: bool, what: &str) -> ProgressBar {
     bar
 }
 
-/// Runs measured work under a progress bar.
+/// The least time between two lines of progress where there is no terminal for a bar.
+const BETWEEN_LINES: Duration = Duration::from_secs(30);
+
+/// Runs measured work under a progress bar. Piped work that takes long says how far it is, a line at a time.
 pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> T) -> T {
     let bar = progress_bar(quiet, what);
+    let is_piped = !quiet && !std::io::stderr().is_terminal();
+    let mut said = Instant::now();
     let result = work(&mut Watch {
         interrupted: interrupted(),
         progress: &mut |done, expected| {
             bar.set_length(expected);
             bar.set_position(done);
+            if is_piped && said.elapsed() >= BETWEEN_LINES {
+                said = Instant::now();
+                eprintln!("{what}: {done} of {expected} frames, {:.0} %", 100.0 * done as f64 / expected.max(1) as f64);
+            }
         },
     });
     bar.finish_and_clear();

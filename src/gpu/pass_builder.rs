@@ -34,6 +34,8 @@ pub(crate) struct PassDesc {
     pub shaders: Vec<String>,
     /// Resources by the names that the shaders give them.
     pub resources: Vec<(&'static str, Resource)>,
+    /// Resources that the shaders may leave out.
+    pub offered: Vec<(&'static str, Resource)>,
     /// The host struct of the push constants.
     pub constants: Option<Constants>,
     /// Attachments with their blend and depth states.
@@ -70,6 +72,7 @@ impl PassDesc {
             kind,
             shaders,
             resources: Vec::new(),
+            offered: Vec::new(),
             constants: None,
             targets: Targets::default(),
             vertices: None,
@@ -148,6 +151,13 @@ impl PassBuilder {
     /// A resource that the shaders read or write, by the name they give it. Their binaries say how it is accessed.
     pub fn with(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
         self.desc.resources.push((name, resource.into()));
+        self
+    }
+
+    /// A resource that the shaders may read or not, by the name they give it: what a sibling pass reads through a shader
+    /// that both have, so that a replacement of that shader may read it too.
+    pub fn offer(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
+        self.desc.offered.push((name, resource.into()));
         self
     }
 
@@ -237,6 +247,9 @@ impl PassBuilder {
         let modules = desc.shaders.iter().map(|s| load(s)).collect::<Result<Vec<_>, _>>()?;
         pass_check::stages(device, &desc, &modules)?;
         let program = Program::new(device, name, modules)?;
+        let mut desc = desc;
+        let wanted = desc.offered.drain(..).filter(|(name, _)| program.slots.iter().any(|slot| slot.name == *name));
+        desc.resources.extend(wanted);
         match desc.constants {
             Some(constants) => (constants.check)(name, &program.modules)?,
             None if program.push_bytes > 0 => {

@@ -11,7 +11,7 @@ use super::measure::{Schedule, Watch};
 use super::parameter::Given;
 use super::result_table::ResultTable;
 use super::study::{Preset, Study};
-use super::sweep::{Plan, Point, Swept};
+use super::sweep::{Plan, Point, Row, Swept};
 use crate::file::{check_writable, write};
 use crate::image::{self, Raster, Rgba8};
 use crate::report::plot::PlotError;
@@ -182,8 +182,19 @@ impl<S: Study> Context<'_, S> {
         let plan = Plan { schedule: self.schedule(), limits: limits.as_ref() };
         let mut swept = Err(Error::Interrupted);
         let title = format!("{} {}", S::PAPER, self.name);
-        self.console.watch(&title, &mut |watch| swept = plan.measure(points, machine, watch));
+        let mut keep = |machine: &Machine, rows: &[Row]| self.keep(machine, rows, points.len());
+        self.console.watch(&title, &mut |watch| swept = plan.measure(points, machine, watch, &mut keep));
         swept
+    }
+
+    /// Writes the rows of a sweep that has begun as CSV, where the finished one will be: whatever ends it, they stay.
+    fn keep(&self, machine: &Machine, rows: &[Row], points: usize) -> Result<(), Error> {
+        if points < 2 {
+            return Ok(());
+        }
+        let runs = rows.iter().map(|row| row.run.clone()).collect();
+        let record = Record::new(machine.environment(), std::env::args().collect(), runs);
+        Ok(write(&self.csv_file(), csv::to_string(&record).as_bytes())?)
     }
 
     /// A file of the experiment's own, in the folder for files that are not named.

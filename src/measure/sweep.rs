@@ -59,20 +59,28 @@ pub struct Plan<'a> {
 
 impl Plan<'_> {
     /// Measures the points one after the other. What fails after the first point ends the sweep, which keeps its
-    /// finished rows; so does Ctrl-C.
+    /// finished rows; so does Ctrl-C. `keep` takes the rows after each point: they are there whatever ends the program.
     ///
     /// # Errors
-    /// The error of the first point.
+    /// The error of the first point, and those of `keep`.
     pub fn measure<S: Study>(
         &self,
         points: &[Point<S>],
         machine: &mut Machine,
         watch: &mut Watch<'_>,
+        keep: &mut dyn FnMut(&Machine, &[Row]) -> Result<(), Error>,
     ) -> Result<Swept, Error> {
         let mut swept = Swept { rows: Vec::new(), stopped: None };
-        for point in points {
-            match self.measure_point(point, machine, watch) {
-                Ok(rows) => swept.rows.extend(rows),
+        let total = points.len() as u64;
+        for (index, point) in (0..).zip(points) {
+            let progress = &mut *watch.progress;
+            let mut of_all = |done: u64, expected: u64| progress(index * expected + done, total * expected);
+            let mut watch = Watch { interrupted: watch.interrupted, progress: &mut of_all };
+            match self.measure_point(point, machine, &mut watch) {
+                Ok(rows) => {
+                    swept.rows.extend(rows);
+                    keep(machine, &swept.rows)?;
+                }
                 Err(error) if swept.rows.is_empty() => return Err(error),
                 Err(Error::Interrupted) => break,
                 Err(error) => {

@@ -131,7 +131,15 @@ impl Intersections {
     /// Errors of the Vulkan layer.
     pub fn floor(scope: Scope<'_>, target: impl FnOnce(PassBuilder) -> PassBuilder) -> Result<Self, Error> {
         let options = Options::of(scope);
-        let pass = builder("caustics-map-floor", "4.5", "common/empty.frag", scope, &options);
+        // A vertex shader that `caustics-map` shares with this pass may have been replaced by one that reads what it reads.
+        let mut pass = builder("caustics-map-floor", "4.5", "common/empty.frag", scope, &options);
+        pass = pass.offer("nearest", scope.context.nearest);
+        if let Some(position_map) = scope.position_map {
+            pass = pass.offer("position_map", position_map);
+        }
+        if let Some(shadows) = scope.shadows {
+            pass = pass.offer("shadow_map", &shadows.map);
+        }
         Ok(Intersections { pass: target(pass).build(scope.context.shaders)?, options })
     }
 

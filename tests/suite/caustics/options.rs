@@ -1,12 +1,13 @@
 //! What departs from the thesis's reading by an option: several samples a texel and intensities of vertices against
 //! photons, shadows against rays, Fresnel's loss against its equations.
 
+use std::path::Path;
 use std::slice::from_ref;
 
-use fumarole::gpu::Compiler;
+use fumarole::gpu::{Compiler, ShaderLibrary};
 use fumarole::measure::Variant as _;
 use fumarole::papers::caustics::reference::{Photons, correlation};
-use fumarole::papers::caustics::{IntensityRule, Parameters, ReceiverInput, Variant, WaveParameters};
+use fumarole::papers::caustics::{Caustics, IntensityRule, Parameters, ReceiverInput, Variant, WaveParameters};
 use fumarole::scene::Light;
 use glam::{DVec2, DVec3, Mat4, Vec3};
 
@@ -207,5 +208,25 @@ fn the_surface_reflects_its_share() {
             }
             assert!(lit > 1000);
         }
+    });
+}
+
+/// A vertex shader that two passes share may be replaced by one that reads what only one of them draws with.
+#[test]
+fn a_replaced_shader_may_read_what_its_sibling_reads() {
+    gpu_test(|device| {
+        let shaders = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders/caustics");
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sibling/caustics");
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::copy(shaders.join("plane.glsl"), folder.join("plane.glsl")).unwrap();
+        let vertex = std::fs::read_to_string(shaders.join("caustics-map.vert")).unwrap();
+        let reads = "layout(set = 0, binding = 0) uniform texture2D position_map;\n\
+                     layout(set = 0, binding = 1) uniform sampler nearest;\n\nvoid main() {\n\
+                     float found = texelFetch(sampler2D(position_map, nearest), ivec2(0), 0).r;\n";
+        let vertex = vertex.replace("void main() {\n", reads).replace("0.5, 1.0)", "0.5 + 0.0 * found, 1.0)");
+        std::fs::write(folder.join("caustics-map.vert"), vertex).unwrap();
+        let library = ShaderLibrary::new(device, Compiler::Glslang, folder.parent()).unwrap();
+        let made = Caustics::new(&library, "test", Variant::LevelMap, &parameters(OVERHEAD), &[sphere()]);
+        assert!(made.is_ok(), "{}", made.err().map(|error| error.to_string()).unwrap_or_default());
     });
 }
