@@ -59,7 +59,8 @@ pub fn strip(words: &[u32]) -> Result<Vec<u32>, String> {
     Ok(written)
 }
 
-fn split(words: &[u32]) -> Result<Vec<&[u32]>, String> {
+/// The instructions of a binary, each with its operands.
+pub(super) fn split(words: &[u32]) -> Result<Vec<&[u32]>, String> {
     let mut rest = words.get(HEADER_WORDS..).ok_or("naga's binary has no header")?;
     let mut instructions = Vec::new();
     while let Some(first) = rest.first() {
@@ -71,7 +72,7 @@ fn split(words: &[u32]) -> Result<Vec<&[u32]>, String> {
     Ok(instructions)
 }
 
-fn opcode(instruction: &[u32]) -> u32 {
+pub(super) fn opcode(instruction: &[u32]) -> u32 {
     instruction[0] & 0xffff
 }
 

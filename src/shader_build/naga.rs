@@ -7,7 +7,7 @@ use ::naga::back::spv::{self, BindingMap, PipelineOptions, WriterFlags, ZeroInit
 use ::naga::front::glsl::{Frontend, Options};
 use ::naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 use ::naga::valid::{ValidationFlags, Validator};
-use ::naga::{Module, ShaderStage, TypeInner};
+use ::naga::{Barrier, Block, Module, ShaderStage, Statement, TypeInner};
 
 use super::{Diagnostic, Stage, explicit_layout};
 
@@ -37,7 +37,7 @@ pub fn compile(stage: Stage, text: &str) -> Result<Vec<u32>, Diagnostic> {
 }
 
 fn translate(shader_stage: ShaderStage, text: &str) -> Result<Vec<u32>, Diagnostic> {
-    let module = Frontend::default().parse(&Options::from(shader_stage), text).map_err(|errors| {
+    let mut module = Frontend::default().parse(&Options::from(shader_stage), text).map_err(|errors| {
         match errors.errors.first() {
             Some(error) => {
                 Diagnostic { line: error.location(text).map(|at| at.line_number as usize), message: error.to_string() }
@@ -46,6 +46,10 @@ fn translate(shader_stage: ShaderStage, text: &str) -> Result<Vec<u32>, Diagnost
         }
     })?;
     refuse_miscompiled(&module, text)?;
+    let entry_points = module.entry_points.iter_mut().map(|entry_point| &mut entry_point.function);
+    for function in module.functions.iter_mut().map(|(_, function)| function).chain(entry_points) {
+        widen_barriers(&mut function.body);
+    }
     let info =
         Validator::new(ValidationFlags::all(), spv::supported_capabilities()).validate(&module).map_err(|error| {
             Diagnostic {
@@ -79,6 +83,27 @@ fn refuse_miscompiled(module: &Module, text: &str) -> Result<(), Diagnostic> {
         });
     }
     Ok(())
+}
+
+/// Makes GLSL's `barrier()` hold a whole workgroup. naga 30.0.1 reads it as every kind of barrier at once, subgroups' among
+/// them, and so writes one that holds a subgroup only: invocations of other subgroups read shared memory too early.
+fn widen_barriers(block: &mut Block) {
+    for statement in block.iter_mut() {
+        match statement {
+            Statement::ControlBarrier(barrier) => *barrier = Barrier::WORK_GROUP,
+            Statement::Block(inner) => widen_barriers(inner),
+            Statement::If { accept, reject, .. } => {
+                widen_barriers(accept);
+                widen_barriers(reject);
+            }
+            Statement::Switch { cases, .. } => cases.iter_mut().for_each(|case| widen_barriers(&mut case.body)),
+            Statement::Loop { body, continuing, .. } => {
+                widen_barriers(body);
+                widen_barriers(continuing);
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Every option spelt out: naga's defaults flip Y, clamp depth, bound loops, zero workgroup memory and

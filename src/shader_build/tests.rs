@@ -246,6 +246,29 @@ fn geometry_inputs_reflect_for_one_vertex() {
     assert_eq!((interface.inputs[0].name.as_str(), interface.inputs[0].count), ("colour", 1));
 }
 
+/// Execution scope, memory scope and semantics of every barrier, as the constants that they are.
+fn barriers(words: &[u32]) -> Vec<Vec<u32>> {
+    let instructions = explicit_layout::split(words).unwrap();
+    let constant = |id: &u32| instructions.iter().find(|i| explicit_layout::opcode(i) == 43 && i[2] == *id).unwrap()[3];
+    let barriers = instructions.iter().filter(|i| explicit_layout::opcode(i) == 224);
+    barriers.map(|barrier| barrier[1..].iter().map(constant).collect()).collect()
+}
+
+#[test]
+fn barriers_hold_the_whole_workgroup_with_both_compilers() {
+    // Workgroup, workgroup, acquire-release of workgroup memory.
+    let whole = [2, 2, 0x108];
+    let with_barriers = EMBEDDED.iter().filter(|shader| !barriers(shader.glslang).is_empty());
+    let mut compared = 0;
+    for shader in with_barriers {
+        let naga = shader.naga.map(barriers).unwrap_or_default();
+        assert!(barriers(shader.glslang).iter().chain(&naga).all(|barrier| *barrier == whole), "{}", shader.name);
+        assert!(!naga.is_empty() || shader.naga.is_err(), "{}", shader.name);
+        compared += usize::from(!naga.is_empty());
+    }
+    assert!(compared >= 3);
+}
+
 #[test]
 fn each_difference_of_interfaces_is_found() {
     let original = reflect_embedded("test/sprites.frag");
