@@ -1,6 +1,7 @@
 #!/bin/sh
-# Makes this machine able to build, test and run fumarole: checks what that needs, installs what is missing with
-# apt-get on Debian and Ubuntu, and is silent when all is there. Exits 1, having changed nothing, where it cannot.
+# Makes this machine able to build and run fumarole, with --tests to test it as well: checks what that needs, installs
+# what is missing with apt-get on Debian and Ubuntu, names the packages of Fedora, Arch and openSUSE, and is silent when
+# all is there. Exits 1, having changed nothing, where it cannot.
 set -eu
 
 here=$(dirname "$0")
@@ -63,7 +64,15 @@ has_manifest() (
     exit 1
 )
 
-# Collects the missing pieces in words and as Debian's packages.
+# Whether a library that Chromium brings lies where the tests look for it: tests/suite/drivers/mod.rs has the same list.
+has_chromium_library() {
+    for directory in "${FUMAROLE_TEST_LIBRARIES:-}" /usr/lib/chromium /usr/lib64/chromium-browser /usr/lib64/chromium; do
+        [ -e "$directory/$1" ] && return
+    done
+    return 1
+}
+
+# Collects the missing pieces in words and as packages.
 find_missing() {
     missing='' packages=''
     has_cpp_compiler ||
@@ -74,15 +83,51 @@ find_missing() {
         need mesa-vulkan-drivers "Mesa's lavapipe driver"
     has_manifest VK_LAYER_KHRONOS_validation explicit_layer.d "${VK_LAYER_PATH:-}:${VK_ADD_LAYER_PATH:-}" ||
         need vulkan-validationlayers 'the Khronos validation layer'
+    [ -z "$tests" ] || { has_chromium_library libvk_swiftshader.so && has_chromium_library libVkLayer_khronos_validation.so; } ||
+        need chromium-common 'the SwiftShader driver and the current validation layer that Chromium brings'
 }
 
+# need PACKAGE WORDS: the package by Debian's name.
 need() {
-    missing="$missing${missing:+, }$2 (package $1)"
-    packages="$packages $1"
+    package=$(package_here "$1")
+    missing="$missing${missing:+, }$2 (package $package)"
+    packages="$packages $package"
 }
 
-has_apt() {
-    grep -Eqs '^ID(_LIKE)?=.*(debian|ubuntu)' /etc/os-release && command -v apt-get >/dev/null
+# The kind of this system, as its package names go: debian, fedora, arch, suse or nothing.
+system() {
+    for kind in debian ubuntu fedora rhel arch suse; do
+        if grep -Eqs "^ID(_LIKE)?=.*$kind" /etc/os-release; then
+            echo "$kind" | sed 's/ubuntu/debian/; s/rhel/fedora/'
+            return
+        fi
+    done
+}
+
+# What Debian's package is called here. The names of other systems than Debian's are from their package lists: nothing was
+# ever installed there.
+package_here() {
+    case $system:$1 in
+    fedora:g++ | suse:g++) echo gcc-c++ ;;
+    arch:g++) echo gcc ;;
+    fedora:libvulkan1) echo vulkan-loader ;;
+    arch:libvulkan1) echo vulkan-icd-loader ;;
+    arch:mesa-vulkan-drivers) echo vulkan-swrast ;;
+    suse:mesa-vulkan-drivers) echo libvulkan_lvp ;;
+    fedora:vulkan-validationlayers | arch:vulkan-validationlayers) echo vulkan-validation-layers ;;
+    fedora:chromium-common | arch:chromium-common | suse:chromium-common) echo chromium ;;
+    *) echo "$1" ;;
+    esac
+}
+
+# The command that installs packages here.
+installer() {
+    case $system in
+    fedora) echo 'dnf install' ;;
+    arch) echo 'pacman -S' ;;
+    suse) echo 'zypper install' ;;
+    *) echo 'apt-get install' ;;
+    esac
 }
 
 # Prints the command that gives root's rights: `env` for root itself.
@@ -115,6 +160,13 @@ $(apt install -y --no-install-recommends $packages)"; then
     fi
 }
 
+tests=''
+case $#:${1:-} in
+0:) ;;
+1:--tests) tests=yes ;;
+*) fail "unknown arguments '$*'; give none, or --tests" ;;
+esac
+system=$(system)
 rust=$(rust_problem)
 find_missing
 if [ -n "$rust" ]; then
@@ -123,8 +175,10 @@ if [ -n "$rust" ]; then
     exit 1
 elif [ -z "$missing" ]; then
     exit 0
-elif ! has_apt; then
-    fail "missing: $missing; install them by their names in this system, which is not Debian or Ubuntu, and run this again"
+elif [ -z "$system" ]; then
+    fail "missing: $missing; install them by their names in this system, which is not known here, and run this again"
+elif [ "$system" != debian ] || ! command -v apt-get >/dev/null; then
+    fail "missing: $missing; install them and run this again: $(installer)$packages"
 elif ! as_root=$(root_command); then
     fail "missing: $missing; no root and no sudo here, so let an administrator run: apt-get install$packages"
 fi

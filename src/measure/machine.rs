@@ -116,6 +116,14 @@ impl Machine {
         if self.device.physical().queue.is_none_or(|(_, bits)| bits == 0) {
             warnings.push("the device has no time stamps: GPU times are absent".to_owned());
         }
+        let physical = self.device.physical();
+        if !physical.has(Feature::PipelineStatistics) {
+            warnings
+                .push("the device has no pipeline statistics: vertices, primitives and invocations are absent".into());
+        }
+        if !physical.has(Feature::PreciseOcclusion) {
+            warnings.push("the device has no exact counts of samples: samples passed are absent".to_owned());
+        }
         warnings
     }
 }

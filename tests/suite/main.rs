@@ -6,6 +6,7 @@ mod caustics;
 mod cli;
 mod common;
 mod corpus;
+mod drivers;
 mod gas;
 mod gpu;
 mod lava;

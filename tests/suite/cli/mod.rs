@@ -19,7 +19,7 @@ mod meshes;
 mod outputs;
 mod pages;
 mod passes;
-mod program;
+pub mod program;
 mod properties;
 mod render;
 mod report;

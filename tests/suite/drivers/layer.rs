@@ -1,0 +1,64 @@
+//! Every variant with both compilers on the device of the tests, under the current layer.
+
+use std::path::Path;
+
+use super::{BURNING, CAUSTICS, GAS, LAVA, Paper, TERRAIN, layer_manifest};
+use crate::cli::program::{ONCE, folder};
+
+/// Compilers of a run's passes.
+fn compilers(run: &serde_json::Value) -> Vec<&str> {
+    let passes = run["passes"].as_array().unwrap().iter();
+    passes.filter_map(|pass| pass["shader_compiler"].as_str()).collect()
+}
+
+fn assert_clean(paper: &Paper) {
+    let folder = folder();
+    for compiler in ["glslang", "naga"] {
+        let program =
+            paper.run("bench --variant all --quiet --json").args(ONCE).args("--shader-compiler").arg(compiler);
+        let ended = paper.under_current_layer(program.on_test_device(), &folder).run().succeeded();
+        let record = ended.json();
+        let runs = record["runs"].as_array().unwrap();
+        assert_eq!(runs.len(), paper.variants().len());
+        for run in runs {
+            assert_eq!(run["validation"], "clean");
+            // The CPU's variant of `terrain` has no shader.
+            let compilers = compilers(run);
+            assert!(compilers.is_empty() || compilers.contains(&compiler), "{}: {compilers:?}", run["variant"]);
+        }
+    }
+}
+
+#[test]
+fn lava_is_clean() {
+    assert_clean(&LAVA);
+}
+
+#[test]
+fn gas_is_clean() {
+    assert_clean(&GAS);
+}
+
+#[test]
+fn caustics_is_clean() {
+    assert_clean(&CAUSTICS);
+}
+
+#[test]
+fn burning_is_clean() {
+    assert_clean(&BURNING);
+}
+
+#[test]
+fn terrain_is_clean() {
+    assert_clean(&TERRAIN);
+}
+
+/// The manifest of these tests is the one that the loader takes.
+#[test]
+fn a_layer_that_cannot_be_loaded_ends_with_3() {
+    let folder = folder();
+    layer_manifest(&folder, Path::new("/no/such/layer.so"));
+    let program = CAUSTICS.run("bench --quiet --validate").args(ONCE).on_test_device();
+    program.env("VK_LAYER_PATH", folder.path()).run().refused(3, &["instance"]);
+}

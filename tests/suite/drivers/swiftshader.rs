@@ -1,0 +1,105 @@
+//! Every variant's picture on SwiftShader against that of the device of the tests, and what the papers do without its
+//! geometry stage and statistics.
+
+use fumarole::image::{Rgba8, read_png};
+use tempfile::TempDir;
+
+use super::{BURNING, CAUSTICS, GAS, LAVA, Paper, TERRAIN, driver_manifest};
+use crate::cli::program::{ONCE, Program, folder, fumarole};
+
+/// Most that the pictures of two drivers differ on average, of 255: edges of triangles and points fall on other pixels, and
+/// filters have other fractions.
+const MEAN: f64 = 0.30;
+/// Most at the 99th percentile, of 255.
+const P99: u8 = 2;
+
+fn on_swiftshader(program: Program, folder: &TempDir) -> Program {
+    let manifest = driver_manifest(folder);
+    program.env("VK_DRIVER_FILES", &manifest).env("VK_ICD_FILENAMES", &manifest).args("--device SwiftShader")
+}
+
+/// Mean and 99th percentile of the differences of all colour channels.
+fn difference(a: &Rgba8, b: &Rgba8) -> (f64, u8) {
+    assert_eq!((a.width(), a.height()), (b.width(), b.height()));
+    let channels = a.pixels().iter().zip(b.pixels()).map(|(a, b)| a.abs_diff(*b));
+    let mut colors: Vec<u8> = channels.enumerate().filter(|(i, _)| i % 4 != 3).map(|(_, differs)| differs).collect();
+    colors.sort_unstable();
+    let sum: u64 = colors.iter().map(|&differs| u64::from(differs)).sum();
+    (sum as f64 / colors.len() as f64, colors[colors.len() * 99 / 100])
+}
+
+fn assert_same_pictures(paper: &Paper) {
+    let folder = folder();
+    let picture = |program: Program, variant: &str| {
+        let path = folder.path().join("picture.png");
+        program.args("--quiet --variant").arg(variant).arg("--image").arg(&path).run().succeeded();
+        read_png(&path).unwrap()
+    };
+    for variant in paper.variants() {
+        let expected = picture(paper.run("render").on_test_device(), &variant);
+        for compiler in ["glslang", "naga"] {
+            let program = paper.run("render").args("--shader-compiler").arg(compiler);
+            let program = paper.under_current_layer(on_swiftshader(program, &folder), &folder);
+            let (mean, p99) = difference(&expected, &picture(program, &variant));
+            assert!(mean <= MEAN && p99 <= P99, "{variant}, {compiler}: {mean:.3} on average, {p99} at p99");
+        }
+    }
+}
+
+#[test]
+fn lava_looks_the_same() {
+    assert_same_pictures(&LAVA);
+}
+
+#[test]
+fn gas_looks_the_same() {
+    assert_same_pictures(&GAS);
+}
+
+#[test]
+fn caustics_looks_the_same() {
+    assert_same_pictures(&CAUSTICS);
+}
+
+#[test]
+fn burning_looks_the_same() {
+    assert_same_pictures(&BURNING);
+}
+
+#[test]
+fn terrain_looks_the_same() {
+    assert_same_pictures(&TERRAIN);
+}
+
+#[test]
+fn what_it_lacks_is_listed() {
+    let manifest = folder();
+    let path = driver_manifest(&manifest);
+    let listed = fumarole("devices --json").env("VK_DRIVER_FILES", &path).env("VK_ICD_FILENAMES", &path);
+    let listed = listed.run().succeeded().json();
+    let [found] = listed.as_array().unwrap().as_slice() else { panic!("{listed}") };
+    let features = found["features"].as_object().unwrap().iter();
+    let lacks: Vec<&str> = features.filter(|(_, has)| *has == false).map(|(name, _)| name.as_str()).collect();
+    assert_eq!(lacks, ["geometry-shader", "pipeline-statistics"]);
+    for (paper, capable) in found["papers"].as_object().unwrap() {
+        assert_eq!(capable["capable"], true, "{paper}");
+    }
+}
+
+#[test]
+fn without_a_geometry_stage_and_statistics_a_record_says_so() {
+    let manifest = folder();
+    for (paper, pass) in [(LAVA, "blending"), (GAS, "fragments")] {
+        let program = on_swiftshader(paper.run("bench --quiet --json").args(ONCE), &manifest);
+        let record = program.run().succeeded().json();
+        let run = &record["runs"][0];
+        let warnings = run["warnings"].to_string();
+        for part in ["no geometry stage", "no pipeline statistics"] {
+            assert!(warnings.contains(part), "{warnings}");
+        }
+        let passes = run["passes"].as_array().unwrap();
+        let statistics = &passes.iter().find(|found| found["name"] == pass).unwrap()["statistics"];
+        assert!(statistics["vertices"].is_null() && statistics["compute_invocations"].is_null(), "{statistics}");
+        assert!(statistics["samples_passed"].as_u64().is_some_and(|samples| samples > 0), "{statistics}");
+    }
+}
