@@ -181,7 +181,7 @@ impl AbArgs {
         let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
         let chosen = self.binary.iter().rev().find(|(of, _)| *of == side);
         let program = chosen.map_or_else(std::env::current_exe, |(_, path)| Ok(path.clone())).map_err(failed)?;
-        let file = tempfile::NamedTempFile::new().map_err(failed)?;
+        let file = crate::file::temporary().map_err(failed)?;
         let words = if side == Side::A { &self.a.0 } else { &self.b.0 };
         let (paper, options) = match &self.common[..] {
             [paper, verb, rest @ ..] if verb == "bench" => (paper, rest),

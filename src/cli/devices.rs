@@ -74,7 +74,7 @@ fn json_of(device: &PhysicalDevice) -> Value {
             "timestamp_period_ns": limits.timestamp_period,
             "timestamp_bits": device.queue.map(|q| q.1),
         },
-        "features": features, "papers": papers,
+        "features": features, "portability_lacks": device.portability_lacks, "papers": papers,
     })
 }
 
@@ -96,6 +96,9 @@ fn text_of(device: &PhysicalDevice) -> String {
     lines.push(format!("  has      {}", has.join(", ")));
     if !lacks.is_empty() {
         lines.push(format!("  lacks    {}", lacks.join(", ")));
+    }
+    if let Some(subset) = &device.portability_lacks {
+        lines.push(format!("  subset   of Vulkan (portability), without {}; no paper uses these", subset.join(", ")));
     }
     for (name, needs) in needs_of_papers() {
         let missing = device.lacks(needs);

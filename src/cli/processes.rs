@@ -37,7 +37,7 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
             break;
         }
         let removed = if process == 0 { OURS.to_vec() } else { [&OURS[..], &OF_THE_FIRST[..]].concat() };
-        let file = tempfile::NamedTempFile::new().map_err(|e| failed(e.to_string()))?;
+        let file = crate::file::temporary().map_err(|e| failed(e.to_string()))?;
         let mut command = Command::new(&program);
         command
             .args(without(&removed, given.iter().cloned()))

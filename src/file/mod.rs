@@ -1,7 +1,22 @@
 //! Files that a user names: input that is there to its end, and output that appears whole or not at all. CPU only.
 
+use std::io;
+
+use tempfile::NamedTempFile;
+
 mod input;
 mod output;
+mod temporary;
 
 pub use input::{below, open, read, read_text};
 pub use output::{OutputError, check_writable, write, write_with};
+
+/// A file in the system's temporary folder, removed when dropped; the next one removes what killed processes left there.
+///
+/// # Errors
+/// Of a temporary folder that takes no file.
+pub fn temporary() -> io::Result<NamedTempFile> {
+    let folder = std::env::temp_dir();
+    temporary::sweep(&folder);
+    temporary::create(&folder)
+}

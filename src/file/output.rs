@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+use super::temporary;
+
 /// Failures of writing; every message names the file.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -59,14 +61,17 @@ pub fn write_with(
 }
 
 /// Finds out, before a long run, whether [`write()`] to `path` can succeed: makes the directory, and a temporary file
-/// in it that is removed again. An older file at `path` is not touched.
+/// in it that is removed again; what killed processes left there is removed too. An older file at `path` is not touched.
 ///
 /// # Errors
 /// As [`write()`].
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
     let opened = match Destination::find(path)? {
         Destination::Stream => File::options().write(true).open(path).map(drop),
-        Destination::File(target) => create_beside(&target).and_then(NamedTempFile::close),
+        Destination::File(target) => {
+            temporary::sweep(&parent(&target));
+            create_beside(&target).and_then(NamedTempFile::close)
+        }
     };
     opened.map_err(|source| OutputError::Write { path: path.to_owned(), source })
 }
@@ -136,15 +141,7 @@ fn create_directory(path: &Path) -> Result<(), OutputError> {
 }
 
 fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".fumarole-").suffix(".tmp");
-    // Temporary files are private by default; a result is an ordinary file, as the umask says.
-    #[cfg(unix)]
-    let everyone = <fs::Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666);
-    #[cfg(unix)]
-    builder.permissions(everyone);
-    // The kind alone: the message names the temporary file, which means nothing to the user.
-    builder.tempfile_in(parent(target)).map_err(|error| io::Error::from(error.kind()))
+    temporary::create(&parent(target))
 }
 
 #[cfg(test)]

@@ -54,9 +54,12 @@ impl Device {
         let priorities = [1.0];
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
+        // A device of the subset wants to be told that its user knows.
+        let subset = physical.portability_lacks.is_some().then(|| ash::khr::portability_subset::NAME.as_ptr());
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&core)
+            .enabled_extension_names(subset.as_slice())
             .push_next(&mut v12)
             .push_next(&mut v13);
         // SAFETY: `physical` belongs to `instance`; the structures outlive the call; the features were asked for.

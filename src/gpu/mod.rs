@@ -65,6 +65,7 @@ mod pass_check;
 mod pass_info;
 pub mod physical;
 pub mod pipeline;
+mod portability;
 pub mod program;
 mod query;
 mod rebind;

@@ -6,6 +6,7 @@ use ash::vk;
 
 use super::error::{Context, Error};
 use super::instance::{Instance, version_text};
+use super::portability;
 
 /// The kinds of device, in the order of preference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,6 +130,9 @@ pub struct PhysicalDevice {
     pub memory: vk::PhysicalDeviceMemoryProperties,
     /// The family with graphics, compute and transfer, and its valid timestamp bits.
     pub queue: Option<(u32, u32)>,
+    /// Features of whole Vulkan that a device of the portability subset lacks, none of which this layer uses; absent for a
+    /// device of whole Vulkan.
+    pub portability_lacks: Option<Vec<&'static str>>,
     features: Vec<Feature>,
     /// `fullDrawIndexUint32`: every 32-bit index is one.
     has_full_indices: bool,
@@ -149,10 +153,10 @@ impl PhysicalDevice {
             Err(vk::Result::ERROR_INITIALIZATION_FAILED) => Vec::new(),
             other => other.context("listing", "the Vulkan devices")?,
         };
-        Ok(handles.into_iter().enumerate().map(|(i, raw)| Self::describe(instance, i, raw)).collect())
+        handles.into_iter().enumerate().map(|(i, raw)| Self::describe(instance, i, raw)).collect()
     }
 
-    fn describe(instance: &Instance, index: usize, raw: vk::PhysicalDevice) -> Self {
+    fn describe(instance: &Instance, index: usize, raw: vk::PhysicalDevice) -> Result<Self, Error> {
         let mut id = vk::PhysicalDeviceIDProperties::default();
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut v13 = vk::PhysicalDeviceVulkan13Properties::default();
@@ -181,7 +185,7 @@ impl PhysicalDevice {
             let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
             String::from_utf8_lossy(&bytes).into_owned()
         };
-        PhysicalDevice {
+        Ok(PhysicalDevice {
             raw,
             index,
             name: text(&properties.device_name),
@@ -199,11 +203,12 @@ impl PhysicalDevice {
             limits: properties.limits,
             memory,
             queue,
+            portability_lacks: portability::lacks(instance, raw)?,
             features: supported_features(instance, raw, properties.api_version, queue),
             has_full_indices: core.full_draw_index_uint32 == vk::TRUE,
             max_buffer_bytes: v13.max_buffer_size,
             instance_id: instance.id(),
-        }
+        })
     }
 
     /// The device as it is found now, with the features that are left to it: whatever became of the description, limits
@@ -212,7 +217,7 @@ impl PhysicalDevice {
         if self.instance_id != instance.id() {
             return Err(Error::NoDevice { reason: format!("{} belongs to another instance", self.name) });
         }
-        let mut again = Self::describe(instance, self.index, self.raw);
+        let mut again = Self::describe(instance, self.index, self.raw)?;
         again.features.retain(|feature| self.features.contains(feature));
         Ok(again)
     }

@@ -7,6 +7,7 @@ mod cli;
 mod common;
 mod corpus;
 mod drivers;
+mod faults;
 mod gas;
 mod gpu;
 mod lava;

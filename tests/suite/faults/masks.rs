@@ -1,0 +1,159 @@
+//! Every feature of the capability report taken away, and every limit lowered: each paper falls back and says so, or
+//! refuses by name.
+
+use serde_json::Value;
+
+use super::{Layer, PAPERS, Paper};
+use crate::cli::program::{Ended, ONCE, fumarole};
+
+/// A run of every variant on the lesser device, under validation of it.
+fn run_all(paper: &Paper, layer: &Layer, variable: &str, value: &str) -> Ended {
+    let program = paper.run("bench --variant all --quiet --json").args(ONCE);
+    // Of a device without this one, which Vulkan 1.3 does not allow, layer 1.3.239 warns that a stage writes what the next
+    // does not read (UNASSIGNED-CoreValidation-Shader-OutputNotConsumed).
+    layer.before(program, value != "maintenance4").env(variable, value).run()
+}
+
+/// Warnings of all runs of a record.
+fn warnings(record: &Value) -> String {
+    record["runs"].as_array().unwrap().iter().map(|run| run["warnings"].to_string()).collect()
+}
+
+fn features() -> Vec<String> {
+    let listed = fumarole("devices --json").run().succeeded().json();
+    listed[0]["features"].as_object().unwrap().keys().cloned().collect()
+}
+
+/// What a record must say, where a paper goes on without a feature.
+fn said(paper: &str, feature: &str) -> Option<&'static str> {
+    match (paper, feature) {
+        ("lava" | "gas", "geometry-shader") => Some("no geometry stage"),
+        (_, "timestamps") => Some("no time stamps"),
+        (_, "pipeline-statistics") => Some("no pipeline statistics"),
+        (_, "precise-occlusion") => Some("no exact counts of samples"),
+        _ => None,
+    }
+}
+
+/// Runs each paper without each feature.
+fn assert_without(paper: &Paper) {
+    let layer = Layer::new();
+    for feature in features() {
+        let devices = layer.before(fumarole("devices --json"), false).env("FUMAROLE_LAYER_LACKS", &feature);
+        let devices = devices.run().succeeded().json();
+        assert_eq!(devices[0]["features"][&feature], false, "{feature}");
+        let lacks = &devices[0]["papers"][paper.name]["lacks"];
+        let ended = run_all(paper, &layer, "FUMAROLE_LAYER_LACKS", &feature);
+        if lacks.as_array().unwrap().is_empty() {
+            let record = ended.succeeded().json();
+            let warnings = warnings(&record);
+            if let Some(said) = said(paper.name, &feature) {
+                assert!(warnings.contains(said), "{} without {feature}: {warnings}", paper.name);
+            }
+        } else {
+            assert_eq!(lacks, &serde_json::json!([feature]));
+            ended.refused(3, &[&feature, "lacks"]);
+        }
+    }
+}
+
+#[test]
+fn lava_without_each_feature() {
+    assert_without(&PAPERS[0]);
+}
+
+#[test]
+fn gas_without_each_feature() {
+    assert_without(&PAPERS[1]);
+}
+
+#[test]
+fn caustics_without_each_feature() {
+    assert_without(&PAPERS[2]);
+}
+
+#[test]
+fn burning_without_each_feature() {
+    assert_without(&PAPERS[3]);
+}
+
+#[test]
+fn terrain_without_each_feature() {
+    assert_without(&PAPERS[4]);
+}
+
+/// Limits as low as Vulkan lets a device go, and lower than any may go, so that something meets them.
+const LIMITS: [&str; 13] = [
+    "max-image-dimension-2d=16",
+    "max-image-dimension-3d=2",
+    "max-framebuffer-size=16",
+    "max-color-attachments=1",
+    "max-storage-buffer-range=64",
+    "max-uniform-buffer-range=16",
+    "max-push-constants-size=4",
+    "max-compute-work-group-count=1",
+    "max-compute-work-group-invocations=16",
+    "max-compute-work-group-size=4",
+    "max-draw-indexed-index-value=10",
+    "max-point-size=1",
+    "max-buffer-size=64",
+];
+
+#[test]
+fn each_paper_keeps_to_lowered_limits() {
+    let layer = Layer::new();
+    let (mut refusals, mut wrong) = (0, Vec::new());
+    for paper in &PAPERS {
+        for limit in LIMITS {
+            let ended = run_all(paper, &layer, "FUMAROLE_LAYER_LIMITS", limit);
+            let code = ended.status.code();
+            if code == Some(0) {
+                continue;
+            }
+            refusals += 1;
+            let told = ["limit", "lacks", "at most"].iter().any(|word| ended.stderr.contains(word));
+            let is_line = ended.stderr.lines().count() == 1 && !ended.stderr.contains("validation:");
+            if !told || !is_line || !code.is_some_and(|code| (1..=3).contains(&code)) {
+                wrong.push(format!("{} with {limit}: {code:?}: {}", paper.name, ended.stderr));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(refusals > PAPERS.len() * LIMITS.len() / 4, "{refusals} refusals");
+}
+
+#[test]
+fn narrow_time_stamps_are_read_as_such() {
+    let layer = Layer::new();
+    for paper in &PAPERS {
+        let ended = run_all(paper, &layer, "FUMAROLE_LAYER_LIMITS", "timestamp-valid-bits=36");
+        let record = ended.succeeded().json();
+        assert_eq!(record["environment"]["device"]["timestamp_bits"], 36);
+    }
+}
+
+#[test]
+fn a_device_of_the_portability_subset_is_used_and_its_lacks_are_named() {
+    let layer = Layer::new();
+    let devices =
+        |arguments: &str| layer.before(fumarole(arguments), false).env("FUMAROLE_LAYER_LACKS", "whole-vulkan");
+    let listed = devices("devices --json").run().succeeded().json();
+    let lacks = listed[0]["portability_lacks"].as_array().unwrap();
+    assert!(lacks.contains(&"triangle-fans".into()) && lacks.len() == 15, "{lacks:?}");
+    let text = devices("devices").run().succeeded().stdout;
+    assert!(text.contains("triangle-fans"), "{text}");
+    for paper in &PAPERS {
+        // The layer refuses to open the device without the subset's extension.
+        let program = paper.run("bench --quiet --json").args(ONCE);
+        layer.before(program, false).env("FUMAROLE_LAYER_LACKS", "whole-vulkan").run().succeeded();
+    }
+}
+
+#[test]
+fn a_device_without_the_queue_is_named() {
+    let layer = Layer::new();
+    for paper in &PAPERS {
+        let ended = run_all(paper, &layer, "FUMAROLE_LAYER_LACKS", "compute-queue");
+        ended.refused(3, &["a queue with graphics and compute"]);
+    }
+}

@@ -1,0 +1,120 @@
+//! Devices that lack something and calls that fail: the programs run with `tests/layer` before the driver.
+
+mod calls;
+mod files;
+mod masks;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::cli::program::{self, Ended, Program, file};
+
+/// A paper's program and the smallest scene with every pass.
+pub struct Paper {
+    pub name: &'static str,
+    program: fn(&str) -> Program,
+    scene: &'static str,
+}
+
+pub const PAPERS: [Paper; 5] = [
+    Paper {
+        name: "lava",
+        program: program::lava,
+        scene: "--size 32x24 --particles 100 --radius 0.3 --density 8x4x4 --splats 10x5 --splat-radius 0.2",
+    },
+    Paper { name: "gas", program: program::gas, scene: "--size 24x16 --steps 4 --table 4" },
+    Paper {
+        name: "caustics",
+        program: program::caustics,
+        scene: "--size 32x24 --map-size 16 --water-triangles 100 --planes 3 --mesh box",
+    },
+    Paper {
+        name: "burning",
+        program: program::burning,
+        scene: "--size 24x16 --blocks 2x2x2 --fire 20 --smoke 10 --speed 1 --flammability 10 --mesh sphere --triangles 100 \
+                --first-frame 30",
+    },
+    Paper { name: "terrain", program: program::terrain, scene: "--size 32x24" },
+];
+
+impl Paper {
+    pub fn run(&self, verb: &str) -> Program {
+        (self.program)(verb).args(self.scene).on_test_device()
+    }
+}
+
+/// Name of the layer in its manifest.
+const LAYER: &str = "VK_LAYER_FUMAROLE_test";
+const VALIDATION: &str = "VK_LAYER_KHRONOS_validation";
+
+/// The library of `tests/layer`, which `cargo test` builds beside the programs.
+///
+/// # Panics
+/// Where it is not built.
+fn library() -> PathBuf {
+    let programs = Path::new(env!("CARGO_BIN_EXE_fumarole")).parent().unwrap();
+    let library = programs.join("examples/libtest_layer.so");
+    assert!(library.exists(), "{} is missing: cargo build --release --locked --example test_layer", library.display());
+    library
+}
+
+/// A folder with the layer's manifest, and its report.
+pub struct Layer {
+    folder: TempDir,
+}
+
+impl Layer {
+    pub fn new() -> Self {
+        let folder = program::folder();
+        let layer = serde_json::json!({
+            "name": LAYER,
+            "type": "GLOBAL",
+            "library_path": library(),
+            "api_version": "1.3.0",
+            "implementation_version": "1",
+            "description": "Failing calls and lesser devices for the tests of fumarole",
+        });
+        let manifest = serde_json::json!({ "file_format_version": "1.2.0", "layer": layer });
+        file(&folder, "test_layer.json", manifest.to_string());
+        Layer { folder }
+    }
+
+    fn report_path(&self) -> PathBuf {
+        self.folder.path().join("report")
+    }
+
+    /// Runs with the layer next to the driver, `validated` with the Khronos layer above it.
+    pub fn before(&self, program: Program, validated: bool) -> Program {
+        let above = if validated { format!("{VALIDATION}:{LAYER}") } else { LAYER.to_owned() };
+        let program = if validated { program.args("--validate") } else { program };
+        let program = program.env("VK_INSTANCE_LAYERS", above).env("VK_ADD_LAYER_PATH", self.folder.path());
+        program.env("FUMAROLE_LAYER_REPORT", self.report_path())
+    }
+
+    /// The calls that were counted, the name of the one that failed, and what was alive at the end.
+    ///
+    /// # Panics
+    /// When the program ended without ending its instance.
+    pub fn report(&self, ended: &Ended) -> Report {
+        let path = self.report_path();
+        let text = fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("no report: {error}: {}: {}", ended.status, ended.stderr));
+        fs::remove_file(path).unwrap();
+        let field = |name: &str| text.lines().find_map(|line| line.strip_prefix(name)).map(str::to_owned);
+        let alive = text.lines().filter_map(|line| line.strip_prefix("alive "));
+        Report {
+            calls: field("calls ").unwrap().parse().unwrap(),
+            failed: field("failed "),
+            alive: alive.map(str::to_owned).collect(),
+        }
+    }
+}
+
+pub struct Report {
+    pub calls: usize,
+    pub failed: Option<String>,
+    /// Kinds and numbers of objects.
+    pub alive: Vec<String>,
+}
