@@ -121,6 +121,22 @@ float depth_at(vec2 pixel, vec3 normal, float height, vec2 range) {
     return clamp(depth, range.x, range.y);
 }
 
+// Where the ray of a place of the picture meets the triangle's plane, from the eye.
+vec3 in_plane(vec2 pixel, vec3 normal, float height) {
+    vec3 ray = ray_direction(pixel);
+    float slope = dot(normal, ray);
+    return abs(slope) > 1.0e-12 ? ray * (height / slope) : ray * frame.yon_m;
+}
+
+// Mean of 1 in even and -1 in odd intervals of length 1, over a width around a place.
+float mean_side(float place, float width) {
+    float side = mod(floor(place), 2.0) < 0.5 ? 1.0 : -1.0;
+    // Its integral goes up and down between 0 and 1.
+    float low = 1.0 - abs(mod(place - 0.5 * width, 2.0) - 1.0);
+    float high = 1.0 - abs(mod(place + 0.5 * width, 2.0) - 1.0);
+    return width < 1.0e-3 ? side : clamp((high - low) / width, -1.0, 1.0);
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec2 origin = vec2(pixel);
@@ -238,14 +254,24 @@ void main() {
     vec3 color = object.color;
     if (object.checker_edge_m > 0.0) {
         // Half a square up, so that boards that lie on a border of squares have one colour.
-        vec3 square = floor(point / object.checker_edge_m + vec3(0.0, 0.5, 0.0));
-        float parity = mod(square.x + square.y + square.z, 2.0);
-        color = parity < 0.5 ? color : object.checker_color;
+        vec3 at_square = point / object.checker_edge_m + vec3(0.0, 0.5, 0.0);
+        vec3 across = (in_plane(at + vec2(0.5, 0.0), facing, height) - in_plane(at - vec2(0.5, 0.0), facing, height));
+        vec3 along = (in_plane(at + vec2(0.0, 0.5), facing, height) - in_plane(at - vec2(0.0, 0.5), facing, height));
+        vec3 width = min((abs(across) + abs(along)) / object.checker_edge_m, vec3(1.0e3));
+        vec3 sides = vec3(mean_side(at_square.x, width.x), mean_side(at_square.y, width.y),
+            mean_side(at_square.z, width.z));
+        color = mix(object.checker_color, color, 0.5 + 0.5 * sides.x * sides.y * sides.z);
     }
     float opacity = object.opacity;
     if (object.solid_texture >= 0) {
         // Surface-defined gases: the solid texture is the surface's transparency.
         opacity *= clamp(gas_density(uint(object.solid_texture), point + object.offset_m), 0.0, 1.0);
+        if (object.ends_m.x > 0.0) {
+            vec2 t = clamp((object.ends_m - abs(point.xz)) / max(object.fade_m, 1.0e-3), 0.0, 1.0);
+            opacity *= t.x * t.x * (3.0 - 2.0 * t.x) * t.y * t.y * (3.0 - 2.0 * t.y);
+        }
+        // What fades before the opaque surface behind it must not be one.
+        opacity = object.fade_m > 0.0 ? min(opacity, 0.9999) : opacity;
     }
     if (mask == 0u) {
         // Never opaque: it does not cover the sub-pixel whole, so that no tracing may end at it.

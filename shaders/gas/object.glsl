@@ -10,4 +10,6 @@ struct Object {
     float highlight_exponent;
     uint is_two_sided; // 1 when seen from both sides
     int solid_texture; // its entry in the volumes, or -1
+    float fade_m; // depth before the opaque surface behind it over which a surface-defined gas fades, 0 for none
+    vec2 ends_m; // distances in x and z from its origin at which such a gas has faded out, 0 for none
 };

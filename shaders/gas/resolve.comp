@@ -32,6 +32,10 @@ layout(set = 0, binding = 10, std430) readonly buffer Colors {
     uvec2 colors[]; // each a Color
 };
 
+layout(set = 0, binding = 12, std430) readonly buffer Pixels {
+    Pixel pixels[];
+};
+
 layout(set = 0, binding = 14, std430) readonly buffer Attenuations {
     float attenuations[];
 };
@@ -53,6 +57,13 @@ Color color_at(uint fragment) {
 
 uint object_of(uint fragment) {
     return surfaces[fragment].y;
+}
+
+// Its own, less what fades before the opaque surfaces that end the pixel's tracing.
+float seen_opacity(uint fragment, Link link, float end_m) {
+    float fade_m = objects[object_of(fragment)].fade_m;
+    float t = fade_m > 0.0 ? clamp((end_m - mean_depth(link)) / fade_m, 0.0, 1.0) : 1.0;
+    return opacity_of(color_at(fragment)) * (t * t * (3.0 - 2.0 * t));
 }
 
 // Light that a fragment sends to the eye, per opacity. The highlight is Phong's.
@@ -94,6 +105,7 @@ void main() {
     }
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
     uint head = heads[list];
+    float end_m = pixels[list].end_m;
     vec3 color = vec3(0.0);
     float opacity = 0.0;
     // Sub-pixels that all masks treat alike are composited together: the group of the lowest that is left shrinks to
@@ -146,14 +158,15 @@ void main() {
             uint behind = fragment_at(link.next);
             if (behind != NONE) {
                 Link next = link_at(behind);
-                float shown = fraction_behind(link, next) * opacity_of(color_at(behind));
+                float shown = fraction_behind(link, next) * seen_opacity(behind, next, end_m);
                 if (shown > 0.0 && object_of(behind) != object_of(node)) {
                     bool is_there = (next.mask & bit) != 0u;
                     fraction = is_there ? shown : 0.0;
                     narrowed &= is_there ? next.mask : ~next.mask;
                 }
             }
-            float taken = transmittance * opacity_of(color_at(node));
+            float own = seen_opacity(node, link, end_m);
+            float taken = transmittance * own;
             uint count = fraction > 0.0 ? 2u : 1u;
             vec3 light = vec3(0.0);
             uint i = 0u;
@@ -166,7 +179,7 @@ void main() {
             if (!is_cut) {
                 group = narrowed;
                 group_color += light;
-                transmittance *= 1.0 - opacity_of(color_at(node));
+                transmittance *= 1.0 - own;
                 node = link.next;
             }
         }

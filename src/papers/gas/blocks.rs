@@ -99,7 +99,9 @@ host_block! {
         highlight_exponent: f32,
         is_two_sided: u32,
         solid_texture: i32,
-        _pad: f32,
+        fade_m: f32,
+        ends_m: [f32; 2],
+        _pad: [f32; 2],
     }
 }
 
@@ -345,7 +347,9 @@ impl ObjectBlock {
             highlight_exponent: object.highlight.exponent,
             is_two_sided: object.is_two_sided.into(),
             solid_texture: solid_texture.map_or(-1, |entry| entry as i32),
-            _pad: 0.0,
+            fade_m: object.fade_m,
+            ends_m: object.ends_m.to_array(),
+            _pad: [0.0; 2],
         }
     }
 }

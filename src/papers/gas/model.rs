@@ -1,6 +1,6 @@
 //! The elements of a scene: solids full of gas, surfaces, and the solid textures of both.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::scene::Mesh;
 
@@ -158,6 +158,10 @@ pub struct Object {
     pub is_two_sided: bool,
     /// A surface-defined gas: its opacity at every point.
     pub gas: Option<SolidTexture>,
+    /// Depth before the opaque surface behind it over which a surface-defined gas fades, metres; 0 for none.
+    pub fade_m: f32,
+    /// Distances in x and z from its origin at which such a gas has faded out, over as many metres; 0 for no such end.
+    pub ends_m: Vec2,
     /// Metres a frame.
     pub per_frame_m: Vec3,
 }
@@ -173,6 +177,8 @@ impl Object {
             highlight: Highlight { strength: 0.0, exponent: 1.0 },
             is_two_sided: true,
             gas: None,
+            fade_m: 0.0,
+            ends_m: Vec2::ZERO,
             per_frame_m: Vec3::ZERO,
         }
     }

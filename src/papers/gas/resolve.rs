@@ -53,6 +53,7 @@ impl Resolve {
             .with("Links", &lists.links)
             .with("Surfaces", &lists.surfaces)
             .with("Colors", &lists.colors)
+            .with("Pixels", &lists.pixels)
             .with("Sections", &or_unread(sections, "no sections")?)
             .with("Attenuations", &or_unread(attenuations, "no attenuations")?)
             .with("radiance", &radiance)

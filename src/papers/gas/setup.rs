@@ -216,6 +216,7 @@ impl Study for Setup {
                 ("fragments", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
                 ("rows", json!(demand.rows)),
+                ("samples", json!(built.paper.evaluations(&machine.shaders)?)),
                 ("surfaces_ms", json!(Some(surfaces_ms).filter(|&ms| ms > 0.0))),
             ]);
             metrics.push(Metrics { results, warnings: built.paper.warnings() });

@@ -1,9 +1,10 @@
 //! Figures 4 and 7: fog over a chess board, by surfaces and by a volume.
 
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 
 use super::lathe::{curve, turned};
-use super::{Scene, bright, floor, placed, shiny};
+use super::sweep::swept;
+use super::{Scene, block, bright, floor, placed, shiny};
 use crate::papers::gas::model::{Checker, DensityFunction, Front, Object, Shape, SolidTexture, Swirl, Volume};
 use crate::papers::gas::parameters::{Parameters, default_volume};
 use crate::scene::{Camera, Light, Mesh};
@@ -52,21 +53,36 @@ fn pawn() -> Mesh {
     )
 }
 
-/// A stylised knight: a turned foot and a leaning head.
+/// A knight: a turned foot, and a horse's head, whose outline faces +X before it is turned.
 fn knight(at: Vec3, color: Vec3) -> [Object; 2] {
     let foot =
-        piece("knight's foot", &[(0.40, 0.0), (0.40, 0.12), (0.28, 0.24), (0.24, 0.4), (0.30, 0.5), (0.0, 0.52)]);
-    let mut head = crate::scene::shapes::sphere(32, 24);
-    for p in &mut head.positions {
-        let nose = (p.x - 0.2).max(0.0);
-        *p = Vec3::new(
-            p.x * 0.26 + nose * 0.22 - p.y * 0.06,
-            0.85 + p.y * 0.42 - nose * 0.3,
-            p.z * (0.18 - nose * 0.06),
-        );
-    }
-    head.name = "knight's head".to_owned();
-    head.smooth_normals();
+        piece("knight's foot", &[(0.40, 0.0), (0.40, 0.12), (0.28, 0.24), (0.25, 0.36), (0.30, 0.44), (0.0, 0.46)]);
+    let head: [&[(f32, f32)]; 4] = [
+        // Chest, throat and jaw to the mouth.
+        &[
+            (0.27, 0.44),
+            (0.25, 0.54),
+            (0.17, 0.66),
+            (0.10, 0.77),
+            (0.13, 0.84),
+            (0.24, 0.80),
+            (0.33, 0.76),
+            (0.39, 0.79),
+        ],
+        // Mouth, nose and forehead to the ear.
+        &[(0.36, 0.82), (0.42, 0.85), (0.42, 0.92), (0.35, 0.98), (0.26, 1.06), (0.18, 1.17), (0.15, 1.22)],
+        // The ear.
+        &[(0.13, 1.36), (0.03, 1.25)],
+        // The mane down to the neck.
+        &[(-0.06, 1.24), (-0.15, 1.17), (-0.22, 1.05), (-0.26, 0.90), (-0.27, 0.74), (-0.26, 0.58), (-0.28, 0.44)],
+    ];
+    let smooth = |points: &&[(f32, f32)]| {
+        let points: Vec<Vec2> = points.iter().map(|&(x, y)| Vec2::new(x + 1.0, y)).collect();
+        curve(&points, 3)
+    };
+    let outline: Vec<Vec2> = head.iter().flat_map(smooth).map(|p| p - Vec2::X).collect();
+    let turn = Mat4::from_rotation_y(3.0);
+    let head = swept("knight's head", &outline, 0.16, 0.05).transformed(&turn);
     [piece_at(foot, at, color), piece_at(head, at, color)]
 }
 
@@ -74,9 +90,11 @@ fn piece_at(mesh: Mesh, at: Vec3, color: Vec3) -> Object {
     shiny(placed(mesh, at, color), 0.35, 25.0)
 }
 
+/// As thick as real ones are: seen from below it hides the feet of its pieces.
 fn board() -> Object {
     let squares = Checker { color: Vec3::new(0.08, 0.07, 0.07), edge_m: 1.0 };
-    Object { checker: Some(squares), ..floor(Vec2::splat(8.0), 0.0, Vec3::new(0.60, 0.55, 0.45)) }
+    let wood = Vec3::new(0.60, 0.55, 0.45);
+    Object { checker: Some(squares), ..block(Vec3::new(-4.0, -0.12, -4.0), Vec3::new(4.0, 0.0, 4.0), wood) }
 }
 
 fn parameters(volumes: Vec<Volume>) -> Parameters {
@@ -116,7 +134,9 @@ pub fn surface_fog() -> Scene {
     for (height_m, opaque, power, along) in [(0.22, 1.5, 2.6, 0.006), (0.45, 1.35, 2.9, 0.01), (0.7, 1.2, 3.2, 0.015)] {
         let function = DensityFunction::Fog { swirl: swirl(along), front: NO_FRONT };
         let gas = SolidTexture { function, opaque, power, scale_per_m: 1.1, offset: Vec3::new(4.2, 1.7, 9.1) };
-        objects.push(Object { gas: Some(gas), ..floor(Vec2::new(14.0, 10.0), height_m, Vec3::splat(0.95)) });
+        // Ours: the paper says nothing of the planes' ends, and not of what they cut.
+        let plane = floor(Vec2::splat(8.0), height_m, Vec3::splat(0.95));
+        objects.push(Object { gas: Some(gas), fade_m: 0.9, ends_m: Vec2::splat(4.0), ..plane });
     }
     Scene { parameters: Parameters { width: 1024, height: 768, ..parameters(Vec::new()) }, objects }
 }

@@ -4,6 +4,7 @@ mod chess;
 mod gallery;
 mod glass;
 mod lathe;
+mod sweep;
 
 use glam::{Mat4, Vec2, Vec3};
 
