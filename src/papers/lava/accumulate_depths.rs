@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::FLOORS;
 use super::cluster::Point;
+use super::parameters::SurfaceKind;
 use super::targets::{Context, EMPTY, ZERO};
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Blend, Buffer, Error, Frame, ImageView, Load, Pass, Topology};
@@ -40,7 +41,14 @@ impl AccumulateDepths {
         let constants = DepthConstants {
             space_m: [parameters.space_m.x, parameters.space_m.z],
             columns: [sums.width() as f32, sums.height() as f32],
-            radius_m: parameters.radius_m,
+            // A crossing is the height of its own column: its splat reaches no neighbour.
+            radius_m: match parameters.surface {
+                SurfaceKind::Mean | SurfaceKind::Top => parameters.radius_m,
+                SurfaceKind::Crossing => {
+                    let [x, _, z] = parameters.density;
+                    0.25 * (parameters.space_m.x / x as f32).min(parameters.space_m.z / z as f32)
+                }
+            },
         };
         Ok(AccumulateDepths { pass, instanced, constants, sums })
     }
@@ -56,12 +64,12 @@ impl AccumulateDepths {
         Ok(AccumulateDepths { pass, sums: self.sums.clone(), ..*self })
     }
 
-    /// Draws the accepted points, which the vertex buffer holds.
+    /// Draws the points of the surface, which the vertex buffer holds.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, accepted: &[Point]) -> Result<(), Error> {
-        let points = accepted.len() as u32;
+    pub fn record(&self, frame: &mut Frame<'_>, surface: &[Point]) -> Result<(), Error> {
+        let points = surface.len() as u32;
         frame.graphics(&self.pass, |draw| {
             draw.constants(&self.constants);
             if self.instanced {

@@ -1,22 +1,61 @@
-//! Pass `extract` (section 6.2): on the host, the grid points whose density reaches rho.
+//! Pass `extract` (section 6.2): on the host, the grid points whose density reaches rho, and of them those that
+//! `accumulate-depths` draws: all, as in the thesis, or one for each column.
 
 use std::sync::Arc;
 
 use super::cluster::{Point, host_vertices};
 use super::density::GridPlanes;
+use super::parameters::SurfaceKind;
 use super::targets::Context;
 use crate::gpu::{Buffer, Error, Frame, PassInfo};
 
 /// The pass, with the vertex buffer that it fills.
 pub struct Extract {
     info: Arc<PassInfo>,
-    /// The accepted grid points; capacity for all.
+    /// The points of the surface; capacity for all grid points.
     pub vertices: Arc<Buffer>,
     grid: Grid,
+    /// Where the surface is that of one point for each column.
+    columns: Option<Columns>,
+    clusters: usize,
+    clusters_done: usize,
     /// The grid points that the last frame accepted, metres.
     pub accepted: Vec<Point>,
     /// Lowest and highest density at a grid point in the last frame.
     pub density_range: [f32; 2],
+}
+
+/// The highest place of every column so far, from the lowest plane up.
+struct Columns {
+    kind: SurfaceKind,
+    /// Height in metres and density of the highest accepted point; no height without any.
+    tops: Vec<(Option<f32>, f32)>,
+    /// True where the plane above has been seen.
+    are_closed: Vec<bool>,
+    /// The places of the last frame, metres.
+    points: Vec<Point>,
+}
+
+impl Columns {
+    fn clear(&mut self) {
+        self.tops.fill((None, 0.0));
+        self.are_closed.fill(false);
+        self.points.clear();
+    }
+
+    /// Takes the density of a column's next plane, `y_m` high.
+    fn take(&mut self, column: usize, y_m: f32, density: f32, rho: f32) {
+        let (height_m, below) = &mut self.tops[column];
+        if density >= rho {
+            (*height_m, *below) = (Some(y_m), density);
+            self.are_closed[column] = false;
+        } else if let Some(height_m) = height_m.as_mut().filter(|_| !self.are_closed[column]) {
+            if self.kind == SurfaceKind::Crossing {
+                *height_m += (*below - rho) / (*below - density) * (y_m - *height_m);
+            }
+            self.are_closed[column] = true;
+        }
+    }
 }
 
 /// Grid points of a plane, and the density that they must reach.
@@ -44,6 +83,17 @@ impl Extract {
                 spacing_m: [space.x / x as f32, space.z / z as f32],
                 rho: parameters.rho(),
             },
+            columns: (parameters.surface != SurfaceKind::Mean).then(|| {
+                let count = x as usize * z as usize;
+                Columns {
+                    kind: parameters.surface,
+                    tops: vec![(None, 0.0); count],
+                    are_closed: vec![false; count],
+                    points: Vec::with_capacity(count),
+                }
+            }),
+            clusters: parameters.clusters() as usize,
+            clusters_done: 0,
             accepted: Vec::with_capacity(points as usize),
             density_range: [0.0; 2],
         })
@@ -52,22 +102,41 @@ impl Extract {
     /// Forgets the points of the last frame.
     pub fn clear(&mut self) {
         self.accepted.clear();
+        self.columns.iter_mut().for_each(Columns::clear);
+        self.clusters_done = 0;
         self.density_range = [f32::INFINITY, f32::NEG_INFINITY];
     }
 
-    /// Adds the accepted points of one cluster's planes.
+    /// The points of the surface, as the vertex buffer holds them after the last cluster.
+    pub fn points(&self) -> &[Point] {
+        self.columns.as_ref().map_or(&self.accepted, |columns| &columns.points)
+    }
+
+    /// Adds the accepted points of one cluster's planes; clusters come from the lowest up.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>, densities: &Buffer, planes: &GridPlanes) -> Result<(), Error> {
-        let Extract { info, vertices, grid, accepted, density_range } = self;
+        let Extract { info, vertices, grid, columns, clusters, clusters_done, accepted, density_range } = self;
+        *clusters_done += 1;
         frame.host(info, || {
             let before = accepted.len();
             densities.read(densities.size_bytes(), |bytes| {
-                grid.extract(bytemuck::cast_slice(bytes), planes, accepted, density_range);
+                let densities = bytemuck::cast_slice(bytes);
+                grid.extract(densities, planes, accepted, density_range);
+                if let Some(columns) = columns {
+                    grid.follow(densities, planes, columns);
+                }
             })?;
-            let offset_bytes = (before * size_of::<Point>()) as u64;
-            vertices.write(offset_bytes, bytemuck::cast_slice(&accepted[before..]))
+            let Some(columns) = columns else {
+                let offset_bytes = (before * size_of::<Point>()) as u64;
+                return vertices.write(offset_bytes, bytemuck::cast_slice(&accepted[before..]));
+            };
+            if clusters_done < clusters {
+                return Ok(());
+            }
+            grid.collect(columns);
+            vertices.write(0, bytemuck::cast_slice(&columns.points))
         })
     }
 }
@@ -92,6 +161,24 @@ impl Grid {
                         accepted.push(Point { position: [x, y, z] });
                     }
                 }
+            }
+        }
+    }
+
+    fn follow(&self, densities: &[[f32; 4]], planes: &GridPlanes, columns: &mut Columns) {
+        for (column, texel) in densities.iter().enumerate().take(columns.tops.len()) {
+            for (&density, &y_m) in texel.iter().zip(&planes.heights_m).take(planes.count) {
+                columns.take(column, y_m, density, self.rho);
+            }
+        }
+    }
+
+    fn collect(&self, columns: &mut Columns) {
+        let [dx, dz] = self.spacing_m;
+        for (column, (height_m, _)) in columns.tops.iter().enumerate() {
+            let (i, k) = (column % self.columns, column / self.columns);
+            if let Some(y) = *height_m {
+                columns.points.push(Point { position: [(i as f32 + 0.5) * dx, y, (k as f32 + 0.5) * dz] });
             }
         }
     }

@@ -62,7 +62,7 @@ use crate::scene::Mesh;
 
 pub use self::animate::State;
 pub use self::cluster::{Clusters, Point};
-pub use self::parameters::{CAMERAS, Parameters, Shading, Tone, Variant};
+pub use self::parameters::{CAMERAS, Parameters, Shading, SurfaceKind, Tone, Variant};
 pub use self::placement::{Object, Place};
 pub use self::rock::Rock;
 pub use self::splats::depth_range_m;
@@ -163,7 +163,7 @@ impl Isosurface {
             let densities = self.read_density.record(frame, k)?;
             self.extract.record(frame, densities, planes)?;
         }
-        let isosurface = &self.extract.accepted;
+        let isosurface = self.extract.points();
         self.accumulate_depths.record(frame, isosurface)?;
         self.normal_height.record(frame)
     }
@@ -315,7 +315,7 @@ impl Lava {
         for (k, (particles, planes)) in self.animation.cluster.clusters.particles.iter().zip(planes).enumerate() {
             density_floor.record(frame, k, planes, particles)?;
         }
-        accumulate_depths_floor.record(frame, &extract.accepted)?;
+        accumulate_depths_floor.record(frame, extract.points())?;
         frame.graphics(&self.splatting.splats_floor, |draw| self.splatting.splats.draw(draw))
     }
 

@@ -64,6 +64,26 @@ impl Shading {
     }
 }
 
+/// The height of the surface over a column of grid points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SurfaceKind {
+    /// Eq. 6.3 over all accepted points.
+    Mean,
+    /// Eq. 6.3 over the highest accepted point of each column.
+    Top,
+    /// The highest place where the density crosses rho.
+    Crossing,
+}
+
+impl Choice for SurfaceKind {
+    const ALL: &'static [Self] = &[SurfaceKind::Mean, SurfaceKind::Top, SurfaceKind::Crossing];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("mean", "The thesis's: eq. 6.3 over all accepted points"),
+        ("top", "Eq. 6.3 over the highest accepted point of each column"),
+        ("crossing", "The highest place in each column where the density, linear between planes, is rho"),
+    ];
+}
+
 /// Fate of what is brighter than the display.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Tone {
@@ -104,6 +124,8 @@ pub struct Parameters {
     pub density: [u32; 3],
     /// Density that a grid point must reach to be accepted, above 0; without one, the mean density.
     pub rho: Option<f32>,
+    /// Height of the surface over a column of grid points.
+    pub surface: SurfaceKind,
     /// Splats along x and z, each at least 1, 16,777,216 in all at most.
     pub splats: [u32; 2],
     /// Radius of a splat in metres, above 0, at most the shortest side of the space.
@@ -146,6 +168,7 @@ impl Default for Parameters {
             radius_m: 0.08,
             density: [100, 24, 24],
             rho: None,
+            surface: SurfaceKind::Mean,
             splats: [600, 150],
             splat_radius_m: 0.020625,
             epsilon_m: 0.05,
@@ -261,6 +284,11 @@ impl Parameters {
                 .section("6.2")
                 .default_text("the particles' mean density")
                 .unrecorded(),
+            Parameter::new("surface", field!(Parameters.surface))
+                .help("Height of the surface over a column of grid points")
+                .section("6.2")
+                .cost(Cost::Buffers)
+                .everyday(),
             Parameter::new("splats", SPLATS)
                 .placeholder("XxZ")
                 .range(Range::from(1.0))

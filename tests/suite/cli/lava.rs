@@ -173,6 +173,22 @@ fn every_pass_has_a_floor_where_limits_are_measured() {
 }
 
 #[test]
+fn the_crossing_lies_on_the_isosurface_and_the_mean_inside() {
+    let out = folder();
+    small("experiment surface --border 0 --out . --quiet").inside(out.path()).run().succeeded();
+    assert_eq!(entries(out.path()), ["lava-surface.csv", "lava-surface.json"]);
+    let table = read_json(&out.path().join("lava-surface.json"));
+    let rows = table["table"]["rows"].as_array().unwrap();
+    let value = |row: usize, column: &str| rows[row][column].as_f64().unwrap_or_else(|| panic!("{column}: {table}"));
+    assert_eq!(rows.len(), 3);
+    // Below 0.05 of a cell.
+    assert!(value(2, "at columns, p95") < 1e-3, "{table}");
+    assert!(value(0, "at columns, median") > 0.5 && value(0, "between, signed mean") < -0.5, "{table}");
+    assert!(value(0, "particles above") > 0.3 && value(2, "particles above") < value(0, "particles above"), "{table}");
+    small("experiment surface --surface top").run().refused(2, &["--surface"]);
+}
+
+#[test]
 fn options_that_a_figure_sets_itself_are_refused() {
     let figure = |name: &str, option: &str| lava("experiment").arg(name).args(option).on_test_device().run();
     figure("fig-8.5", "--splat-radius 0.01").refused(2, &["--splat-radius"]);

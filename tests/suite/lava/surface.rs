@@ -2,10 +2,10 @@
 
 use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::{Grid, Surface};
-use fumarole::papers::lava::{Parameters, Particles};
+use fumarole::papers::lava::{Parameters, Particles, SurfaceKind};
 use glam::{DVec3, Vec3};
 
-use super::scene::{draw, grid, lava, lava_of, parameters, texels};
+use super::scene::{densities, draw, grid, lava, lava_of, parameters, texels};
 use crate::common::gpu_test;
 
 #[test]
@@ -35,6 +35,50 @@ fn heights_and_normals_follow_from_the_accepted_points() {
                 assert!((f64::from(found[3]) - surface.heights[texel]).abs() < 1e-5, "{texel}: {found:?}");
             }
         }
+    });
+}
+
+/// The three surfaces over the same densities, each against its own oracle.
+#[test]
+fn the_surface_is_the_mean_the_top_or_the_crossing() {
+    gpu_test(|device| {
+        let mut means = Vec::new();
+        for (surface, geometry_stage) in [
+            (SurfaceKind::Mean, true),
+            (SurfaceKind::Top, true),
+            (SurfaceKind::Top, false),
+            (SurfaceKind::Crossing, true),
+        ] {
+            let parameters = Parameters { surface, geometry_stage, border_m: 0.0, ..parameters() };
+            let mut lava = lava(device, &parameters);
+            // Twice: a frame leaves nothing to the next.
+            draw(device, &mut lava, 0);
+            draw(device, &mut lava, 1);
+            let (grid, rho) = (grid(&parameters), f64::from(parameters.rho()));
+            let densities = densities(device, &lava, &parameters);
+            let radius = f64::from(parameters.radius_m);
+            let (points, radius) = match surface {
+                SurfaceKind::Mean => (grid.accepted(&densities, rho), radius),
+                SurfaceKind::Top => (grid.tops(&densities, rho), radius),
+                SurfaceKind::Crossing => (grid.crossings(&densities, rho), 1e-3),
+            };
+            let expected = Surface::from_sums(&grid, &Surface::sums(&grid, &points, radius), 0.0);
+            let found: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
+            for (texel, (found, expected)) in found.iter().zip(&expected.heights).enumerate() {
+                assert!((f64::from(found[3]) - expected).abs() < 1e-5, "{surface:?} {texel}: {found:?} {expected}");
+            }
+            let drawn = lava.isosurface.extract.points().len();
+            assert_eq!(drawn, points.len(), "{surface:?}");
+            let fractions = points.iter().filter(|p| (p.y * 10.0 - 0.5).fract().abs() > 0.01).count();
+            assert_eq!(
+                fractions > 300,
+                surface == SurfaceKind::Crossing,
+                "{surface:?}: {fractions} lie between planes"
+            );
+            means.push(expected.heights.iter().sum::<f64>() / expected.heights.len() as f64);
+        }
+        println!("mean heights {means:?}");
+        assert!(means[1] > means[0] + 0.2 && means[3] > means[1], "{means:?}");
     });
 }
 

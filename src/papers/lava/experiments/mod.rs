@@ -4,6 +4,7 @@ pub mod figures;
 pub mod floors;
 mod results;
 mod scaling;
+mod surface;
 
 use self::figures::{Drawing, Drawn, FIGURES};
 use self::scaling::Axis;
@@ -52,7 +53,14 @@ pub fn all() -> Vec<Experiment<Setup>> {
         measured("results", "Chapter 8: frames a second, beside the thesis's 20", results as fn(&mut Context<'_>) -> _),
         measured("scaling", "Particles, splats and grid points against each pass's time, host work included", scaling),
     ];
-    figures.into_iter().chain(others).collect()
+    let surface = Experiment {
+        name: "surface",
+        help: "The mean, the top and the crossing beside the outermost isosurface of the same densities",
+        options: &["frame"],
+        refuses: &[("surface", "all three are compared"), ("splats", "nothing is drawn"), ("size", "nothing is drawn")],
+        run: surfaces,
+    };
+    figures.into_iter().chain(others).chain([surface]).collect()
 }
 
 const REFUSED_BY_FIGURES: &[(&str, &str)] = &[
@@ -120,6 +128,14 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
     context.publish_runs(&machine, runs, table.render(context.console.style()), &plots)?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
+}
+
+fn surfaces(context: &mut Context<'_>) -> Result<(), Error> {
+    context.setup.check()?;
+    let mut machine = context.open()?;
+    let table = surface::table(&mut machine, &context.setup, context.options.frame)?;
+    context.publish_table(&machine, &table)?;
+    machine.check_validation().map_err(Error::from).map(drop)
 }
 
 /// Checks every point's input before the first is measured.

@@ -54,6 +54,38 @@ impl Grid {
     pub fn accepted(&self, densities: &[f64], rho: f64) -> Vec<DVec3> {
         self.indices().zip(densities).filter(|(_, d)| **d >= rho).map(|(index, _)| self.place(index)).collect()
     }
+
+    /// The highest accepted point of each column that has one.
+    pub fn tops(&self, densities: &[f64], rho: f64) -> Vec<DVec3> {
+        self.highest(densities, rho).map(|[i, j, k]| self.place([i, j, k])).collect()
+    }
+
+    /// The highest place of each column at which the density, linear between planes, is `rho`; under the highest plane
+    /// that plane, where its point is accepted.
+    pub fn crossings(&self, densities: &[f64], rho: f64) -> Vec<DVec3> {
+        let crossing = |[i, j, k]: [usize; 3]| {
+            let below = self.place([i, j, k]);
+            if j + 1 == self.points[1] {
+                return below;
+            }
+            let (low, high) = (densities[self.at([i, j, k])], densities[self.at([i, j + 1, k])]);
+            below.lerp(self.place([i, j + 1, k]), (rho - low) / (high - low))
+        };
+        self.highest(densities, rho).map(crossing).collect()
+    }
+
+    /// The highest accepted index of each column that has one, row by row.
+    fn highest(&self, densities: &[f64], rho: f64) -> impl Iterator<Item = [usize; 3]> {
+        let [x, y, z] = self.points;
+        let columns = (0..z).flat_map(move |k| (0..x).map(move |i| (i, k)));
+        columns
+            .filter_map(move |(i, k)| (0..y).rev().map(|j| [i, j, k]).find(|index| densities[self.at(*index)] >= rho))
+    }
+
+    /// Place of an index in the order of [`Grid::indices`].
+    pub fn at(&self, [i, j, k]: [usize; 3]) -> usize {
+        (j * self.points[2] + k) * self.points[0] + i
+    }
 }
 
 #[cfg(test)]
