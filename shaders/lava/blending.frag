@@ -12,27 +12,15 @@
 
 layout(set = 0, binding = 1) uniform texture2D normal_height;
 layout(set = 0, binding = 2) uniform texture2D visibility;
-layout(set = 0, binding = 3) uniform texture2D rock;
-layout(set = 0, binding = 4) uniform sampler linear;
 
 layout(push_constant, std430) uniform Shading {
     vec2 drift_m; // distance that the rock has moved with the lava, along x and z
     uint mode; // the one of the thesis's pictures that is drawn
 } shading;
 
+#include "lava/color.glsl"
+
 layout(location = 0) out vec4 accumulated;
-
-// In the order of the host's `Shading`.
-const uint LAVA = 0u;
-const uint COLOR = 1u;
-const uint ROCK = 2u;
-const uint NORMALS = 3u;
-const uint HEIGHTS = 4u;
-
-vec3 rock_at(vec2 place_m) {
-    vec2 texel = fract((place_m - shading.drift_m) / scene.rock_tile_m) * scene.rock_texels;
-    return textureLod(sampler2D(rock, linear), (texel + 1.0) / (scene.rock_texels + 2.0), 0.0).rgb;
-}
 
 void main() {
     float ratio_squared = dot(disc, disc);
@@ -40,16 +28,10 @@ void main() {
     if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest) {
         discard;
     }
-    vec3 color = scene.glow * (scene.space_m.y - center_m.y);
-    if (shading.mode == LAVA) {
-        color *= rock_at(center_m.xz);
-    } else if (shading.mode == ROCK) {
-        color = rock_at(center_m.xz);
-    } else if (shading.mode == NORMALS) {
+    vec3 color = color_at(center_m);
+    if (shading.mode == NORMALS) {
         ivec2 column = ivec2(clamp(center_m.xz / scene.space_m.xz * scene.columns, vec2(0.0), scene.columns - 1.0));
         color = 0.5 + 0.5 * texelFetch(normal_height, column, 0).xyz;
-    } else if (shading.mode == HEIGHTS) {
-        color = vec3(center_m.y / scene.space_m.y);
     }
     float weight = gaussian(ratio_squared);
     accumulated = vec4(weight * color, weight);

@@ -23,6 +23,10 @@ host_block! {
 pub struct Blending {
     pass: Pass,
     shading: Shading,
+    /// The rock on the device.
+    pub(super) rock: Arc<ImageView>,
+    /// The sampler of the rock.
+    pub(super) linear: Arc<Sampler>,
     /// Weighted colours, sum of weights in alpha.
     pub sums: Arc<ImageView>,
 }
@@ -43,7 +47,7 @@ impl Blending {
             .with("linear", &linear)
             .color(&sums, ZERO, Blend::Add)
             .build(context.shaders)?;
-        Ok(Blending { pass, shading: parameters.shading, sums })
+        Ok(Blending { pass, shading: parameters.shading, rock, linear, sums })
     }
 
     /// Draws the splats; the rock has drifted `drift_m` along x.

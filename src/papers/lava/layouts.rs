@@ -10,6 +10,7 @@ fn the_scene_holds_what_the_shaders_read() {
         "lava/splat-quad.vert",
         "lava/visibility.frag",
         "lava/blending.frag",
+        "lava/march.frag",
         "lava/particles.vert",
         "lava/object.vert",
         "lava/object.frag",

@@ -22,6 +22,7 @@ pub mod experiments;
 mod extract;
 #[cfg(test)]
 mod layouts;
+mod march;
 mod normal_height;
 mod normalisation;
 mod objects;
@@ -47,6 +48,7 @@ use self::blending::Blending;
 use self::cluster::Cluster;
 use self::density::{Density, GridPlanes};
 use self::extract::Extract;
+use self::march::March;
 use self::normal_height::NormalHeight;
 use self::normalisation::Normalisation;
 use self::objects::Objects;
@@ -62,7 +64,7 @@ use crate::scene::Mesh;
 
 pub use self::animate::State;
 pub use self::cluster::{Clusters, Point};
-pub use self::parameters::{CAMERAS, Parameters, Shading, SurfaceKind, Tone, Variant};
+pub use self::parameters::{CAMERAS, Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, Variant};
 pub use self::placement::{Object, Place};
 pub use self::rock::Rock;
 pub use self::splats::depth_range_m;
@@ -129,6 +131,8 @@ pub struct Isosurface {
 /// Stage three (chapter 7): the surface as splats, blended and normalised.
 pub struct Splatting {
     splats: Splats,
+    /// In place of the splats, into their targets.
+    march: Option<March>,
     /// Depths of eq. 7.1.
     pub visibility: Visibility,
     /// Sums of eq. 7.2.
@@ -175,8 +179,12 @@ impl Splatting {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
-        self.visibility.record(frame, &self.splats)?;
-        self.blending.record(frame, &self.splats, drift_m)?;
+        if let Some(march) = &self.march {
+            march.record(frame, drift_m)?;
+        } else {
+            self.visibility.record(frame, &self.splats)?;
+            self.blending.record(frame, &self.splats, drift_m)?;
+        }
         self.normalisation.record(frame)
     }
 }
@@ -316,7 +324,11 @@ impl Lava {
             density_floor.record(frame, k, planes, particles)?;
         }
         accumulate_depths_floor.record(frame, extract.points())?;
-        frame.graphics(&self.splatting.splats_floor, |draw| self.splatting.splats.draw(draw))
+        let Splatting { splats, march, splats_floor, .. } = &self.splatting;
+        if march.is_some() {
+            return Ok(());
+        }
+        frame.graphics(splats_floor, |draw| splats.draw(draw))
     }
 
     /// Distance that the rock has drifted in frame `number`, metres: as far as the mean particle.
@@ -386,9 +398,13 @@ impl Splatting {
         let splats = Splats::new(context, normal_height, rock, instanced)?;
         let visibility = Visibility::new(context, &splats)?;
         let blending = Blending::new(context, &splats, &visibility, rock)?;
+        let march = match parameters.surface_draw {
+            SurfaceDraw::Splats => None,
+            SurfaceDraw::March => Some(March::new(context, &splats, &visibility, &blending)?),
+        };
         let normalisation = Normalisation::new(context, &blending.sums)?;
         let splats_floor =
             splats.pass(FLOORS[2].1, "7.1", EMPTY).color(&blending.sums, Load::Keep, Blend::Masked).build(shaders)?;
-        Ok(Splatting { splats, visibility, blending, normalisation, splats_floor })
+        Ok(Splatting { splats, march, visibility, blending, normalisation, splats_floor })
     }
 }

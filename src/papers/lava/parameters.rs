@@ -84,6 +84,23 @@ impl Choice for SurfaceKind {
     ];
 }
 
+/// Drawing of the surface in stage three.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SurfaceDraw {
+    /// Splats, blended (chapter 7).
+    Splats,
+    /// A ray for each pixel against the height field.
+    March,
+}
+
+impl Choice for SurfaceDraw {
+    const ALL: &'static [Self] = &[SurfaceDraw::Splats, SurfaceDraw::March];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("splats", "The thesis's: splats, blended"),
+        ("march", "A ray for each pixel against the height field, without stair-steps and saw-teeth"),
+    ];
+}
+
 /// Fate of what is brighter than the display.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Tone {
@@ -126,6 +143,8 @@ pub struct Parameters {
     pub rho: Option<f32>,
     /// Height of the surface over a column of grid points.
     pub surface: SurfaceKind,
+    /// Drawing of the surface.
+    pub surface_draw: SurfaceDraw,
     /// Splats along x and z, each at least 1, 16,777,216 in all at most.
     pub splats: [u32; 2],
     /// Radius of a splat in metres, above 0, at most the shortest side of the space.
@@ -169,6 +188,7 @@ impl Default for Parameters {
             density: [100, 24, 24],
             rho: None,
             surface: SurfaceKind::Mean,
+            surface_draw: SurfaceDraw::Splats,
             splats: [600, 150],
             splat_radius_m: 0.020625,
             epsilon_m: 0.05,
@@ -288,6 +308,11 @@ impl Parameters {
                 .help("Height of the surface over a column of grid points")
                 .section("6.2")
                 .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("surface-draw", field!(Parameters.surface_draw))
+                .help("Drawing of the surface")
+                .section("7")
+                .cost(Cost::Pipelines)
                 .everyday(),
             Parameter::new("splats", SPLATS)
                 .placeholder("XxZ")

@@ -38,7 +38,8 @@ pub struct Splats {
     vertices: Arc<Buffer>,
     count: u32,
     instanced: bool,
-    normal_height: Arc<ImageView>,
+    /// Normals in RGB, heights in metres in alpha.
+    pub normal_height: Arc<ImageView>,
     /// The uniform block of the stage.
     pub scene: Arc<Buffer>,
 }

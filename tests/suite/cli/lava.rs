@@ -189,6 +189,16 @@ fn the_crossing_lies_on_the_isosurface_and_the_mean_inside() {
 }
 
 #[test]
+fn a_march_stands_for_the_splats() {
+    let record =
+        small("bench --json --quiet --validate --surface-draw march --object box").args(ONCE).run().succeeded().json();
+    assert_schema(&record);
+    let passes = &record["runs"][0]["passes"];
+    assert_eq!(names(passes)[8..], ["march", "normalisation", "objects"], "{passes}");
+    lava("experiment fig-8.5 --surface-draw march").run().refused(2, &["--surface-draw"]);
+}
+
+#[test]
 fn options_that_a_figure_sets_itself_are_refused() {
     let figure = |name: &str, option: &str| lava("experiment").arg(name).args(option).on_test_device().run();
     figure("fig-8.5", "--splat-radius 0.01").refused(2, &["--splat-radius"]);

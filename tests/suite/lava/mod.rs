@@ -3,6 +3,7 @@
 mod animation;
 mod density;
 mod frames;
+mod march;
 mod objects;
 mod pictures;
 mod refusals;

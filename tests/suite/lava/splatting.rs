@@ -14,7 +14,7 @@ use super::scene::{parameters, shaders, texels};
 use crate::common::gpu_test;
 
 /// A ridge in front of a plateau, seen from low down: it hides a part of the plateau and crosses its outline.
-fn ridge(parameters: &Parameters) -> Surface {
+pub(super) fn ridge(parameters: &Parameters) -> Surface {
     let (columns, rows) = (24, 20);
     let space = parameters.space_m.as_dvec3();
     let (mut heights, mut normals) = (Vec::new(), Vec::new());
@@ -48,7 +48,7 @@ fn texture(device: &Arc<Device>, surface: &Surface) -> Arc<ImageView> {
     view
 }
 
-fn low_camera() -> Camera {
+pub(super) fn low_camera() -> Camera {
     Camera {
         eye: Vec3::new(1.1, 1.0, 2.8),
         target: Vec3::new(1.0, 0.35, 0.5),
@@ -57,7 +57,7 @@ fn low_camera() -> Camera {
     }
 }
 
-fn stage(device: &Arc<Device>, parameters: &Parameters, surface: &Surface, rock: &Rock) -> Splatting {
+pub(super) fn stage(device: &Arc<Device>, parameters: &Parameters, surface: &Surface, rock: &Rock) -> Splatting {
     parameters.validate().unwrap();
     let texture = texture(device, surface);
     let instanced = !parameters.geometry_stage;

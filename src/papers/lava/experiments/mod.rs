@@ -57,7 +57,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         name: "surface",
         help: "The mean, the top and the crossing beside the outermost isosurface of the same densities",
         options: &["frame"],
-        refuses: &[("surface", "all three are compared"), ("splats", "nothing is drawn"), ("size", "nothing is drawn")],
+        refuses: &[("surface", "all three are compared")],
         run: surfaces,
     };
     figures.into_iter().chain(others).chain([surface]).collect()
@@ -72,6 +72,7 @@ const REFUSED_BY_FIG_8_5: &[(&str, &str)] = &[
     ("json", "a figure is pictures; the experiment results has a record"),
     ("csv", "a figure is pictures; the experiment results has rows"),
     ("splat-radius", "the figure's parts have their own; render takes any"),
+    ("surface-draw", "the figure's parts are splats"),
 ];
 
 fn draw(context: &mut Context<'_>) -> Result<(), Error> {

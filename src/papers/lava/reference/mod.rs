@@ -2,10 +2,11 @@
 //!
 //! [`step`] is listing 5.1, [`clusters`] section 5.2, [`density`] eq. 6.2, [`Grid::accepted`] section 6.2,
 //! [`Surface`] eq. 6.3 and section 6.4, [`Splats`] chapter 7, [`toned`] the display's
-//! tone, which is ours.
+//! tone and [`Surface::cast`] rays, which are ours.
 
 mod animation;
 mod density;
+mod rays;
 mod splats;
 mod surface;
 

@@ -1,0 +1,150 @@
+#version 450
+
+// A ray for each pixel against the height field, in place of splats. It goes from cell to cell, and in a cell to the exact
+// crossing with the bilinear patch, whose height above a ray is a quadratic. The sheet is seen from both sides, as splats
+// are; at the sides of the space a wall closes it down to the floor. Ours: the thesis has splats alone.
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "lava/scene.glsl"
+
+layout(push_constant, std430) uniform Rays {
+    vec2 drift_m; // distance that the rock has moved with the lava, along x and z
+    uint mode; // the one of the thesis's pictures that is drawn
+    float near_m;
+    vec3 eye_m;
+    float far_m;
+    vec3 first; // direction to the corner of the first pixel; its length along the view is 1
+    vec3 across; // to the next pixel of a row
+    vec3 down; // to the next row
+} shading;
+
+#include "lava/height.glsl"
+#include "lava/color.glsl"
+
+layout(location = 0) out vec4 accumulated;
+
+// lavapipe ends all loops of a shader after 65,535 iterations. A ray crosses at most columns + rows + 1 cells.
+const int MOST_CELLS = 65534;
+// Taps of the rock along each side of a pixel, so that it does not shimmer from afar.
+const int TAPS = 3;
+const float FAR_AWAY = 1.0e30;
+
+struct Hit {
+    float t; // eye-space depth in metres, above far_m for none
+    vec3 side; // normal of a wall, no vector for the sheet
+};
+
+float finite_over(float over, float under) {
+    return under == 0.0 ? FAR_AWAY : clamp(over / under, -FAR_AWAY, FAR_AWAY);
+}
+
+// The first s in 0 to `last` at which c0 + c1 s + c2 s^2 is 0; FAR_AWAY for none.
+float first_root(float c0, float c1, float c2, float last) {
+    float inside = c1 * c1 - 4.0 * c0 * c2;
+    if (inside < 0.0) {
+        return FAR_AWAY;
+    }
+    float q = -0.5 * (c1 + (c1 < 0.0 ? -1.0 : 1.0) * sqrt(inside));
+    float a = finite_over(q, c2);
+    float b = finite_over(c0, q);
+    a = a >= 0.0 && a <= last ? a : FAR_AWAY;
+    b = b >= 0.0 && b <= last ? b : FAR_AWAY;
+    return min(a, b);
+}
+
+Hit march(vec3 direction) {
+    // The box, a little higher and deeper than any surface.
+    float slack_m = 1.0e-3 * scene.space_m.y;
+    vec3 low = vec3(0.0, -slack_m, 0.0) - shading.eye_m;
+    vec3 high = scene.space_m + vec3(0.0, slack_m, 0.0) - shading.eye_m;
+    vec3 safe = mix(direction, vec3(1.0e-12), lessThan(abs(direction), vec3(1.0e-12)));
+    vec3 enter = min(low / safe, high / safe);
+    vec3 leave = max(low / safe, high / safe);
+    float entry = max(max(enter.x, enter.z), max(enter.y, shading.near_m));
+    float exit = min(min(leave.x, leave.z), min(leave.y, shading.far_m));
+    if (entry >= exit) {
+        return Hit(FAR_AWAY, vec3(0.0));
+    }
+    vec2 from = columns_at(shading.eye_m.xz);
+    vec2 along = direction.xz / scene.space_m.xz * scene.columns;
+    vec2 forward = step(vec2(0.0), along);
+    vec2 cell = clamp(floor(from + entry * along), vec2(-1.0), scene.columns - 1.0);
+    float t = entry;
+    float height_m = shading.eye_m.y + t * direction.y;
+    bool begins_above = height_m >= surface_at(from + t * along).w;
+    if (!begins_above && height_m >= 0.0) {
+        if (entry == enter.x) {
+            return Hit(entry, vec3(-sign(direction.x), 0.0, 0.0));
+        }
+        if (entry == enter.z) {
+            return Hit(entry, vec3(0.0, 0.0, -sign(direction.z)));
+        }
+    }
+    for (int i = 0; i < MOST_CELLS; i++) {
+        vec2 to_border = cell + forward - from;
+        vec2 borders = vec2(finite_over(to_border.x, along.x), finite_over(to_border.y, along.y));
+        float next = max(min(min(borders.x, borders.y), exit), t);
+        float h00 = texel_at(cell).w;
+        float across = texel_at(cell + vec2(1.0, 0.0)).w - h00;
+        float down = texel_at(cell + vec2(0.0, 1.0)).w - h00;
+        float twist = texel_at(cell + vec2(1.0, 1.0)).w - h00 - across - down;
+        vec2 at = from + t * along - cell;
+        float c0 = shading.eye_m.y + t * direction.y - (h00 + across * at.x + down * at.y + twist * at.x * at.y);
+        float c1 = direction.y - (across * along.x + down * along.y + twist * (at.x * along.y + at.y * along.x));
+        float c2 = -twist * along.x * along.y;
+        float last = next - t;
+        float root = first_root(c0, c1, c2, last);
+        bool ends_above = c0 + last * (c1 + last * c2) >= 0.0;
+        if (root <= last || ends_above != begins_above) {
+            // Rounding may hide a crossing on the border of two cells.
+            return Hit(t + min(root, last), vec3(0.0));
+        }
+        t = next;
+        if (t >= exit) {
+            break;
+        }
+        if (borders.x <= borders.y) {
+            cell.x += 2.0 * forward.x - 1.0;
+        } else {
+            cell.y += 2.0 * forward.y - 1.0;
+        }
+        cell = clamp(cell, vec2(-1.0), scene.columns - 1.0);
+    }
+    if (!begins_above && shading.eye_m.y + exit * direction.y >= 0.0) {
+        if (exit == leave.x) {
+            return Hit(exit, vec3(-sign(direction.x), 0.0, 0.0));
+        }
+        if (exit == leave.z) {
+            return Hit(exit, vec3(0.0, 0.0, -sign(direction.z)));
+        }
+    }
+    return Hit(FAR_AWAY, vec3(0.0));
+}
+
+void main() {
+    vec3 direction = shading.first + gl_FragCoord.x * shading.across + gl_FragCoord.y * shading.down;
+    Hit hit = march(direction);
+    if (hit.t > shading.far_m) {
+        discard;
+    }
+    vec3 place_m = shading.eye_m + hit.t * direction;
+    vec4 surface = surface_at(columns_at(place_m.xz));
+    bool is_wall = dot(hit.side, hit.side) > 0.0;
+    vec3 normal = is_wall ? hit.side : normalize(surface.xyz);
+    // The pixel's sides on the tangent plane; seen edge-on they would not end.
+    float facing = dot(direction, normal);
+    facing = abs(facing) < 0.05 ? (facing < 0.0 ? -0.05 : 0.05) : facing;
+    vec3 right_m = hit.t * (shading.across - direction * (dot(shading.across, normal) / facing));
+    vec3 down_m = hit.t * (shading.down - direction * (dot(shading.down, normal) / facing));
+    vec3 color = vec3(0.0);
+    for (int i = 0; i < TAPS * TAPS; i++) {
+        vec2 offset = (vec2(float(i % TAPS), float(i / TAPS)) + 0.5) / float(TAPS) - 0.5;
+        vec3 tap_m = place_m + offset.x * right_m + offset.y * down_m;
+        // The rock of a wall goes on from its edge, as if it were folded down.
+        vec2 spread_m = tap_m.xz + hit.side.xz * (surface.w - tap_m.y);
+        color += color_at(vec3(spread_m.x, place_m.y, spread_m.y));
+    }
+    accumulated = vec4(shading.mode == NORMALS ? 0.5 + 0.5 * normal : color / float(TAPS * TAPS), 1.0);
+    gl_FragDepth = (hit.t + scene.epsilon_m) * scene.depth_per_m;
+}

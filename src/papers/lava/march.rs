@@ -1,0 +1,89 @@
+//! Pass `march`: a ray for each pixel against the height field, in place of the splats of sections 7.1 and 7.2. Ours.
+
+use super::blending::Blending;
+use super::parameters::{Parameters, Shading};
+use super::splats::Splats;
+use super::targets::{Context, FAR, ZERO};
+use super::visibility::Visibility;
+use crate::gpu::{Blend, DepthTest, Error, Frame, Pass};
+use crate::host_block;
+
+host_block! {
+    struct RayConstants {
+        drift_m: [f32; 2],
+        mode: u32,
+        near_m: f32,
+        eye_m: [f32; 3],
+        far_m: f32,
+        first: [f32; 3],
+        _pad: f32,
+        across: [f32; 3],
+        _pad_2: f32,
+        down: [f32; 3],
+    }
+}
+
+/// The pass.
+pub struct March {
+    pass: Pass,
+    shading: Shading,
+    rays: RayConstants,
+}
+
+impl March {
+    /// Writes the targets of the passes that it stands for.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn new(
+        context: Context<'_>,
+        splats: &Splats,
+        visibility: &Visibility,
+        blending: &Blending,
+    ) -> Result<Self, Error> {
+        let pass = Pass::graphics("march", "", "common/fullscreen.vert", "lava/march.frag")
+            .constants::<RayConstants>()
+            .with("scene", &splats.scene)
+            .with("normal_height", &splats.normal_height)
+            .with("rock", &blending.rock)
+            .with("linear", &blending.linear)
+            .color(&blending.sums, ZERO, Blend::Replace)
+            .depth(&visibility.depth, FAR, DepthTest::LessWrite)
+            .build(context.shaders)?;
+        Ok(March { pass, shading: context.parameters.shading, rays: rays(context.parameters) })
+    }
+
+    /// Draws the surface; the rock has drifted `drift_m` along x.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
+        let constants = RayConstants { drift_m: [drift_m, 0.0], mode: self.shading.mode(), ..self.rays };
+        frame.graphics(&self.pass, |draw| {
+            draw.constants(&constants).vertices(3);
+        })
+    }
+}
+
+/// Directions whose length along the view is 1, so that a factor of one is a depth.
+fn rays(parameters: &Parameters) -> RayConstants {
+    let camera = &parameters.camera;
+    let view = camera.view();
+    let [right, up, back] = [view.row(0), view.row(1), view.row(2)].map(|row| row.truncate());
+    let half = (0.5 * camera.vertical_fov_rad).tan();
+    let first = half * up - half * parameters.aspect() * right - back;
+    let across = 2.0 * half * parameters.aspect() / parameters.width as f32 * right;
+    let down = -2.0 * half / parameters.height as f32 * up;
+    RayConstants {
+        drift_m: [0.0; 2],
+        mode: 0,
+        near_m: camera.near_m,
+        eye_m: camera.eye.to_array(),
+        far_m: camera.far_m,
+        first: first.to_array(),
+        _pad: 0.0,
+        across: across.to_array(),
+        _pad_2: 0.0,
+        down: down.to_array(),
+    }
+}
