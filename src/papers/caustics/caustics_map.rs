@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::coverage::Coverage;
+use super::culled_map::CulledMap;
 use super::illumination_volumes::IlluminationVolumes;
 use super::intersections::{Intersections, Scope};
 use super::planes::Cell;
@@ -14,12 +15,22 @@ use crate::gpu::{Blend, Error, Frame, ImageView};
 
 /// The pass.
 pub struct CausticsMap {
-    intersections: Intersections,
-    /// The same triangles with nothing shaded. It draws on the map and spoils it; no frame contains it.
-    pub floor: Intersections,
+    drawing: Drawing,
     coverage: Option<Coverage>,
     /// I_c of eq. 4-18 for light of unit intensity.
     pub map: Arc<ImageView>,
+}
+
+/// The way in which triangles come to the map.
+enum Drawing {
+    /// Those of every plane.
+    All {
+        intersections: Intersections,
+        /// The same triangles with nothing shaded. It draws on the map and spoils it; no frame contains it.
+        floor: Intersections,
+    },
+    /// Those alone that may light it.
+    Culled(Box<CulledMap>),
 }
 
 impl CausticsMap {
@@ -36,15 +47,35 @@ impl CausticsMap {
         position_map: Option<&Arc<ImageView>>,
         shadows: Option<&ShadowMap>,
     ) -> Result<Self, Error> {
-        let multiple = context.parameters.coverage;
-        let map = context.map("caustics-map", CAUSTICS)?;
-        let drawn =
-            if multiple == 1 { map.clone() } else { context.multiple_of_map("caustics-map-drawn", CAUSTICS)? };
+        let (map, drawn, coverage) = maps(context)?;
         let scope = Scope { context, volumes, water, position_map, shadows };
         let intersections = Intersections::new(scope, |pass| pass.color(&drawn, BLACK, Blend::Add))?;
         let floor = Intersections::floor(scope, |pass| pass.color(&drawn, BLACK, Blend::Masked))?;
-        let coverage = (multiple > 1).then(|| Coverage::new(context, &drawn, &map)).transpose()?;
-        Ok(CausticsMap { intersections, floor, coverage, map })
+        Ok(CausticsMap { drawing: Drawing::All { intersections, floor }, coverage, map })
+    }
+
+    /// The culled level map's: it sums up what [`CausticsMap::new`] sums up with the same position map.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn culled(
+        context: Context<'_>,
+        lit: &LitReceiver,
+        volumes: &IlluminationVolumes,
+        water: &WaterSurface,
+        position_map: &Arc<ImageView>,
+    ) -> Result<Self, Error> {
+        let (map, drawn, coverage) = maps(context)?;
+        let culled = CulledMap::new(context, lit, volumes, water, position_map, &drawn)?;
+        Ok(CausticsMap { drawing: Drawing::Culled(Box::new(culled)), coverage, map })
+    }
+
+    /// The triangles with nothing shaded, where all of them are drawn.
+    pub fn floor(&self) -> Option<&Intersections> {
+        match &self.drawing {
+            Drawing::All { floor, .. } => Some(floor),
+            Drawing::Culled(_) => None,
+        }
     }
 
     /// Clears the map and adds the light of these planes.
@@ -58,7 +89,21 @@ impl CausticsMap {
         planes: &[Cell],
         volumes: &IlluminationVolumes,
     ) -> Result<(), Error> {
-        self.intersections.record(frame, lit, planes, volumes)?;
+        match &self.drawing {
+            Drawing::All { intersections, .. } => intersections.record(frame, lit, planes, volumes)?,
+            Drawing::Culled(culled) => culled.record(frame)?,
+        }
         self.coverage.as_ref().map_or(Ok(()), |coverage| coverage.record(frame))
     }
+}
+
+/// The caustics map, what is drawn to, and the pass from this to that where they differ.
+fn maps(context: Context<'_>) -> Result<(Arc<ImageView>, Arc<ImageView>, Option<Coverage>), Error> {
+    let map = context.map("caustics-map", CAUSTICS)?;
+    if context.parameters.coverage == 1 {
+        return Ok((map.clone(), map, None));
+    }
+    let drawn = context.multiple_of_map("caustics-map-drawn", CAUSTICS)?;
+    let coverage = Coverage::new(context, &drawn, &map)?;
+    Ok((map, drawn, Some(coverage)))
 }

@@ -1,5 +1,6 @@
 //! Host structs against the blocks of buffers that hold them.
 
+use super::culled_map::CellBlock;
 use super::illumination_volumes::Ray;
 use super::receiver::BoxBlock;
 use super::receiver_tree::Node;
@@ -15,6 +16,12 @@ fn the_buffers_hold_what_the_shaders_read() {
         check_list::<WaveBlock>(shader, "waves");
     }
     check_list::<Ray>("caustics/illumination-volumes.comp", "rays");
+    for shader in ["caustics/cull.comp", "caustics/culled.vert", "caustics/culled.frag"] {
+        check_list::<CellBlock>(shader, "cells");
+    }
+    for shader in ["caustics/cull.comp", "caustics/cull-bounds.comp", "caustics/culled.vert"] {
+        check_list::<Ray>(shader, "rays");
+    }
     for shader in ["caustics/stencil-volumes.vert", "caustics/stencil-volumes.frag"] {
         check_list::<Ray>(shader, "rays");
         check_block::<VolumesBlock>(shader, "volumes");

@@ -20,7 +20,7 @@ use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
 use crate::gpu::{Error, ImageView};
 
-/// Passes of the variants `level-map` and `level-map-smart`.
+/// Passes of the variants `level-map`, `level-map-smart` and `culled`.
 pub struct LevelMap {
     /// Shared by all receivers.
     pub slicing: Slicing,
@@ -65,9 +65,11 @@ pub struct SmartSlicing {
 impl LevelMap {
     /// # Errors
     /// Errors of the Vulkan layer.
+    #[allow(clippy::too_many_arguments)] // everything that the passes of a paper are made of, once
     pub fn new(
         context: Context<'_>,
         slicing: Slicing,
+        is_culled: bool,
         lit_receivers: &[LitReceiver],
         water: &WaterSurface,
         volumes: &[IlluminationVolumes],
@@ -91,7 +93,11 @@ impl LevelMap {
                 }),
             };
             let shadows = shadow_maps.get(lit.light);
-            let caustics_map = CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?;
+            let caustics_map = if is_culled {
+                CausticsMap::culled(context, lit, volumes, water, maps.position())?
+            } else {
+                CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?
+            };
             let combine = Combine::new(context, volumes, &caustics_map.map, maps.diffuse())?;
             let cast = Cast::new(context, lit, &combine.map, maps.position(), underwater)?;
             Ok(ReceiverPasses { maps, smart, caustics_map, combine, cast })

@@ -15,6 +15,7 @@ mod caustics_map;
 mod combine;
 mod combine_slices;
 mod coverage;
+mod culled_map;
 mod depth_profile;
 mod diffuse_map;
 pub mod experiments;
@@ -144,15 +145,17 @@ impl Caustics {
         let shadow_maps = (0..shadowed).filter_map(|light| ShadowMap::new(context, &lit_receivers, light).transpose());
         let shadow_maps = shadow_maps.collect::<Result<Vec<_>, _>>()?;
         let technique = match variant {
-            Variant::LevelMap | Variant::LevelMapSmart => {
-                let slicing = if variant == Variant::LevelMap {
-                    Slicing::Uniform(ReferencePlanes::new(parameters))
-                } else {
+            Variant::LevelMap | Variant::LevelMapSmart | Variant::Culled => {
+                let slicing = if variant == Variant::LevelMapSmart {
                     Slicing::Smart(BoundingBox::new())
+                } else {
+                    Slicing::Uniform(ReferencePlanes::new(parameters))
                 };
+                let is_culled = variant == Variant::Culled;
                 Technique::LevelMap(LevelMap::new(
                     context,
                     slicing,
+                    is_culled,
                     &lit_receivers,
                     water,
                     volumes,
@@ -195,18 +198,21 @@ impl Caustics {
     }
 
     /// Draws the last frame's caustics maps with an empty fragment stage, as pass `caustics-map-floor`: what their
-    /// vertices and rasterisation cost alone. It spoils the maps. The stencil method has none.
+    /// vertices and rasterisation cost alone. It spoils the maps. The stencil method and culling have none.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let floors: Vec<&Intersections> = match &self.technique {
-            Technique::LevelMap(variant) => variant.receivers.iter().map(|r| &r.caustics_map.floor).collect(),
-            Technique::Volumetric(variant) => variant.receivers.iter().map(|r| &r.caustics_map.floor).collect(),
+        let floors: Vec<Option<&Intersections>> = match &self.technique {
+            Technique::LevelMap(variant) => variant.receivers.iter().map(|r| r.caustics_map.floor()).collect(),
+            Technique::Volumetric(variant) => variant.receivers.iter().map(|r| r.caustics_map.floor()).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
         let mut each = floors.iter().zip(&self.lit_receivers);
-        each.try_for_each(|(floor, lit)| floor.record(frame, lit, &lit.cells, &self.illumination_volumes[lit.light]))
+        each.try_for_each(|(floor, lit)| match floor {
+            Some(floor) => floor.record(frame, lit, &lit.cells, &self.illumination_volumes[lit.light]),
+            None => Ok(()),
+        })
     }
 
     /// Texels in each depth level of the first receiver under the first light, after a frame of smart slicing.

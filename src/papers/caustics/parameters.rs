@@ -19,6 +19,8 @@ pub enum Variant {
     LevelMap,
     /// Section 5.2.3: planes only where a depth profile finds the receiver.
     LevelMapSmart,
+    /// Section 6.1: the level map's picture, of those pairs of triangle and plane alone that may light it.
+    Culled,
     /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
     Volumetric,
     /// Section 3.2, after Iwasaki et al.: illumination volumes counted in the stencil buffer. It knows no occlusion.
@@ -26,12 +28,14 @@ pub enum Variant {
 }
 
 impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] = &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric, Variant::Stencil];
+    const ALL: &'static [Variant] =
+        &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Volumetric, Variant::Stencil];
 
     fn as_str(self) -> &'static str {
         match self {
             Variant::LevelMap => "level-map",
             Variant::LevelMapSmart => "level-map-smart",
+            Variant::Culled => "culled",
             Variant::Volumetric => "volumetric",
             Variant::Stencil => "stencil",
         }

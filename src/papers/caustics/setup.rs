@@ -18,7 +18,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::caustics::{Caustics, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
+use crate::papers::caustics::{Caustics, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
@@ -192,7 +192,10 @@ impl Study for Setup {
         let floors = floors_ms(machine, measured)?;
         let metrics = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Metrics {
             results: results(&built.paper, measurement, floor_ms),
-            warnings: self.small_map(&built.paper).into_iter().chain(self.steep_water(&built.paper)).collect(),
+            warnings: [self.small_map(&built.paper), self.steep_water(&built.paper), self.unheeded(built.variant)]
+                .into_iter()
+                .flatten()
+                .collect(),
         });
         Ok(metrics.collect())
     }
@@ -218,7 +221,8 @@ impl Study for Setup {
 
     const ABOUT: &'static str = "Refractive water caustics with level maps (Tipprasert), pass by pass";
     // The stencil method takes seconds a frame without a GPU.
-    const BENCHED: &'static [Variant] = &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Volumetric];
+    const BENCHED: &'static [Variant] =
+        &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Volumetric];
     const RENDERED: Variant = Variant::LevelMap;
 
     type Options = Options;
@@ -386,6 +390,13 @@ impl Setup {
 }
 
 impl Setup {
+    /// The warning when options are given that a variant does not heed.
+    fn unheeded(&self, variant: Variant) -> Option<String> {
+        let is_given = self.parameters.intensity == IntensityRule::Vertex || self.parameters.shadows;
+        (is_given && variant == Variant::Culled)
+            .then(|| "culled heeds neither `intensity` vertex nor `shadows`: its light is the level map's without".to_owned())
+    }
+
     /// The warning when maps are sampled at texel centres under water that folds its light strongly.
     fn steep_water(&self, paper: &Caustics) -> Option<String> {
         let slope = self.parameters.mean_slope();

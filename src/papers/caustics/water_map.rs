@@ -64,7 +64,8 @@ impl WaterMap {
     pub fn mean_slope(&self) -> f64 {
         let width = self.heights.width() as usize;
         let mean_square = |pairs: &mut dyn Iterator<Item = (&f32, &f32)>| {
-            let (sum, count) = pairs.fold((0.0, 0.0), |(sum, count), (a, b)| (sum + f64::from(a - b).powi(2), count + 1.0));
+            let (sum, count) =
+                pairs.fold((0.0, 0.0), |(sum, count), (a, b)| (sum + f64::from(a - b).powi(2), count + 1.0));
             sum / f64::max(count, 1.0)
         };
         let rows = self.coefficients.chunks_exact(width);
@@ -162,7 +163,8 @@ mod tests {
         let slope = WaterMap::new("ramp", Arc::new(map)).steepest_slope();
         // A little more where the surface levels off at the border.
         assert!((0.1..0.13).contains(&slope), "{slope}");
-        let mean = WaterMap::new("ramp", Arc::new(HeightMap::new(25, 2, Samples::Float(rising())).unwrap())).mean_slope();
+        let mean =
+            WaterMap::new("ramp", Arc::new(HeightMap::new(25, 2, Samples::Float(rising())).unwrap())).mean_slope();
         assert!((mean - 0.1).abs() < 0.005, "{mean}");
     }
 }

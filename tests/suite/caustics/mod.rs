@@ -1,6 +1,7 @@
 //! The paper `caustics` on the device: against its oracle, against closed forms and conservation laws, variant against
 //! variant, and its pictures against goldens.
 
+mod culled;
 mod drawing;
 mod extremes;
 mod laws;

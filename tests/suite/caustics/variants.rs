@@ -91,6 +91,12 @@ fn the_passes_are_those_of_the_thesis() {
         let profiled = [("bounding-box", 1), ("position-diffuse-map", 1), ("read-positions", 1), ("depth-profile", 1)];
         let four = [("caustics-map", 4), ("combine", 1), ("cast", 1), ("view", 1)];
         assert_eq!(smart, with_water(&profiled, &four));
+        let culled = Drawing::of(device, Variant::Culled, &parameters, &[sphere()]);
+        let culled: Vec<_> = culled.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();
+        let found = [("position-pyramid", 8), ("cull-bounds", 1), ("cull", 1), ("cull-count", 1), ("cull-sum", 1)];
+        let drawn = [("cull-compact", 1), ("caustics-map", 1), ("combine", 1), ("cast", 1), ("view", 1)];
+        let before = [("reference-planes", 1), ("position-diffuse-map", 1)];
+        assert_eq!(culled, with_water(&before, &[&found[..], &drawn[..]].concat()));
         let stencil = Drawing::of(device, Variant::Stencil, &parameters, &[sphere()]);
         let two_draws = 2 * stencil.grid.triangle_count();
         let stencil: Vec<_> = stencil.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();

@@ -1,0 +1,38 @@
+// Culling of pairs of water triangle and plane (section 6.1): what its passes share. A word holds 32 neighbouring triangles, a bit
+// each; its pairs with a plane are tested together first.
+
+struct Ray {
+    vec3 origin; // along U, V, W from the light's reference point, metres
+    float enters; // 1 where the ray enters the water, else 0
+    vec2 slope; // movement along U and W per metre of descent along V
+    float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
+    float _pad_slope; // 0
+    vec3 incident; // direction of the light in air, along U, V, W, as long as the share of it that enters
+    float _pad_incident; // 0
+};
+
+struct Cell {
+    float height; // of the plane along V, from the rays' reference point, metres
+    float lower; // lowest height accepted, along V from the box's centre, metres
+    float upper; // first height no longer accepted
+    float _pad; // 0
+};
+
+layout(push_constant) uniform Cull {
+    vec2 center; // of the box along U and W, from the rays' reference point, metres
+    vec2 texels_per_m;
+    float first_height; // of the uppermost plane, from the reference point, metres
+    float last_height; // of the lowest
+    uint map_size; // texels a side
+    uint levels; // of the position map's pyramid
+    uint triangles;
+    uint words; // a plane
+    uint planes;
+    uint blocks; // of 256 words
+    uint vertices; // of the water
+} cull;
+
+vec2 texel_place(Ray ray, float height) {
+    vec2 place = ray.origin.xz + ray.slope * (ray.origin.y - height) - cull.center;
+    return place * cull.texels_per_m + 0.5 * float(cull.map_size);
+}

@@ -1,0 +1,48 @@
+#version 450
+
+// As caustics-map.vert, for the pairs of ray and plane that culling kept (section 6.1).
+
+struct Ray {
+    vec3 origin; // along U, V, W from the light's reference point, metres
+    float enters; // 1 where the ray enters the water, else 0
+    vec2 slope; // movement along U and W per metre of descent along V
+    float secant; // 1 / cos(theta_t): metres of the ray per metre of descent
+    float _pad_slope; // 0
+    vec3 incident; // direction of the light in air, along U, V, W, as long as the share of it that enters
+    float _pad_incident; // 0
+};
+
+layout(std430, set = 0, binding = 3) readonly buffer Rays {
+    Ray list[];
+} rays;
+
+#include "caustics/culled.glsl"
+
+struct Cell {
+    float height; // of the plane along V, from the rays' reference point, metres
+    float lower; // lowest height accepted, along V from the box's centre, metres
+    float upper; // first height no longer accepted
+    float _pad; // 0
+};
+
+layout(std430, set = 0, binding = 2) readonly buffer Cells {
+    Cell list[];
+} cells;
+
+layout(location = 0) out vec4 surface; // point of the water that the ray left, and 1 for a ray that lights this plane
+layout(location = 1) out vec3 weight;
+layout(location = 2) flat out vec2 accepted; // heights of the plane's cell: lowest, and first no longer accepted
+
+void main() {
+    uint at = uint(gl_VertexIndex) / plane.vertices;
+    Ray ray = rays.list[uint(gl_VertexIndex) - at * plane.vertices];
+    Cell cell = cells.list[at];
+    accepted = vec2(cell.lower, cell.upper);
+    float descent = ray.origin.y - cell.height;
+    float lit = descent > 0.0 ? ray.enters : 0.0;
+    vec2 place = ray.origin.xz + ray.slope * descent - plane.center;
+    float transmitted = exp(-plane.absorption_per_m * (max(descent, 0.0) * ray.secant));
+    surface = vec4(ray.origin, lit);
+    weight = ray.incident * (ray.secant * transmitted);
+    gl_Position = vec4(place * plane.to_clip, 0.5, 1.0);
+}

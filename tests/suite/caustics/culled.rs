@@ -1,0 +1,74 @@
+//! The variant `culled` lights what the level map lights, bit for bit.
+
+use std::path::PathBuf;
+use std::slice::from_ref;
+
+use fumarole::gpu::Compiler;
+use fumarole::measure::study::Study;
+use fumarole::papers::caustics::setup::Setup;
+use fumarole::papers::caustics::{Parameters, Variant, WaveParameters};
+use fumarole::scene::{Light, MeshSource};
+use glam::Vec3;
+
+use super::drawing::Drawing;
+use super::scene::{OBLIQUE, OVERHEAD, POINT, bowl, floor, parameters, sphere, teapot, tilted_plane};
+use crate::common::gpu_test;
+
+fn assert_same(one: &Drawing, other: &Drawing, case: &str) {
+    for target in ["position-map", "caustics-map", "combined-map", "underwater-color"] {
+        assert!(one.target(target) == other.target(target), "{case}: {target}");
+    }
+    assert!(one.target("caustics-map").iter().any(|&light| light > 0.0), "{case}: nothing is lit");
+}
+
+#[test]
+fn culled_pairs_light_exactly_what_all_pairs_light() {
+    gpu_test(|device| {
+        let bunny = MeshSource::File(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/meshes/bunny.obj")));
+        let bunny = Setup { meshes: vec![bunny], ..Setup::default() }.load().unwrap().receivers.swap_remove(0);
+        let receivers = [teapot(), sphere(), bowl(), tilted_plane(), floor(), bunny];
+        for (light, receiver) in
+            [OVERHEAD, OBLIQUE, POINT].into_iter().flat_map(|l| receivers.iter().map(move |r| (l, r)))
+        {
+            for (planes, map_size) in [(1, 65), (9, 128), (101, 128)] {
+                let parameters = Parameters { planes, map_size, ..parameters(light) };
+                let [all, culled] = [Variant::LevelMap, Variant::Culled]
+                    .map(|variant| Drawing::of(device, variant, &parameters, from_ref(receiver)));
+                assert_same(&all, &culled, &format!("{} under {light:?}, {planes} planes", receiver.mesh.name));
+            }
+        }
+    });
+}
+
+/// Steep water under low light, several receivers and lights, a multiple of the map, odd numbers of triangles, the other
+/// compiler.
+#[test]
+fn culling_loses_nothing_at_the_edges() {
+    gpu_test(|device| {
+        let steep = WaveParameters { count: 8, amplitude_m: 0.2, wavelength_m: 1.2 };
+        let low = Light::Parallel { direction: Vec3::new(1.0, -0.2, 0.1), intensity: Vec3::ONE };
+        let base = parameters(OVERHEAD);
+        let cases = [
+            Parameters { waves: steep, planes: 31, ..parameters(low) },
+            Parameters { lights: vec![OBLIQUE, POINT], planes: 17, map_size: 97, water_triangles: 777, ..base.clone() },
+            Parameters { coverage: 3, planes: 9, ..base.clone() },
+            Parameters { map_size: 1, water_triangles: 2, ..base },
+        ];
+        let receivers = [teapot(), bowl()];
+        for (number, parameters) in cases.iter().enumerate() {
+            let all = Drawing::of(device, Variant::LevelMap, parameters, &receivers);
+            for compiler in [Compiler::Glslang, Compiler::Naga] {
+                let all = match compiler {
+                    Compiler::Glslang => &all,
+                    Compiler::Naga => {
+                        &Drawing::compiled_by(compiler, device, Variant::LevelMap, parameters, &receivers)
+                    }
+                };
+                let culled = Drawing::compiled_by(compiler, device, Variant::Culled, parameters, &receivers);
+                assert!(all.target("caustics-map") == culled.target("caustics-map"), "case {number}");
+                assert!(all.map("caustics-map", 0, 1) == culled.map("caustics-map", 0, 1), "case {number}");
+                assert!(all.target("underwater-color") == culled.target("underwater-color"), "case {number}");
+            }
+        }
+    });
+}
