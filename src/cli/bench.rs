@@ -21,21 +21,17 @@ use crate::report::{Record, environment};
 const FRAMES: u32 = 10;
 const REPEAT: u32 = 3;
 
-/// Measures `variants` of a study, or has fresh processes measure them, and publishes the record.
-pub fn publish<S: Study>(
-    common: &CommonArgs,
-    variants: &[S::Variant],
-    resolve: impl FnOnce() -> Result<S, Failure>,
-) -> Result<(), Failure> {
+/// Measures `variants` of a study, or has fresh processes measure them, and publishes the record where `common` says, which
+/// has been checked.
+pub fn publish<S: Study>(common: &CommonArgs, study: &S, variants: &[S::Variant]) -> Result<(), Failure> {
     let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = common;
-    outcome::check(output)?;
     if *processes > 1 {
         let record = processes::run(*processes, output.quiet)?;
         // The first process has written the picture and the trace.
         output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
-    let (record, traces, failed) = measure(&resolve()?, variants, common)?;
+    let (record, traces, failed) = measure(study, variants, common)?;
     outcome::publish(output, &record, &traces)?;
     failed.map_or(Ok(()), Err)
 }

@@ -248,17 +248,32 @@ impl<'a, S: Study> Typed<'a, S> {
         self.preset.as_ref().and_then(|preset| preset.variant)
     }
 
-    /// The variants that were named, each once, or else the preset's, or else `usual`.
-    fn variants(&self, usual: &[S::Variant]) -> Vec<S::Variant> {
+    /// The variants that were named, each once, or else the preset's, or else `usual`; of all and of the usual ones those
+    /// that can draw the set-up.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for one that was named and cannot.
+    fn variants(&self, setup: &S, usual: &[S::Variant]) -> Result<Vec<S::Variant>, Failure> {
         let named: Vec<&String> = self.matches.get_many("variant").into_iter().flatten().collect();
+        let is_able = |variant: &S::Variant| setup.refusal(*variant).is_none();
+        let able = |variants: &[S::Variant]| variants.iter().copied().filter(is_able).collect::<Vec<_>>();
         match (named.as_slice(), self.preset_variant()) {
-            ([], Some(variant)) => vec![variant],
-            ([], None) => usual.to_vec(),
+            ([], Some(variant)) => checked(setup, vec![variant]),
+            ([], None) => Ok(able(usual)),
+            (names, _) if names.iter().any(|name| *name == "all") => Ok(able(S::Variant::ALL)),
             (names, _) => {
-                let is_named = |v: &S::Variant| names.iter().any(|name| *name == "all" || *name == v.as_str());
-                S::Variant::ALL.iter().copied().filter(is_named).collect()
+                let is_named = |v: &S::Variant| names.iter().any(|name| *name == v.as_str());
+                checked(setup, S::Variant::ALL.iter().copied().filter(is_named).collect())
             }
         }
+    }
+}
+
+/// The variants, if all of them can draw the set-up.
+fn checked<S: Study>(setup: &S, variants: Vec<S::Variant>) -> Result<Vec<S::Variant>, Failure> {
+    match variants.iter().find_map(|&variant| Some((variant, setup.refusal(variant)?))) {
+        Some((variant, reason)) => Err(Failure::Input(format!("--variant {}: {reason}", variant.as_str()))),
+        None => Ok(variants),
     }
 }
 
@@ -269,16 +284,21 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     match verb {
         "passes" => {
             let machine = MachineArgs::from_arg_matches(matches)?;
-            passes::list(&typed.resolve()?, &typed.variants(S::Variant::ALL), &machine, matches.get_flag("json"))
+            let setup = typed.resolve()?;
+            passes::list(&setup, &typed.variants(&setup, S::Variant::ALL)?, &machine, matches.get_flag("json"))
         }
         "bench" => {
-            bench::publish(&CommonArgs::from_arg_matches(matches)?, &typed.variants(S::BENCHED), || typed.resolve())
+            let common = CommonArgs::from_arg_matches(matches)?;
+            outcome::check(&common.output)?;
+            let setup = typed.resolve()?;
+            bench::publish(&common, &setup, &typed.variants(&setup, S::BENCHED)?)
         }
         "render" => {
             let setup = typed.resolve()?;
             let name = matches.get_one::<String>("variant");
             let named = name.and_then(|name| S::Variant::ALL.iter().copied().find(|v| v.as_str() == name));
             let variant = named.unwrap_or_else(|| setup.rendered(typed.preset_variant()));
+            checked(&setup, vec![variant])?;
             render::draw(variant, &PictureArgs::from_arg_matches(matches)?, || Ok(setup))
         }
         "experiment" => experiment(matches, &typed),

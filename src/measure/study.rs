@@ -117,6 +117,11 @@ pub trait Study: Clone + Default + 'static {
         Ok(())
     }
 
+    /// Reason why a variant cannot draw the set-up, with the way out; `None` where it can.
+    fn refusal(&self, _variant: Self::Variant) -> Option<&'static str> {
+        None
+    }
+
     /// The variant of a picture that names none.
     fn rendered(&self, preset: Option<Self::Variant>) -> Self::Variant {
         preset.unwrap_or(Self::RENDERED)

@@ -154,9 +154,7 @@ impl Terrain {
             Variant::DdaFragment => (Stage::Fragment, Traversal::Cells),
             Variant::Cpu | Variant::GpuFragment | Variant::Mesh => (Stage::Fragment, Traversal::Halving),
         };
-        if traversal == Traversal::Cells && parameters.base != Base::Plane {
-            let problem =
-                "rays from cell to cell are straight; give `base` plane, or variant gpu-compute or gpu-fragment";
+        if let Some(problem) = variant.refusal(parameters.base) {
             return Err(Error::Pass { pass: format!("{label}/depth"), problem: problem.into() });
         }
         let build = Build { shaders, label, parameters, stage, traversal };

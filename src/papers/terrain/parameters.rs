@@ -34,6 +34,13 @@ pub enum Variant {
 impl Variant {
     /// The paper's, and what it is compared with.
     pub const PAPER: &[Variant] = &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh];
+
+    /// Reason why it cannot draw a base.
+    pub fn refusal(self, base: Base) -> Option<&'static str> {
+        let is_dda = matches!(self, Variant::DdaCompute | Variant::DdaFragment);
+        (is_dda && base != Base::Plane)
+            .then_some("rays from cell to cell are straight; give `base` plane, or variant gpu-compute or gpu-fragment")
+    }
 }
 
 impl measure::Variant for Variant {

@@ -219,6 +219,10 @@ impl Study for Setup {
         Terrain::new(shaders, label, variant, &self.parameters, &inputs).map_err(|error| self.name_map(label, error))
     }
 
+    fn refusal(&self, variant: Variant) -> Option<&'static str> {
+        variant.refusal(self.parameters.base)
+    }
+
     fn identity(&self) -> Identity {
         Identity {
             preset: self.preset.clone(),

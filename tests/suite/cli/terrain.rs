@@ -411,3 +411,15 @@ fn options_that_an_experiment_would_not_heed_are_refused() {
         terrain(arguments).run().refused(2, &[part]);
     }
 }
+
+#[test]
+fn variants_that_cannot_draw_a_base_are_left_out_of_all_and_refused_by_name() {
+    let tiny = "--base earth --resolution 64 --size 16x12 --frames 1 --repeat 1 --warmup 1 --no-limits --quiet --json";
+    let record = terrain("bench --variant all").args(tiny).on_test_device().run().succeeded().json();
+    let variants: Vec<&str> =
+        record["runs"].as_array().unwrap().iter().map(|run| run["variant"].as_str().unwrap()).collect();
+    assert_eq!(variants, ["cpu", "gpu-compute", "gpu-fragment", "mesh"]);
+    terrain("bench --variant dda-compute").args(tiny).on_test_device().run().refused(2, &["dda-compute", "--base"]);
+    let picture = "--variant dda-fragment --base earth --size 8x8";
+    terrain("render").args(picture).on_test_device().run().refused(2, &["dda-fragment", "--base"]);
+}
