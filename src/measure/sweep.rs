@@ -68,7 +68,7 @@ impl Plan<'_> {
         points: &[Point<S>],
         machine: &mut Machine,
         watch: &mut Watch<'_>,
-        keep: &mut dyn FnMut(&Machine, &[Row]) -> Result<(), Error>,
+        mut keep: impl FnMut(&Machine, &[Row]) -> Result<(), Error>,
     ) -> Result<Swept, Error> {
         let mut swept = Swept { rows: Vec::new(), stopped: None };
         let total = points.len() as u64;

@@ -230,7 +230,7 @@ fn the_variants_that_walk_from_cell_to_cell_are_asked_for_by_name() {
     let benched = small("bench --json --quiet --resolution 64").args(ONCE).run().succeeded().json();
     assert_eq!(benched["runs"].as_array().unwrap().len(), 4);
     let curved = "bench --resolution 64 --base earth --variant dda-fragment";
-    small(curved).args(ONCE).run().refused(2, &["depth", "--base plane"]);
+    small(curved).args(ONCE).run().refused(2, &["dda-fragment", "--base plane"]);
 }
 
 /// A canyon of 16,384 cells that ends at a wall, seen along it by bicubic rays: more iterations than lavapipe gives a shader. The
