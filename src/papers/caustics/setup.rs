@@ -18,7 +18,9 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::caustics::{Caustics, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
+use crate::papers::caustics::{
+    Caustics, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap,
+};
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
@@ -393,8 +395,9 @@ impl Setup {
     /// The warning when options are given that a variant does not heed.
     fn unheeded(&self, variant: Variant) -> Option<String> {
         let is_given = self.parameters.intensity == IntensityRule::Vertex || self.parameters.shadows;
-        (is_given && variant == Variant::Culled)
-            .then(|| "culled heeds neither `intensity` vertex nor `shadows`: its light is the level map's without".to_owned())
+        (is_given && variant == Variant::Culled).then(|| {
+            "culled heeds neither `intensity` vertex nor `shadows`: its light is the level map's without".to_owned()
+        })
     }
 
     /// The warning when maps are sampled at texel centres under water that folds its light strongly.
