@@ -25,9 +25,9 @@ pub struct CausticsMap {
 enum Drawing {
     /// Those of every plane.
     All {
-        intersections: Intersections,
+        intersections: Box<Intersections>,
         /// The same triangles with nothing shaded. It draws on the map and spoils it; no frame contains it.
-        floor: Intersections,
+        floor: Box<Intersections>,
     },
     /// Those alone that may light it.
     Culled(Box<CulledMap>),
@@ -47,11 +47,12 @@ impl CausticsMap {
         position_map: Option<&Arc<ImageView>>,
         shadows: Option<&ShadowMap>,
     ) -> Result<Self, Error> {
-        let (map, drawn, coverage) = maps(context)?;
+        let Maps { map, drawn, coverage } = Maps::new(context)?;
         let scope = Scope { context, volumes, water, position_map, shadows };
         let intersections = Intersections::new(scope, |pass| pass.color(&drawn, BLACK, Blend::Add))?;
         let floor = Intersections::floor(scope, |pass| pass.color(&drawn, BLACK, Blend::Masked))?;
-        Ok(CausticsMap { drawing: Drawing::All { intersections, floor }, coverage, map })
+        let drawing = Drawing::All { intersections: Box::new(intersections), floor: Box::new(floor) };
+        Ok(CausticsMap { drawing, coverage, map })
     }
 
     /// The culled level map's: it sums up what [`CausticsMap::new`] sums up with the same position map.
@@ -65,7 +66,7 @@ impl CausticsMap {
         water: &WaterSurface,
         position_map: &Arc<ImageView>,
     ) -> Result<Self, Error> {
-        let (map, drawn, coverage) = maps(context)?;
+        let Maps { map, drawn, coverage } = Maps::new(context)?;
         let culled = CulledMap::new(context, lit, volumes, water, position_map, &drawn)?;
         Ok(CausticsMap { drawing: Drawing::Culled(Box::new(culled)), coverage, map })
     }
@@ -97,13 +98,23 @@ impl CausticsMap {
     }
 }
 
-/// The caustics map, what is drawn to, and the pass from this to that where they differ.
-fn maps(context: Context<'_>) -> Result<(Arc<ImageView>, Arc<ImageView>, Option<Coverage>), Error> {
-    let map = context.map("caustics-map", CAUSTICS)?;
-    if context.parameters.coverage == 1 {
-        return Ok((map.clone(), map, None));
+/// The caustics map and what is drawn.
+struct Maps {
+    map: Arc<ImageView>,
+    /// The map itself, or a multiple of it.
+    drawn: Arc<ImageView>,
+    /// From the multiple to the map.
+    coverage: Option<Coverage>,
+}
+
+impl Maps {
+    fn new(context: Context<'_>) -> Result<Self, Error> {
+        let map = context.map("caustics-map", CAUSTICS)?;
+        if context.parameters.coverage == 1 {
+            return Ok(Maps { drawn: map.clone(), map, coverage: None });
+        }
+        let drawn = context.multiple_of_map("caustics-map-drawn", CAUSTICS)?;
+        let coverage = Coverage::new(context, &drawn, &map)?;
+        Ok(Maps { map, drawn, coverage: Some(coverage) })
     }
-    let drawn = context.multiple_of_map("caustics-map-drawn", CAUSTICS)?;
-    let coverage = Coverage::new(context, &drawn, &map)?;
-    Ok((map, drawn, Some(coverage)))
 }

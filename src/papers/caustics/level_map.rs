@@ -65,7 +65,7 @@ pub struct SmartSlicing {
 impl LevelMap {
     /// # Errors
     /// Errors of the Vulkan layer.
-    #[allow(clippy::too_many_arguments)] // everything that the passes of a paper are made of, once
+    #[expect(clippy::too_many_arguments, reason = "everything that the passes are made of, named once")]
     pub fn new(
         context: Context<'_>,
         slicing: Slicing,

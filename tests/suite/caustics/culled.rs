@@ -11,7 +11,7 @@ use fumarole::scene::{Light, MeshSource};
 use glam::Vec3;
 
 use super::drawing::Drawing;
-use super::scene::{OBLIQUE, OVERHEAD, POINT, bowl, floor, parameters, sphere, teapot, tilted_plane};
+use super::scene::{OBLIQUE, OVERHEAD, POINT, bowl, parameters, teapot};
 use crate::common::gpu_test;
 
 fn assert_same(one: &Drawing, other: &Drawing, case: &str) {
@@ -26,11 +26,11 @@ fn culled_pairs_light_exactly_what_all_pairs_light() {
     gpu_test(|device| {
         let bunny = MeshSource::File(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/meshes/bunny.obj")));
         let bunny = Setup { meshes: vec![bunny], ..Setup::default() }.load().unwrap().receivers.swap_remove(0);
-        let receivers = [teapot(), sphere(), bowl(), tilted_plane(), floor(), bunny];
+        let receivers = [teapot(), bowl(), bunny];
         for (light, receiver) in
             [OVERHEAD, OBLIQUE, POINT].into_iter().flat_map(|l| receivers.iter().map(move |r| (l, r)))
         {
-            for (planes, map_size) in [(1, 65), (9, 128), (101, 128)] {
+            for (planes, map_size) in [(1, 65), (31, 96)] {
                 let parameters = Parameters { planes, map_size, ..parameters(light) };
                 let [all, culled] = [Variant::LevelMap, Variant::Culled]
                     .map(|variant| Drawing::of(device, variant, &parameters, from_ref(receiver)));

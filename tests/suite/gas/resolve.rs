@@ -1,6 +1,6 @@
 //! The picture of a list against 32 sub-pixels that are composited one by one.
 
-use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture, Volume};
+use fumarole::papers::gas::model::{Checker, DensityFunction, Object, SolidTexture, Volume};
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::Rays;
 use fumarole::papers::gas::reference::resolve::{Layer, composited};
@@ -118,5 +118,56 @@ fn a_pixel_is_its_32_sub_pixels() {
             }
             assert!(partial > 200 && long > 200, "{partial} partly covered, {long} of more than four fragments");
         }
+    });
+}
+
+/// A wall across the whole view.
+fn wall(depth_m: f32, color: Vec3) -> Object {
+    let corners = [(-20.0, -20.0), (40.0, -20.0), (-20.0, 40.0)].map(|(x, y)| Vec3::new(x, y, -depth_m));
+    let mesh = Mesh {
+        name: "wall".to_owned(),
+        positions: corners.to_vec(),
+        normals: vec![Vec3::Z; 3],
+        indices: vec![0, 1, 2],
+        ..Mesh::default()
+    };
+    Object::new(mesh, color)
+}
+
+/// Half of a surface-defined gas is left half its fade before the wall behind it, all of it where it does not fade, and
+/// none beyond its ends.
+#[test]
+fn gas_fades_before_the_surface_behind_it_and_at_its_ends() {
+    gpu_test(|device| {
+        let texture = SolidTexture { opaque: 0.5, ..gas().texture };
+        for (fade_m, ends_m, expected) in [(2.0, 0.0, 0.25), (0.0, 0.0, 0.5), (0.5, 0.0, 0.5), (1e-3, 0.1, 0.0)] {
+            let ends_m = glam::Vec2::splat(ends_m);
+            let plane = Object { gas: Some(texture), fade_m, ends_m, ..wall(4.0, Vec3::ONE) };
+            let drawing =
+                Drawing::of(device, Variant::NoVolume, &parameters(Vec::new()), &[plane, wall(5.0, Vec3::ZERO)]);
+            for pixel in 0..(WIDTH * HEIGHT) as usize {
+                let found = drawing.red(pixel);
+                assert!((found - expected).abs() < 1e-3, "{fade_m}, {ends_m}: {found} for {expected}");
+            }
+        }
+    });
+}
+
+/// Squares smaller than a pixel show their mean, squares of many pixels their own colours.
+#[test]
+fn checkers_are_integrated_over_the_pixel() {
+    gpu_test(|device| {
+        let draw = |edge_m: f32| {
+            let checker = Some(Checker { color: Vec3::ZERO, edge_m });
+            let wall = Object { checker, ..wall(5.0, Vec3::ONE) };
+            let drawing = Drawing::of(device, Variant::NoVolume, &parameters(Vec::new()), &[wall]);
+            (0..(WIDTH * HEIGHT) as usize).map(|pixel| drawing.red(pixel)).collect::<Vec<f64>>()
+        };
+        // A pixel is 0.0998 m wide there.
+        assert!(draw(0.05).iter().all(|value| (value - 0.5).abs() < 0.01));
+        let large = draw(1.0);
+        let is_pure = |value: &&f64| **value < 1e-6 || **value > 1.0 - 1e-3;
+        let pure = large.iter().filter(is_pure).count();
+        assert!(pure * 10 > large.len() * 7 && pure < large.len(), "{pure} of {}", large.len());
     });
 }
