@@ -16,7 +16,7 @@ fn the_buffers_hold_what_the_shaders_read() {
         check_list::<WaveBlock>(shader, "waves");
     }
     check_list::<Ray>("caustics/illumination-volumes.comp", "rays");
-    for shader in ["caustics/cull.comp", "caustics/culled.vert", "caustics/culled.frag"] {
+    for shader in ["caustics/cull.comp", "caustics/culled.vert"] {
         check_list::<CellBlock>(shader, "cells");
     }
     for shader in ["caustics/cull.comp", "caustics/cull-bounds.comp", "caustics/culled.vert"] {
