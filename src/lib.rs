@@ -25,3 +25,4 @@ pub mod papers;
 pub mod report;
 pub mod scene;
 pub mod shader_build;
+pub mod window;

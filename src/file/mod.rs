@@ -1,6 +1,7 @@
 //! Files that a user names: input that is there to its end, and output that appears whole or not at all. CPU only.
 
 use std::io;
+use std::path::Path;
 
 use tempfile::NamedTempFile;
 
@@ -19,4 +20,15 @@ pub fn temporary() -> io::Result<NamedTempFile> {
     let folder = std::env::temp_dir();
     temporary::sweep(&folder);
     temporary::create(&folder)
+}
+
+/// A file for what two processes of this program hand each other, in memory where the system has a folder for that; removed
+/// when dropped.
+///
+/// # Errors
+/// Of a temporary folder that takes no file.
+pub fn exchange() -> io::Result<NamedTempFile> {
+    let folder = Path::new("/dev/shm");
+    temporary::sweep(folder);
+    temporary::create(folder).or_else(|_| temporary())
 }

@@ -12,3 +12,4 @@ mod gas;
 mod gpu;
 mod lava;
 mod terrain;
+mod window;

@@ -1,0 +1,3 @@
+//! The window and its worker.
+
+mod client;
