@@ -11,7 +11,7 @@ use super::failure::Failure;
 use super::options::{CommonArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
-use super::{bench, passes, render, spelling};
+use super::{bench, passes, render, spelling, worker};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::study::{Preset, Study};
@@ -31,6 +31,7 @@ pub fn command<S: Study>() -> Command {
         .subcommand(bench_command::<S>())
         .subcommand(experiment_command::<S>())
         .subcommand(render_command::<S>())
+        .subcommand(worker::command(with_scene::<S>(Command::new("worker").arg(variant_list::<S>("Variants", "")))))
         .subcommands(S::verbs().iter().map(own_command))
 }
 
@@ -144,7 +145,7 @@ fn options<S: 'static>(parameters: &[Parameter<S>], default: &S) -> Vec<Arg> {
 }
 
 /// Names of the opposites of flags.
-fn opposite(name: &str) -> String {
+pub fn opposite(name: &str) -> String {
     format!("no-{name}")
 }
 
@@ -302,6 +303,7 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
             render::draw(variant, &PictureArgs::from_arg_matches(matches)?, || Ok(setup))
         }
         "experiment" => experiment(matches, &typed),
+        "worker" => worker::run::<S>(matches),
         verb => own_verb(verb, matches, &typed),
     }
 }

@@ -82,6 +82,7 @@ impl From<gpu::Error> for Failure {
             | E::HostAccess { .. }
             | E::Unsupported { .. }
             | E::Pass { .. }
+            | E::BeyondEnd { .. }
             | E::Validation { .. } => Failure::Running(message),
         }
     }

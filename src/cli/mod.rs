@@ -16,6 +16,7 @@ mod render;
 mod report;
 mod spelling;
 mod watch;
+mod worker;
 
 use std::convert::Infallible;
 use std::ffi::OsString;

@@ -1,6 +1,7 @@
 //! `render`: the picture of a frame or of a range of frames, and intermediate targets at full precision.
 
 use std::ffi::OsStr;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -11,7 +12,8 @@ use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
 use super::watch::{interrupted, progress_bar};
-use crate::image;
+use crate::file::{self, OutputError};
+use crate::image::{self, Rgba8, y4m};
 use crate::measure::bench::build;
 use crate::measure::machine::Machine;
 use crate::measure::picture;
@@ -32,6 +34,13 @@ pub struct PictureArgs {
     /// File of the picture; of several frames, the number goes before its ending [default: in --out]
     #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     image: Option<PathBuf>,
+    /// Write the frames as one film, YUV4MPEG2, and no pictures but those of --image
+    #[arg(long, value_name = "FILE.y4m", help_heading = "Output")]
+    film: Option<PathBuf>,
+    /// Frames of the film a second, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = y4m::RATE, requires = "film", help_heading = "Output",
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
+    film_rate: u32,
     /// Folder of pictures that are not named
     #[arg(long, value_name = "DIR", default_value = "fumarole-out", help_heading = "Output")]
     out: PathBuf,
@@ -94,7 +103,7 @@ pub fn draw<S: Study>(
         return Err(Failure::Input("--dump writes one frame: give --frame one number".into()));
     }
     let picture_path = |number: u32| match &arguments.image {
-        Some(path) if is_range => numbered(path, number),
+        Some(path) if is_range => image::numbered(path, number),
         Some(path) => path.clone(),
         None => arguments.out.join(format!("{}-{}-{number:04}.png", S::PAPER, variant.as_str())),
     };
@@ -102,8 +111,18 @@ pub fn draw<S: Study>(
         image::Format::of(&dump.file)?;
         outcome::check_file(&dump.file)?;
     }
-    outcome::check_picture(&picture_path(frames.first))?;
-    outcome::check_file(&picture_path(frames.first))?;
+    let has_pictures = arguments.film.is_none() || arguments.image.is_some();
+    if has_pictures {
+        outcome::check_picture(&picture_path(frames.first))?;
+        outcome::check_file(&picture_path(frames.first))?;
+    }
+    if let Some(film) = &arguments.film {
+        if film.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("y4m")) {
+            let message = format!("--film {}: films are YUV4MPEG2; end the name in .y4m", film.display());
+            return Err(Failure::Input(message));
+        }
+        outcome::check_file(film)?;
+    }
 
     let study = resolve()?;
     let scene = study.load()?;
@@ -122,28 +141,38 @@ pub fn draw<S: Study>(
     let bar = progress_bar(arguments.quiet, S::PAPER);
     bar.set_length(u64::from(frames.end - frames.first));
     let mut written = Vec::new();
-    for number in frames.first..frames.end {
-        if interrupted().load(Ordering::Relaxed) {
-            break;
-        }
+    let mut next = |number: u32| -> Result<Option<Rgba8>, Failure> {
         let is_wanted = |left: u32| {
             bar.set_message(format!("{}: {left} steps to frame {number}", S::PAPER));
             !interrupted().load(Ordering::Relaxed)
         };
-        if !picture::advance(&mut machine, &mut built.paper, number, is_wanted)? {
-            break;
+        if interrupted().load(Ordering::Relaxed)
+            || !picture::advance(&mut machine, &mut built.paper, number, is_wanted)?
+        {
+            return Ok(None);
         }
         bar.set_message(S::PAPER);
         let rendered = picture::render(&mut machine, &mut built.paper, number)?;
-        let path = picture_path(number);
-        image::write_png(&path, &rendered)?;
+        if has_pictures {
+            let path = picture_path(number);
+            image::write_png(&path, &rendered)?;
+            written.push(path);
+        }
         bar.inc(1);
-        written.push(path);
-    }
+        Ok(Some(rendered))
+    };
+    let numbers = frames.first..frames.end;
+    let filmed = match &arguments.film {
+        Some(path) => shoot(path, arguments.film_rate, numbers.map(&mut next).map_while(Result::transpose))?,
+        None => {
+            numbers.map(&mut next).map_while(Result::transpose).try_fold(0, |count, drawn| drawn.map(|_| count + 1))?
+        }
+    };
     bar.finish_and_clear();
-    if written.is_empty() {
+    if filmed == 0 {
         return Err(Failure::Running("interrupted before a picture was written".into()));
     }
+    written.extend(arguments.film.clone());
     built.paper.warnings().iter().for_each(|warning| outcome::warn(&output, warning));
     written.iter().for_each(|path| outcome::wrote(&output, path));
     // Asked again: a paper may alternate its targets from frame to frame.
@@ -160,15 +189,26 @@ pub fn draw<S: Study>(
     Ok(())
 }
 
-/// `picture.png` for frame 7 is `picture-0007.png`.
-fn numbered(path: &Path, number: u32) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_owned();
-    name.push(format!("-{number:04}"));
-    if let Some(ending) = path.extension() {
-        name.push(".");
-        name.push(ending);
-    }
-    path.with_file_name(name)
+/// Writes a film, and gives the number of its frames; without one there is no file.
+fn shoot(path: &Path, rate: u32, mut frames: impl Iterator<Item = Result<Rgba8, Failure>>) -> Result<u32, Failure> {
+    // Before the first frame is there, nothing is written: an older film stays.
+    let Some(first) = frames.next().transpose()? else { return Ok(0) };
+    let (mut count, mut failure) = (0, None);
+    let written = file::write_with(path, |output| {
+        let mut film = y4m::Film::new(output, (first.width(), first.height()), rate)?;
+        for frame in [Ok(first)].into_iter().chain(frames) {
+            match frame {
+                Ok(frame) => film.push(&frame)?,
+                Err(error) => {
+                    failure = Some(error);
+                    return Err(io::Error::other("a frame could not be drawn"));
+                }
+            }
+            count += 1;
+        }
+        Ok(())
+    });
+    failure.map_or_else(|| written.map(|()| count).map_err(|error: OutputError| error.into()), Err)
 }
 
 #[cfg(test)]
@@ -182,10 +222,5 @@ mod tests {
         for text in ["", "x", "5..5", "6..2", "-1", "1..", "4294967295"] {
             assert!(parse_frames(text).is_err(), "{text}");
         }
-    }
-
-    #[test]
-    fn numbers_go_before_the_ending() {
-        assert_eq!(numbered(Path::new("a/b.png"), 7), Path::new("a/b-0007.png"));
     }
 }

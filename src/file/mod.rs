@@ -22,13 +22,16 @@ pub fn temporary() -> io::Result<NamedTempFile> {
     temporary::create(&folder)
 }
 
-/// A file for what two processes of this program hand each other, in memory where the system has a folder for that; removed
-/// when dropped.
+/// A file for what two processes of this program hand each other, removed when dropped: in `TMPDIR` where that is set, else
+/// in memory where the system has a folder for that.
 ///
 /// # Errors
 /// Of a temporary folder that takes no file.
 pub fn exchange() -> io::Result<NamedTempFile> {
     let folder = Path::new("/dev/shm");
+    if std::env::var_os("TMPDIR").is_some() || !folder.is_dir() {
+        return temporary();
+    }
     temporary::sweep(folder);
     temporary::create(folder).or_else(|_| temporary())
 }

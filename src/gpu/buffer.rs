@@ -65,7 +65,7 @@ impl BufferDesc {
 /// A buffer with its memory; it remembers what was last done to each of its byte ranges.
 pub struct Buffer {
     pub(crate) raw: vk::Buffer,
-    device: Arc<Device>,
+    pub(super) device: Arc<Device>,
     allocation: Option<Allocation>,
     allocated_bytes: u64,
     desc: BufferDesc,

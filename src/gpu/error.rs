@@ -45,6 +45,8 @@ pub enum Error {
     Unsupported { object: String, problem: String },
     #[error("host access to {object}: {problem}")]
     HostAccess { object: String, problem: String },
+    #[error("pass {pass}: it lies behind the end that this frame was given")]
+    BeyondEnd { pass: String },
     #[error("pass {pass}: {problem}")]
     Pass { pass: String, problem: String },
     #[error("shader {name}: {problem}")]

@@ -26,6 +26,18 @@ pub struct Frame<'a> {
     pub(super) started: Instant,
     /// The pass whose recording failed: the frame is not submitted then.
     pub(super) failed: Option<&'static str>,
+    pub(super) end: End,
+}
+
+/// Where a frame ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// Behind its last pass.
+    Open,
+    /// Behind its first so many passes.
+    After(usize),
+    /// A pass behind that was met: what comes now is left out.
+    Reached,
 }
 
 impl Frame<'_> {
@@ -73,6 +85,7 @@ impl Frame<'_> {
     /// # Errors
     /// Any error of Vulkan.
     pub fn wait_for(&mut self, pass: &Pass) -> Result<(), Error> {
+        self.admit(pass.info())?;
         let at = self.sample_of(pass.info());
         let waiting = Instant::now();
         self.finish()?;
@@ -187,8 +200,12 @@ impl Frame<'_> {
         Ok(())
     }
 
-    /// Runs and times host work that the method needs.
+    /// Runs and times host work that the method needs. Behind the end of the frame it is run, since the caller wants its
+    /// result, and counts for nothing: no pass that could hand it to the device follows.
     pub fn host<T>(&mut self, info: &Arc<PassInfo>, work: impl FnOnce() -> T) -> T {
+        if self.admit(info).is_err() {
+            return work();
+        }
         let at = self.sample_of(info);
         let started = Instant::now();
         let result = work();
@@ -199,6 +216,25 @@ impl Frame<'_> {
         *sample.host_ms.get_or_insert(0.0) += duration_ms;
         sample.calls += 1;
         result
+    }
+
+    /// Meets a pass, which is left out behind the end of the frame, and with it all that follow, those of its first
+    /// passes included.
+    ///
+    /// # Errors
+    /// [`Error::BeyondEnd`].
+    fn admit(&mut self, info: &Arc<PassInfo>) -> Result<(), Error> {
+        let passes = &self.recorder.sample.passes;
+        if let End::After(count) = self.end
+            && passes.len() >= count
+            && !passes.iter().any(|p| p.info.name == info.name)
+        {
+            self.end = End::Reached;
+        }
+        match self.end {
+            End::Reached => Err(Error::BeyondEnd { pass: info.name.into() }),
+            End::Open | End::After(_) => Ok(()),
+        }
     }
 
     /// # Errors
@@ -219,6 +255,7 @@ impl Frame<'_> {
         body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<u32, Error>,
     ) -> Result<(), Error> {
         self.check_open()?;
+        self.admit(pass.info())?;
         self.failed = Some(pass.info().name);
         self.record(pass, body)?;
         self.failed = None;

@@ -11,7 +11,7 @@ use super::barrier;
 use super::commands::Commands;
 use super::device::{Device, c_text};
 use super::error::Error;
-use super::frame::Frame;
+use super::frame::{End, Frame};
 use super::pass::{Body, Inner};
 use super::pass_info::PassInfo;
 use super::physical::Feature;
@@ -84,14 +84,42 @@ impl Recorder {
         mode: Mode,
         record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
     ) -> Result<&FrameSample, E> {
+        self.run_to(mode, End::Open, record)
+    }
+
+    /// As [`Recorder::run`], of a frame that ends where the next pass after its first `passes` would begin; a pass of many
+    /// calls between others may then have only some of them. `record` is told of the end by an error, with which it returns;
+    /// what it keeps of the frame's state is then that of a frame that was begun and not finished.
+    ///
+    /// # Errors
+    /// As [`Recorder::run`].
+    pub fn run_first<E: From<Error>>(
+        &mut self,
+        mode: Mode,
+        passes: usize,
+        record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
+    ) -> Result<&FrameSample, E> {
+        self.run_to(mode, End::After(passes), record)
+    }
+
+    fn run_to<E: From<Error>>(
+        &mut self,
+        mode: Mode,
+        end: End,
+        record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
+    ) -> Result<&FrameSample, E> {
         self.sample.passes.clear();
         self.sample.spans.clear();
         self.sample.bracket_ms = None;
         self.overrun.clear();
         let started = Instant::now();
-        let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None };
+        let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None, end };
         frame.begin()?;
-        record(&mut frame)?;
+        match record(&mut frame) {
+            // The error told of the end.
+            Err(_) if frame.end == End::Reached && frame.failed.is_none() => {}
+            other => other?,
+        }
         frame.finish()?;
         drop(frame);
         for &pass in &self.overrun {

@@ -26,14 +26,24 @@ pub fn upload(
 ) -> Result<Arc<Buffer>, Error> {
     let size_bytes = bytes.len() as u64;
     let buffer = Buffer::new(device, BufferDesc::new(name, size_bytes).usage(usage))?;
-    let staging =
-        Buffer::new(device, BufferDesc::new(format!("{name} staging"), size_bytes).location(Location::Upload))?;
+    update(&buffer, bytes)?;
+    Ok(buffer)
+}
+
+/// Writes `bytes` to the start of a device buffer.
+///
+/// # Errors
+/// [`Error::Pass`] for more than it holds; any error of Vulkan.
+pub fn update(buffer: &Arc<Buffer>, bytes: &[u8]) -> Result<(), Error> {
+    let device = &buffer.device;
+    let name = format!("{} staging", buffer.name());
+    let staging = Buffer::new(device, BufferDesc::new(name, bytes.len() as u64).location(Location::Upload))?;
     // A buffer has at least four bytes, and all of them are copied.
     staging.write(0, &[0; 4])?;
     staging.write(0, bytes)?;
-    let uses = copy_uses(&(&staging).into(), &buffer);
-    once(device, "upload", &uses, |raw, commands| record_copy(raw, commands, &uses[0].resource, &buffer))?;
-    Ok(buffer)
+    check_copy("upload", &(&staging).into(), buffer)?;
+    let uses = copy_uses(&(&staging).into(), buffer);
+    once(device, "upload", &uses, |raw, commands| record_copy(raw, commands, &uses[0].resource, buffer))
 }
 
 /// Copies buffers, each into one of its own size at least, in one submission.

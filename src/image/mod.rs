@@ -3,6 +3,7 @@
 //! ```text
 //! Raster (any target or buffer, full precision) --write--> .exr | .npy | .png
 //! Rgba8  (a finished picture)  <--read_png / write_png-->  .png
+//! Rgba8, one after the other  --y4m::Film-->  .y4m
 //! Rgba8 x Rgba8 --compare--> Difference (CIE L*u*v*)  <-- golden::check
 //! ```
 
@@ -14,19 +15,24 @@ pub mod golden;
 mod npy;
 mod picture;
 mod png;
+mod preview;
 mod raster;
 pub mod srgb;
+mod statistics;
 mod view;
+pub mod y4m;
 
 pub use self::compare::{Difference, compare};
 pub use self::error::Error;
 pub use self::picture::Rgba8;
 pub use self::png::{read_png, read_png_within, write_png};
+pub use self::preview::preview;
 pub use self::raster::{Raster, Samples, Shape};
+pub use self::statistics::Statistics;
 pub use self::view::Ramp;
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::file;
 
@@ -84,6 +90,17 @@ pub fn write(path: &Path, raster: &Raster) -> Result<Option<Ramp>, Error> {
     Ok(shown)
 }
 
+/// The file of one of several frames: `picture.png` for frame 7 is `picture-0007.png`.
+pub fn numbered(path: &Path, number: u32) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{number:04}"));
+    if let Some(ending) = path.extension() {
+        name.push(".");
+        name.push(ending);
+    }
+    path.with_file_name(name)
+}
+
 /// A failure inside a format's own encoder, as the failure of the write that it is.
 fn encoder_error(error: impl std::error::Error) -> io::Error {
     io::Error::other(error.to_string())
@@ -101,6 +118,11 @@ mod tests {
         for path in ["x", "x.jpg", ".png", "png", ""] {
             assert!(Format::of(Path::new(path)).is_err(), "{path}");
         }
+    }
+
+    #[test]
+    fn numbers_go_before_the_ending() {
+        assert_eq!(numbered(Path::new("a/b.png"), 7), Path::new("a/b-0007.png"));
     }
 
     #[test]

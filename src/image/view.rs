@@ -1,6 +1,7 @@
 //! 8-bit RGB drawings of data that is no 8-bit picture.
 
 use std::fmt;
+use std::ops::Range;
 
 use super::picture::NOT_FINITE;
 use super::srgb;
@@ -40,17 +41,7 @@ impl Ramp {
     pub fn of<T: Copy + Into<f64>>(values: &[T]) -> Self {
         let mut ascending: Vec<f64> = values.iter().map(|&value| value.into()).filter(|v| v.is_finite()).collect();
         ascending.sort_unstable_by(f64::total_cmp);
-        let mut kept = &ascending[..];
-        if let (Some(&least), Some(&most)) = (kept.first(), kept.last()) {
-            let above = kept.partition_point(|&value| value < most);
-            if is_sentinel(&kept[..above], most, kept.len() - above) {
-                kept = &kept[..above];
-            }
-            let below = kept.partition_point(|&value| value <= least);
-            if is_sentinel(&kept[below..], least, below) {
-                kept = &kept[below..];
-            }
-        }
+        let kept = &ascending[kept(&ascending)];
         let (Some(&first), Some(&last)) = (kept.first(), kept.last()) else {
             return Ramp { low: 0.0, high: 0.0, masked: 0, kept: [0.0, 0.0] };
         };
@@ -82,6 +73,22 @@ impl fmt::Display for Ramp {
             masked => write!(formatter, ", {masked} values far off the others in magenta"),
         }
     }
+}
+
+/// The values in ascending order, without the sentinels at either end.
+pub(super) fn kept(ascending: &[f64]) -> Range<usize> {
+    let mut range = 0..ascending.len();
+    if let (Some(&least), Some(&most)) = (ascending.first(), ascending.last()) {
+        let above = ascending.partition_point(|&value| value < most);
+        if is_sentinel(&ascending[..above], most, ascending.len() - above) {
+            range.end = above;
+        }
+        let below = ascending[..range.end].partition_point(|&value| value <= least);
+        if is_sentinel(&ascending[below..range.end], least, below) {
+            range.start = below;
+        }
+    }
+    range
 }
 
 /// True for a value, found `count` times, that lies far off `others` in ascending order.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::gpu::bindings::Resource;
 use crate::gpu::{Buffer, Error, Frame, ImageView, ShaderLibrary};
+use crate::scene::Camera;
 
 /// The methods that a paper compares.
 pub trait Variant: Copy + Eq + std::fmt::Debug + Send + Sync + 'static {
@@ -30,6 +31,13 @@ pub trait Paper {
     /// # Errors
     /// Any error of the Vulkan layer.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error>;
+
+    /// Makes the frame that was recorded last, and to its end, the next one again, without its state going on: what is drawn
+    /// of the state is recorded anew, and the passes that advance it may be left out. False where the paper has to be
+    /// restarted for that, which costs nothing where there is no state.
+    fn repeat(&mut self) -> bool {
+        false
+    }
 
     /// Advances a state that goes step by step towards frame `number`, by at most `most` steps, and gives the number of
     /// those that are left. So a late frame is many submissions, not one.
@@ -60,6 +68,11 @@ pub trait Paper {
     /// Warnings about the input and the frames so far, one line each.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// The camera of the picture; `None` for a picture without one.
+    fn camera(&self) -> Option<Camera> {
+        None
     }
 
     /// The finished picture, 8-bit sRGB.

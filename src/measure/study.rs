@@ -53,6 +53,15 @@ pub trait Study: Clone + Default + 'static {
         variant: Self::Variant,
     ) -> Result<Self::Paper, gpu::Error>;
 
+    /// Takes over, into a paper made of another set-up, the parameters that differ, where all of them are constants of the
+    /// next frame to it; its state stays. False where it has to be made anew.
+    ///
+    /// # Errors
+    /// As [`Study::load`], for numbers that cannot be together.
+    fn reconfigure(&self, _scene: &Self::Scene, _paper: &mut Self::Paper, _changed: &Given) -> Result<bool, Error> {
+        Ok(false)
+    }
+
     /// Sizes of a variant, as far as they follow from the parameters; [`Study::make`] is not asked for what is too large.
     fn estimate(&self, _scene: &Self::Scene, _variant: Self::Variant) -> Estimate {
         Estimate::default()

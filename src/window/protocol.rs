@@ -341,6 +341,21 @@ pub struct SideSetup {
     pub refused: Vec<(String, String)>,
     /// Eye and target of the camera, metres or the paper's unit of length.
     pub camera: Option<[f64; 6]>,
+    /// The rest of that camera.
+    pub lens: Option<Lens>,
+}
+
+/// A camera without its place.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Lens {
+    /// The direction that points up in the picture.
+    pub up: [f64; 3],
+    /// Opening angle from the bottom to the top edge of the picture.
+    pub vertical_fov_rad: f64,
+    /// Distance of the near plane, in the unit of length of the eye; depth 0 lies there.
+    pub near: f64,
+    /// Distance of the far plane; depth 1 lies there.
+    pub far: f64,
 }
 
 /// The sides as they are built.

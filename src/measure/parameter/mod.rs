@@ -251,6 +251,11 @@ impl Given {
     pub fn has(&self, name: &str) -> bool {
         self.0.contains(name)
     }
+
+    /// True when no other than these was given.
+    pub fn is_within(&self, names: &[&str]) -> bool {
+        self.0.iter().all(|given| names.contains(&given.as_str()))
+    }
 }
 
 impl FromIterator<String> for Given {

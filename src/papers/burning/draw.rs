@@ -10,7 +10,7 @@ use super::framing;
 use super::model::Model;
 use super::parameters::{Material, Parameters, Shading, Variant};
 use super::texture::Surface;
-use crate::gpu::transfer::upload;
+use crate::gpu::transfer::{update, upload};
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
 use crate::scene::Camera;
@@ -64,13 +64,7 @@ impl Draw {
         let depth = target("depth", vk::Format::D32_SFLOAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?;
         let picture = target("picture", vk::Format::R8G8B8A8_SRGB, vk::ImageUsageFlags::COLOR_ATTACHMENT)?;
         let camera = framing::camera(parameters, model);
-        let block = ViewBlock {
-            view_projection: camera.projection(parameters.aspect()) * camera.view(),
-            eye: camera.eye,
-            ambient: AMBIENT,
-            to_light: TO_LIGHT.normalize(),
-            _pad: 0.0,
-        };
+        let block = view_block(parameters, &camera);
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let view = upload(device, &format!("{label}/view"), usage, bytemuck::bytes_of(&block))?;
         let coordinates = &model.lattice.texture_coordinates;
@@ -114,12 +108,31 @@ impl Draw {
         Ok(Draw { pass, camera, view, depth, picture, surface })
     }
 
+    /// Sets the camera of the next frames.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn set_camera(&mut self, parameters: &Parameters, camera: Camera) -> Result<(), Error> {
+        self.camera = camera;
+        update(&self.view, bytemuck::bytes_of(&view_block(parameters, &camera)))
+    }
+
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             draw.indices_indirect();
         })
+    }
+}
+
+fn view_block(parameters: &Parameters, camera: &Camera) -> ViewBlock {
+    ViewBlock {
+        view_projection: camera.projection(parameters.aspect()) * camera.view(),
+        eye: camera.eye,
+        ambient: AMBIENT,
+        to_light: TO_LIGHT.normalize(),
+        _pad: 0.0,
     }
 }
 

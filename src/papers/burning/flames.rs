@@ -10,7 +10,7 @@ use super::draw::Draw;
 use super::model::Model;
 use super::parameters::Parameters;
 use super::ping_pong::{PingPong, build, new};
-use crate::gpu::transfer::upload;
+use crate::gpu::transfer::{update, upload};
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
 use crate::scene::Camera;
@@ -132,6 +132,15 @@ impl Flames {
             (build(shaders, burn, &[state, rotations])?, particle_count),
         ]);
         Ok(Some(Flames { steps, billboards, groups, particles, particle_count }))
+    }
+
+    /// Turns fire and smoke towards the camera of the next frames.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn set_camera(&self, parameters: &Parameters, camera: &Camera) -> Result<(), Error> {
+        let block = billboards(parameters, camera);
+        update(&self.billboards, bytemuck::bytes_of(&block))
     }
 
     /// Advances the particles by the tick that writes the state of index `tick`.

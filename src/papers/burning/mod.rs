@@ -264,6 +264,26 @@ impl Burning {
         self.flames.as_ref()
     }
 
+    /// Sets the camera of the next frames; false where another level of detail suits it, which is built in. The caller has
+    /// validated it.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn set_camera(&mut self, camera: Option<Camera>) -> Result<bool, Error> {
+        let parameters = Parameters { camera, ..self.parameters.clone() };
+        let level = |of: &Parameters| refinement::drawn_level(of, &self.model, self.model.levels);
+        if self.refinement.is_some() && level(&parameters) != level(&self.parameters) {
+            return Ok(false);
+        }
+        let camera = framing::camera(&parameters, &self.model);
+        self.draw.set_camera(&parameters, camera)?;
+        if let Some(flames) = &self.flames {
+            flames.set_camera(&parameters, &camera)?;
+        }
+        self.parameters = parameters;
+        Ok(true)
+    }
+
     /// The camera of the picture.
     pub fn camera(&self) -> &Camera {
         &self.draw.camera
@@ -329,6 +349,18 @@ impl Paper for Burning {
         Ok(())
     }
 
+    /// The passes that advance the state have nothing to do.
+    fn repeat(&mut self) -> bool {
+        self.next_frame = self.next_frame.saturating_sub(1);
+        true
+    }
+
+    fn advance(&mut self, frame: &mut Frame<'_>, number: u32, most: u32) -> Result<u32, Error> {
+        let due = number.checked_sub(1).map_or(self.start_slices, |before| self.parameters.slices_due(before));
+        self.simulate(frame, due.min(self.slices + u64::from(most)), None)?;
+        Ok(u32::try_from(due.saturating_sub(self.slices)).unwrap_or(u32::MAX))
+    }
+
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)
     }
@@ -356,6 +388,10 @@ impl Paper for Burning {
             ));
         }
         warnings
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        Some(self.draw.camera)
     }
 
     fn picture(&self) -> &Arc<ImageView> {

@@ -76,9 +76,7 @@ impl Refinement {
         let steps = Pass::steps([find.build(shaders)?, split_finest.build(shaders)?, split("inner").build(shaders)?]);
         buffers.keep(shaders, &statuses)?;
         buffers.keep(shaders, &eligible)?;
-        let distance = framing::camera(parameters, model).eye.distance(model.bounds.center());
-        let chosen = parameters.level_of_detail.unwrap_or_else(|| level_of_detail(levels, distance));
-        let level_of_detail = chosen.min(levels);
+        let level_of_detail = drawn_level(parameters, model, levels);
         Ok(Refinement { statuses, level_of_detail, steps, levels, coarse_count, points: points.len() as u32 })
     }
 
@@ -106,6 +104,12 @@ impl Refinement {
             run(step, level, tree::triangles_of(level))
         })
     }
+}
+
+/// Finest level that is drawn: the user's, or by the distance of the camera.
+pub(super) fn drawn_level(parameters: &Parameters, model: &Model, levels: u32) -> u32 {
+    let distance = framing::camera(parameters, model).eye.distance(model.bounds.center());
+    parameters.level_of_detail.unwrap_or_else(|| level_of_detail(levels, distance)).min(levels)
 }
 
 /// Distance from the camera to the object's middle, in diagonals, up to which all levels are drawn.

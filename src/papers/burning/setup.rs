@@ -130,6 +130,14 @@ impl Study for Setup {
         Ok(Scene { mesh, texture })
     }
 
+    fn reconfigure(&self, _: &Scene, paper: &mut Burning, changed: &Given) -> Result<bool, Error> {
+        if !changed.is_within(&["camera"]) {
+            return Ok(false);
+        }
+        self.check()?;
+        Ok(paper.set_camera(self.parameters.camera)?)
+    }
+
     fn make(
         &self,
         shaders: &ShaderLibrary,

@@ -71,7 +71,7 @@ use self::water::Grid;
 use self::water_surface::{VERTEX_FLOATS, WaterSurface};
 use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 use crate::measure::{Paper, Target};
-use crate::scene::Bounds;
+use crate::scene::{Bounds, Camera};
 
 pub use self::parameters::{IntensityRule, Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
 pub use self::receiver::ReceiverInput;
@@ -79,6 +79,9 @@ pub use self::water_map::WaterMap;
 
 /// Features that a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Float, Feature::DepthStencil32];
+
+/// Parameters of the viewer and the clock alone, as constants.
+pub const DRAWN: [&str; 3] = ["camera", "samples", "time-step"];
 
 /// The paper under one variant.
 pub struct Caustics {
@@ -190,6 +193,24 @@ impl Caustics {
             underwater,
             view,
         })
+    }
+
+    /// Sets the numbers of [`DRAWN`] of the next frames; all others are those that it was made with. False where the camera
+    /// passes through the water's surface, which other shaders show. The caller has validated them.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set_drawn(&mut self, parameters: &Parameters) -> Result<bool, Error> {
+        if parameters.is_seen_from_above() != self.parameters.is_seen_from_above() {
+            return Ok(false);
+        }
+        self.underwater.set_camera(parameters)?;
+        self.view.set_camera(parameters, &self.underwater)?;
+        if let Technique::Stencil { stencil_volumes, .. } = &mut self.technique {
+            stencil_volumes.iter_mut().try_for_each(|volumes| volumes.set_camera(&self.underwater))?;
+        }
+        self.parameters = parameters.clone();
+        Ok(true)
     }
 
     /// The mesh of the water as it was made, which may differ from the number of triangles asked for.
@@ -347,6 +368,10 @@ impl Paper for Caustics {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         self.view.record(frame, self.time_s(number))
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        Some(self.parameters.camera)
     }
 
     fn picture(&self) -> &Arc<ImageView> {

@@ -19,7 +19,7 @@ use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::caustics::{
-    Caustics, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap,
+    Caustics, DRAWN, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap,
 };
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
@@ -161,6 +161,14 @@ impl Study for Setup {
             receivers.push(floor(&receivers, floor_m));
         }
         Ok(Scene { receivers })
+    }
+
+    fn reconfigure(&self, _: &Scene, paper: &mut Caustics, changed: &Given) -> Result<bool, Error> {
+        if !changed.is_within(&DRAWN) {
+            return Ok(false);
+        }
+        self.parameters.validate()?;
+        Ok(paper.set_drawn(&self.parameters)?)
     }
 
     fn make(

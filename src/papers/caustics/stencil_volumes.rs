@@ -3,6 +3,8 @@
 //! is not zero, adding its light. It knows no occlusion: a surface in the shadow of another is lit as if nothing stood
 //! before it.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use super::illumination_volumes::IlluminationVolumes;
@@ -10,7 +12,8 @@ use super::receivers::Receivers;
 use super::resources::Context;
 use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Load, Pass};
+use crate::gpu::transfer::update;
+use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Load, Pass};
 use crate::host_block;
 
 /// Vertices of a volume: a prism's eight triangles.
@@ -37,6 +40,9 @@ host_block! {
 /// The pass of one light.
 pub struct StencilVolumes {
     pass: Pass,
+    block: VolumesBlock,
+    /// The block on the device.
+    volumes: Arc<Buffer>,
 }
 
 impl StencilVolumes {
@@ -64,12 +70,12 @@ impl StencilVolumes {
             bottom: (lowest - BELOW * lowest.abs()) as f32,
             _pad: [0.0; 3],
         };
-        let block = context.upload("volumes", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
+        let uniform = context.upload("volumes", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let (vertex, fragment) = ("caustics/stencil-volumes.vert", "caustics/stencil-volumes.frag");
         let pass = Pass::graphics("stencil-volumes", "3.2", vertex, fragment)
             .with("rays", &volumes.rays)
             .with("indices", &water.indices)
-            .with("volumes", &block)
+            .with("volumes", &uniform)
             .with("surface_position", &seen.position)
             .with("surface_normal", &seen.normal)
             .with("surface_albedo", &seen.albedo)
@@ -78,7 +84,16 @@ impl StencilVolumes {
             .color(&underwater.color, Load::Keep, Blend::Add)
             .depth(&underwater.depth, Load::Keep, DepthTest::InsideVolume)
             .build(context.shaders)?;
-        Ok(StencilVolumes { pass })
+        Ok(StencilVolumes { pass, block, volumes: uniform })
+    }
+
+    /// Sets the camera of the next frames.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set_camera(&mut self, underwater: &Underwater) -> Result<(), Error> {
+        self.block.view_projection = underwater.view_projection.to_cols_array();
+        update(&self.volumes, bytemuck::bytes_of(&self.block))
     }
 
     /// The volumes one after the other: a draw that counts, a draw that lights.

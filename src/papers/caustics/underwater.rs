@@ -8,6 +8,7 @@ use glam::{Mat4, Vec3};
 use super::parameters::Parameters;
 use super::resources::{COLOR_MAP, Context, LIGHT};
 use super::water::LEVEL_M;
+use crate::gpu::transfer::update;
 use crate::gpu::{Buffer, Error, ImageView};
 use crate::host_block;
 use crate::scene::Camera;
@@ -68,16 +69,31 @@ impl Underwater {
     pub fn new(context: Context<'_>, depth_format: vk::Format) -> Result<Self, Error> {
         let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
         let depth = context.image("underwater-depth", depth_format, depth_usage)?;
-        let camera = underwater_camera(context.parameters);
-        let view_projection = camera.projection(context.parameters.aspect()) * camera.view();
+        let (eye, view_projection) = seen(context.parameters);
         let block = CameraBlock { view_projection: view_projection.to_cols_array() };
         Ok(Underwater {
             color: context.image("underwater-color", LIGHT, COLOR_MAP)?.view()?,
             depth: depth.view()?,
             fetched_depth: depth.depth_view()?,
             view_projection,
-            eye: camera.eye,
+            eye,
             camera: context.upload("camera", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
         })
     }
+
+    /// Stands for the camera of `parameters` in the next frames.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set_camera(&mut self, parameters: &Parameters) -> Result<(), Error> {
+        (self.eye, self.view_projection) = seen(parameters);
+        let block = CameraBlock { view_projection: self.view_projection.to_cols_array() };
+        update(&self.camera, bytemuck::bytes_of(&block))
+    }
+}
+
+/// Eye and matrix of the underwater camera.
+fn seen(parameters: &Parameters) -> (Vec3, Mat4) {
+    let camera = underwater_camera(parameters);
+    (camera.eye, camera.projection(parameters.aspect()) * camera.view())
 }

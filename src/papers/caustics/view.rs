@@ -5,13 +5,15 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::parameters::Parameters;
 use super::receiver::ReceiverInput;
 use super::receiver_tree::ReceiverTree;
 use super::resources::Context;
 use super::underwater::Underwater;
 use super::water::LEVEL_M;
 use super::water_surface::{MapBlock, Shape, WaterSurface};
-use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass};
+use crate::gpu::transfer::update;
+use crate::gpu::{Blend, Buffer, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 
 host_block! {
@@ -60,6 +62,9 @@ pub struct View {
     pub picture: Arc<ImageView>,
     pass: Pass,
     constants: Constants,
+    /// A [`ViewBlock`].
+    view: Arc<Buffer>,
+    node_count: u32,
 }
 
 impl View {
@@ -75,21 +80,7 @@ impl View {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
         let picture = context.image("picture", vk::Format::R8G8B8A8_SRGB, usage)?.view()?;
         let tree = ReceiverTree::new(context, receivers)?;
-        let camera = &parameters.camera;
-        let matrix = camera.projection(parameters.aspect()) * camera.view();
-        let block = ViewBlock {
-            inverse_view_projection: matrix.inverse().to_cols_array(),
-            underwater_view_projection: underwater.view_projection.to_cols_array(),
-            underwater_inverse: underwater.view_projection.inverse().to_cols_array(),
-            eye: camera.eye.to_array(),
-            level_m: LEVEL_M as f32,
-            underwater_eye: underwater.eye.to_array(),
-            samples: parameters.samples,
-            picture_size: [parameters.width as f32, parameters.height as f32],
-            texture_size: [underwater.color.width() as f32, underwater.color.height() as f32],
-            node_count: tree.node_count,
-            _pad: [0.0; 3],
-        };
+        let block = block(parameters, underwater, tree.node_count);
         let view = context.upload("view", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let pass = |shader| {
             Pass::graphics("view", "1", "common/fullscreen.vert", shader)
@@ -104,7 +95,7 @@ impl View {
         };
         if !parameters.is_seen_from_above() {
             let pass = pass("caustics/view-below.frag").build(shaders)?;
-            return Ok(View { picture, pass, constants: Constants::Below });
+            return Ok(View { picture, pass, constants: Constants::Below, view, node_count: tree.node_count });
         }
         let eta = 1.0 / parameters.refraction_index;
         let absorption_per_m = parameters.absorption_per_m;
@@ -118,7 +109,16 @@ impl View {
                 Constants::AboveMap(MapConstants { map: *place, eta, absorption_per_m }),
             ),
         };
-        Ok(View { pass: pass.build(shaders)?, picture, constants })
+        Ok(View { pass: pass.build(shaders)?, picture, constants, view, node_count: tree.node_count })
+    }
+
+    /// Sets the camera of the next pictures, on the same side of the water as it was.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set_camera(&self, parameters: &Parameters, underwater: &Underwater) -> Result<(), Error> {
+        let block = block(parameters, underwater, self.node_count);
+        update(&self.view, bytemuck::bytes_of(&block))
     }
 
     /// Draws the picture from the cast.
@@ -134,5 +134,23 @@ impl View {
             }
             .vertices(3);
         })
+    }
+}
+
+fn block(parameters: &Parameters, underwater: &Underwater, node_count: u32) -> ViewBlock {
+    let camera = &parameters.camera;
+    let matrix = camera.projection(parameters.aspect()) * camera.view();
+    ViewBlock {
+        inverse_view_projection: matrix.inverse().to_cols_array(),
+        underwater_view_projection: underwater.view_projection.to_cols_array(),
+        underwater_inverse: underwater.view_projection.inverse().to_cols_array(),
+        eye: camera.eye.to_array(),
+        level_m: LEVEL_M as f32,
+        underwater_eye: underwater.eye.to_array(),
+        samples: parameters.samples,
+        picture_size: [parameters.width as f32, parameters.height as f32],
+        texture_size: [underwater.color.width() as f32, underwater.color.height() as f32],
+        node_count,
+        _pad: [0.0; 3],
     }
 }

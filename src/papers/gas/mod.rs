@@ -54,6 +54,7 @@ use self::view::View;
 use self::volume::VolumeMarch;
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
+use crate::scene::Camera;
 
 pub use self::a_buffer::Fragment;
 pub use self::capacity::Capacity;
@@ -61,6 +62,10 @@ pub use self::parameters::{Parameters, Variant};
 
 /// Features that a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 1] = [Feature::FragmentStores];
+
+/// Parameters that each frame writes into its blocks.
+pub const WRITTEN: [&str; 7] =
+    ["ambient", "camera", "early-end", "first-frame", "frame-step", "pixel-size", "shadow-threshold"];
 
 /// The paper under one variant.
 pub struct Gas {
@@ -152,6 +157,12 @@ impl Gas {
         Ok(Gas { label, variant, parameters, scene, passes, calls: Calls::ONCE, buffer_limit, lacks_geometry_stage })
     }
 
+    /// Sets the numbers of [`WRITTEN`] of the next frames; all others are those that it was made with. The caller has
+    /// validated them.
+    pub fn set_written(&mut self, parameters: &Parameters) {
+        self.parameters = parameters.clone();
+    }
+
     /// The rows that are done at once, and the most fragments and sections that they have wanted in a frame so far.
     ///
     /// # Errors
@@ -236,6 +247,10 @@ impl Paper for Gas {
             );
         }
         warnings
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        Some(self.parameters.camera)
     }
 
     fn picture(&self) -> &Arc<ImageView> {

@@ -20,7 +20,7 @@ use crate::measure::statistics::median;
 use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
-use crate::papers::gas::{Gas, NEEDS, Parameters, Variant};
+use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
 use crate::scene::{Light, MeshSource};
 
 /// A user's choice of everything.
@@ -152,6 +152,15 @@ impl Study for Setup {
         }
         objects.iter().try_for_each(validate_object)?;
         Ok(Scene { objects })
+    }
+
+    fn reconfigure(&self, _: &Scene, paper: &mut Gas, changed: &Given) -> Result<bool, Error> {
+        if !changed.is_within(&WRITTEN) {
+            return Ok(false);
+        }
+        self.parameters.validate()?;
+        paper.set_written(&self.parameters);
+        Ok(true)
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Gas, gpu::Error> {

@@ -53,6 +53,11 @@ impl March {
         Ok(March { pass, shading: context.parameters.shading, rays: rays(context.parameters) })
     }
 
+    /// Sets the rays to those of the parameters' camera.
+    pub fn set_rays(&mut self, parameters: &Parameters) {
+        self.rays = rays(parameters);
+    }
+
     /// Draws the surface; the rock has drifted `drift_m` along x.
     ///
     /// # Errors

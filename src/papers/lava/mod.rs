@@ -60,7 +60,7 @@ use self::targets::{Context, EMPTY};
 use self::visibility::Visibility;
 use crate::gpu::{Blend, Buffer, Error, Feature, Frame, ImageView, Load, Pass, ShaderLibrary};
 use crate::measure::{Paper, Target};
-use crate::scene::Mesh;
+use crate::scene::{Camera, Mesh};
 
 pub use self::animate::State;
 pub use self::cluster::{Clusters, Point};
@@ -83,6 +83,9 @@ pub const FLOORS: [(&str, &str); 4] = [
     ("blending", "splats-floor"),
 ];
 
+/// Parameters that only the passes from the surface to the picture take, as constants.
+pub const DRAWN: [&str; 7] = ["camera", "color", "epsilon", "exposure", "rock-tile", "splat-radius", "tone"];
+
 /// The paper with its resources.
 pub struct Lava {
     parameters: Parameters,
@@ -99,6 +102,8 @@ pub struct Lava {
     /// `None` but for a picture of particles instead of the surface.
     points: Option<ParticlePoints>,
     lacks_geometry_stage: bool,
+    /// The next frame draws the particles of the last one.
+    repeats: bool,
 }
 
 /// Stage one (chapter 5): the particles move on the device, are read back and sorted into clusters on the host.
@@ -191,6 +196,7 @@ impl Splatting {
 
 impl Paper for Lava {
     fn restart(&mut self) -> Result<(), Error> {
+        self.repeats = false;
         self.animation.animate.restart();
         Ok(())
     }
@@ -202,15 +208,24 @@ impl Paper for Lava {
     /// Errors of the Vulkan layer; [`Error::Pass`] for a frame before the last without a restart between them.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         let steps = self.animation.animate.steps();
-        if number < steps {
+        let is_repeated = std::mem::take(&mut self.repeats) && number + 1 == steps;
+        if number < steps && !is_repeated {
             let problem = format!("frame {number} comes before frame {steps}, the next; restart the paper first");
             return Err(Error::Pass { pass: "animate".into(), problem });
         }
-        self.advance(frame, number, u32::MAX)?;
-        self.animation.record(frame)?;
+        if !is_repeated {
+            self.advance(frame, number, u32::MAX)?;
+            self.animation.record(frame)?;
+        }
         self.isosurface.record(frame, &self.animation.cluster.clusters.particles)?;
         self.splatting.record(frame, self.drift_m(number))?;
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
+    }
+
+    /// Stage one is left out: its clusters are there.
+    fn repeat(&mut self) -> bool {
+        self.repeats = true;
+        true
     }
 
     fn advance(&mut self, frame: &mut Frame<'_>, number: u32, most: u32) -> Result<u32, Error> {
@@ -248,6 +263,10 @@ impl Paper for Lava {
             ));
         }
         warnings
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        Some(self.parameters.camera)
     }
 
     fn picture(&self) -> &Arc<ImageView> {
@@ -310,7 +329,27 @@ impl Lava {
             object_warnings,
             points,
             lacks_geometry_stage,
+            repeats: false,
         })
+    }
+
+    /// Sets the numbers of [`DRAWN`] of the next frames; `rock` and `objects` are those that it was made with, and so are
+    /// all other numbers. The caller has validated them.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set_drawn(&mut self, parameters: &Parameters, rock: &Rock, objects: &[Mesh]) -> Result<(), Error> {
+        self.parameters = parameters.clone();
+        self.splatting.splats.set_scene(parameters, rock)?;
+        self.splatting.normalisation.set_tone(parameters);
+        if let Some(march) = &mut self.splatting.march {
+            march.set_rays(parameters);
+        }
+        if let Some(drawn) = &mut self.objects {
+            drawn.set_constants(parameters);
+        }
+        self.object_warnings = placement::warnings(objects, &parameters.camera, parameters.aspect());
+        Ok(())
     }
 
     /// Draws the points and splats of the last frame with an empty fragment stage, as the passes of [`FLOORS`]: what

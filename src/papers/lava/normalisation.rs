@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::parameters::{Shading, Tone};
+use super::parameters::{Parameters, Shading, Tone};
 use super::targets::Context;
 use crate::gpu::{Blend, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
 use crate::host_block;
@@ -37,14 +37,13 @@ impl Normalisation {
             .with("accumulated_colors", accumulated_colors)
             .color(&picture, Load::Discard, Blend::Replace)
             .build(context.shaders)?;
-        // The parts of the picture show their values as they are.
-        let constants = match context.parameters.shading {
-            Shading::Lava | Shading::Color => {
-                ToneConstants { exposure: context.parameters.exposure, knee: context.parameters.tone.knee() }
-            }
-            _ => ToneConstants { exposure: 1.0, knee: Tone::Clip.knee() },
-        };
+        let constants = constants(context.parameters);
         Ok(Normalisation { pass, constants, picture })
+    }
+
+    /// Sets the tone of the next frames.
+    pub fn set_tone(&mut self, parameters: &Parameters) {
+        self.constants = constants(parameters);
     }
 
     /// # Errors
@@ -53,5 +52,13 @@ impl Normalisation {
         frame.graphics(&self.pass, |draw| {
             draw.constants(&self.constants).vertices(3);
         })
+    }
+}
+
+/// The parts of the picture show their values as they are.
+fn constants(parameters: &Parameters) -> ToneConstants {
+    match parameters.shading {
+        Shading::Lava | Shading::Color => ToneConstants { exposure: parameters.exposure, knee: parameters.tone.knee() },
+        _ => ToneConstants { exposure: 1.0, knee: Tone::Clip.knee() },
     }
 }

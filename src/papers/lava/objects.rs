@@ -4,6 +4,7 @@
 use ash::vk;
 
 use super::normalisation::Normalisation;
+use super::parameters::Parameters;
 use super::splats::Splats;
 use super::targets::{Context, DEPTH, FAR};
 use super::visibility::Visibility;
@@ -75,9 +76,12 @@ impl Objects {
             };
             passes.push((pass, mesh.indices.len() as u32));
         }
-        let eye_m = parameters.camera.eye.to_array();
-        let constants = ObjectConstants { eye_m, exposure: parameters.exposure, knee: parameters.tone.knee() };
-        Ok(Objects { passes, constants })
+        Ok(Objects { passes, constants: constants(parameters) })
+    }
+
+    /// Sets the constants of the next frames.
+    pub fn set_constants(&mut self, parameters: &Parameters) {
+        self.constants = constants(parameters);
     }
 
     /// # Errors
@@ -89,4 +93,9 @@ impl Objects {
             })
         })
     }
+}
+
+fn constants(parameters: &Parameters) -> ObjectConstants {
+    let eye_m = parameters.camera.eye.to_array();
+    ObjectConstants { eye_m, exposure: parameters.exposure, knee: parameters.tone.knee() }
 }

@@ -18,10 +18,10 @@ use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::Value as _;
-use crate::measure::parameter::{self, Cost, Parameter};
+use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::lava::{Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Variant};
+use crate::papers::lava::{DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Variant};
 use crate::scene::Mesh;
 
 /// A user's choice of everything.
@@ -93,6 +93,15 @@ impl Study for Setup {
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, _: Variant) -> Result<Lava, gpu::Error> {
         Lava::new(shaders, label, &self.parameters, &scene.particles, &scene.rock, &scene.objects)
+    }
+
+    fn reconfigure(&self, scene: &Scene, paper: &mut Lava, changed: &Given) -> Result<bool, Error> {
+        if !changed.is_within(&DRAWN) {
+            return Ok(false);
+        }
+        self.check()?;
+        paper.set_drawn(&self.parameters, &scene.rock, &scene.objects)?;
+        Ok(true)
     }
 
     fn estimate(&self, _: &Scene, _: Variant) -> Estimate {

@@ -8,6 +8,7 @@ use super::parameters::Parameters;
 use super::rock::Rock;
 use super::targets::Context;
 use crate::gpu::pass::PassBuilder;
+use crate::gpu::transfer::update;
 use crate::gpu::{Buffer, Draw, Error, ImageView, Pass, Topology};
 use crate::host_block;
 
@@ -66,6 +67,15 @@ impl Splats {
             normal_height: normal_height.clone(),
             scene: context.upload("scene", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
         })
+    }
+
+    /// Writes the uniform block anew.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set_scene(&self, parameters: &Parameters, rock: &Rock) -> Result<(), Error> {
+        let block = scene(parameters, &self.normal_height, rock);
+        update(&self.scene, bytemuck::bytes_of(&block))
     }
 
     /// A pass that draws the splats.

@@ -77,10 +77,13 @@ use self::stage::{Build, PixelPass, Stage, Traversal};
 use crate::gpu::transfer::read_image;
 use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
-use crate::scene::{HeightMap, Suspect};
+use crate::scene::{Camera, HeightMap, Suspect};
 
 /// The features that this paper needs of a device, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 0] = [];
+
+/// Parameters that each frame writes into its blocks.
+pub const WRITTEN: [&str; 4] = ["camera", "haze", "normals", "sun"];
 
 /// The paper under one variant.
 pub struct Terrain {
@@ -195,6 +198,12 @@ impl Terrain {
             terrain.objects = Some(ObjectPasses::new(&build, inputs.objects, (depth, picture), maps)?);
         }
         Ok(terrain)
+    }
+
+    /// Sets the numbers of [`WRITTEN`] of the next frames; all others are those that it was made with. The caller has
+    /// validated them.
+    pub fn set_written(&mut self, parameters: &Parameters) {
+        self.parameters = parameters.clone();
     }
 
     /// Sets the view of the next frames. The caller has validated it.
@@ -377,6 +386,10 @@ impl Paper for Terrain {
     fn warnings(&self) -> Vec<String> {
         let haze = self.parameters.haze_warning(&self.scene.extent);
         void_warnings(self.scene.maps.iter().map(|map| &**map)).into_iter().chain(haze).collect()
+    }
+
+    fn camera(&self) -> Option<Camera> {
+        Some(self.parameters.camera(&self.scene.extent))
     }
 
     fn picture(&self) -> &Arc<ImageView> {

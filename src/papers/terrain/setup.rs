@@ -22,7 +22,7 @@ use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
     Collider, Drape, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement, Terrain, Variant,
-    View,
+    View, WRITTEN,
 };
 use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, volcano};
 
@@ -206,6 +206,15 @@ impl Study for Setup {
         };
         scene.objects = self.stand(&scene.maps)?;
         Ok(scene)
+    }
+
+    fn reconfigure(&self, _: &Scene, paper: &mut Terrain, changed: &Given) -> Result<bool, Error> {
+        if !changed.is_within(&WRITTEN) {
+            return Ok(false);
+        }
+        self.check()?;
+        paper.set_written(&self.parameters);
+        Ok(true)
     }
 
     fn make(

@@ -4,6 +4,7 @@ mod barriers;
 mod counters;
 mod devices;
 mod first_pass;
+mod first_passes;
 mod fixtures;
 mod indirect;
 mod loops;

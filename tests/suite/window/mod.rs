@@ -1,3 +1,9 @@
 //! The window and its worker.
 
 mod client;
+mod scene;
+mod worker;
+mod worker_answers;
+mod worker_capture;
+mod worker_ends;
+mod worker_shaders;

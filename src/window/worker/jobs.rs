@@ -1,0 +1,100 @@
+//! What a window wants done beside frames: limits, memory, command lines, files.
+
+use std::path::Path;
+
+use super::renderdoc::RenderDoc;
+use super::state::State;
+use super::{command, keep, process};
+use crate::gpu::Mode;
+use crate::gpu::live::MemoryUse;
+use crate::measure::study::Study;
+use crate::measure::{Error, limits};
+use crate::window::protocol::{DeviceLimits, Event, Keep, Memory, Progress, Request, ResourceMemory, Work};
+
+impl<S: Study> State<S> {
+    /// Does what a request wants done beside frames.
+    ///
+    /// # Errors
+    /// Those of the work.
+    pub(super) fn work(&mut self, request: &Request) -> Result<(), Error> {
+        let event = match request {
+            Request::Limits => {
+                let tell = |done| {
+                    self.outbox.tell(&Event::Progress(Progress { what: Work::Limits, done, total: 1 }));
+                };
+                tell(0);
+                let found = limits::measure(&mut self.machine)?;
+                tell(1);
+                Event::Limits(DeviceLimits {
+                    copy_gb_s: found.copy_gb_s,
+                    fma_gflops: found.fma_gflops,
+                    fill_gpix_s: found.fill_gpix_s,
+                    blend_gpix_s: found.blend_gpix_s,
+                })
+            }
+            Request::Memory => Event::Memory(self.memory()),
+            Request::Command(verb) => {
+                let sides: Vec<_> = self.sides.iter().map(|side| side.resolved.clone()).collect();
+                Event::Command(command::line(*verb, self.clock.number(), &self.choice, &sides, &self.options))
+            }
+            Request::Keep(keep) => Event::Kept(self.keep(keep)?),
+            Request::Capture => {
+                let Some(renderdoc) = RenderDoc::find() else {
+                    let problem = "capturing a frame: RenderDoc is not in the process; start the window from it";
+                    return Err(Error::Input(problem.to_owned()));
+                };
+                let (number, count) = (self.clock.number(), self.sides.len());
+                let file = renderdoc.capture(|| {
+                    let draw = |index| self.draw(index, number, None, (Mode::Plain, true)).map(drop);
+                    (0..count).try_for_each(draw)
+                })?;
+                Event::Kept(vec![file])
+            }
+            _ => return Ok(()),
+        };
+        self.outbox.tell(&event);
+        Ok(())
+    }
+
+    fn keep(&mut self, keep: &Keep) -> Result<Vec<String>, Error> {
+        let (Keep::Picture { side, file }
+        | Keep::Target { side, file, .. }
+        | Keep::ContactSheet { side, file }
+        | Keep::Film { side, file, .. }) = keep;
+        let State { sides, machine, inbox, outbox, .. } = self;
+        let side = sides.get_mut(*side).ok_or_else(|| Error::Input(format!("there is no side {side}")))?;
+        let path = Path::new(file);
+        match keep {
+            Keep::Picture { .. } => keep::picture(machine, side, path)?,
+            Keep::Target { name, .. } => keep::target(machine, side, name, path)?,
+            Keep::ContactSheet { .. } => keep::sheet(machine, side, path)?,
+            Keep::Film { first, end, .. } => {
+                self.needs_frame = true;
+                let total = u64::from(end.saturating_sub(*first));
+                let tell = |done| outbox.tell(&Event::Progress(Progress { what: Work::Film, done, total }));
+                let files = keep::film(machine, side, (*first, *end), path, |done| {
+                    tell(u64::from(done));
+                    !inbox.is_cancelled()
+                });
+                tell(total);
+                return files;
+            }
+        }
+        Ok(vec![file.clone()])
+    }
+
+    fn memory(&self) -> Memory {
+        let live = self.machine.device.live();
+        let memory = &self.machine.device.physical().memory;
+        let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
+        let resource =
+            |used: MemoryUse| ResourceMemory { name: used.name, bytes: used.bytes, is_host_visible: used.host_visible };
+        Memory {
+            resources: live.memory().into_iter().map(resource).collect(),
+            total_bytes: live.total_bytes(),
+            peak_bytes: live.peak_bytes(),
+            heap_bytes: heaps.iter().map(|heap| heap.size).max().unwrap_or(0),
+            process_bytes: process::resident_bytes(),
+        }
+    }
+}

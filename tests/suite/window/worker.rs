@@ -1,0 +1,200 @@
+//! The worker of every paper: its pictures are those of `render`, whatever is changed on the way.
+
+use fumarole::window::protocol::{Event, Request};
+
+use super::scene::{PAPERS, Worker, picture, rendered, set, small, unset, variant};
+use crate::common::beside_others;
+
+/// A camera for each paper that shows the scene from elsewhere.
+fn elsewhere(paper: &str) -> &'static str {
+    match paper {
+        "lava" => "-0.5,2.5,2.6,1.8,0.1,0.5",
+        "gas" => "-1,3,9,0,0.5,0",
+        "caustics" => "0.5,4,3,0,-2,0",
+        "burning" => "1.5,1,1.5,0,0.1,0",
+        _ => "-5000,6000,9000,0,500,0",
+    }
+}
+
+fn builds(worker: &Worker) -> usize {
+    worker.events.iter().filter(|e| matches!(e, Event::Built(built) if built.sides[0].build_ms.is_some())).count()
+}
+
+fn every_paper(test: impl Fn(&str, &str) + Sync) {
+    beside_others(|| PAPERS.iter().for_each(|(paper, options)| test(paper, options)));
+}
+
+#[test]
+fn a_picture_is_that_of_render_and_a_camera_moves_without_building() {
+    every_paper(|paper, options| {
+        let mut worker = Worker::small(paper);
+        let first = worker.frame_after(0);
+        let shown = picture(&first, 0);
+        assert!(shown == rendered(paper, options), "{paper}: the first picture");
+        assert_eq!((first.number, first.is_playing, first.sides.len()), (0, false, 1));
+
+        let camera = elsewhere(paper);
+        let moved = picture(&worker.frame_of(set("camera", camera)), 0);
+        assert!(moved == rendered(paper, &format!("{options} --camera={camera}")), "{paper}: moved");
+        assert!(moved != shown, "{paper}: the camera shows the same");
+        let numbers: Vec<f64> = camera.split(',').map(|number| number.parse::<f32>().unwrap().into()).collect();
+        assert_eq!(worker.setup().sides[0].camera.map(|camera| camera.to_vec()), Some(numbers), "{paper}");
+        assert_eq!(builds(&worker), 1, "{paper}: the camera is no reason to build");
+
+        assert!(picture(&worker.frame_of(unset("camera")), 0) == shown, "{paper}: back");
+        assert_eq!(worker.setup().sides[0].set.contains(&"camera".to_owned()), false);
+        worker.quit();
+    });
+}
+
+#[test]
+fn constants_that_a_paper_takes_over_are_seen_without_building() {
+    beside_others(|| {
+        let cases: [(&str, &[(&str, &str)]); 4] = [
+            (
+                "lava",
+                &[
+                    ("color", "0.1,0.3,0.9"),
+                    ("epsilon", "0.3"),
+                    ("exposure", "0.5"),
+                    ("rock-tile", "0.4"),
+                    ("splat-radius", "0.1"),
+                    ("tone", "clip"),
+                    ("camera", "fig-8.3"),
+                ],
+            ),
+            (
+                "gas",
+                &[
+                    ("ambient", "0.4,0.2,0.1"),
+                    ("early-end", "0.5"),
+                    ("first-frame", "20"),
+                    ("frame-step", "3"),
+                    ("pixel-size", "0.4"),
+                    ("shadow-threshold", "0.3"),
+                ],
+            ),
+            ("caustics", &[("samples", "2"), ("time-step", "0.3")]),
+            ("terrain", &[("haze", "0.2"), ("normals", "nodes"), ("sun", "120,20"), ("camera", "top")]),
+        ];
+        for (paper, changes) in cases {
+            let mut worker = Worker::small(paper);
+            worker.frame_of(Request::GoTo(2));
+            let mut options = format!("{} --frame 2", small(paper));
+            for (name, value) in changes {
+                options += &format!(" --{name}={value}");
+                let shown = picture(&worker.frame_of(set(name, value)), 0);
+                assert!(shown == rendered(paper, &options), "{paper}: {name} {value}");
+            }
+            assert_eq!(builds(&worker), 1, "{paper}");
+            worker.quit();
+        }
+    });
+}
+
+#[test]
+fn going_to_a_frame_shows_that_frame_forwards_and_back() {
+    every_paper(|paper, options| {
+        let mut worker = Worker::small(paper);
+        worker.frame_after(0);
+        let of = |number: u32| rendered(paper, &format!("{options} --frame {number}"));
+        let frame = worker.frame_of(Request::GoTo(3));
+        assert!(picture(&frame, 0) == of(3), "{paper}: frame 3");
+        let frame = worker.frame_of(Request::Step(-2));
+        assert_eq!(frame.number, 1);
+        assert!(picture(&frame, 0) == of(1), "{paper}: two back");
+        let frame = worker.frame_of(Request::Step(1));
+        assert!(picture(&frame, 0) == of(2), "{paper}: one on");
+        // The state stays where it is.
+        let camera = elsewhere(paper);
+        let moved = rendered(paper, &format!("{options} --frame 2 --camera={camera}"));
+        assert!(picture(&worker.frame_of(set("camera", camera)), 0) == moved, "{paper}: seen from elsewhere");
+        let frame = worker.frame_of(Request::Step(1));
+        assert!(
+            picture(&frame, 0) == rendered(paper, &format!("{options} --frame 3 --camera={camera}")),
+            "{paper}: and on"
+        );
+        worker.quit();
+    });
+}
+
+#[test]
+fn a_late_frame_of_a_state_is_replayed_with_progress() {
+    beside_others(|| {
+        for paper in ["lava", "burning"] {
+            let mut worker = Worker::small(paper);
+            worker.frame_after(0);
+            let frame = worker.frame_of(Request::GoTo(300));
+            assert!(picture(&frame, 0) == rendered(paper, &format!("{} --frame 300", small(paper))), "{paper}");
+            let progress = worker.events.iter().filter(|event| matches!(event, Event::Progress(p) if p.total > 100));
+            assert!(progress.count() >= 2, "{paper}: {:?}", worker.events.len());
+            worker.quit();
+        }
+    });
+}
+
+#[test]
+fn passes_are_listed_and_a_frame_ends_after_each_of_them() {
+    every_paper(|paper, _| {
+        let mut worker = Worker::small(paper);
+        let whole = worker.frame_after(0);
+        let built = worker.events.iter().find_map(|event| match event {
+            Event::Built(built) => Some(built.sides[0].clone()),
+            _ => None,
+        });
+        let built = built.expect("what is built is told before the frame");
+        let count = built.passes.len() as u32;
+        assert!(count >= 2, "{paper}: {:?}", built.passes);
+        assert!(built.passes.iter().all(|pass| pass.calls > 0));
+        let written_by = |name: &str| {
+            let is_one = |index: &usize| built.targets[*index].name == name;
+            built.passes.iter().position(|pass| pass.written_targets.iter().any(|target| is_one(target)))
+        };
+        assert!(written_by("picture").is_some(), "{paper}: {:?}", built.passes);
+
+        for passes in 0..=count {
+            let frame = worker.frame_of(Request::After(Some(passes)));
+            assert_eq!(frame.after, Some(passes));
+            let written = &frame.sides[0].written;
+            for target in &built.targets {
+                let Some(first) = written_by(&target.name) else { continue };
+                let is_written = written.contains(&target.name);
+                assert_eq!(is_written, (first as u32) < passes, "{paper}: {} after {passes}", target.name);
+            }
+        }
+        let last = worker.frame_of(Request::After(Some(count)));
+        assert!(picture(&last, 0) == picture(&whole, 0), "{paper}: after the last pass");
+        let again = worker.frame_of(Request::After(None));
+        assert!(picture(&again, 0) == picture(&whole, 0), "{paper}: whole again");
+        worker.quit();
+    });
+}
+
+#[test]
+fn buffers_pipelines_variants_and_presets_are_built_anew() {
+    beside_others(|| {
+        let mut worker = Worker::small("caustics");
+        worker.frame_after(0);
+        let options = small("caustics");
+        let of = |more: &str| rendered("caustics", &format!("{options} {more}"));
+        assert!(picture(&worker.frame_of(set("planes", "7")), 0) == of("--planes 7"), "buffers");
+        assert!(picture(&worker.frame_of(set("size", "50x40")), 0) == of("--planes 7 --size 50x40"), "size");
+        let frame = worker.frame_of(Request::Sides(vec![variant("volumetric")]));
+        assert!(picture(&frame, 0) == of("--planes 7 --size 50x40 --variant volumetric"), "variant");
+        assert_eq!(worker.setup().sides[0].choice.variant.as_deref(), Some("volumetric"));
+        assert_eq!(worker.setup().sides[0].choice.compiler.as_deref(), Some("glslang"));
+        assert!(builds(&worker) == 4);
+        // A flag, and what turns it off again.
+        let frame = worker.frame_of(set("shadows", "true"));
+        assert!(picture(&frame, 0) == of("--planes 7 --size 50x40 --variant volumetric --shadows"), "a flag");
+        worker.quit();
+
+        let mut worker = Worker::start("lava", &format!("{} --color 0.1,0.2,0.9", small("lava")));
+        worker.frame_after(0);
+        // A preset forgets what was set, but for the size.
+        let frame = worker.frame_of(Request::Preset(Some("results".into())));
+        assert_eq!(worker.setup().preset.as_deref(), Some("results"));
+        assert!(picture(&frame, 0) == rendered("lava", "--preset results --size 64x48"), "preset");
+        worker.quit();
+    });
+}
