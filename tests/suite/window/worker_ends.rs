@@ -134,7 +134,7 @@ fn ended(child: &mut Child) -> f64 {
 fn a_worker_ends_with_its_window_even_while_it_draws() {
     beside_others(|| {
         // Minutes of a frame.
-        let options = "gas worker --size 3000x2000 --steps 200 --table 8";
+        let options = "gas worker --size 1600x1200 --steps 400 --table 8";
         let (mut child, exchange) = bare(options);
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         assert!(lines.next().unwrap().unwrap().starts_with("{\"ready\""));
