@@ -64,7 +64,7 @@ impl Device {
             .push_next(&mut v13);
         // SAFETY: `physical` belongs to `instance`; the structures outlive the call; the features were asked for.
         let raw = unsafe { instance.raw.create_device(physical.raw, &info, None) }
-            .context("opening device", &physical.name)?;
+            .before_a_device("opening", &physical.name)?;
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.raw.clone(),
             device: raw.clone(),

@@ -86,10 +86,17 @@ impl Error {
 /// Names operation and object on a raw Vulkan result.
 pub(crate) trait Context<T> {
     fn context(self, operation: &'static str, object: impl Into<String>) -> Result<T, Error>;
+
+    /// Of what is asked before there is a device: an [`Error::NoDevice`] whatever the reason.
+    fn before_a_device(self, operation: &'static str, object: &str) -> Result<T, Error>;
 }
 
 impl<T> Context<T> for Result<T, vk::Result> {
     fn context(self, operation: &'static str, object: impl Into<String>) -> Result<T, Error> {
         self.map_err(|result| Error::vulkan(operation, object, result))
+    }
+
+    fn before_a_device(self, operation: &'static str, object: &str) -> Result<T, Error> {
+        self.map_err(|result| Error::NoDevice { reason: format!("{operation} {object}: {result}") })
     }
 }

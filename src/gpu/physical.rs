@@ -145,13 +145,13 @@ impl PhysicalDevice {
     /// Every device of the instance, in the loader's order.
     ///
     /// # Errors
-    /// [`Error::Vulkan`] when the loader cannot list them.
+    /// [`Error::NoDevice`] when the loader cannot list them.
     pub fn enumerate(instance: &Arc<Instance>) -> Result<Vec<PhysicalDevice>, Error> {
         // SAFETY: the instance is alive; no other precondition.
         let handles = match unsafe { instance.raw.enumerate_physical_devices() } {
             // The loader's answer when no driver could be opened.
             Err(vk::Result::ERROR_INITIALIZATION_FAILED) => Vec::new(),
-            other => other.context("listing", "the Vulkan devices")?,
+            other => other.before_a_device("listing", "the Vulkan devices")?,
         };
         handles.into_iter().enumerate().map(|(i, raw)| Self::describe(instance, i, raw)).collect()
     }

@@ -8,11 +8,11 @@ use super::instance::Instance;
 /// Features of whole Vulkan that a device of the subset lacks; `None` for a device of whole Vulkan.
 ///
 /// # Errors
-/// [`Error::Vulkan`] where the device's extensions cannot be listed.
+/// [`Error::NoDevice`] where the device's extensions cannot be listed.
 pub(super) fn lacks(instance: &Instance, raw: vk::PhysicalDevice) -> Result<Option<Vec<&'static str>>, Error> {
     // SAFETY: `raw` comes from this instance.
     let extensions = unsafe { instance.raw.enumerate_device_extension_properties(raw) }
-        .context("listing", "the extensions of a device")?;
+        .before_a_device("listing", "the extensions of a device")?;
     if !extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(khr::portability_subset::NAME)) {
         return Ok(None);
     }

@@ -36,7 +36,7 @@ pub const PAPERS: [Paper; 5] = [
         scene: "--size 24x16 --blocks 2x2x2 --fire 20 --smoke 10 --speed 1 --flammability 10 --mesh sphere --triangles 100 \
                 --first-frame 30",
     },
-    Paper { name: "terrain", program: program::terrain, scene: "--size 32x24" },
+    Paper { name: "terrain", program: program::terrain, scene: "--size 32x24 --resolution 9" },
 ];
 
 impl Paper {
