@@ -24,42 +24,30 @@ const float EDGE_SLACK = 1.0e-5; // rounding must not let a ray through between 
 struct Hit {
     float distance_m; // negative where nothing is hit
     vec3 normal; // of the face, unit length, either side
+    bool is_certain; // false where the steps did not suffice
 };
 
 vec3 corner_at(uint index) {
     return vec3(corners.list[3u * index], corners.list[3u * index + 1u], corners.list[3u * index + 2u]);
 }
 
-// The first triangle that a ray of unit direction meets, on either side.
-Hit first_hit(vec3 origin, vec3 direction, uint node_count) {
+// The first triangle that a ray of unit direction meets, on either side. A step visits a box or a triangle; one loop for both and a
+// bound of its own, since lavapipe grants all loops of a shader 65,535 iterations together, and ends them without a word.
+Hit first_hit(vec3 origin, vec3 direction, uint node_count, uint most_steps) {
     vec3 inverse = 1.0 / mix(direction, vec3(1.0e-9), lessThan(abs(direction), vec3(1.0e-9)));
     float nearest_m = 1.0e30;
     vec3 normal = vec3(0.0, 1.0, 0.0);
     uint at = 0u;
-    while (at < node_count) {
-        Node node = nodes.list[at];
-        // lavapipe runs the pixels beside a triangle's edge along with those inside, and lets them read nothing but zeros: they would
-        // never come to an end, and use up the iterations that it grants to all loops of a shader together.
-        if (node.skip <= at) {
-            break;
-        }
-        vec3 to_low = (node.low - origin) * inverse;
-        vec3 to_high = (node.high - origin) * inverse;
-        vec3 enters = min(to_low, to_high);
-        vec3 leaves = max(to_low, to_high);
-        float entry = max(max(enters.x, enters.y), max(enters.z, 0.0));
-        float exit = min(min(leaves.x, leaves.y), min(leaves.z, nearest_m));
-        // A flat box is as thin as its rounding.
-        if (entry > exit + 1.0e-5 * abs(exit)) {
-            at = node.skip;
-            continue;
-        }
-        uint first = node.leaf >> 3u;
-        uint end = first + (node.leaf & 7u);
-        for (uint triangle = first; triangle < end; triangle++) {
+    uint triangle = 0u; // of the leaf that was entered last
+    uint end = 0u;
+    uint steps = 0u;
+    while (steps < most_steps && (triangle < end || at < node_count)) {
+        steps++;
+        if (triangle < end) {
             vec3 a = corner_at(triangles.list[3u * triangle]);
             vec3 ab = corner_at(triangles.list[3u * triangle + 1u]) - a;
             vec3 ac = corner_at(triangles.list[3u * triangle + 2u]) - a;
+            triangle++;
             vec3 across = cross(direction, ac);
             float determinant = dot(ab, across);
             if (determinant != 0.0) {
@@ -74,8 +62,26 @@ Hit first_hit(vec3 origin, vec3 direction, uint node_count) {
                     normal = cross(ab, ac);
                 }
             }
+        } else {
+            Node node = nodes.list[at];
+            vec3 to_low = (node.low - origin) * inverse;
+            vec3 to_high = (node.high - origin) * inverse;
+            vec3 enters = min(to_low, to_high);
+            vec3 leaves = max(to_low, to_high);
+            float entry = max(max(enters.x, enters.y), max(enters.z, 0.0));
+            float exit = min(min(leaves.x, leaves.y), min(leaves.z, nearest_m));
+            if (node.skip <= at) {
+                // lavapipe runs the pixels beside a triangle's edge along with those inside, and lets them read nothing but zeros.
+                at = node_count;
+            } else if (entry > exit + 1.0e-5 * abs(exit)) { // a flat box is as thin as its rounding
+                at = node.skip;
+            } else {
+                at++;
+                triangle = node.leaf >> 3u;
+                end = triangle + (node.leaf & 7u);
+            }
         }
-        at++;
     }
-    return Hit(nearest_m < 1.0e30 ? nearest_m : -1.0, normalize(normal));
+    bool is_certain = triangle >= end && at >= node_count;
+    return Hit(nearest_m < 1.0e30 ? nearest_m : -1.0, normalize(normal), is_certain);
 }

@@ -7,7 +7,7 @@
 #include "caustics/fresnel.glsl"
 #include "caustics/view.glsl"
 
-layout(location = 0) out vec4 color;
+layout(location = 0) out vec4 color; // alpha 0 where a ray did not end
 
 const int SURFACE_STEPS = 5; // Newton's method converges in three on waves of moderate slope
 
@@ -16,7 +16,9 @@ vec3 sky(vec3 direction) {
     return mix(vec3(0.75, 0.85, 0.95), vec3(0.18, 0.36, 0.70), sqrt(height));
 }
 
-// Light that comes along a ray from above.
+float certain = 1.0;
+
+// Light that comes along a ray from above; `certain` becomes 0 where it did not end.
 vec3 seen_along(vec3 ray) {
     if (ray.y > -1.0e-3) {
         return sky(ray);
@@ -41,7 +43,8 @@ vec3 seen_along(vec3 ray) {
         return sky(mirrored);
     }
     vec3 below = DEEP_WATER;
-    Hit hit = first_hit(surface, refracted, view.node_count);
+    Hit hit = first_hit(surface, refracted, view.node_count, view.most_steps);
+    certain = hit.is_certain ? certain : 0.0;
     if (hit.distance_m > 0.0) {
         vec3 lit = light_from(surface + refracted * hit.distance_m, hit.normal);
         below = mix(DEEP_WATER, lit, exp(-water.absorption_per_m * hit.distance_m));
@@ -56,5 +59,5 @@ void main() {
         // A picture holds no more than 1; a brighter sample would hide an edge.
         sum += min(seen_along(ray_through(sample_place(gl_FragCoord.xy, i))), vec3(1.0));
     }
-    color = vec4(sum / float(view.samples), 1.0);
+    color = vec4(sum / float(view.samples), certain);
 }

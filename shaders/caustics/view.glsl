@@ -16,6 +16,7 @@ layout(set = 0, binding = 4) uniform View {
     vec2 picture_size; // pixels
     vec2 texture_size; // texels
     uint node_count; // of the receivers' tree
+    uint most_steps; // of a ray in it
 } view;
 
 #include "caustics/receiver-tree.glsl"

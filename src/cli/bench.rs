@@ -50,7 +50,7 @@ fn measure<S: Study>(
         outcome::say_device(output, &machine);
     }
     for &variant in variants {
-        outcome::foretell(output, &study.estimate(&loaded.scene, variant), &machine);
+        outcome::foretell(output, &study.estimate(&machine.device, &loaded.scene, variant), &machine);
     }
     let limits = measure.limits(&mut machine)?;
     let bench = Bench { study, loaded: &loaded, variants, schedule, limits: limits.as_ref() };

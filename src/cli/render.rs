@@ -128,8 +128,8 @@ pub fn draw<S: Study>(
     let scene = study.load()?;
     let mut machine = Machine::open(&arguments.machine.resolve(0), S::NEEDS)?;
     outcome::say_device(&output, &machine);
+    outcome::foretell(&output, &study.estimate(&machine.device, &scene, variant), &machine);
     let mut built = build(&machine, &study, &scene, variant)?;
-    outcome::foretell(&output, &study.estimate(&scene, variant), &machine);
     let targets = built.paper.targets();
     for dump in &arguments.dump {
         if !targets.iter().any(|t| t.name == dump.target) {

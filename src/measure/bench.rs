@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::assembly::{self, RunMetadata, assemble};
 use super::error::Error;
+use super::estimate::Estimate;
 use super::limits;
 use super::machine::Machine;
 use super::measure::{Schedule, Watch, measure};
@@ -57,7 +58,7 @@ pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: 
     let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
     live.reset_peak();
     let started = Instant::now();
-    study.estimate(scene, variant).check(&machine.device, variant.as_str())?;
+    study.estimate(&machine.device, scene, variant).check(&machine.device, variant.as_str())?;
     let made = study.make(&machine.shaders, variant.as_str(), scene, variant);
     let paper = made.map_err(|error| machine.shaders.blamed(error))?;
     let build_ms = started.elapsed().as_secs_f64() * 1e3;
@@ -116,6 +117,8 @@ impl<S: Study> Bench<'_, S> {
     pub fn measure(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Vec<VariantRun>, Error> {
         let Bench { study, loaded, variants, schedule, .. } = *self;
         let started = environment::instant();
+        let estimates = variants.iter().map(|&variant| study.estimate(&machine.device, &loaded.scene, variant));
+        Estimate::all(estimates).check(&machine.device, "all variants together")?;
         let mut built = variants
             .iter()
             .map(|&variant| build(machine, study, &loaded.scene, variant))

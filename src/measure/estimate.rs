@@ -3,8 +3,11 @@
 use crate::gpu::physical::DeviceType;
 use crate::gpu::{Device, Error};
 
-/// Most passes of one frame: command buffers of more take gigabytes.
+/// Most passes of one frame, each with its queries: command buffers of more take gigabytes.
 const MOST_PASSES: u64 = 1 << 16;
+
+/// Most draws and dispatches of one frame, for the same reason.
+const MOST_DRAWS: u64 = 1 << 20;
 
 /// Invocations of fragment and compute shaders that a CPU finishes in a second, and any other device, roughly.
 const PER_SECOND: (f64, f64) = (1e8, 2e10);
@@ -16,15 +19,23 @@ pub struct Estimate {
     pub bytes: Vec<(&'static str, f64)>,
     /// Passes of one frame, with the parameter that they follow.
     pub passes: Option<(&'static str, u64)>,
-    /// Invocations of fragment and compute shaders in one frame.
+    /// Draws and dispatches inside the passes, where they are many more, with the parameter that they follow.
+    pub draws: Option<(&'static str, u64)>,
+    /// Invocations of fragment and compute shaders in one frame and before it.
     pub invocations: Vec<(&'static str, f64)>,
 }
 
 impl Estimate {
+    /// Several configurations at once: bytes add up, their frames come one after the other.
+    pub fn all(estimates: impl IntoIterator<Item = Estimate>) -> Self {
+        let bytes = estimates.into_iter().flat_map(|estimate| estimate.bytes).collect();
+        Estimate { bytes, ..Estimate::default() }
+    }
+
     /// Passes for a configuration that the device can hold.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more bytes than its largest heap has, or more passes than a frame may have.
+    /// [`Error::Limit`] for more bytes than its largest heap has, or more passes or draws than a frame may have.
     pub fn check(&self, device: &Device, label: &str) -> Result<(), Error> {
         let memory = &device.physical().memory;
         let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
@@ -36,12 +47,16 @@ impl Estimate {
         if let Some((parameter, _)) = largest(&self.bytes).filter(|_| total > limit as f64) {
             return refused("size in bytes of all buffers and images", total as u64, limit, parameter);
         }
-        match self.passes {
-            Some((parameter, passes)) if passes > MOST_PASSES => {
-                refused("count of passes in a frame", passes, MOST_PASSES, parameter)
+        let recorded = [
+            ("count of passes in a frame", self.passes, MOST_PASSES),
+            ("count of draws and dispatches in a frame", self.draws, MOST_DRAWS),
+        ];
+        for (what, found, most) in recorded {
+            if let Some((parameter, wanted)) = found.filter(|(_, wanted)| *wanted > most) {
+                return refused(what, wanted, most, parameter);
             }
-            _ => Ok(()),
         }
+        Ok(())
     }
 
     /// A line for whoever waits, where a frame takes long on the device.
@@ -53,7 +68,7 @@ impl Estimate {
         let total: f64 = self.invocations.iter().map(|(_, count)| count).sum();
         let (parameter, _) = largest(&self.invocations).filter(|_| total > LONG * per_second)?;
         Some(format!(
-            "note: a frame runs some {:.0e} shader invocations and may take {:.0} s here; lower `{parameter}` for less",
+            "note: the first frame runs some {:.0e} shader invocations and may take {:.0} s here; lower `{parameter}` for less",
             total,
             total / per_second
         ))

@@ -9,7 +9,7 @@ use super::experiment::Experiment;
 use super::machine::Machine;
 use super::measure::Measurement;
 use super::parameter::{Given, Parameter};
-use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 
 /// One paper as a user set it up: it declares its parameters, presets and experiments, from which the command line
@@ -63,7 +63,7 @@ pub trait Study: Clone + Default + 'static {
     }
 
     /// Sizes of a variant, as far as they follow from the parameters; [`Study::make`] is not asked for what is too large.
-    fn estimate(&self, _scene: &Self::Scene, _variant: Self::Variant) -> Estimate {
+    fn estimate(&self, _device: &Device, _scene: &Self::Scene, _variant: Self::Variant) -> Estimate {
         Estimate::default()
     }
 

@@ -17,6 +17,7 @@ mod buffers;
 mod draw;
 mod draw_fire;
 mod draw_wire;
+mod estimate;
 pub mod experiments;
 mod flames;
 mod framing;

@@ -11,9 +11,10 @@ use super::model::with_triangles;
 use super::{BlockCounts, Burning, Material, NEEDS, Parameters, Texture, Variant, texture};
 use crate::field;
 use crate::gpu::transfer::read_buffer;
-use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
+use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -153,6 +154,11 @@ impl Study for Setup {
             }
             _ => error,
         })
+    }
+
+    fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
+        let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
+        parameters.estimate(variant, &scene.mesh)
     }
 
     fn identity(&self) -> Identity {

@@ -18,6 +18,7 @@ mod coverage;
 mod culled_map;
 mod depth_profile;
 mod diffuse_map;
+mod estimate;
 pub mod experiments;
 mod illumination_volumes;
 mod intersections;
@@ -96,6 +97,8 @@ pub struct Caustics {
     technique: Technique,
     underwater: Underwater,
     view: View,
+    /// `view` was recorded since the last look at it.
+    is_viewed: bool,
 }
 
 /// Passes that the variants do not share.
@@ -192,6 +195,7 @@ impl Caustics {
             technique,
             underwater,
             view,
+            is_viewed: false,
         })
     }
 
@@ -367,11 +371,20 @@ impl Paper for Caustics {
 
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
+        self.is_viewed = true;
         self.view.record(frame, self.time_s(number))
     }
 
     fn camera(&self) -> Option<Camera> {
         Some(self.parameters.camera)
+    }
+
+    /// Fails where a ray of the picture did not end.
+    fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        if std::mem::take(&mut self.is_viewed) {
+            self.view.check(shaders.device())?;
+        }
+        Ok(true)
     }
 
     fn picture(&self) -> &Arc<ImageView> {

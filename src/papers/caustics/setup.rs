@@ -9,10 +9,11 @@ use serde_json::{Map, Value as Json, json};
 
 use super::experiments::{self, Options};
 use crate::field;
-use crate::gpu::{self, Feature, Mode, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, Mode, ShaderLibrary};
 use crate::measure::Error;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
+use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -179,6 +180,10 @@ impl Study for Setup {
         variant: Variant,
     ) -> Result<Caustics, gpu::Error> {
         Caustics::new(shaders, label, variant, &self.parameters, &scene.receivers)
+    }
+
+    fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
+        self.parameters.estimate(variant, &scene.receivers)
     }
 
     fn identity(&self) -> Identity {

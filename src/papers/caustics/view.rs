@@ -12,8 +12,8 @@ use super::resources::Context;
 use super::underwater::Underwater;
 use super::water::LEVEL_M;
 use super::water_surface::{MapBlock, Shape, WaterSurface};
-use crate::gpu::transfer::update;
-use crate::gpu::{Blend, Buffer, Error, Frame, ImageView, Load, Pass};
+use crate::gpu::transfer::{read_image, update};
+use crate::gpu::{Blend, Buffer, Device, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 
 host_block! {
@@ -28,7 +28,8 @@ host_block! {
         picture_size: [f32; 2],
         texture_size: [f32; 2],
         node_count: u32,
-        _pad: [f32; 3],
+        most_steps: u32,
+        _pad: [f32; 2],
     }
 }
 
@@ -56,6 +57,17 @@ enum Constants {
     AboveMap(MapConstants),
 }
 
+/// Iterations that a pixel of the pass spends at most: lavapipe ends all loops of a shader after 65,535 together.
+const MOST_ITERATIONS: u32 = 60_000;
+
+/// Steps of a ray in the receivers' tree, so that those of all samples of a pixel together stay below that. The water
+/// takes five rounds of its waves, the search for light nearby 16 rings of 8 texels, as `view-above.glsl` and `view.glsl`
+/// have it.
+fn most_steps(parameters: &Parameters) -> u32 {
+    let around_a_ray = 5 * (parameters.waves.count + 2) + 16 * (8 + 2) + 8;
+    (MOST_ITERATIONS / parameters.samples.max(1)).saturating_sub(around_a_ray)
+}
+
 /// The pass, the last of a picture; no experiment times it, since the thesis's times end with the cast.
 pub struct View {
     /// 8-bit sRGB.
@@ -65,6 +77,7 @@ pub struct View {
     /// A [`ViewBlock`].
     view: Arc<Buffer>,
     node_count: u32,
+    most_steps: u32,
 }
 
 impl View {
@@ -95,7 +108,9 @@ impl View {
         };
         if !parameters.is_seen_from_above() {
             let pass = pass("caustics/view-below.frag").build(shaders)?;
-            return Ok(View { picture, pass, constants: Constants::Below, view, node_count: tree.node_count });
+            let constants = Constants::Below;
+            let (node_count, most_steps) = (tree.node_count, block.most_steps);
+            return Ok(View { picture, pass, constants, view, node_count, most_steps });
         }
         let eta = 1.0 / parameters.refraction_index;
         let absorption_per_m = parameters.absorption_per_m;
@@ -109,7 +124,8 @@ impl View {
                 Constants::AboveMap(MapConstants { map: *place, eta, absorption_per_m }),
             ),
         };
-        Ok(View { pass: pass.build(shaders)?, picture, constants, view, node_count: tree.node_count })
+        let (node_count, most_steps) = (tree.node_count, block.most_steps);
+        Ok(View { pass: pass.build(shaders)?, picture, constants, view, node_count, most_steps })
     }
 
     /// Sets the camera of the next pictures, on the same side of the water as it was.
@@ -135,6 +151,24 @@ impl View {
             .vertices(3);
         })
     }
+
+    /// Fails where a ray of the last picture did not end.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] for such a ray; what Vulkan answers.
+    pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
+        let texels = read_image(device, &self.picture)?;
+        let uncertain = texels.chunks_exact(4).filter(|texel| texel[3] == 0).count();
+        if uncertain == 0 {
+            return Ok(());
+        }
+        let problem = format!(
+            "rays of {uncertain} pixels did not end: each may take {} steps in the tree of the receivers' triangles; lower \
+             `samples`, or take a `mesh` of fewer or rounder triangles",
+            self.most_steps
+        );
+        Err(Error::Pass { pass: "view".into(), problem })
+    }
 }
 
 fn block(parameters: &Parameters, underwater: &Underwater, node_count: u32) -> ViewBlock {
@@ -151,6 +185,7 @@ fn block(parameters: &Parameters, underwater: &Underwater, node_count: u32) -> V
         picture_size: [parameters.width as f32, parameters.height as f32],
         texture_size: [underwater.color.width() as f32, underwater.color.height() as f32],
         node_count,
-        _pad: [0.0; 3],
+        most_steps: most_steps(parameters),
+        _pad: [0.0; 2],
     }
 }

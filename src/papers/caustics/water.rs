@@ -121,7 +121,7 @@ impl Grid {
 }
 
 /// Cells along x and z for a number of triangles: an exact division near one to two where there is one.
-fn cells(triangles: u32) -> (u32, u32) {
+pub fn cells(triangles: u32) -> (u32, u32) {
     let cells = (triangles / 2).max(1);
     let ideal = (f64::from(cells) / 2.0).sqrt();
     let (least, most) = ((ideal / 1.5).ceil().max(1.0) as u32, (ideal * 1.5).floor().max(1.0) as u32);

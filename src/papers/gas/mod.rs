@@ -15,6 +15,7 @@ mod capacity;
 mod context;
 mod density_table;
 mod empty_lists;
+mod estimate;
 pub mod experiments;
 mod fragments;
 #[cfg(test)]

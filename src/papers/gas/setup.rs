@@ -3,15 +3,17 @@
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 
+use super::capacity::BufferLimit;
 use super::experiments::{self, Options};
 use super::parameters::volumes::{self, Placement};
 use super::parameters::{default_volume, validate_object};
 use crate::field;
-use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
+use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -165,6 +167,10 @@ impl Study for Setup {
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Gas, gpu::Error> {
         Gas::new(shaders, label, variant, &self.parameters, &scene.objects, None)
+    }
+
+    fn estimate(&self, device: &Device, scene: &Scene, variant: Variant) -> Estimate {
+        self.parameters.estimate(variant, &scene.objects, BufferLimit::new(device, &self.parameters))
     }
 
     fn identity(&self) -> Identity {

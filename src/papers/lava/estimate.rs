@@ -2,19 +2,23 @@
 
 use super::cluster::Point;
 use super::parameters::Parameters;
+use super::rock::Rock;
 use crate::measure::estimate::Estimate;
+use crate::scene::Mesh;
 
 /// Bytes of a texel of four floats.
 const TEXEL: f64 = 16.0;
 
 impl Parameters {
     /// Device memory, passes and fragments of a frame.
-    pub fn estimate(&self) -> Estimate {
+    pub fn estimate(&self, rock: &Rock, objects: &[Mesh]) -> Estimate {
         let [columns, planes, rows] = self.density.map(f64::from);
         let particles = f64::from(self.particles);
         let clusters = f64::from(self.clusters());
         let splats = f64::from(self.splats[0]) * f64::from(self.splats[1]);
         let pixels = f64::from(self.width) * f64::from(self.height);
+        let vertices: usize = objects.iter().map(|mesh| mesh.positions.len()).sum();
+        let indices: usize = objects.iter().map(|mesh| mesh.indices.len()).sum();
         let point = size_of::<Point>() as f64;
         // A particle is drawn into every cluster that its radius reaches, as a square of eq. 6.1.
         let reached = (2.0 * f64::from(self.radius_m / self.space_m.y) * clusters + 1.0).min(clusters);
@@ -23,13 +27,16 @@ impl Parameters {
         let disc = std::f64::consts::PI * point_pixels / 4.0;
         Estimate {
             bytes: vec![
-                ("particles", 5.0 * TEXEL * particles),
+                ("particles", 7.0 * TEXEL * particles),
                 ("density", clusters * (point * particles + TEXEL * columns * rows)),
                 ("density", point * columns * planes * rows + 3.0 * TEXEL * columns * rows),
                 ("splats", 8.0 * splats),
-                ("size", (TEXEL + 12.0) * pixels),
+                ("size", (TEXEL + 8.0) * pixels),
+                ("rock", size_of_val(&rock.texels[..]) as f64),
+                ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
             ],
             passes: Some(("density", 3 * u64::from(self.clusters()) + 16)),
+            draws: None,
             invocations: vec![
                 ("radius", particles * reached * point_pixels),
                 ("density", columns * rows * planes.sqrt() * disc),
@@ -57,12 +64,12 @@ mod tests {
 
     #[test]
     fn what_is_set_higher_is_estimated_higher() {
-        let default = Parameters::default().estimate();
+        let default = Parameters::default().estimate(Rock::built_in(), &[]);
         // 40,000 particles in six clusters, 600 x 150 splats and 800 x 600 pixels are some tens of megabytes.
         assert!((20e6..100e6).contains(&total(&default.bytes)), "{default:?}");
-        let vast = Parameters { density: [1, 67_108_864, 1], ..Parameters::default() }.estimate();
+        let vast = Parameters { density: [1, 67_108_864, 1], ..Parameters::default() }.estimate(Rock::built_in(), &[]);
         assert!(total(&vast.bytes) > 8e12 && vast.passes.is_some_and(|(_, count)| count > 50_000_000), "{vast:?}");
-        let wide = Parameters { splat_radius_m: 1.0, ..Parameters::default() }.estimate();
+        let wide = Parameters { splat_radius_m: 1.0, ..Parameters::default() }.estimate(Rock::built_in(), &[]);
         assert!(total(&wide.invocations) > 100.0 * total(&default.invocations), "{wide:?}");
     }
 }

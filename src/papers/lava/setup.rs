@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::experiments::{self, Options};
 use crate::field;
-use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::image::read_png_within;
 use crate::measure::Error;
 use crate::measure::Paper;
@@ -104,8 +104,8 @@ impl Study for Setup {
         Ok(true)
     }
 
-    fn estimate(&self, _: &Scene, _: Variant) -> Estimate {
-        self.parameters.estimate()
+    fn estimate(&self, _: &Device, scene: &Scene, _: Variant) -> Estimate {
+        self.parameters.estimate(&scene.rock, &scene.objects)
     }
 
     fn identity(&self) -> Identity {

@@ -17,7 +17,7 @@ use crate::host_block;
 /// The most samples a side that are drawn as triangles.
 pub const MESH_SIDE: u32 = 4096;
 /// Indices of one draw, about: the grid is drawn in blocks of rows that share them.
-const BLOCK_INDICES: u32 = 1 << 20;
+pub const BLOCK_INDICES: u32 = 1 << 20;
 
 host_block! {
     struct MeshConstants {

@@ -12,6 +12,7 @@ mod collision;
 mod curve;
 mod depth;
 mod drape;
+mod estimate;
 pub mod experiments;
 mod geodesy;
 mod geometric_transformation;

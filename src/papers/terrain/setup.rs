@@ -9,10 +9,11 @@ use serde_json::{Map, Value as Json, json};
 
 use super::experiments::{self, Options, figures};
 use crate::field;
-use crate::gpu::{self, Feature, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::image::read_png;
 use crate::measure::bench::Built;
 use crate::measure::config::entries;
+use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -226,6 +227,12 @@ impl Study for Setup {
     ) -> Result<Terrain, gpu::Error> {
         let inputs = Inputs { maps: &scene.maps, objects: &scene.objects, drape: scene.drape.as_ref() };
         Terrain::new(shaders, label, variant, &self.parameters, &inputs).map_err(|error| self.name_map(label, error))
+    }
+
+    fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
+        let inputs = Inputs { maps: &scene.maps, objects: &scene.objects, drape: scene.drape.as_ref() };
+        let map = if self.maps.contains(&HeightMapSource::Volcano) { "resolution" } else { "map" };
+        self.parameters.estimate(variant, &inputs, map)
     }
 
     fn refusal(&self, variant: Variant) -> Option<&'static str> {

@@ -59,7 +59,7 @@ impl<S: Study> Side<S> {
         let scene = study.load()?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
-        study.estimate(&scene, *variant).check(&machine.device, variant.as_str())?;
+        study.estimate(&machine.device, &scene, *variant).check(&machine.device, variant.as_str())?;
         let made = study.make(&shaders, label, &scene, *variant);
         let paper = made.map_err(|error| shaders.blamed(error))?;
         let build_ms = started.elapsed().as_secs_f64() * 1e3;

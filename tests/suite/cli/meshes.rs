@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fumarole::scene::random::Random;
 
-use super::program::{ONCE, caustics, file, folder};
+use super::program::{ONCE, caustics, entries, file, folder};
 
 fn refuse(path: &Path, parts: &[&str]) {
     let name = path.file_name().unwrap().to_str().unwrap();
@@ -76,4 +76,30 @@ fn what_is_no_mesh_file_is_refused_with_what_is_known() {
     caustics("bench --mesh").arg("").tiny().args(ONCE).run().refused(2, &endings);
     caustics("passes --mesh no-such.obj").tiny().run().refused(2, &["no-such.obj"]);
     caustics("render --mesh sphere --mesh no-such.obj").tiny().run().refused(2, &["no-such.obj"]);
+}
+
+/// Triangles as thin as needles along one diagonal: no box parts them from a ray, which so visits all of them. lavapipe
+/// would end its loop without a word.
+#[test]
+fn rays_that_do_not_end_fail_the_picture() {
+    let out = folder();
+    let mut needles = String::new();
+    for i in 0..20_000 {
+        let aside = 1e-3 * f64::from(i % 200);
+        let along = 1e-3 * f64::from(i / 200);
+        needles += &format!(
+            "v {} -1 {along}\nv {} 1 {along}\nv {} 1 {}\n",
+            aside - 1.0,
+            aside + 1.0,
+            aside + 1.0,
+            along + 1e-4
+        );
+        needles += "f -3 -2 -1\n";
+    }
+    let mesh = file(&out, "needles.obj", needles);
+    let scene = "render --quiet --size 16x12 --map-size 16 --planes 2 --water-triangles 50 --image a.png --mesh";
+    let drawn = |samples: &str| caustics(scene).arg(&mesh).args(samples).on_test_device().inside(out.path()).run();
+    drawn("--samples 4").refused(1, &["view", "rays of", "--samples", "--mesh"]);
+    assert_eq!(entries(out.path()), ["needles.obj"]);
+    drawn("--samples 1").succeeded();
 }

@@ -21,6 +21,7 @@ mod pages;
 mod passes;
 pub mod program;
 mod properties;
+mod ranges;
 mod render;
 mod report;
 mod shaders;

@@ -41,8 +41,14 @@ impl Visitor for Cases {
                 let parameter = &parameters[random.next_u32() as usize % parameters.len()];
                 let option = format!("--{}=", parameter.name);
                 let Some(value) = draw(parameter, &mut random) else { continue };
-                if !options.iter().any(|given| given.starts_with(&option)) {
-                    options.push(option + &value);
+                if options.iter().any(|given| given.starts_with(&option)) {
+                    continue;
+                }
+                options.push(option + &value);
+                // The one that needs another is a map's.
+                let needed = parameter.requires.map(|name| format!("--{name}=volcano"));
+                if let Some(needed) = needed.filter(|needed| !options.contains(needed)) {
+                    options.push(needed);
                 }
             }
             self.0.push((S::PAPER, options));
@@ -60,26 +66,45 @@ fn draw<S: Study>(parameter: &Parameter<S>, random: &mut Random) -> Option<Strin
     if !shape.choices.is_empty() {
         return Some(shape.choices[random.next_u32() as usize % shape.choices.len()].0.to_owned());
     }
+    template(parameter).map(|template| template.filled(|| number(&parameter.range, random)))
+}
+
+/// Form of a value that is numbers.
+pub struct Template {
+    /// After each number but the last.
+    separators: Vec<char>,
+    is_whole: bool,
+}
+
+/// The form of a parameter's numbers, as its default or its placeholder show it. None for words.
+pub fn template<S: Study>(parameter: &Parameter<S>) -> Option<Template> {
+    let separators = |text: &str| text.chars().filter(|c| [',', 'x'].contains(c)).collect();
+    let parts = |text: &str| text.split([',', 'x']).map(str::to_owned).collect::<Vec<_>>();
+    let placeholder = parameter.shape().placeholder;
     let default = parameter.text(&S::default());
     // Of a list that is typed one by one, one.
     let default = default.split(' ').next().unwrap_or_default();
-    let is_numeric = |text: &str| text.split([',', 'x']).all(|part| part.parse::<f64>().is_ok());
-    if !is_numeric(default) {
-        return None;
+    if parts(default).iter().all(|part| part.parse::<f64>().is_ok()) {
+        let is_whole = parts(default).iter().all(|part| part.parse::<u64>().is_ok()) && !placeholder.contains('F');
+        return Some(Template { separators: separators(default), is_whole });
     }
-    let is_whole =
-        default.split([',', 'x']).all(|part| part.parse::<u64>().is_ok()) && !shape.placeholder.contains('F');
-    let mut text = String::new();
-    let mut rest = default;
-    while !rest.is_empty() {
-        let end = rest.find([',', 'x']).unwrap_or(rest.len());
-        let value = number(&parameter.range, random);
-        text += &if is_whole { format!("{}", value.round().max(0.0) as u64) } else { format!("{value}") };
-        let separator = rest.get(end..end + 1).unwrap_or_default();
-        text += separator;
-        rest = &rest[end + separator.len()..];
+    let form = placeholder.rsplit('|').next().unwrap_or_default().replace("EYE,TARGET", "X,Y,Z,X,Y,Z");
+    let is_numbers = form.contains(',') && parts(&form).iter().all(|part| !["SHAPE", "FILE"].contains(&part.as_str()));
+    (is_numbers || ["N", "F"].contains(&form.as_str()))
+        .then(|| Template { separators: separators(&form), is_whole: form == "N" })
+}
+
+impl Template {
+    /// Numbers in its form.
+    pub fn filled(&self, mut number: impl FnMut() -> f64) -> String {
+        let mut text = String::new();
+        for separator in self.separators.iter().map(Some).chain([None]) {
+            let value = number();
+            text += &if self.is_whole { format!("{}", value.round().max(0.0) as u64) } else { format!("{value}") };
+            text.extend(separator);
+        }
+        text
     }
-    Some(text)
 }
 
 /// An end of the range, or a number between them by the logarithm.
@@ -127,7 +152,7 @@ fn whatever_the_ranges_hold_ends_well() {
 }
 
 /// Runs to its end, or to where it has said that it takes long. True for exit code 0.
-fn ends_well(program: &Program) -> Result<bool, String> {
+pub fn ends_well(program: &Program) -> Result<bool, String> {
     let out = folder();
     let (stdout, stderr) = (out.path().join("stdout"), out.path().join("stderr"));
     let script = format!("ulimit -v {LIMIT_KIB}; exec {}", program.for_shell());
@@ -146,7 +171,8 @@ fn ends_well(program: &Program) -> Result<bool, String> {
             if let Some(status) = child.try_wait().unwrap() {
                 break status;
             }
-            let has_foretold = said().contains("note: a frame runs") && started.elapsed() > Duration::from_secs(3);
+            let has_foretold =
+                said().contains("note: the first frame runs") && started.elapsed() > Duration::from_secs(3);
             if has_foretold || started.elapsed() > SILENT {
                 child.kill().unwrap();
                 child.wait().unwrap();

@@ -3,6 +3,7 @@
 mod barriers;
 mod counters;
 mod devices;
+mod estimates;
 mod first_pass;
 mod first_passes;
 mod fixtures;

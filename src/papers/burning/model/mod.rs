@@ -166,7 +166,7 @@ impl Model {
 
 /// Low-poly models divide to five levels (4.4), shells are dense enough, and solids and melting objects divide until no
 /// edge at rest is longer than `edge`.
-fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
+pub fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
     match variant {
         Variant::Shell => 0,
         Variant::LowPoly | Variant::FullySubdivided => 5,

@@ -1,0 +1,92 @@
+//! Sizes that follow from the parameters and the mesh.
+
+use std::collections::HashSet;
+
+use super::buffers::{BlockCounts, RestVertex, VertexState};
+use super::flames::{Group, Particle};
+use super::model::{Welded, own_levels};
+use super::parameters::{Parameters, Variant};
+use crate::measure::estimate::Estimate;
+use crate::scene::Mesh;
+
+/// Bytes of a number, and of four.
+const NUMBER: f64 = 4.0;
+const VECTOR: f64 = 16.0;
+/// Passes of a tick, and of a frame beside them.
+const PASSES: u64 = 16;
+
+/// Vertices, edges and triangles of a mesh.
+#[derive(Clone, Copy)]
+struct Counts {
+    vertices: f64,
+    edges: f64,
+    triangles: f64,
+}
+
+impl Counts {
+    /// Those of a list of triangles.
+    fn of(vertices: usize, triangles: impl ExactSizeIterator<Item = [u32; 3]>) -> Self {
+        let count = triangles.len() as f64;
+        let sides = triangles.flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
+        let edges: HashSet<(u32, u32)> = sides.map(|(a, b)| (a.min(b), a.max(b))).collect();
+        Counts { vertices: vertices as f64, edges: edges.len() as f64, triangles: count }
+    }
+
+    /// Vertices after each triangle has become four, some times.
+    fn refined(self, levels: u32) -> f64 {
+        let parts = f64::from(1_u32 << levels);
+        self.vertices + self.edges * (parts - 1.0) + self.triangles * (parts - 1.0) * (parts - 2.0) / 2.0
+    }
+}
+
+impl Parameters {
+    /// Device memory, passes and shader invocations of the first picture.
+    pub(super) fn estimate(&self, variant: Variant, mesh: &Mesh) -> Estimate {
+        let welded = Welded::new(mesh);
+        let levels = self.levels.unwrap_or_else(|| own_levels(&welded, variant, self.edge)).min(15);
+        let drawn = Counts::of(welded.welds.len(), welded.triangles.iter().copied());
+        let to_simulated = |t: &[u32; 3]| t.map(|corner| welded.welds[corner as usize]);
+        let simulated = Counts::of(welded.vertex_count as usize, welded.triangles.iter().map(to_simulated));
+        let (vertices, corners) = (simulated.refined(levels), drawn.refined(levels));
+        let triangles = drawn.triangles * 4_f64.powi(levels as i32);
+        let blocks = self.blocks.iter().map(|&b| f64::from(b)).product::<f64>();
+        let particles = f64::from(self.fire) + f64::from(self.smoke);
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let texture = self.texture.as_ref().map_or(0, |t| t.levels.iter().map(|level| level.texels.len()).sum()) as f64;
+
+        // What a restart brings back is there twice: states, labels, cells, and the like.
+        let flow = if variant == Variant::Melting { 2.0 * VECTOR } else { 0.0 };
+        let kept_of_vertex = 2.0 * size_of::<VertexState>() as f64 + 3.0 * NUMBER;
+        let of_vertex = size_of::<RestVertex>() as f64 + 2.0 * kept_of_vertex + VECTOR + 3.0 * NUMBER + flow;
+        let of_corner = 2.0 * VECTOR + 2.0 * NUMBER;
+        // Four lists of three numbers and the stream; labels and marks twice; statuses of all levels' triangles twice.
+        let statuses = if variant.refines() && levels > 0 { 2.0 * NUMBER * 4.0 / 3.0 } else { 0.0 };
+        let of_triangle = 5.0 * 3.0 * NUMBER + 4.0 * NUMBER + statuses;
+        let of_block =
+            2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + size_of::<Group>() as f64;
+
+        let ticks_a_frame = self.slices_due(0).saturating_sub(self.slices_before()).max(1);
+        let ticks = self.slices_before() as f64 + ticks_a_frame as f64;
+        let of_tick = 40.0 * vertices + 20.0 * triangles + 200.0 * blocks + 10.0 * particles;
+        // Of a picture that the object fills to four fifths of its height.
+        let of_particle =
+            std::f64::consts::PI * (0.8 * f64::from(self.particle_radius) * f64::from(self.height)).powi(2);
+        Estimate {
+            bytes: vec![
+                ("levels", of_vertex * vertices + of_corner * corners + of_triangle * triangles),
+                ("blocks", of_block * blocks),
+                ("fire", 2.0 * size_of::<Particle>() as f64 * particles),
+                ("texture", NUMBER * texture),
+                ("size", 2.0 * NUMBER * pixels),
+            ],
+            passes: Some(("time-step", PASSES * (1 + ticks_a_frame.min(super::MOST_SLICES)))),
+            draws: None,
+            invocations: vec![
+                (if self.first_frame > 0 { "first-frame" } else { "time-step" }, ticks * of_tick),
+                ("particle-radius", particles * of_particle.min(pixels)),
+                ("levels", 60.0 * vertices + 60.0 * triangles),
+                ("size", 20.0 * pixels),
+            ],
+        }
+    }
+}

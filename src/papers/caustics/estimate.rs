@@ -1,0 +1,86 @@
+//! Sizes that follow from the parameters and the receivers.
+
+use super::parameters::{Parameters, Variant};
+use super::receiver::ReceiverInput;
+use super::water::cells;
+use crate::measure::estimate::Estimate;
+
+/// Bytes of a number, and of a texel of light.
+const NUMBER: f64 = 4.0;
+const LIGHT: f64 = 8.0;
+/// Passes of a frame, beside those of each receiver under each light.
+const PASSES: u64 = 8;
+/// Invocations of a fragment shader that a vertex costs where a CPU runs vertex work on one thread.
+const VERTEX: f64 = 8.0;
+
+impl Parameters {
+    /// Device memory, passes, draws and shader invocations of a frame with its picture.
+    pub(super) fn estimate(&self, variant: Variant, receivers: &[ReceiverInput]) -> Estimate {
+        let vertices: usize = receivers.iter().map(|r| r.mesh.positions.len()).sum();
+        let triangles: usize = receivers.iter().map(|r| r.mesh.triangle_count()).sum();
+        let (vertices, triangles) = (vertices as f64, triangles as f64);
+        let lights = self.lights.len() as f64;
+        let lit = if variant == Variant::Stencil { 0.0 } else { lights * receivers.len() as f64 };
+        let (columns, rows) = cells(self.water_triangles);
+        let water_vertices = (f64::from(columns) + 1.0) * (f64::from(rows) + 1.0);
+        let water_triangles = 2.0 * f64::from(columns) * f64::from(rows);
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let texels = f64::from(self.map_size).powi(2);
+        let planes = f64::from(self.planes);
+        let coverage = f64::from(self.coverage).powi(2);
+        let water_map = self.water_map.as_ref().map_or(0, |map| size_of_val(map.coefficients())) as f64;
+        // Halves of halves, down to four triangles.
+        let leaves = f64::from(((triangles / 4.0).ceil() as u32).max(1).next_power_of_two());
+
+        // Position, depth and caustics, diffuse and combined light.
+        let maps = (3.0 * NUMBER + 2.0 * LIGHT) * texels;
+        let (of_map, of_planes, of_pixel) = match variant {
+            Variant::LevelMap => (maps, 0.0, NUMBER + LIGHT + NUMBER),
+            Variant::LevelMapSmart => (maps + NUMBER * texels, 0.0, NUMBER + LIGHT + NUMBER),
+            // The pyramid of heights, two a texel; a bit twice and three indices a pair of triangle and plane.
+            Variant::Culled => (
+                maps + 2.0 * NUMBER * texels * 4.0 / 3.0,
+                planes * water_triangles * (3.0 * NUMBER + 2.0 / 8.0) + water_triangles,
+                NUMBER + LIGHT + NUMBER,
+            ),
+            Variant::Volumetric => ((3.0 * NUMBER + LIGHT) * texels, LIGHT * texels * planes, NUMBER + LIGHT + NUMBER),
+            // Positions, normals and albedo of what is seen, and stencils beside the depth.
+            Variant::Stencil => (0.0, 0.0, 2.0 * NUMBER + LIGHT + NUMBER + 4.0 * NUMBER + 2.0 * LIGHT),
+        };
+        let drawn = if self.coverage > 1 { NUMBER * texels * coverage } else { 0.0 };
+        let shadow_maps = if self.shadows { lights.min(lit) * 3.0 * NUMBER * texels } else { 0.0 };
+
+        let draws = match variant {
+            Variant::Culled | Variant::Stencil => lit,
+            _ => lit * planes,
+        };
+        let passes = if variant == Variant::Volumetric { 2.0 * lit * planes } else { 0.0 };
+        let pairs = water_triangles * if variant == Variant::Stencil { 4.0 * lights } else { lit * planes };
+        // Triangles that lie over one another fold the light some times; the sides of the volumes cross many pixels.
+        let shaded = match variant {
+            Variant::Stencil => 0.05 * water_triangles * lights * pixels,
+            Variant::Volumetric => lit * texels * planes * (8.0 + 2.0 * coverage),
+            _ => lit * texels * (8.0 + 2.0 * planes * coverage),
+        };
+        Estimate {
+            bytes: vec![
+                ("mesh", 24.0 * vertices + 12.0 * triangles),
+                ("mesh", 32.0 * (2.0 * leaves - 1.0) + 12.0 * vertices + 12.0 * triangles),
+                ("water-triangles", 32.0 * water_vertices + 12.0 * water_triangles + 48.0 * water_vertices * lights),
+                ("water-map", water_map),
+                ("map-size", lit * of_map + shadow_maps),
+                ("coverage", lit * drawn),
+                ("planes", lit * of_planes),
+                ("size", of_pixel * pixels),
+            ],
+            passes: Some(("planes", PASSES + (passes + 8.0 * lit.max(1.0)) as u64)),
+            draws: Some(("planes", draws as u64)),
+            invocations: vec![
+                (if variant == Variant::Volumetric { "map-size" } else { "planes" }, shaded),
+                ("water-triangles", VERTEX * pairs + water_vertices * (4.0 + 2.0 * f64::from(self.waves.count))),
+                ("samples", pixels * f64::from(self.samples) * (60.0 + 10.0 * f64::from(self.waves.count))),
+                ("mesh", VERTEX * vertices * lit.max(1.0)),
+            ],
+        }
+    }
+}

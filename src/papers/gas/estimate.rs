@@ -1,0 +1,76 @@
+//! Sizes that follow from the parameters and the surfaces.
+
+use super::blocks::{
+    ColorBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock, SurfaceBlock, TriangleBlock, VertexBlock,
+};
+use super::capacity::{BufferLimit, Capacity};
+use super::model::Object;
+use super::parameters::{Parameters, Variant};
+use super::progress::StateBlock;
+use crate::measure::estimate::Estimate;
+
+/// Bytes of a number.
+const NUMBER: f64 = 4.0;
+/// Bytes of a pixel of the radiance.
+const RADIANCE: f64 = 16.0;
+/// Passes of a band, those of the tables and of the picture.
+const PASSES: u64 = 8;
+/// Invocations of a trivial shader that an octave of noise costs, roughly.
+const OCTAVE: f64 = 4.0;
+
+fn bytes_of<T>() -> f64 {
+    size_of::<T>() as f64
+}
+
+impl Parameters {
+    /// Device memory, passes and shader invocations of a frame, as long as no list grows.
+    pub(super) fn estimate(&self, variant: Variant, objects: &[Object], limit: BufferLimit) -> Estimate {
+        let capacity = Capacity::initial(self, limit);
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let band = f64::from(self.width) * f64::from(capacity.rows);
+        let (fragments, sections) = (f64::from(capacity.fragments), f64::from(capacity.sections));
+        let (lights, volumes) = (self.lights.len() as f64, self.volumes.len() as f64);
+        let has_volume = variant != Variant::NoVolume && volumes > 0.0;
+        let shadows = has_volume && variant != Variant::None;
+        let table = if has_volume && variant == Variant::Table { f64::from(self.table_size).powi(3) } else { 0.0 };
+        let vertices: usize = objects.iter().map(|o| o.mesh.positions.len()).sum();
+        let triangles: usize = objects.iter().map(|o| o.mesh.triangle_count()).sum();
+        let (vertices, triangles) = (vertices as f64, triangles as f64);
+        let of_fragment = bytes_of::<LinkBlock>() + bytes_of::<SurfaceBlock>() + bytes_of::<ColorBlock>();
+        let of_pixel = NUMBER + bytes_of::<PixelBlock>() + bytes_of::<StateBlock>();
+        let optional = |is_made: bool, bytes: f64| if is_made { bytes } else { 0.0 };
+
+        let octaves = 1.0 + OCTAVE * f64::from(self.octaves());
+        let steps = pixels * f64::from(self.steps) * volumes;
+        // A traced shadow takes up to half of the steps through a volume, and at least those of the sections' ends.
+        let shadow_steps = match variant {
+            Variant::Traced => lights * (0.5 * f64::from(self.steps)) * octaves,
+            _ => lights,
+        };
+        let march = if has_volume { steps * (octaves + shadow_steps) } else { 0.0 };
+        let waves = 3 * u64::from(self.table_size);
+        let bands = u64::from(self.height.div_ceil(capacity.rows.max(1)));
+        let tables = u64::from(table > 0.0) * (1 + waves);
+        Estimate {
+            bytes: vec![
+                ("size", of_fragment * fragments + of_pixel * band + (RADIANCE + NUMBER) * pixels),
+                ("size", optional(has_volume, bytes_of::<SectionBlock>() * sections)),
+                ("light", optional(shadows, NUMBER * fragments * lights)),
+                ("table", NUMBER * table * volumes * (1.0 + lights)),
+                ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
+                ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),
+            ],
+            passes: Some((
+                if self.list_bytes.is_some() { "size`; or raise `list-bytes" } else { "size" },
+                PASSES * bands + tables,
+            )),
+            draws: None,
+            invocations: vec![
+                ("steps", march),
+                ("table", table * volumes * (octaves + 8.0 * lights)),
+                ("object", 50.0 * triangles * bands as f64),
+                ("size", 100.0 * pixels),
+            ],
+        }
+    }
+}

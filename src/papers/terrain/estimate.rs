@@ -1,0 +1,80 @@
+//! Sizes that follow from the parameters, the maps and the objects.
+
+use super::mesh::{BLOCK_INDICES, MESH_SIDE};
+use super::parameters::{Interpolation, Lod, Parameters, Variant};
+use super::pyramid::Shape;
+use super::scene::Inputs;
+use crate::measure::estimate::Estimate;
+use crate::scene::Samples;
+
+/// Bytes of a number, and of four.
+const NUMBER: f64 = 4.0;
+const VECTOR: f64 = 16.0;
+/// Invocations of a trivial shader that a step of a ray costs, roughly.
+const STEP: f64 = 4.0;
+
+impl Parameters {
+    /// Device memory, passes and shader invocations of a frame; `map` names the parameter that sets the maps' sizes.
+    pub(super) fn estimate(&self, variant: Variant, inputs: &Inputs<'_>, map: &'static str) -> Estimate {
+        let pixels = self.pixels() as f64;
+        let is_host = variant == Variant::Cpu;
+        let is_mesh = variant == Variant::Mesh;
+        let shades_objects = self.shadows && !inputs.objects.is_empty();
+        let bounds = match self.interpolation {
+            Interpolation::Bilinear => 1.0,
+            Interpolation::Bicubic => 2.0,
+        };
+        let (mut levels, mut indices, mut steps, mut vertices) = (0.0, 0.0, 0.0, 0.0);
+        for input in inputs.maps {
+            let samples = &input.map;
+            let shape = Shape::new(samples.width(), samples.height());
+            let (width, height) = shape.extent();
+            let sample = if matches!(samples.samples(), Samples::Float(_)) { NUMBER } else { 0.5 * NUMBER };
+            levels += f64::from(width) * f64::from(height) * sample * (1.0 + bounds);
+            let side = f64::from(shape.width.max(shape.height));
+            // Level by level, or cell by cell.
+            steps += match variant {
+                Variant::DdaCompute | Variant::DdaFragment => side,
+                _ => 4.0 * side.log2() + if self.lod == Lod::Exact { 8.0 } else { 0.0 },
+            };
+            if is_mesh && side <= f64::from(MESH_SIDE) {
+                let columns = shape.width - 1;
+                let rows = (BLOCK_INDICES / (6 * columns)).clamp(1, shape.height - 1);
+                indices += 6.0 * NUMBER * f64::from(columns) * f64::from(rows);
+                vertices += 6.0 * f64::from(columns) * f64::from(shape.height);
+            }
+        }
+        let on_device = !is_host || shades_objects;
+        let maps = inputs.maps.len() as f64;
+        let is_united = maps > 1.0 && !is_host && !is_mesh;
+        // A target for the prior map's hits as well where there are several.
+        let targets = if is_united { 2.0 } else { 1.0 };
+        let drape = inputs.drape.map_or(0.0, |drape| f64::from(drape.size().0) * f64::from(drape.size().1));
+        let of_pixel = if is_host { 3.0 * VECTOR + 2.0 * NUMBER } else { (1.0 + targets) * VECTOR + NUMBER };
+        let of_pixel = of_pixel + if is_mesh { NUMBER } else { 0.0 };
+        let light = if self.shadows && !is_host { NUMBER * if maps > 1.0 { 2.0 } else { 1.0 } } else { 0.0 };
+        let objects = if inputs.objects.is_empty() { 0.0 } else { NUMBER };
+        let lit_objects = if shades_objects { VECTOR + NUMBER * if maps > 1.0 { 2.0 } else { 1.0 } } else { 0.0 };
+        let mesh_bytes: usize =
+            inputs.objects.iter().map(|mesh| 24 * mesh.positions.len() + 4 * mesh.indices.len()).sum();
+        let mesh_vertices: usize = inputs.objects.iter().map(|mesh| mesh.indices.len()).sum();
+
+        let surface = if self.interpolation == Interpolation::Bicubic { 8.0 } else { 1.0 };
+        let rays = pixels * if self.shadows { 2.0 } else { 1.0 };
+        Estimate {
+            bytes: vec![
+                (map, if on_device { levels } else { 0.0 } + indices),
+                ("drape", NUMBER * if on_device { drape } else { 0.0 }),
+                ("size", (of_pixel + light + objects + lit_objects) * pixels),
+                ("object", mesh_bytes as f64),
+            ],
+            passes: Some(("object", 8 + 3 * inputs.maps.len() as u64 + 2 * inputs.objects.len() as u64)),
+            draws: None,
+            invocations: vec![
+                ("size", rays * (10.0 + STEP * steps * surface)),
+                (map, 8.0 * vertices + maps * levels),
+                ("object", 8.0 * mesh_vertices as f64),
+            ],
+        }
+    }
+}
