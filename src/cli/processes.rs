@@ -2,13 +2,14 @@
 
 use std::ffi::OsString;
 use std::io::{self, Read};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::failure::Failure;
 use super::watch::{interrupted, progress_bar};
+use crate::measure::Error;
 use crate::report::{Record, environment, json};
 
 /// Options that the fresh processes do not get, and whether a value follows.
@@ -46,8 +47,10 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
             .stdin(Stdio::null());
         let ended = finish(&mut command, interrupted).map_err(|e| failed(e.to_string()))?;
         if !ended.status.success() {
-            if joined.is_some() && interrupted.load(Ordering::Relaxed) {
-                break;
+            match (interrupted.load(Ordering::Relaxed), &joined) {
+                (true, Some(_)) => break,
+                (true, None) => return Err(Error::Interrupted.into()),
+                (false, _) => {}
             }
             return Err(failure(&format!("process {process}"), &ended));
         }
@@ -70,7 +73,7 @@ pub struct Ended {
 }
 
 /// Runs a process to its end. After an interruption it has [`PATIENCE`] to end by itself, as it does when the terminal has
-/// told it too; then it is ended, so that none outlives us.
+/// told it too; then it is told, and a while later ended, so that none outlives us.
 pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
     let pipe = child.stderr.take();
@@ -80,7 +83,7 @@ pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<End
         let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
         String::from_utf8_lossy(&bytes).into_owned()
     });
-    let mut deadline = None;
+    let (mut deadline, mut is_told) = (None, false);
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
@@ -88,11 +91,27 @@ pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<End
         if interrupted.load(Ordering::Relaxed)
             && Instant::now() > *deadline.get_or_insert_with(|| Instant::now() + PATIENCE)
         {
-            child.kill()?;
+            if is_told || !tell(&child) {
+                child.kill()?;
+            }
+            is_told = true;
+            deadline = Some(Instant::now() + PATIENCE);
         }
         thread::sleep(Duration::from_millis(20));
     };
     Ok(Ended { status, errors: errors.join().unwrap_or_default() })
+}
+
+/// Asks a process to end and to keep what is finished. False where that cannot be asked.
+#[cfg(unix)]
+fn tell(child: &Child) -> bool {
+    use nix::sys::signal::{Signal, kill};
+    i32::try_from(child.id()).is_ok_and(|id| kill(nix::unistd::Pid::from_raw(id), Signal::SIGTERM).is_ok())
+}
+
+#[cfg(not(unix))]
+fn tell(_: &Child) -> bool {
+    false
 }
 
 /// A process's own message and exit code as ours.

@@ -1,0 +1,162 @@
+//! Long runs: `cargo bench --bench soak -- [PAPER|all] [FRAMES] [DEVICE]`, which `dist/soak.sh` calls. A paper runs frame
+//! after frame in one process, and must end as it began: no memory but what the first frames took, the same live
+//! objects, the picture of a fresh run, and after a restart the times of the first frames.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use fumarole::gpu::Mode;
+use fumarole::measure::bench::{build, load};
+use fumarole::measure::machine::{Machine, MachineOptions};
+use fumarole::measure::picture::render;
+use fumarole::measure::study::{Study, Visitor};
+use fumarole::measure::{Error, Paper, Variant};
+use fumarole::papers;
+
+/// Frames after which pipelines, pools and the allocator have what they keep.
+const WARMUP: u32 = 200;
+/// Frames that are timed after the first start and again after the last.
+const TIMED: u32 = 500;
+/// Frames from one look at the live objects to the next.
+const PERIOD: u32 = 500;
+/// Most that a run may leave behind.
+const MOST_GROWN_KB: i64 = 5 << 10;
+/// Most by which the later of equal frames may be slower, in the middle of all.
+const MOST_SLOWER: f64 = 1.1;
+
+/// The smallest scenes in which every pass has something to do, and which go on from frame to frame.
+fn small(paper: &str) -> &'static str {
+    match paper {
+        "burning" => {
+            "size=16x12 mesh=sphere triangles=200 blocks=2x2x2 fire=20 smoke=10 speed=0.01 flammability=1000 first-frame=0"
+        }
+        "caustics" => "size=16x12 mesh=box map-size=16 planes=3 water-triangles=50",
+        "gas" => "size=16x12 steps=4 table=4 frame-step=1",
+        "lava" => "size=16x12 particles=50 radius=0.3 density=8x4x4 splats=10x5 splat-radius=0.2",
+        "terrain" => "size=16x12 resolution=17",
+        _ => "size=16x12",
+    }
+}
+
+struct Soak {
+    paper: String,
+    frames: u32,
+    machine: MachineOptions,
+    failures: Vec<String>,
+}
+
+impl Visitor for Soak {
+    type Error = Error;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Error> {
+        if self.paper != "all" && self.paper != S::PAPER {
+            return Ok(());
+        }
+        let mut study = S::default();
+        for (name, value) in small(S::PAPER).split(' ').filter_map(|word| word.split_once('=')) {
+            if let Some(parameter) = S::parameters().iter().find(|parameter| parameter.name == name) {
+                parameter.set(&mut study, &[OsStr::new(value)]).map_err(Error::Input)?;
+            }
+        }
+        let started = Instant::now();
+        let mut machine = Machine::open(&self.machine, S::NEEDS)?;
+        let scene = load(&study)?.scene;
+        let mut built = build(&machine, &study, &scene, S::RENDERED)?;
+        let last = self.frames - 1;
+
+        settled(&mut machine, &mut built.paper)?;
+        built.paper.restart()?;
+        let mut times_ms = vec![];
+        let (mut objects, mut resident_kb) = (machine.device.live().alive(), 0);
+        let mut is_constant = true;
+        for number in 0..last {
+            let paper = &mut built.paper;
+            times_ms.push(machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?.frame_ms);
+            if number == WARMUP {
+                (objects, resident_kb) = (machine.device.live().alive(), resident());
+            }
+            if number > WARMUP && number % PERIOD == 0 {
+                is_constant &= machine.device.live().alive() == objects;
+            }
+        }
+        let picture = render(&mut machine, &mut built.paper, last)?;
+        let grown_kb = resident() - resident_kb;
+        is_constant &= machine.device.live().alive() == objects;
+
+        built.paper.restart()?;
+        let mut ratios = vec![];
+        for number in 0..TIMED.min(last) {
+            let paper = &mut built.paper;
+            let again_ms = machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?.frame_ms;
+            ratios.push(again_ms / times_ms[number as usize]);
+        }
+        ratios.sort_by(f64::total_cmp);
+        let slower = ratios[ratios.len() / 2];
+        drop(built);
+
+        let mut fresh = build(&machine, &study, &scene, S::RENDERED)?;
+        let is_equal = render(&mut machine, &mut fresh.paper, last)? == picture;
+        println!(
+            "| {} {} | {} | {} | {grown_kb} kB | {} | {} | {slower:.2} | {:.0} s |",
+            S::PAPER,
+            S::RENDERED.as_str(),
+            machine.device.physical().name,
+            self.frames,
+            if is_constant { "constant" } else { "changing" },
+            if is_equal { "equal" } else { "different" },
+            started.elapsed().as_secs_f64(),
+        );
+        for (is_good, what) in [
+            (grown_kb < MOST_GROWN_KB, "memory grows"),
+            (is_constant, "live objects change"),
+            (is_equal, "the last picture is not that of a fresh run"),
+            (slower < MOST_SLOWER, "frames become slower"),
+        ] {
+            if !is_good {
+                self.failures.push(format!("{}: {what}", S::PAPER));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Runs the frames of the warm-up until no buffer grows any more.
+fn settled(machine: &mut Machine, paper: &mut impl Paper) -> Result<(), Error> {
+    loop {
+        paper.restart()?;
+        for number in 0..WARMUP {
+            machine.recorder.run(Mode::Plain, |frame| paper.record(frame, number))?;
+        }
+        if paper.settle(&machine.shaders)? {
+            return Ok(());
+        }
+    }
+}
+
+/// Resident memory of this process in kB; 0 where no system tells.
+fn resident() -> i64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse().ok()).unwrap_or(0)
+}
+
+fn main() -> ExitCode {
+    fumarole::gpu::pin_software_threads();
+    // cargo adds an option of its own.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let word = |at: usize| words.get(at).cloned();
+    let frames = word(1).and_then(|text| text.parse().ok()).unwrap_or(20_000);
+    let mut soak = Soak {
+        paper: word(0).unwrap_or_else(|| "all".to_owned()),
+        frames: if frames > 2 * WARMUP { frames } else { 2 * WARMUP },
+        machine: MachineOptions { device: word(2), ..MachineOptions::default() },
+        failures: vec![],
+    };
+    if let Err(error) = papers::each(&mut soak) {
+        soak.failures.push(error.to_string());
+    }
+    soak.failures.iter().for_each(|failure| eprintln!("soak: {failure}"));
+    if soak.failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
