@@ -7,7 +7,7 @@ use super::options::{CommonArgs, MeasureArgs, OutputArgs};
 use super::outcome;
 use super::processes;
 use super::spelling;
-use super::watch::watched;
+use super::watch::{patiently, watched};
 use crate::content;
 use crate::measure::bench::{Bench, Loaded, build, load};
 use crate::measure::machine::Machine;
@@ -43,7 +43,7 @@ fn measure<S: Study>(
 ) -> Result<(Record, Vec<TraceRun>, Option<Failure>), Failure> {
     let CommonArgs { machine, measure, output } = common;
     let schedule = measure.schedule(FRAMES, REPEAT);
-    let loaded = load(study)?;
+    let loaded = patiently(output.quiet, "loading the scene", || load(study))?;
     let mut machine = Machine::open(&machine.resolve(measure.process), S::NEEDS)?;
     // The table names the device itself.
     if output.json_to_stdout() {

@@ -11,7 +11,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use super::failure::Failure;
 use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
-use super::watch::{interrupted, progress_bar};
+use super::watch::{interrupted, patiently, progress_bar};
 use crate::file::{self, OutputError};
 use crate::image::{self, Rgba8, y4m};
 use crate::measure::bench::build;
@@ -125,11 +125,11 @@ pub fn draw<S: Study>(
     }
 
     let study = resolve()?;
-    let scene = study.load()?;
+    let scene = patiently(arguments.quiet, "loading the scene", || study.load())?;
     let mut machine = Machine::open(&arguments.machine.resolve(0), S::NEEDS)?;
     outcome::say_device(&output, &machine);
     outcome::foretell(&output, &study.estimate(&machine.device, &scene, variant), &machine);
-    let mut built = build(&machine, &study, &scene, variant)?;
+    let mut built = patiently(arguments.quiet, "making the first frame", || build(&machine, &study, &scene, variant))?;
     let targets = built.paper.targets();
     for dump in &arguments.dump {
         if !targets.iter().any(|t| t.name == dump.target) {

@@ -3,10 +3,13 @@
 
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use super::outcome::say;
 use crate::measure::measure::Watch;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
@@ -42,6 +45,30 @@ pub fn progress_bar(quiet: bool, what: &str) -> ProgressBar {
 
 /// The least time between two lines of progress where there is no terminal for a bar.
 const BETWEEN_LINES: Duration = Duration::from_secs(30);
+
+/// Time after which work without a bar of progress says that it goes on.
+const SILENCE: Duration = Duration::from_secs(10);
+
+/// Runs work that cannot tell how far it is, and says from time to time that it goes on; nothing when `quiet`.
+pub fn patiently<T>(quiet: bool, what: &str, work: impl FnOnce() -> T) -> T {
+    if quiet {
+        return work();
+    }
+    let started = Instant::now();
+    thread::scope(|scope| {
+        let (end, ended) = mpsc::channel::<()>();
+        scope.spawn(move || {
+            let mut silence = SILENCE;
+            while ended.recv_timeout(silence) == Err(RecvTimeoutError::Timeout) {
+                say(&format!("note: {what} goes on, {:.0} s so far", started.elapsed().as_secs_f64()));
+                silence = BETWEEN_LINES;
+            }
+        });
+        let result = work();
+        drop(end);
+        result
+    })
+}
 
 /// Runs measured work under a progress bar. Piped work that takes long says how far it is, a line at a time.
 pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> T) -> T {

@@ -73,7 +73,7 @@ fn draw<S: Study>(parameter: &Parameter<S>, random: &mut Random) -> Option<Strin
 pub struct Template {
     /// After each number but the last.
     separators: Vec<char>,
-    is_whole: bool,
+    pub is_whole: bool,
 }
 
 /// The form of a parameter's numbers, as its default or its placeholder show it. None for words.
@@ -89,7 +89,7 @@ pub fn template<S: Study>(parameter: &Parameter<S>) -> Option<Template> {
         return Some(Template { separators: separators(default), is_whole });
     }
     let form = placeholder.rsplit('|').next().unwrap_or_default().replace("EYE,TARGET", "X,Y,Z,X,Y,Z");
-    let is_numbers = form.contains(',') && parts(&form).iter().all(|part| !["SHAPE", "FILE"].contains(&part.as_str()));
+    let is_numbers = form.contains(',') && !form.contains("SHAPE") && !placeholder.contains("FILE");
     (is_numbers || ["N", "F"].contains(&form.as_str()))
         .then(|| Template { separators: separators(&form), is_whole: form == "N" })
 }
@@ -171,8 +171,7 @@ pub fn ends_well(program: &Program) -> Result<bool, String> {
             if let Some(status) = child.try_wait().unwrap() {
                 break status;
             }
-            let has_foretold =
-                said().contains("note: the first frame runs") && started.elapsed() > Duration::from_secs(3);
+            let has_foretold = said().contains("note: ") && started.elapsed() > Duration::from_secs(3);
             if has_foretold || started.elapsed() > SILENT {
                 child.kill().unwrap();
                 child.wait().unwrap();
@@ -182,7 +181,10 @@ pub fn ends_well(program: &Program) -> Result<bool, String> {
         };
         let text = said();
         let errors: Vec<&str> = text.lines().filter(|line| !is_remark(line)).collect();
-        let is_one_line = errors.len() == 1 && errors[0].starts_with("error: ");
+        // The argument parser adds usage below its line.
+        let is_usage = errors.iter().any(|line| line.contains("try '--help'"));
+        let is_one_line =
+            (errors.len() == 1 || is_usage) && errors.first().is_some_and(|line| line.starts_with("error: "));
         match status.code() {
             Some(0) if errors.is_empty() => Ok(true),
             // It names an option.

@@ -48,7 +48,8 @@ fn ends<S: Study>(parameter: &Parameter<S>) -> Vec<String> {
         if end == 0.0 { 1e-30_f64.copysign(towards) } else { end * (1.0 + 1e-6 * towards * end.signum()) }
     };
     let low = low.map_or(vec![-1e30, 0.0], |low| vec![low, inside(low, 1.0)]);
-    let high = high.map_or(vec![1e30], |high| vec![high, inside(high, -1.0)]);
+    let high = high
+        .map_or(vec![if template.is_whole { 4_294_967_295.0 } else { 1e30 }], |high| vec![high, inside(high, -1.0)]);
     let mut texts: Vec<String> = low.into_iter().chain(high).map(|end| template.filled(|| end)).collect();
     texts.dedup();
     texts
