@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::options::{CommonArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
+use super::stress::{self, StressArgs};
 use super::{bench, passes, render, spelling, worker};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
@@ -32,6 +33,7 @@ pub fn command<S: Study>() -> Command {
         .subcommand(experiment_command::<S>())
         .subcommand(render_command::<S>())
         .subcommand(worker::command(with_scene::<S>(Command::new("worker").arg(variant_list::<S>("Variants", "")))))
+        .subcommand(stress_command::<S>())
         .subcommands(S::verbs().iter().map(own_command))
 }
 
@@ -72,6 +74,17 @@ fn render_command<S: Study>() -> Command {
         .value_parser(PossibleValuesParser::new(S::Variant::ALL.iter().map(|v| v.as_str())));
     let command = with_scene::<S>(Command::new("render").arg(variant));
     finish(PictureArgs::augment_args(command), "Write pictures and intermediate targets")
+}
+
+fn stress_command<S: Study>() -> Command {
+    let rendered = S::RENDERED.as_str();
+    let default = format!("that of a preset made for one, or {rendered}");
+    let variants = variant_list::<S>("Variants to grow, comma-separated, or all", &default);
+    let command = with_scene::<S>(Command::new("stress").arg(variants.long("variants").alias("variant")));
+    finish(
+        StressArgs::augment_args(command),
+        "Grow one axis until a limit of time, memory, device or correctness stops it",
+    )
 }
 
 /// A verb that no other paper has, with the parameters and options that it heeds.
@@ -301,6 +314,12 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
             let variant = named.unwrap_or_else(|| setup.rendered(typed.preset_variant()));
             checked(&setup, vec![variant])?;
             render::draw(variant, &PictureArgs::from_arg_matches(matches)?, || Ok(setup))
+        }
+        "stress" => {
+            let arguments = StressArgs::from_arg_matches(matches)?;
+            let setup = typed.resolve()?;
+            let variants = typed.variants(&setup, &[setup.rendered(None)])?;
+            stress::run(&arguments, setup, variants, &given(matches))
         }
         "experiment" => experiment(matches, &typed),
         "worker" => worker::run::<S>(matches),

@@ -15,6 +15,7 @@ mod processes;
 mod render;
 mod report;
 mod spelling;
+mod stress;
 mod watch;
 mod worker;
 
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
-pub use self::page::options_table;
+pub use self::page::{axes_table, options_table};
 use crate::measure::study::{Study, Visitor};
 use crate::{gpu, papers};
 
@@ -47,6 +48,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Records, pictures and plots as one page that opens without a network
     Report(report::ReportArgs),
+    /// Grow every paper's first axis until a limit stops it
+    Stress(stress::StressAllArgs),
     /// Measure two sides in turn, in fresh processes, until it is certain which is faster
     Ab(ab::AbArgs),
 }
@@ -108,6 +111,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Ab(arguments)) => ab::run(arguments),
+        Some(Command::Stress(arguments)) => stress::run_all(arguments),
         Some(Command::Report(arguments)) => report::run(arguments),
     })
 }

@@ -88,6 +88,28 @@ pub struct MachineArgs {
 }
 
 impl MachineArgs {
+    /// The same on another device.
+    pub fn on(&self, device: &str) -> Self {
+        MachineArgs { device: Some(device.to_owned()), ..self.clone() }
+    }
+
+    /// The option of the device as it would be typed.
+    pub fn device_words(&self) -> Vec<OsString> {
+        self.device.iter().flat_map(|device| ["--device".into(), device.into()]).collect()
+    }
+
+    /// As they would be typed.
+    pub fn words(&self) -> Vec<OsString> {
+        let compiler = if self.shader_compiler == CompilerWord::Naga { "naga" } else { "glslang" };
+        let mut words: Vec<OsString> = vec!["--shader-compiler".into(), compiler.into()];
+        words.extend(self.device_words());
+        if let Some(folder) = &self.shader_dir {
+            words.extend(["--shader-dir".into(), folder.into()]);
+        }
+        words.extend(self.validate.then(|| "--validate".into()));
+        words
+    }
+
     /// `process` is which of several fresh processes this is.
     pub fn resolve(&self, process: u32) -> MachineOptions {
         MachineOptions {

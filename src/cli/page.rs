@@ -19,6 +19,17 @@ pub fn options_table<S: Study>() -> String {
     table
 }
 
+/// Rows of axis, first value, end and meaning, in Markdown, the default axis first.
+pub fn axes_table<S: Study>() -> String {
+    let mut table = "| axis | from | to | what grows | throughput in |\n| --- | ---: | ---: | --- | --- |\n".to_owned();
+    for axis in S::axes() {
+        let most = if axis.most == u64::MAX { String::new() } else { axis.most.to_string() };
+        let (name, start, help, unit) = (axis.name, axis.start, axis.help, axis.amount_unit());
+        table += &format!("| `{name}` | {start} | {most} | {help} | {unit} a second |\n");
+    }
+    table
+}
+
 fn parameter_row<S: 'static>(parameter: &Parameter<S>, default: &S) -> String {
     let shape = parameter.shape();
     let (option, value) = if shape.is_flag {

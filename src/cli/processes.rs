@@ -69,12 +69,27 @@ pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
 pub struct Ended {
     /// As the system tells it.
     pub status: ExitStatus,
+    /// It was ended because its time was over.
+    pub is_late: bool,
     errors: String,
+}
+
+impl Ended {
+    /// Its own message, or else how it ended.
+    pub fn message(&self) -> String {
+        let message = self.errors.lines().find_map(|line| line.strip_prefix("error: "));
+        message.map_or_else(|| format!("ended with {}", self.status), str::to_owned)
+    }
 }
 
 /// Runs a process to its end. After an interruption it has [`PATIENCE`] to end by itself, as it does when the terminal has
 /// told it too; then it is told, and a while later ended, so that none outlives us.
 pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<Ended> {
+    finish_within(command, interrupted, None)
+}
+
+/// The same, and ends the process when the time is over.
+pub fn finish_within(command: &mut Command, interrupted: &AtomicBool, end: Option<Instant>) -> io::Result<Ended> {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
     let pipe = child.stderr.take();
     let errors = thread::spawn(move || {
@@ -83,7 +98,7 @@ pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<End
         let _ = pipe.map(|mut pipe| pipe.read_to_end(&mut bytes));
         String::from_utf8_lossy(&bytes).into_owned()
     });
-    let (mut deadline, mut is_told) = (None, false);
+    let (mut deadline, mut is_told, mut is_late) = (None, false, false);
     let status = loop {
         if let Some(status) = child.try_wait()? {
             break status;
@@ -97,9 +112,13 @@ pub fn finish(command: &mut Command, interrupted: &AtomicBool) -> io::Result<End
             is_told = true;
             deadline = Some(Instant::now() + PATIENCE);
         }
+        if end.is_some_and(|end| Instant::now() > end) {
+            is_late = true;
+            child.kill()?;
+        }
         thread::sleep(Duration::from_millis(20));
     };
-    Ok(Ended { status, errors: errors.join().unwrap_or_default() })
+    Ok(Ended { status, is_late, errors: errors.join().unwrap_or_default() })
 }
 
 /// Asks a process to end and to keep what is finished. False where that cannot be asked.
@@ -126,7 +145,7 @@ pub fn failure(which: &str, ended: &Ended) -> Failure {
 }
 
 /// The arguments without the options `removed`, and without `--json` and its optional value.
-fn without(removed: &[(&str, bool)], arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+pub fn without(removed: &[(&str, bool)], arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut kept = Vec::new();
     let mut arguments = arguments.peekable();
     while let Some(argument) = arguments.next() {

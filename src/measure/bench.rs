@@ -89,7 +89,10 @@ pub struct Bench<'a, S: Study> {
 }
 
 /// Identity of every file that a study's parameters name.
-fn inputs<S: Study>(study: &S) -> Result<Vec<InputFile>, Error> {
+///
+/// # Errors
+/// [`Error::Input`] for a file that cannot be read.
+pub fn inputs<S: Study>(study: &S) -> Result<Vec<InputFile>, Error> {
     let files = S::parameters().iter().flat_map(|parameter| parameter.files(study)).collect::<Vec<_>>();
     files
         .into_iter()
@@ -115,6 +118,19 @@ impl<S: Study> Bench<'_, S> {
     /// # Errors
     /// [`Error::Gpu`]; [`Error::Interrupted`] when not one frame was measured.
     pub fn measure(&self, machine: &mut Machine, watch: &mut Watch<'_>) -> Result<Vec<VariantRun>, Error> {
+        self.measure_and(machine, watch, |_, _| Ok(()))
+    }
+
+    /// The same, with a look at each variant's resources after the measured loop.
+    ///
+    /// # Errors
+    /// Those of [`Bench::measure`], and of `inspect`.
+    pub fn measure_and(
+        &self,
+        machine: &mut Machine,
+        watch: &mut Watch<'_>,
+        mut inspect: impl FnMut(&mut Machine, &mut S::Paper) -> Result<(), Error>,
+    ) -> Result<Vec<VariantRun>, Error> {
         let Bench { study, loaded, variants, schedule, .. } = *self;
         let started = environment::instant();
         let estimates = variants.iter().map(|&variant| study.estimate(&machine.device, &loaded.scene, variant));
@@ -142,6 +158,7 @@ impl<S: Study> Bench<'_, S> {
         };
         let mut measured: Vec<_> = built.into_iter().zip(measurements).collect();
         let metrics = study.metrics(machine, &mut measured)?;
+        measured.iter_mut().try_for_each(|(built, _)| inspect(machine, &mut built.paper))?;
         let validation = machine.check_validation()?;
         let warnings = [machine.warnings(), self.limits.map(limits::warnings).unwrap_or_default()].concat();
         let identity = study.identity();

@@ -16,6 +16,7 @@ pub mod parameter;
 pub mod picture;
 pub mod result_table;
 pub mod statistics;
+pub mod stress;
 pub mod study;
 pub mod sweep;
 

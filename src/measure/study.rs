@@ -9,6 +9,7 @@ use super::experiment::Experiment;
 use super::machine::Machine;
 use super::measure::Measurement;
 use super::parameter::{Given, Parameter};
+use super::stress::Axis;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 
@@ -99,6 +100,11 @@ pub trait Study: Clone + Default + 'static {
 
     /// The paper's figures and tables whose numbers can be taken.
     fn presets() -> Vec<Preset<Self>> {
+        Vec::new()
+    }
+
+    /// What `stress` makes larger, the default first.
+    fn axes() -> Vec<Axis<Self>> {
         Vec::new()
     }
 

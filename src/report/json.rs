@@ -3,11 +3,13 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::bounded;
 use super::record::{Record, SCHEMA};
+use super::stress::{self, StressRecord};
 use crate::file;
 
 /// Failures of reading a record; every message names the file.
@@ -79,14 +81,25 @@ pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
             ReadError::NotJson { path: owned(), source }
         }
     })?;
-    if header.schema.as_deref() != Some(SCHEMA) {
-        let found = header.schema.map_or_else(|| "absent".to_owned(), |found| Value::from(found).to_string());
-        return Err(ReadError::WrongSchema { path: owned(), found });
+    match header.schema.as_deref() {
+        Some(SCHEMA) => document(text, path),
+        Some(stress::SCHEMA) => Ok(document::<StressRecord>(text, path)?.into_record()),
+        _ => {
+            let found = header.schema.map_or_else(|| "absent".to_owned(), |found| Value::from(found).to_string());
+            Err(ReadError::WrongSchema { path: owned(), found })
+        }
     }
+}
+
+/// Parses the text of a document with runs, whose schema is its type's.
+///
+/// # Errors
+/// [`ReadError::WrongField`].
+pub fn document<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, ReadError> {
     bounded::begin(text.len());
     let mut deserializer = serde_json::Deserializer::from_str(text);
     serde_path_to_error::deserialize(&mut deserializer).map_err(|error| ReadError::WrongField {
-        path: owned(),
+        path: path.to_owned(),
         field: error.path().to_string(),
         source: error.into_inner(),
     })

@@ -21,6 +21,7 @@ pub mod html;
 pub mod json;
 pub mod plot;
 pub mod record;
+pub mod stress;
 pub mod table;
 pub mod text;
 pub mod trace;

@@ -6,6 +6,7 @@
 
 mod bounds;
 mod camera;
+mod divide;
 mod error;
 mod file;
 mod formats;
@@ -21,6 +22,7 @@ mod source;
 
 pub use bounds::Bounds;
 pub use camera::Camera;
+pub use divide::divided;
 pub use error::{Asset, Error, Fault, Place};
 pub use height_map::{Geographic, HeightMap, HeightMapSource, Samples, Suspect, Voids, volcano};
 pub use identity::source_sha256;

@@ -1,14 +1,14 @@
-use crate::scene::{Error, Mesh, formats, shapes};
+use crate::scene::{Error, Mesh, divided, formats, shapes};
 use glam::{UVec2, Vec2};
 use std::convert::Infallible;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Source of a mesh: one of the built-in ones or a file.
 ///
 /// As text: `teapot`, `sphere`, `box`, `bunny` or `plane`; anything else is a path, so that a file named
-/// `box` is `./box`.
+/// `box` is `./box`. Each may be followed by `:N`, and is then divided into N triangles or a few more.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum MeshSource {
     /// [`shapes::teapot`].
@@ -23,9 +23,31 @@ pub enum MeshSource {
     Plane,
     /// An OBJ, PLY, STL, glTF or GLB file, told apart by the file's ending.
     File(PathBuf),
+    /// Another source, [divided] into at least so many triangles.
+    Divided(Box<MeshSource>, u64),
 }
 
 impl MeshSource {
+    /// Most triangles that a mesh is divided into: twice the largest that any paper holds on a large device.
+    pub const MOST_DIVIDED: u64 = 200_000_000;
+
+    /// The mesh with at least `triangles`; one that was to be divided already, by the new number.
+    pub fn divided(&self, triangles: u64) -> Self {
+        match self {
+            Self::Divided(source, _) => source.divided(triangles),
+            whole => Self::Divided(Box::new(whole.clone()), triangles),
+        }
+    }
+
+    /// The file that it is read from, if it is.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Divided(source, _) => source.path(),
+            _ => None,
+        }
+    }
+
     /// Builds the shape or reads the file.
     ///
     /// # Errors
@@ -39,6 +61,7 @@ impl MeshSource {
             Self::Bunny => formats::bunny(),
             Self::Plane => Ok(shapes::plane(Vec2::splat(2.0), UVec2::splat(32))),
             Self::File(path) => formats::load(path),
+            Self::Divided(source, triangles) => Ok(divided(&source.load()?, *triangles)),
         }
     }
 }
@@ -47,6 +70,14 @@ impl FromStr for MeshSource {
     type Err = Infallible;
 
     fn from_str(text: &str) -> Result<Self, Infallible> {
+        if let Some((source, count)) = text.rsplit_once(':')
+            && let Some(triangles) = count.parse().ok().filter(|count| (1..=Self::MOST_DIVIDED).contains(count))
+            && !source.is_empty()
+            && !count.starts_with('+')
+        {
+            let Ok(source) = source.parse::<Self>();
+            return Ok(source.divided(triangles));
+        }
         Ok(match text {
             "teapot" => Self::Teapot,
             "sphere" => Self::Sphere,
@@ -67,6 +98,7 @@ impl fmt::Display for MeshSource {
             Self::Bunny => formatter.write_str("bunny"),
             Self::Plane => formatter.write_str("plane"),
             Self::File(path) => path.display().fmt(formatter),
+            Self::Divided(source, triangles) => write!(formatter, "{source}:{triangles}"),
         }
     }
 }
@@ -83,6 +115,25 @@ mod tests {
             let is_file = matches!(source, MeshSource::File(_));
             assert_eq!(is_file, !["teapot", "sphere", "box", "bunny", "plane"].contains(&text));
         }
+    }
+
+    #[test]
+    fn a_number_divides_and_a_path_with_a_colon_stays_one() {
+        for (text, expected) in [
+            ("bunny:8000", MeshSource::Bunny.divided(8000)),
+            ("a.obj:12", MeshSource::File("a.obj".into()).divided(12)),
+            ("a:b.obj", MeshSource::File("a:b.obj".into())),
+            ("bunny:0", MeshSource::File("bunny:0".into())),
+            (":12", MeshSource::File(":12".into())),
+            ("bunny:+12", MeshSource::File("bunny:+12".into())),
+            ("bunny:200000001", MeshSource::File("bunny:200000001".into())),
+        ] {
+            let Ok(source) = text.parse::<MeshSource>();
+            assert_eq!((&source, source.to_string().as_str()), (&expected, text));
+        }
+        let Ok(source) = "bunny:8000".parse::<MeshSource>();
+        assert_eq!(source.load().unwrap().triangle_count(), 3 * 3674);
+        assert_eq!(source.divided(9).to_string(), "bunny:9");
     }
 
     #[test]

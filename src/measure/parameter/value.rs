@@ -1,7 +1,7 @@
 //! Values of parameters: how they are typed, shown, recorded and held against a range.
 
 use std::ffi::OsStr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use glam::Vec3;
@@ -396,13 +396,13 @@ macro_rules! source {
             }
 
             fn files(&self) -> Vec<PathBuf> {
-                if let Self::File(path) = self { vec![path.clone()] } else { Vec::new() }
+                self.path().map(Path::to_path_buf).into_iter().collect()
             }
         }
     )+ };
 }
 
-source!(MeshSource, "SHAPE|FILE"; HeightMapSource, "NAME|FILE");
+source!(MeshSource, "SHAPE|FILE[:N]"; HeightMapSource, "NAME|FILE");
 
 impl Value for PathBuf {
     const SHAPE: Shape = Shape::single("FILE");

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{Mat4, Vec3};
 use serde_json::{Map, Value, json};
 
+use super::axes;
 use super::experiments::{self, Options, presets};
 use super::model::with_triangles;
 use super::{BlockCounts, Burning, Material, NEEDS, Parameters, Texture, Variant, texture};
@@ -20,6 +21,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Choice, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
+use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper as _};
 use crate::scene::{Mesh, MeshSource};
@@ -222,6 +224,10 @@ impl Study for Setup {
 
     fn presets() -> Vec<Preset<Self>> {
         presets::all()
+    }
+
+    fn axes() -> Vec<Axis<Self>> {
+        axes::all()
     }
 
     fn experiments() -> Vec<Experiment<Self>> {

@@ -9,6 +9,7 @@
 //! water-surface ─► illumination-volumes ─► stencil-volumes (─► view)
 //! ```
 
+mod axes;
 mod bounding_box;
 mod cast;
 mod caustics_map;
@@ -26,6 +27,7 @@ mod intersections;
 mod layouts;
 mod level_map;
 mod multiply;
+mod named_mesh;
 pub mod parameters;
 mod planes;
 mod position_diffuse_map;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::{DVec2, Mat4, UVec2, Vec2, Vec3};
 use serde_json::{Map, Value as Json, json};
 
+use super::axes;
 use super::experiments::{self, Options};
 use crate::field;
 use crate::gpu::{self, Device, Feature, Mode, ShaderLibrary};
@@ -18,6 +19,7 @@ use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
+use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::caustics::{
     Caustics, DRAWN, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap,
@@ -319,6 +321,10 @@ impl Study for Setup {
         }]
     }
 
+    fn axes() -> Vec<Axis<Self>> {
+        axes::all()
+    }
+
     fn experiments() -> Vec<Experiment<Self>> {
         experiments::all()
     }
@@ -445,35 +451,6 @@ fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
     ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
 }
 
-/// A mesh of an experiment.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedMesh {
-    /// Its mesh.
-    pub source: MeshSource,
-    /// Its word, or its file's name without folder and ending: what the thesis's tables may know it by.
-    pub model: String,
-    /// The same with a number where another mesh before it has that name: rows and files are told apart by it.
-    pub name: String,
-}
-
-impl NamedMesh {
-    /// The meshes in their order.
-    pub fn all(meshes: &[MeshSource]) -> Vec<NamedMesh> {
-        let mut named: Vec<NamedMesh> = Vec::with_capacity(meshes.len());
-        for source in meshes {
-            let model = match source {
-                MeshSource::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
-                other => other.to_string(),
-            };
-            let is_taken = |name: &str| named.iter().any(|mesh| mesh.name == name);
-            let numbered = (2..).map(|number| format!("{model}-{number}"));
-            let name = std::iter::once(model.clone()).chain(numbered).find(|name| !is_taken(name)).unwrap_or_default();
-            named.push(NamedMesh { source: source.clone(), model, name });
-        }
-        named
-    }
-}
-
 /// The thesis's meshes that we have, a scanned one, and a modelled one from `assets/` where that folder is.
 pub fn sample_meshes() -> Vec<MeshSource> {
     let wuson = Some(PathBuf::from("assets/meshes/wuson.stl")).filter(|path| path.is_file());
@@ -513,20 +490,4 @@ fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -
         ("intersection_triangles", json!(triangles)),
         ("intersection_triangles_per_s", json!(time_ms.map(|ms| triangles as f64 / ms * 1e3))),
     ])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn meshes_of_one_name_are_told_apart() {
-        let files = ["a/pot.obj", "b/pot.obj", "pot-2.stl", "pot.ply"];
-        let sources = files.map(|file| MeshSource::File(file.into()));
-        let named = NamedMesh::all(&[&sources[..], &[MeshSource::Teapot]].concat());
-        let names: Vec<&str> = named.iter().map(|mesh| mesh.name.as_str()).collect();
-        assert_eq!(names, ["pot", "pot-2", "pot-2-2", "pot-3", "teapot"]);
-        let models: Vec<&str> = named.iter().map(|mesh| mesh.model.as_str()).collect();
-        assert_eq!(models, ["pot", "pot", "pot-2", "pot", "teapot"]);
-    }
 }

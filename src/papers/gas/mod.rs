@@ -9,6 +9,7 @@
 //! A picture whose lists no buffer of the device holds is done in bands of rows, one after the other.
 
 mod a_buffer;
+mod axes;
 mod band;
 mod blocks;
 mod capacity;

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 
+use super::axes;
 use super::capacity::BufferLimit;
 use super::experiments::{self, Options};
 use super::parameters::volumes::{self, Placement};
@@ -19,6 +20,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
+use crate::measure::stress::Axis;
 use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
@@ -34,6 +36,10 @@ pub struct Setup {
     pub scene: Preset,
     /// Polygon meshes that stand in the scene beside its own surfaces, at their own size.
     pub objects: Vec<MeshSource>,
+    /// Triangles that all surfaces together are divided into at least; as they are, without.
+    pub surface_triangles: Option<u64>,
+    /// Layers behind the scene that each fill the picture.
+    pub layers: u32,
     /// The preset, as the record names it.
     pub preset: Option<String>,
     /// Volumes beside the scene's.
@@ -57,6 +63,8 @@ impl Setup {
             parameters,
             scene,
             objects: Vec::new(),
+            surface_triangles: None,
+            layers: 0,
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
             gases: volumes::templates(),
@@ -152,6 +160,8 @@ impl Study for Setup {
         for source in &self.objects {
             objects.push(Object::new(source.load()?, Vec3::splat(0.6)));
         }
+        self.divide_surfaces(&mut objects);
+        objects.extend(self.layers());
         objects.iter().try_for_each(validate_object)?;
         Ok(Scene { objects })
     }
@@ -207,6 +217,9 @@ impl Study for Setup {
             ("background", json!(p.background.to_array())),
             ("camera", config::camera(&p.camera)),
         ]));
+        if self.layers > 0 {
+            config.insert("layers".to_owned(), json!(self.layers));
+        }
         config
     }
 
@@ -303,6 +316,10 @@ impl Study for Setup {
             preset("fig-8", "Figure 8: steam and one glass, the default", || Setup::of(Preset::Fig8)),
             preset("solid", "A solid (hypertexture) volume", || Setup::of(Preset::Solid)),
         ]
+    }
+
+    fn axes() -> Vec<Axis<Self>> {
+        axes::all()
     }
 
     fn experiments() -> Vec<Experiment<Self>> {

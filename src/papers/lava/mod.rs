@@ -14,6 +14,7 @@
 
 mod accumulate_depths;
 mod animate;
+mod axes;
 mod blending;
 mod cluster;
 mod density;

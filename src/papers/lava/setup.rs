@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
+use super::axes;
 use super::experiments::{self, Options};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
@@ -20,6 +21,7 @@ use crate::measure::measure::Measurement;
 use crate::measure::parameter::Value as _;
 use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
+use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::lava::{DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Variant};
 use crate::scene::Mesh;
@@ -117,9 +119,13 @@ impl Study for Setup {
         }
     }
 
-    fn config(&self, _: &Scene, _: &Lava) -> Map<String, Value> {
+    fn config(&self, scene: &Scene, _: &Lava) -> Map<String, Value> {
         let mut config = parameter::config(&Self::parameters(), self);
         config.insert("rho".to_owned(), json!(self.parameters.rho()));
+        if !scene.objects.is_empty() {
+            let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();
+            config.insert("object_triangles".to_owned(), json!(triangles));
+        }
         config
     }
 
@@ -196,6 +202,10 @@ impl Study for Setup {
                 },
             },
         ]
+    }
+
+    fn axes() -> Vec<Axis<Self>> {
+        axes::all()
     }
 
     fn experiments() -> Vec<Experiment<Self>> {

@@ -6,6 +6,7 @@
 //! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow) ─► illumination (...)   (mesh)
 //! ```
 
+mod axes;
 mod base;
 mod blocks;
 mod collision;

@@ -2,6 +2,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::fmt;
+use std::path::PathBuf;
 
 use glam::{Mat4, Vec3};
 use serde_json::{Value as Json, json};
@@ -98,5 +99,9 @@ impl Value for ObjectSource {
 
     fn json(&self) -> Json {
         json!(self.to_string())
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        self.mesh.files()
     }
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde_json::{Map, Value as Json, json};
 
+use super::axes;
 use super::experiments::{self, Options, figures};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
@@ -19,6 +20,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, Given, Parameter, Range, Shape, Value, one, parse_finite};
 use crate::measure::statistics::median;
+use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
@@ -159,7 +161,7 @@ impl Setup {
         Ok(self.objects.iter().zip(meshes).map(place).collect())
     }
 
-    fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
+    pub(super) fn load_map(&self, source: &HeightMapSource) -> Result<HeightMap, Error> {
         let mut map = match source {
             HeightMapSource::Volcano => volcano(self.resolution, self.seed)?,
             other => other.load()?,
@@ -263,6 +265,10 @@ impl Study for Setup {
         let mut config = parameter::config(&Self::parameters(), self);
         let haze = terrain.extinction_per_km();
         config.extend(entries([("resolution", json!(first)), ("maps", json!(maps)), ("haze", json!(haze))]));
+        if !scene.objects.is_empty() {
+            let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();
+            config.insert("object_triangles".to_owned(), json!(triangles));
+        }
         config
     }
 
@@ -377,6 +383,10 @@ impl Study for Setup {
             preset("figure-1", "Figure 1: 200 x 200 samples from above", || Setup::figure(View::Top)),
             preset("figure-2", "Figure 2: 200 x 200 samples from the side", || Setup::figure(View::Side)),
         ]
+    }
+
+    fn axes() -> Vec<Axis<Self>> {
+        axes::all()
     }
 
     fn experiments() -> Vec<Experiment<Self>> {

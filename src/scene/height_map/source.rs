@@ -2,7 +2,7 @@ use super::{HeightMap, formats, volcano};
 use crate::scene::Error;
 use std::convert::Infallible;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Source of a height map: one of the built-in ones or a file.
@@ -24,6 +24,11 @@ pub enum HeightMapSource {
 impl HeightMapSource {
     /// Samples a side of the built-in volcano.
     pub const VOLCANO_SIDE: u32 = 1_024;
+
+    /// The file that it is read from, if it is.
+    pub fn path(&self) -> Option<&Path> {
+        if let Self::File(path) = self { Some(path) } else { None }
+    }
 
     /// Builds the volcano or reads the file.
     ///

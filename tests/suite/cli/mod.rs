@@ -26,5 +26,6 @@ mod render;
 mod report;
 mod shaders;
 mod streams;
+mod stress;
 mod terrain;
 mod vulkan;

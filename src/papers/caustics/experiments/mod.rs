@@ -8,7 +8,8 @@ mod thesis;
 use serde_json::json;
 
 use self::sweep::{ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome};
-use super::setup::{NamedMesh, Setup, sample_meshes};
+use super::named_mesh::NamedMesh;
+use super::setup::{Setup, sample_meshes};
 use super::{Parameters, Variant};
 use crate::field;
 use crate::measure::bench::build;

@@ -3,7 +3,8 @@
 
 use serde_json::json;
 
-use super::super::setup::{NamedMesh, Scene, Setup};
+use super::super::named_mesh::NamedMesh;
+use super::super::setup::{Scene, Setup};
 use super::thesis::{TABLE_5_2, TABLE_5_4};
 use crate::gpu::Mode;
 use crate::image::{Difference, Rgba8, Samples, compare};

@@ -3,7 +3,8 @@
 
 use serde_json::json;
 
-use super::super::setup::{NamedMesh, Setup};
+use super::super::named_mesh::NamedMesh;
+use super::super::setup::Setup;
 use super::ratios::{self, LEAST_SAMPLES, Ratios};
 use super::thesis::{TABLE_5_1, TABLE_5_3};
 use crate::measure::Error;

@@ -1,0 +1,88 @@
+//! `fumarole stress`: every paper's first axis.
+
+use std::ffi::OsString;
+use std::time::Instant;
+
+use clap::Args;
+
+use super::{Ascent, LimitArgs, StressOutput, default_axis, schedule};
+use crate::cli::failure::Failure;
+use crate::cli::options::MachineArgs;
+use crate::cli::watch::interrupted;
+use crate::measure::measure::Schedule;
+use crate::measure::study::{Study, Visitor};
+use crate::papers;
+
+#[derive(Debug, Clone, Args)]
+pub struct StressAllArgs {
+    #[command(flatten)]
+    limits: LimitArgs,
+    #[command(flatten)]
+    machine: MachineArgs,
+    #[command(flatten)]
+    output: StressOutput,
+}
+
+/// Seconds without `--budget`.
+const BUDGET_S: f64 = 600.0;
+
+struct Papers<'a> {
+    arguments: &'a StressAllArgs,
+    started: Instant,
+    /// Papers that are still to come.
+    left: u32,
+}
+
+struct Count(u32);
+
+impl Visitor for Count {
+    type Error = Failure;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Failure> {
+        self.0 += u32::from(!S::axes().is_empty());
+        Ok(())
+    }
+}
+
+/// Grows every paper's first axis, each for its part of the budget that is left.
+pub fn run(arguments: &StressAllArgs) -> Result<(), Failure> {
+    let mut count = Count(0);
+    papers::each(&mut count)?;
+    papers::each(&mut Papers { arguments, started: Instant::now(), left: count.0 })
+}
+
+impl Visitor for Papers<'_> {
+    type Error = Failure;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Failure> {
+        if S::axes().is_empty() || interrupted().load(std::sync::atomic::Ordering::Relaxed) {
+            return Ok(());
+        }
+        let StressAllArgs { limits, machine, output } = self.arguments;
+        let usual = Schedule { warmup: 1, frames: 1, repeat: 3, min_time_s: 0.0 };
+        let mut words: Vec<OsString> = vec![S::PAPER.into(), "stress".into()];
+        words.extend(machine.words());
+        if let Some(until) = limits.until {
+            words.extend(["--until".into(), until.as_str().into()]);
+        }
+        let ascent = Ascent::<S> {
+            setup: S::default(),
+            variants: vec![S::RENDERED],
+            axis: default_axis()?,
+            across: None,
+            from: None,
+            schedule: schedule(limits.until, usual),
+            limits,
+            output,
+            machine,
+            json: None,
+            csv: None,
+            words,
+            suffix: String::new(),
+        };
+        let left_s = limits.budget.unwrap_or(BUDGET_S) - self.started.elapsed().as_secs_f64();
+        let share_s = left_s.max(0.0) / f64::from(self.left.max(1));
+        self.left = self.left.saturating_sub(1);
+        ascent.publish(share_s)
+    }
+}

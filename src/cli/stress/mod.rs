@@ -1,0 +1,376 @@
+//! `stress`: grows an axis of a paper until a limit stops it, each step in a process of its own.
+
+mod all;
+mod climber;
+mod identity;
+mod record;
+mod step;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+
+pub use self::all::{StressAllArgs, run as run_all};
+use self::climber::Children;
+use self::record::File;
+pub use self::step::StepArgs;
+use super::failure::Failure;
+use super::options::MachineArgs;
+use super::outcome;
+use super::processes::without;
+use super::watch::interrupted;
+use crate::file::check_writable;
+use crate::measure::Variant;
+use crate::measure::measure::Schedule;
+use crate::measure::parameter::Given;
+use crate::measure::stress::console::{Form, tables};
+use crate::measure::stress::{Axis, Climb, Ladder, plots};
+use crate::measure::study::Study;
+use crate::report::stress::{StopKind, StressRecord};
+
+#[derive(Debug, Clone, Args)]
+pub struct StressArgs {
+    /// Axis that grows; `--list` names the paper's [default: the first of them]
+    #[arg(long, value_name = "NAME")]
+    axis: Option<String>,
+    /// List the axes
+    #[arg(long)]
+    list: bool,
+    /// Cross two axes: for each value of B the steps of A
+    #[arg(long, value_name = "A,B", conflicts_with = "axis")]
+    matrix: Option<String>,
+    /// First value of the axis [default: the axis's own]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 40))]
+    from: Option<u64>,
+    #[command(flatten)]
+    limits: LimitArgs,
+    /// Measure on each of these devices, one after the other: indices, parts of names or UUIDs, comma-separated
+    #[arg(long, value_name = "DEVICE,..", value_delimiter = ',', conflicts_with = "device", help_heading = "Device")]
+    devices: Vec<String>,
+    #[command(flatten)]
+    machine: MachineArgs,
+    /// Frames before anything counts, 1 to 10000
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    warmup: u32,
+    /// Frames in one repetition, 1 to 100000
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    frames: u32,
+    /// Repetitions of those frames, 1 to 10000
+    #[arg(long, value_name = "R", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    repeat: u32,
+    #[command(flatten)]
+    output: StressOutput,
+    /// The record, which a second call goes on with; to standard output as well without a file [default: in --out]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-", help_heading = "Output")]
+    json: Option<PathBuf>,
+    /// One row for each step and pass [default: in --out]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    csv: Option<PathBuf>,
+    #[command(flatten)]
+    step: StepArgs,
+}
+
+/// What ends the steps.
+#[derive(Debug, Clone, Args)]
+struct LimitArgs {
+    /// Factor from step to step, 1.05 to 100
+    #[arg(long, value_name = "F", default_value_t = 2.0, value_parser = parse_factor)]
+    factor: f64,
+    /// Seconds for all steps together, 1 to 1000000 [default: 120; of all papers 600]
+    #[arg(long, value_name = "S", value_parser = parse_budget)]
+    budget: Option<f64>,
+    /// Limit to look for; for memory and device each step draws as few frames as it can, so that the budget reaches further
+    #[arg(long, value_name = "LIMIT", value_enum)]
+    until: Option<Until>,
+    /// Measure every step anew, whatever the record holds
+    #[arg(long)]
+    anew: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Output")]
+struct StressOutput {
+    /// Folder of record, rows and plots
+    #[arg(long, value_name = "DIR", default_value = "fumarole-out")]
+    out: PathBuf,
+    /// Print the tables as Markdown, to paste
+    #[arg(long)]
+    markdown: bool,
+    /// Print nothing but errors and what was asked for on standard output
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Until {
+    Time,
+    Memory,
+    Device,
+}
+
+impl Until {
+    fn kind(self) -> StopKind {
+        match self {
+            Until::Time => StopKind::Time,
+            Until::Memory => StopKind::Memory,
+            Until::Device => StopKind::Device,
+        }
+    }
+
+    fn as_str(self) -> &'static str {
+        self.kind().name()
+    }
+}
+
+fn parse_factor(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(factor) if (1.05..=100.0).contains(&factor) => Ok(factor),
+        _ => Err(format!("{text:?} is not a factor of 1.05 to 100")),
+    }
+}
+
+fn parse_budget(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (1.0..=1e6).contains(&seconds) => Ok(seconds),
+        _ => Err(format!("{text:?} is not a time of 1 to 1000000 seconds")),
+    }
+}
+
+/// Seconds of a paper without `--budget`.
+const BUDGET_S: f64 = 120.0;
+
+/// Options that a step's process does not get, and whether a value follows.
+const OURS: [(&str, bool); 10] = [
+    ("--devices", true),
+    ("--device", true),
+    ("--csv", true),
+    ("--out", true),
+    ("--budget", true),
+    ("--factor", true),
+    ("--from", true),
+    ("--markdown", false),
+    ("--anew", false),
+    ("--quiet", false),
+];
+
+/// Steps of one paper on one device.
+struct Ascent<'a, S: Study> {
+    setup: S,
+    variants: Vec<S::Variant>,
+    axis: Axis<S>,
+    across: Option<Axis<S>>,
+    from: Option<u64>,
+    schedule: Schedule,
+    limits: &'a LimitArgs,
+    output: &'a StressOutput,
+    machine: &'a MachineArgs,
+    json: Option<PathBuf>,
+    csv: Option<PathBuf>,
+    /// What a step's process is started with, but for the step.
+    words: Vec<OsString>,
+    /// Goes after the names of files.
+    suffix: String,
+}
+
+/// Runs the verb for a paper: its steps, or in a process of its own the one step that it was started for.
+pub fn run<S: Study>(
+    arguments: &StressArgs,
+    setup: S,
+    variants: Vec<S::Variant>,
+    given: &Given,
+) -> Result<(), Failure> {
+    if arguments.list {
+        let line = |axis: Axis<S>| format!("{:20}{}\n", axis.name, axis.help);
+        return outcome::print(&S::axes().into_iter().map(line).collect::<String>());
+    }
+    let (axis, across) = arguments.axes::<S>()?;
+    if let Some(axis) = [Some(&axis), across.as_ref()].into_iter().flatten().find(|axis| given.has(axis.parameter)) {
+        let name = axis.parameter;
+        return Err(Failure::Input(format!(
+            "--{name}: the axis sets it; --from says where it begins, or leave it out"
+        )));
+    }
+    if arguments.step.is_step() {
+        let axes = (&axis, across.as_ref());
+        let until = arguments.limits.until;
+        return step::run(&arguments.step, &arguments.machine, axes, setup, &variants, arguments.schedule(until));
+    }
+    let words = without(&OURS, std::env::args_os().skip(1));
+    let devices: Vec<Option<&String>> =
+        if arguments.devices.is_empty() { vec![None] } else { arguments.devices.iter().map(Some).collect() };
+    let started = Instant::now();
+    let budget_s = arguments.limits.budget.unwrap_or(BUDGET_S);
+    for (number, device) in devices.iter().enumerate() {
+        let left_s = (budget_s - started.elapsed().as_secs_f64()).max(0.0);
+        let (axis, across) = arguments.axes::<S>()?;
+        let machine = device.map_or_else(|| arguments.machine.clone(), |device| arguments.machine.on(device));
+        let ascent = Ascent {
+            setup: setup.clone(),
+            variants: variants.clone(),
+            axis,
+            across,
+            from: arguments.from,
+            schedule: arguments.schedule(arguments.limits.until),
+            limits: &arguments.limits,
+            output: &arguments.output,
+            words: words.iter().cloned().chain(machine.device_words()).collect(),
+            machine: &machine,
+            json: arguments.json.clone().filter(|_| devices.len() == 1),
+            csv: arguments.csv.clone().filter(|_| devices.len() == 1),
+            suffix: device.map_or_else(String::new, |device| format!("-{}", slug(device))),
+        };
+        ascent.publish(left_s / (devices.len() - number) as f64)?;
+    }
+    Ok(())
+}
+
+/// A text as a part of a file's name.
+fn slug(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' }).collect()
+}
+
+impl StressArgs {
+    fn schedule(&self, until: Option<Until>) -> Schedule {
+        let StressArgs { warmup, frames, repeat, .. } = *self;
+        schedule(until, Schedule { warmup, frames, repeat, min_time_s: 0.0 })
+    }
+
+    /// The axis, and in a matrix the second one.
+    fn axes<S: Study>(&self) -> Result<(Axis<S>, Option<Axis<S>>), Failure> {
+        let named = |option: &str, name: &str| {
+            let mut axes = S::axes();
+            let names: Vec<&str> = axes.iter().map(|axis| axis.name).collect();
+            let found = names.iter().position(|known| *known == name);
+            found.map(|at| axes.swap_remove(at)).ok_or_else(|| {
+                Failure::Input(format!("--{option} {name}: no such axis; {} has {}", S::PAPER, names.join(", ")))
+            })
+        };
+        match (&self.matrix, &self.axis) {
+            (Some(matrix), _) => match matrix.split(',').collect::<Vec<_>>()[..] {
+                [a, b] if a != b => Ok((named("matrix", a)?, Some(named("matrix", b)?))),
+                _ => Err(Failure::Input(format!("--matrix {matrix}: give two different axes, as A,B"))),
+            },
+            (None, Some(name)) => Ok((named("axis", name)?, None)),
+            (None, None) => Ok((default_axis()?, None)),
+        }
+    }
+}
+
+fn default_axis<S: Study>() -> Result<Axis<S>, Failure> {
+    let none = || Failure::Input(format!("stress: {} declares no axis that could grow", S::PAPER));
+    S::axes().into_iter().next().ok_or_else(none)
+}
+
+/// The schedule of a step: the shortest where a limit is looked for that frames say nothing of.
+fn schedule(until: Option<Until>, usual: Schedule) -> Schedule {
+    match until {
+        Some(Until::Memory | Until::Device) => Schedule { warmup: 1, frames: 1, repeat: 1, min_time_s: 0.0 },
+        None | Some(Until::Time) => usual,
+    }
+}
+
+impl<S: Study> Ascent<'_, S> {
+    /// Takes the steps, and publishes record, rows, plots and tables.
+    fn publish(self, budget_s: f64) -> Result<(), Failure> {
+        let file = |ending: &str| self.output.out.join(format!("{}{ending}", self.stem()));
+        let is_printed = self.json.as_deref().is_some_and(|path| path.as_os_str() == "-");
+        let json = self.json.clone().filter(|_| !is_printed).unwrap_or_else(|| file(".json"));
+        let csv = self.csv.clone().unwrap_or_else(|| file(".csv"));
+        check_writable(&json)?;
+        outcome::check_file(&csv)?;
+        let record = self.climb(File::new(json.clone()), budget_s)?;
+
+        let files = outcome_files(&record, &self.stem(), self.output, csv);
+        let printed = match (is_printed, self.output.markdown) {
+            (true, _) => outcome::print(&outcome::text(&record)?),
+            (_, true) => outcome::print(&tables(&record, Form::Markdown)),
+            _ if self.output.quiet => Ok(()),
+            _ => outcome::print(&tables(&record, Form::Console(outcome::style()))),
+        };
+        let mut written = vec![json];
+        for (path, text) in files {
+            crate::file::write(&path, text.as_bytes())?;
+            written.push(path);
+        }
+        if !self.output.quiet {
+            self.limits.until.iter().for_each(|until| say_unmet(&record, *until));
+            written.iter().for_each(|path| outcome::say(&format!("wrote {}", path.display())));
+        }
+        printed
+    }
+
+    fn stem(&self) -> String {
+        let across = self.across.as_ref().map_or_else(String::new, |across| format!("-{}", across.name));
+        format!("stress-{}-{}{across}{}", S::PAPER, self.axis.name, self.suffix)
+    }
+
+    fn climb(&self, file: File, budget_s: f64) -> Result<StressRecord, Failure> {
+        let ladder = |axis: &Axis<S>, from: Option<u64>| Ladder {
+            from: from.unwrap_or(axis.start),
+            factor: self.limits.factor,
+            most: axis.most,
+        };
+        let climb = Climb {
+            ladder: ladder(&self.axis, self.from),
+            across: self.across.as_ref().map(|across| ladder(across, None)),
+            variants: self.variants.iter().map(|variant| variant.as_str().to_owned()).collect(),
+            counts_values: self.axis.counts_values(),
+            budget_s,
+        };
+        let (first, row) = (climb.ladder.from, climb.across.map(|across| across.from));
+        // What is wrong from the beginning is said before a process is started.
+        let mut setup = self.setup.clone();
+        if let (Some(across), Some(row)) = (&self.across, row) {
+            across.set(&mut setup, row)?;
+        }
+        self.axis.set(&mut setup, first)?;
+        let started = Instant::now();
+        let children = Children::new(&self.words, self.output.quiet)?;
+        let template = self.template(&children)?;
+        let known = file.known(&template, self.limits.anew)?;
+        let mut climber = climber::MachineClimber {
+            children,
+            template,
+            file,
+            started,
+            unit: self.axis.unit,
+            interrupted: interrupted(),
+            has_steps: false,
+        };
+        let series = climb.run(&mut climber, known)?;
+        Ok(climber.record(&series))
+    }
+}
+
+/// Rows and plots, with their files.
+fn outcome_files(record: &StressRecord, stem: &str, output: &StressOutput, csv: PathBuf) -> Vec<(PathBuf, String)> {
+    let mut files = vec![(csv, record.csv())];
+    let has_steps = record.series.iter().any(|series| !series.steps.is_empty());
+    // A chart without a point is none.
+    let mut plot = |name: String, svg: Result<String, _>| {
+        if let Ok(svg) = svg {
+            files.push((output.out.join(name), svg));
+        }
+    };
+    if has_steps && record.series.len() > 1 {
+        plot(format!("{stem}.svg"), plots::frames(record));
+    }
+    for series in &record.series {
+        let across = series.across.map_or_else(String::new, |value| format!("-{value}"));
+        let alone = record.series.len() == 1;
+        let name = if alone { format!("{stem}.svg") } else { format!("{stem}-{}{across}.svg", series.variant) };
+        plot(name, plots::series(record, series));
+    }
+    files
+}
+
+fn say_unmet(record: &StressRecord, until: Until) {
+    let is_met = |stop: &crate::report::stress::Stop| stop.kind == until.kind();
+    for series in record.series.iter().filter(|series| !series.stop.as_ref().is_some_and(is_met)) {
+        let end = series.stop.as_ref().map_or("nothing", |stop| stop.kind.name());
+        let variant = &series.variant;
+        outcome::say(&format!("{variant}: the limit of {} was not met; what stopped it was {end}", until.as_str()));
+    }
+}

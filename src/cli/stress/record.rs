@@ -1,0 +1,100 @@
+//! The record on the disk: written after every step, and gone on with by a second call.
+
+use std::io::ErrorKind;
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::super::failure::Failure;
+use super::super::outcome;
+use crate::file;
+use crate::report::json;
+use crate::report::stress::{SCHEMA, Series, StressRecord};
+
+/// Longest record that is gone on with, bytes.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// The record's file.
+pub struct File {
+    path: PathBuf,
+}
+
+impl File {
+    pub fn new(path: PathBuf) -> Self {
+        File { path }
+    }
+
+    /// The series that an earlier call left under the same identity; none where there is no file, or all is to be measured
+    /// anew.
+    pub fn known(&self, template: &StressRecord, is_anew: bool) -> Result<Vec<Series>, Failure> {
+        let path = self.path.display();
+        let text = match file::read_text(&self.path, MAX_BYTES) {
+            Ok(text) => text,
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(_) if is_anew => return Ok(Vec::new()),
+            Err(e) => return Err(Failure::Input(format!("going on with {path}: {e}; move it away, or use --anew"))),
+        };
+        if is_anew {
+            return Ok(Vec::new());
+        }
+        let schema =
+            serde_json::from_str::<Value>(&text).ok().and_then(|v| Some(v.get("schema")?.as_str()?.to_owned()));
+        if schema.as_deref() != Some(SCHEMA) {
+            let message =
+                format!("going on with {path}: it is no record of stress; name another --json, or use --anew");
+            return Err(Failure::Input(message));
+        }
+        let record: StressRecord = json::document(&text, &self.path)?;
+        if record.identity != template.identity {
+            let what = differences(&record, template);
+            return Err(Failure::Input(format!(
+                "going on with {path}: its steps differ in {what}; name another --json or --out, or use --anew"
+            )));
+        }
+        Ok(record.series)
+    }
+
+    pub fn write(&self, record: &StressRecord) -> Result<(), Failure> {
+        Ok(file::write(&self.path, outcome::text(record)?.as_bytes())?)
+    }
+}
+
+/// Names of what fixes the steps and differs.
+fn differences(a: &StressRecord, b: &StressRecord) -> String {
+    let fields = |record: &StressRecord| {
+        let mut fields = flat("", &serde_json::to_value(&record.settings).unwrap_or_default());
+        fields.extend(flat("device", &serde_json::to_value(&record.environment.device).unwrap_or_default()));
+        fields.extend(flat("host", &serde_json::to_value(&record.environment.host).unwrap_or_default()));
+        fields.push(("the program".into(), record.environment.build.executable_sha256.clone().into()));
+        fields.push(("the axes".into(), Value::from(format!("{:?}", (&record.axis, &record.across)))));
+        fields
+    };
+    let (a, b) = (fields(a), fields(b));
+    let of = |all: &[(String, Value)], name: &str| {
+        all.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone())
+    };
+    let mut names: Vec<&String> = a.iter().chain(&b).map(|(name, _)| name).filter(|n| of(&a, n) != of(&b, n)).collect();
+    names.dedup();
+    names.sort();
+    names.dedup();
+    if names.is_empty() {
+        "the machine".to_owned()
+    } else {
+        names.iter().map(|n| n.as_str()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Fields of an object, those of objects in it under their own names.
+fn flat(before: &str, value: &Value) -> Vec<(String, Value)> {
+    let Value::Object(map) = value else { return Vec::new() };
+    let named = |name: &String| if before.is_empty() { name.clone() } else { format!("{before} {name}") };
+    map.iter()
+        .flat_map(|(name, value)| match value {
+            Value::Object(_) => flat(if name == "parameters" { "--" } else { name }, value)
+                .into_iter()
+                .map(|(name, value)| (name.replace("-- ", "--"), value))
+                .collect(),
+            other => vec![(named(name), other.clone())],
+        })
+        .collect()
+}

@@ -1,0 +1,255 @@
+//! The steps in their order, and what stops them.
+
+use std::collections::BTreeMap;
+
+use super::{Ladder, foretell};
+use crate::report::stress::{Series, Step, Stop, StopKind};
+
+/// A step that is due.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cell {
+    pub variant: String,
+    /// Value of the second axis, in a matrix.
+    pub across: Option<u64>,
+    /// Value of the axis.
+    pub value: u64,
+}
+
+/// How a step ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    Finished(Box<Step>),
+    Stopped(StopKind, String),
+}
+
+/// Whoever takes the steps: the clock, the memory and the processes of the machine.
+pub trait Climber {
+    type Error;
+
+    /// Seconds since the call began.
+    fn elapsed_s(&self) -> f64;
+
+    /// Bytes of memory that a process may still take; none where the system does not tell.
+    fn available_bytes(&self) -> Option<u64>;
+
+    /// True when the user wants no more.
+    fn is_interrupted(&self) -> bool;
+
+    /// Takes a step within so many seconds.
+    ///
+    /// # Errors
+    /// What makes every step impossible.
+    fn take(&mut self, cell: &Cell, left_s: f64) -> Result<Outcome, Self::Error>;
+
+    /// Keeps what there is so far, whatever comes.
+    ///
+    /// # Errors
+    /// Of a record that cannot be written.
+    fn keep(&mut self, series: &[Series]) -> Result<(), Self::Error>;
+}
+
+/// What is to be climbed.
+#[derive(Debug, Clone)]
+pub struct Climb {
+    pub ladder: Ladder,
+    /// Of the second axis, in a matrix.
+    pub across: Option<Ladder>,
+    pub variants: Vec<String>,
+    /// Amounts of steps are values, only rounded up: values that a step has had already are passed over.
+    pub counts_values: bool,
+    /// Seconds for all steps together.
+    pub budget_s: f64,
+}
+
+/// Part of the free memory that a step may be foretold to take.
+const MEMORY_SHARE: f64 = 0.9;
+
+/// A series on its way.
+struct Track {
+    series: Series,
+    /// Values of the second axis before this one.
+    row: usize,
+    /// Steps so far.
+    rung: usize,
+    /// The next value.
+    next: Option<u64>,
+    /// Steps of an earlier call.
+    known: BTreeMap<u64, Step>,
+    /// The final stop of an earlier call.
+    known_stop: Option<Stop>,
+}
+
+impl Climb {
+    /// Takes every step that there is time for: the smallest of all series first, so that what ends one leaves the others
+    /// their time. Steps of `known` series are not taken again; what stopped one for good stops it where it did.
+    ///
+    /// # Errors
+    /// Those of the climber.
+    pub fn run<C: Climber>(&self, climber: &mut C, known: Vec<Series>) -> Result<Vec<Series>, C::Error> {
+        let mut known = known;
+        let first_row = self.across.map(|across| across.first());
+        let mut tracks: Vec<Track> = match first_row {
+            Some(None) => Vec::new(),
+            row => self.variants.iter().map(|variant| self.track(variant, row.flatten(), 0, &mut known)).collect(),
+        };
+        while let Some(at) = due(&tracks) {
+            if climber.is_interrupted() {
+                tracks.iter_mut().filter(|track| track.series.stop.is_none()).for_each(Track::interrupt);
+                break;
+            }
+            let below = tracks
+                .iter()
+                .position(|other| other.row + 1 == tracks[at].row && other.series.variant == tracks[at].series.variant);
+            let before = below.map(|below| tracks[below].series.clone());
+            self.advance(&mut tracks[at], before.as_ref(), climber)?;
+            let (row, variant, across) = (tracks[at].row, tracks[at].series.variant.clone(), tracks[at].series.across);
+            let is_new = !tracks.iter().any(|track| track.row == row + 1 && track.series.variant == variant);
+            if let (Some(ladder), Some(value)) = (self.across, across)
+                && is_new
+                && !tracks[at].series.steps.is_empty()
+                && let Some(next) = ladder.after(value)
+            {
+                tracks.push(self.track(&variant, Some(next), row + 1, &mut known));
+            }
+            climber.keep(&all(&tracks, &known))?;
+        }
+        let all = all(&tracks, &known);
+        climber.keep(&all)?;
+        Ok(all)
+    }
+
+    fn track(&self, variant: &str, across: Option<u64>, row: usize, known: &mut Vec<Series>) -> Track {
+        let found = known.iter().position(|series| series.variant == variant && series.across == across);
+        let found = found.map(|at| known.remove(at));
+        let (steps, stop) = found.map_or_else(Default::default, |series| (series.steps, series.stop));
+        Track {
+            series: Series { variant: variant.to_owned(), across, steps: Vec::new(), stop: None, costs: Vec::new() },
+            row,
+            rung: 0,
+            next: self.ladder.first(),
+            known: steps.into_iter().map(|step| (step.value, step)).collect(),
+            known_stop: stop.filter(|stop| stop.kind.is_final()),
+        }
+    }
+
+    /// Takes the track's next step, or finds what stops it.
+    fn advance<C: Climber>(&self, track: &mut Track, before: Option<&Series>, climber: &mut C) -> Result<(), C::Error> {
+        let Some(value) = track.next else {
+            let value = track.series.steps.last().map_or(self.ladder.from, |step| step.value);
+            track.stop(StopKind::End, value, format!("the axis ends at {}", self.ladder.most));
+            return Ok(());
+        };
+        let step = match track.known.remove(&value) {
+            Some(step) => step,
+            None => match self.take(track, before, value, climber)? {
+                Ok(step) => step,
+                Err(stop) => {
+                    track.series.stop = Some(stop);
+                    return Ok(());
+                }
+            },
+        };
+        let amount = step.amount;
+        let wrong = track.series.steps.first().and_then(|first| wrong(first, &step));
+        track.series.steps.push(step);
+        track.rung += 1;
+        track.next = if self.counts_values { self.ladder.after_above(value, amount) } else { self.ladder.after(value) };
+        if let Some(reason) = wrong {
+            track.stop(StopKind::Correctness, value, reason);
+        }
+        Ok(())
+    }
+
+    fn take<C: Climber>(
+        &self,
+        track: &Track,
+        before: Option<&Series>,
+        value: u64,
+        climber: &mut C,
+    ) -> Result<Result<Step, Stop>, C::Error> {
+        let stop = |kind, reason| Ok(Err(Stop { kind, value, reason }));
+        if let Some(known) = track.known_stop.as_ref().filter(|stop| stop.value <= value) {
+            return Ok(Err(known.clone()));
+        }
+        let place = |step: &Step| if self.counts_values { step.amount } else { step.value as f64 };
+        let foretold = |of: fn(&Step) -> Option<f64>| {
+            let own = foretell::cost(&track.series, value as f64, place, of);
+            // The first of a series: as the smaller one's, in proportion.
+            own.or_else(|| Some(of(before?.steps.first()?)? * self.across.map_or(1.0, |across| across.factor)))
+        };
+        let left_s = self.budget_s - climber.elapsed_s();
+        if left_s <= 0.0 {
+            return stop(StopKind::Time, format!("the budget of {} s is over", self.budget_s));
+        }
+        if let Some(needed_s) = foretold(|step| Some(step.wall_s)).filter(|needed_s| *needed_s > left_s) {
+            return stop(
+                StopKind::Time,
+                format!("not begun: it would take {needed_s:.1} s, and {left_s:.1} s are left"),
+            );
+        }
+        if let (Some(needed), Some(free)) =
+            (foretold(|step| step.peak_bytes.map(|b| b as f64)), climber.available_bytes())
+            && needed > MEMORY_SHARE * free as f64
+        {
+            let [needed, free] = [needed, free as f64].map(|bytes| bytes / 1e6);
+            return stop(
+                StopKind::Memory,
+                format!("not begun: it would take {needed:.0} MB, and {free:.0} MB are free"),
+            );
+        }
+        let cell = Cell { variant: track.series.variant.clone(), across: track.series.across, value };
+        Ok(match climber.take(&cell, left_s)? {
+            Outcome::Finished(step) => Ok(*step),
+            Outcome::Stopped(kind, reason) => Err(Stop { kind, value, reason }),
+        })
+    }
+}
+
+impl Track {
+    fn stop(&mut self, kind: StopKind, value: u64, reason: String) {
+        self.series.stop = Some(Stop { kind, value, reason });
+    }
+
+    fn interrupt(&mut self) {
+        let value = self.next.unwrap_or_default();
+        self.stop(StopKind::Interruption, value, "interrupted".to_owned());
+    }
+
+    /// The series with the steps of earlier calls that this one has not come to, or passes over.
+    fn whole(&self) -> Series {
+        let mut series = self.series.clone();
+        series.steps.extend(self.known.values().cloned());
+        series.steps.sort_by_key(|step| step.value);
+        series
+    }
+}
+
+/// The track whose step is due: the lowest, of these the one of the lowest row.
+fn due(tracks: &[Track]) -> Option<usize> {
+    let going = tracks.iter().enumerate().filter(|(_, track)| track.series.stop.is_none());
+    going.min_by_key(|(_, track)| (track.row + track.rung, track.row)).map(|(at, _)| at)
+}
+
+/// Every series, with those of earlier calls that this one has not come to, by variant and second value.
+fn all(tracks: &[Track], known: &[Series]) -> Vec<Series> {
+    let mut all: Vec<Series> = tracks.iter().map(Track::whole).chain(known.iter().cloned()).collect();
+    let variants: Vec<String> = all.iter().map(|series| series.variant.clone()).collect();
+    all.sort_by_key(|series| (variants.iter().position(|variant| *variant == series.variant), series.across));
+    all
+}
+
+/// What a step has wrong that the first one had right: numbers of a target or results that are none.
+fn wrong(first: &Step, step: &Step) -> Option<String> {
+    let target = step.not_finite.iter().find(|(name, count)| **count > 0 && !first.not_finite.contains_key(*name));
+    if let Some((name, count)) = target {
+        return Some(format!("{count} numbers of the target {name} are not finite"));
+    }
+    let lost = |(name, value): &(&String, &serde_json::Value)| {
+        value.is_number() && step.run.results.get(*name).is_some_and(serde_json::Value::is_null)
+    };
+    first.run.results.iter().find(lost).map(|(name, _)| format!("the result {name} is no finite number"))
+}
+
+#[cfg(test)]
+#[path = "climb_tests.rs"]
+mod tests;
