@@ -119,12 +119,33 @@ impl Commands {
     /// # Errors
     /// Any error of Vulkan. After a failed wait the resources stay held and alive until the device is known to be idle.
     pub fn submit_and_wait(&mut self) -> Result<Instant, Error> {
+        // SAFETY: no semaphore is named.
+        unsafe { self.submit_between(&[], &[]) }
+    }
+
+    /// As [`Commands::submit_and_wait`], after the semaphores of `waits` and before those of `signals`.
+    ///
+    /// # Errors
+    /// Those of [`Commands::submit_and_wait`].
+    ///
+    /// # Safety
+    /// The semaphores are alive until this returns; something that was submitted signals those of `waits`; those of
+    /// `signals` are unsignalled, and nothing waits for them.
+    pub unsafe fn submit_between(
+        &mut self,
+        waits: &[vk::SemaphoreSubmitInfo<'_>],
+        signals: &[vk::SemaphoreSubmitInfo<'_>],
+    ) -> Result<Instant, Error> {
         let raw = &self.device.raw;
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
-        let submits = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
+        let submits = [vk::SubmitInfo2::default()
+            .wait_semaphore_infos(waits)
+            .command_buffer_infos(&buffers)
+            .signal_semaphore_infos(signals)];
         // SAFETY: the buffer is recording: every caller has begun it; nobody else has it.
         unsafe { raw.end_command_buffer(self.buffer) }.context("ending", "a command buffer")?;
-        // SAFETY: the queue is locked for the call; the fence is unsignalled since `begin` and not pending.
+        // SAFETY: the queue is locked for the call; the fence is unsignalled since `begin` and not pending; the caller
+        // answers for the semaphores.
         unsafe { raw.queue_submit2(*self.device.queue(), &submits, self.fence) }
             .context("submitting", "a command buffer")?;
         self.phase = Phase::InFlight;

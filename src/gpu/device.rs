@@ -20,6 +20,11 @@ pub struct Device {
     queue: Mutex<vk::Queue>,
     pub(crate) queue_family: u32,
     pub(crate) debug: Option<ext::debug_utils::Device>,
+    /// The calls of swapchains, where it was opened for them.
+    #[cfg(feature = "window")]
+    pub(super) presenting: Option<super::surface::Presenting>,
+    /// Every extension that was asked for.
+    extensions: Vec<String>,
     physical: PhysicalDevice,
     instance: Arc<Instance>,
 }
@@ -31,6 +36,19 @@ impl Device {
     /// [`Error::MissingFeature`] when the baseline is not there, [`Error::NoDevice`] for a device of another instance, or
     /// any error of Vulkan.
     pub fn open(instance: &Arc<Instance>, physical: PhysicalDevice) -> Result<Arc<Self>, Error> {
+        Self::open_for(instance, physical, false)
+    }
+
+    /// As [`Device::open`], for swapchains.
+    ///
+    /// # Errors
+    /// Those of [`Device::open`].
+    #[cfg(feature = "window")]
+    pub fn open_presenting(instance: &Arc<Instance>, physical: PhysicalDevice) -> Result<Arc<Self>, Error> {
+        Self::open_for(instance, physical, true)
+    }
+
+    fn open_for(instance: &Arc<Instance>, physical: PhysicalDevice, presents: bool) -> Result<Arc<Self>, Error> {
         let physical = physical.read_again(instance)?;
         let missing = physical.lacks(&[]);
         let (Some((queue_family, _)), true) = (physical.queue, missing.is_empty()) else {
@@ -55,13 +73,26 @@ impl Device {
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&priorities)];
         // A device of the subset wants to be told that its user knows.
-        let subset = physical.portability_lacks.is_some().then(|| ash::khr::portability_subset::NAME.as_ptr());
-        let info = vk::DeviceCreateInfo::default()
+        let mut enabled = Vec::new();
+        enabled.extend(physical.portability_lacks.is_some().then_some(ash::khr::portability_subset::NAME));
+        let mut has_present_fences = false;
+        if presents {
+            enabled.push(ash::khr::swapchain::NAME);
+            has_present_fences = physical.has_present_fences(instance);
+            enabled.extend(has_present_fences.then_some(ext::swapchain_maintenance1::NAME));
+        }
+        let mut maintenance1 =
+            vk::PhysicalDeviceSwapchainMaintenance1FeaturesEXT::default().swapchain_maintenance1(true);
+        let names: Vec<_> = enabled.iter().map(|name| name.as_ptr()).collect();
+        let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&core)
-            .enabled_extension_names(subset.as_slice())
+            .enabled_extension_names(&names)
             .push_next(&mut v12)
             .push_next(&mut v13);
+        if has_present_fences {
+            info = info.push_next(&mut maintenance1);
+        }
         // SAFETY: `physical` belongs to `instance`; the structures outlive the call; the features were asked for.
         let raw = unsafe { instance.raw.create_device(physical.raw, &info, None) }
             .before_a_device("opening", &physical.name)?;
@@ -84,6 +115,8 @@ impl Device {
         // SAFETY: one queue of this family was asked for above.
         let queue = unsafe { raw.get_device_queue(queue_family, 0) };
         let debug = instance.has_debug_utils().then(|| ext::debug_utils::Device::new(&instance.raw, &raw));
+        #[cfg(feature = "window")]
+        let presenting = presents.then(|| super::surface::Presenting::new(instance, &raw, has_present_fences));
         instance.live().add(Kind::Device);
         Ok(Arc::new(Device {
             allocator: ManuallyDrop::new(Mutex::new(allocator)),
@@ -91,6 +124,9 @@ impl Device {
             queue: Mutex::new(queue),
             queue_family,
             debug,
+            #[cfg(feature = "window")]
+            presenting,
+            extensions: enabled.iter().map(|name| name.to_string_lossy().into_owned()).collect(),
             physical,
             instance: instance.clone(),
         }))
@@ -104,6 +140,11 @@ impl Device {
     /// The instance that the device was opened on.
     pub fn instance(&self) -> &Arc<Instance> {
         &self.instance
+    }
+
+    /// Every extension that was asked for.
+    pub fn extensions(&self) -> &[String] {
+        &self.extensions
     }
 
     /// The counts of live objects and memory.

@@ -134,12 +134,33 @@ impl<'a> Draw<'a> {
 
     /// Draws `count` indices.
     pub fn indices(&mut self, count: u32) -> &mut Self {
+        self.indices_from(0, count)
+    }
+
+    /// Draws `count` indices from `first` on.
+    pub fn indices_from(&mut self, first: u32, count: u32) -> &mut Self {
+        let end = u64::from(first) + u64::from(count);
         // Vertices that indices name beyond the buffer are not fetched: robust buffer access is on.
-        if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: count.into() }) {
+        if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: end }) {
             let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: as for `draw`; the indices lie inside the bound buffer.
-            unsafe { device.raw.cmd_draw_indexed(raw, count, 1, 0, 0, 0) };
+            unsafe { device.raw.cmd_draw_indexed(raw, count, 1, first, 0, 0) };
         }
+        self
+    }
+
+    /// Confines the draws to come to a rectangle of the attachments, in texels from the top left corner; what of it lies
+    /// outside them is cut off.
+    pub fn scissor(&mut self, (x, y): (u32, u32), (width, height): (u32, u32)) -> &mut Self {
+        let Body::Graphics { extent, .. } = &self.commands.inner.body else { return self };
+        let (x, y) = (x.min(extent.width), y.min(extent.height));
+        let area = vk::Rect2D {
+            offset: vk::Offset2D { x: x as i32, y: y as i32 },
+            extent: vk::Extent2D { width: width.min(extent.width - x), height: height.min(extent.height - y) },
+        };
+        // SAFETY: inside the pass's render pass; the rectangle lies inside its extent, whose sides fit an `i32` by the
+        // device's limits, and every pipeline of this layer has the scissor as its dynamic state.
+        unsafe { self.commands.device.raw.cmd_set_scissor(self.commands.raw, 0, &[area]) };
         self
     }
 

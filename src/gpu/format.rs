@@ -23,6 +23,7 @@ pub(crate) fn format_info(format: vk::Format) -> Option<FormatInfo> {
     let depth = vk::ImageAspectFlags::DEPTH;
     let (texel_bytes, scalar, aspect, storage) = match format {
         F::R8G8B8A8_UNORM => (4, Scalar::Float, vk::ImageAspectFlags::COLOR, Some(ImageFormat::Rgba8)),
+        F::B8G8R8A8_UNORM => (4, Scalar::Float, vk::ImageAspectFlags::COLOR, None),
         F::R8G8B8A8_SRGB => (4, Scalar::Float, vk::ImageAspectFlags::COLOR, None),
         F::R16_UINT => (2, Scalar::Uint, vk::ImageAspectFlags::COLOR, Some(ImageFormat::R16ui)),
         F::R32_UINT => (4, Scalar::Uint, vk::ImageAspectFlags::COLOR, Some(ImageFormat::R32ui)),

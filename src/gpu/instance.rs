@@ -1,4 +1,5 @@
-//! The Vulkan instance: loader, validation layer, debug messenger. No surface extension is touched here.
+//! The Vulkan instance: loader, validation layer, debug messenger. Extensions of surfaces are asked for by
+//! [`Instance::for_display`] alone.
 
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
@@ -19,11 +20,13 @@ pub struct Instance {
     messages: Arc<Messages>,
     live: Arc<LiveObjects>,
     layers: Vec<String>,
+    /// Every extension that was asked for.
+    extensions: Vec<String>,
     loader_version: u32,
     has_debug_utils: bool,
     id: u64,
     // Last: the loader's library must outlive every function pointer above.
-    _entry: ash::Entry,
+    pub(super) entry: ash::Entry,
 }
 
 impl Instance {
@@ -33,6 +36,24 @@ impl Instance {
     /// # Errors
     /// [`Error::NoLoader`], [`Error::NoValidationLayer`], or [`Error::NoInstance`] when no driver answers.
     pub fn new(validate: bool) -> Result<Arc<Self>, Error> {
+        Self::with_extensions(validate, &[], &[])
+    }
+
+    /// As [`Instance::new`], for surfaces of the display's windows.
+    ///
+    /// # Errors
+    /// Those of [`Instance::new`]; [`Error::NoInstance`] where the loader knows no surfaces of this kind of display.
+    #[cfg(feature = "window")]
+    pub fn for_display(validate: bool, display: &super::surface::Display) -> Result<Arc<Self>, Error> {
+        Self::with_extensions(validate, display.required(), &super::surface::OPTIONAL_EXTENSIONS)
+    }
+
+    /// Enables the `required` extensions, and the `optional` ones where all of them are there.
+    fn with_extensions(
+        validate: bool,
+        required: &[&'static CStr],
+        optional: &[&'static CStr],
+    ) -> Result<Arc<Self>, Error> {
         // SAFETY: loading the system's Vulkan loader runs its initialisers, which is what the caller asks for.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| Error::NoLoader { reason: error.to_string() })?;
         // SAFETY: the entry's function pointers are valid while `entry` lives; no other precondition.
@@ -58,20 +79,28 @@ impl Instance {
         let offers = |name: &CStr| extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name));
         let has_debug_utils = validate || offers(ext::debug_utils::NAME);
 
-        let mut enabled_extensions = Vec::new();
+        if let Some(missing) = required.iter().find(|name| !offers(name)) {
+            let reason = format!("no driver here has {}, which windows need", missing.to_string_lossy());
+            return Err(Error::NoInstance { reason });
+        }
+        let mut enabled: Vec<&CStr> = required.to_vec();
+        if optional.iter().all(|name| offers(name)) {
+            enabled.extend(optional);
+        }
         let mut flags = vk::InstanceCreateFlags::empty();
         if has_debug_utils {
-            enabled_extensions.push(ext::debug_utils::NAME.as_ptr());
+            enabled.push(ext::debug_utils::NAME);
         }
         if offers(ash::khr::portability_enumeration::NAME) {
-            enabled_extensions.push(ash::khr::portability_enumeration::NAME.as_ptr());
+            enabled.push(ash::khr::portability_enumeration::NAME);
             flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
         }
         let mut enabled_layers = Vec::new();
         if validate {
             enabled_layers.push(VALIDATION_LAYER.as_ptr());
-            enabled_extensions.push(ext::validation_features::NAME.as_ptr());
+            enabled.push(ext::validation_features::NAME);
         }
+        let enabled_extensions: Vec<_> = enabled.iter().map(|name| name.as_ptr()).collect();
 
         let messages = Arc::new(Messages::default());
         let application = vk::ApplicationInfo::default()
@@ -101,13 +130,14 @@ impl Instance {
             messages,
             live,
             layers: if validate { vec![VALIDATION_LAYER.to_string_lossy().into_owned()] } else { Vec::new() },
+            extensions: enabled.iter().map(|name| name.to_string_lossy().into_owned()).collect(),
             loader_version,
             has_debug_utils,
             id: NEXT.fetch_add(1, Ordering::Relaxed),
-            _entry: entry,
+            entry,
         };
         if validate {
-            let utils = ext::debug_utils::Instance::new(&instance._entry, &instance.raw);
+            let utils = ext::debug_utils::Instance::new(&instance.entry, &instance.raw);
             let info = self::messenger_info(&instance.messages);
             // SAFETY: the user data is owned by `instance`, which destroys the messenger before dropping it.
             let messenger = unsafe { utils.create_debug_utils_messenger(&info, None) }
@@ -147,6 +177,11 @@ impl Instance {
     /// The layers that this program switched on.
     pub fn layers(&self) -> &[String] {
         &self.layers
+    }
+
+    /// Every extension that was asked for.
+    pub fn extensions(&self) -> &[String] {
+        &self.extensions
     }
 
     /// The loader's version, as `major.minor.patch`.

@@ -21,11 +21,14 @@ pub enum Kind {
     CommandPool,
     Fence,
     QueryPool,
+    Surface,
+    Swapchain,
+    Semaphore,
 }
 
 impl Kind {
     /// Every kind, in the order of its declaration.
-    pub const ALL: [Kind; 16] = [
+    pub const ALL: [Kind; 19] = [
         Kind::Instance,
         Kind::Device,
         Kind::Buffer,
@@ -42,6 +45,9 @@ impl Kind {
         Kind::CommandPool,
         Kind::Fence,
         Kind::QueryPool,
+        Kind::Surface,
+        Kind::Swapchain,
+        Kind::Semaphore,
     ];
 }
 

@@ -73,6 +73,10 @@ mod recorder;
 pub mod render_pass;
 mod sample;
 pub mod shader;
+#[cfg(feature = "window")]
+pub mod surface;
+#[cfg(feature = "window")]
+pub mod swapchain;
 #[cfg(test)]
 mod tests;
 mod threads;
