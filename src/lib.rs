@@ -25,4 +25,5 @@ pub mod papers;
 pub mod report;
 pub mod scene;
 pub mod shader_build;
+#[cfg(feature = "window")]
 pub mod window;

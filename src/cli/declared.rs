@@ -12,15 +12,31 @@ use super::options::{CommonArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
-use super::{bench, passes, render, spelling, worker};
+use super::{bench, passes, render, spelling};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::study::{Preset, Study};
 use crate::measure::{Error, Variant};
 
 /// Options of all papers that the short help lists.
-const EVERYDAY: [&str; 12] =
-    ["variant", "preset", "name", "list", "counts", "frame", "dump", "device", "frames", "json", "image", "quiet"];
+const EVERYDAY: [&str; 16] = [
+    "fullscreen",
+    "present_mode",
+    "scale",
+    "exit_after",
+    "variant",
+    "preset",
+    "name",
+    "list",
+    "counts",
+    "frame",
+    "dump",
+    "device",
+    "frames",
+    "json",
+    "image",
+    "quiet",
+];
 
 /// The command of a paper with all its verbs.
 pub fn command<S: Study>() -> Command {
@@ -32,9 +48,24 @@ pub fn command<S: Study>() -> Command {
         .subcommand(bench_command::<S>())
         .subcommand(experiment_command::<S>())
         .subcommand(render_command::<S>())
-        .subcommand(worker::command(with_scene::<S>(Command::new("worker").arg(variant_list::<S>("Variants", "")))))
         .subcommand(stress_command::<S>())
+        .subcommands(window_commands::<S>())
         .subcommands(S::verbs().iter().map(own_command))
+}
+
+/// The window and what draws for it, where they were built in.
+fn window_commands<S: Study>() -> Vec<Command> {
+    #[cfg(feature = "window")]
+    {
+        let scene = |verb: &'static str, help: &str| {
+            with_scene::<S>(Command::new(verb).arg(variant_list::<S>(help, "as for `render`")))
+        };
+        let view = super::view::command(scene("view", "One variant, or two beside each other"));
+        let about = "Open a window: live passes, targets, variants side by side, parameters";
+        vec![finish(view, about), super::worker::command(scene("worker", "Variants"))]
+    }
+    #[cfg(not(feature = "window"))]
+    Vec::new()
 }
 
 fn passes_command<S: Study>() -> Command {
@@ -104,7 +135,7 @@ fn own_command<S: Study>(verb: &Experiment<S>) -> Command {
 
 /// The short help lists everyday options, the long one all of them.
 fn finish(command: Command, about: &'static str) -> Command {
-    let parameters = ["Device", "Measuring", "Output"];
+    let parameters = ["Device", "Measuring", "Output", "Window"];
     let is_everyday = |arg: &Arg| {
         let is_common = arg.get_help_heading().is_none_or(|heading| parameters.contains(&heading));
         !is_common || EVERYDAY.contains(&arg.get_id().as_str())
@@ -322,7 +353,14 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
             stress::run(&arguments, setup, variants, &given(matches))
         }
         "experiment" => experiment(matches, &typed),
-        "worker" => worker::run::<S>(matches),
+        #[cfg(feature = "window")]
+        "worker" => super::worker::run::<S>(matches),
+        #[cfg(feature = "window")]
+        "view" => {
+            let setup = typed.resolve()?;
+            typed.variants(&setup, &[setup.rendered(typed.preset_variant())])?;
+            super::view::run::<S>(matches)
+        }
         verb => own_verb(verb, matches, &typed),
     }
 }

@@ -100,6 +100,20 @@ impl From<Error> for Failure {
     }
 }
 
+#[cfg(feature = "window")]
+impl From<crate::window::Error> for Failure {
+    fn from(error: crate::window::Error) -> Self {
+        use crate::window::Error as E;
+        let message = error.to_string();
+        match error {
+            E::Gpu(error) => error.into(),
+            E::NoDisplay { .. } | E::Refused { code: 3, .. } => Failure::NoDevice(message),
+            E::Controls { .. } | E::Refused { code: 2, .. } => Failure::Input(message),
+            E::Worker { .. } | E::Refused { .. } | E::Loop { .. } => Failure::Running(message),
+        }
+    }
+}
+
 impl From<image::Error> for Failure {
     fn from(error: image::Error) -> Self {
         Failure::Input(error.to_string())

@@ -16,7 +16,10 @@ mod render;
 mod report;
 mod spelling;
 mod stress;
+#[cfg(feature = "window")]
+mod view;
 mod watch;
+#[cfg(feature = "window")]
 mod worker;
 
 use std::convert::Infallible;
@@ -50,6 +53,10 @@ enum Command {
     Report(report::ReportArgs),
     /// Grow every paper's first axis until a limit stops it
     Stress(stress::StressAllArgs),
+    /// Open a window on a paper: `fumarole view [PAPER] [OPTIONS]`, as `fumarole PAPER view`
+    #[cfg(feature = "window")]
+    #[command(disable_help_flag = true)]
+    View,
     /// Measure two sides in turn, in fresh processes, until it is certain which is faster
     Ab(ab::AbArgs),
 }
@@ -92,7 +99,10 @@ pub fn umbrella() -> ExitCode {
     gpu::pin_software_threads();
     let papers = all_papers();
     spelling::learn(&papers.command);
-    let matches = match papers.command.try_get_matches_from(std::env::args_os()) {
+    let arguments = std::env::args_os().collect();
+    #[cfg(feature = "window")]
+    let arguments: Vec<OsString> = view::reordered(arguments);
+    let matches = match papers.command.try_get_matches_from::<Vec<OsString>, _>(arguments) {
         Ok(matches) => matches,
         Err(error) => return ExitCode::from(outcome::usage(&error)),
     };
@@ -112,6 +122,9 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Ab(arguments)) => ab::run(arguments),
         Some(Command::Stress(arguments)) => stress::run_all(arguments),
+        // Reordered before it was parsed.
+        #[cfg(feature = "window")]
+        Some(Command::View) => Ok(()),
         Some(Command::Report(arguments)) => report::run(arguments),
     })
 }

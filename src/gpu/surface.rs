@@ -109,8 +109,7 @@ impl Surface {
                 continue;
             }
             // SAFETY: surface and device belong to the same living instance, and the family is one of the device's.
-            let presents =
-                unsafe { self.calls.get_physical_device_surface_support(physical.raw, family, self.raw) };
+            let presents = unsafe { self.calls.get_physical_device_surface_support(physical.raw, family, self.raw) };
             if presents == Ok(true) {
                 able.push(physical);
             }

@@ -254,10 +254,8 @@ unsafe fn barrier(
 ) {
     let is_first = from == vk::ImageLayout::UNDEFINED;
     let (written, none) = (vk::AccessFlags2::TRANSFER_WRITE, vk::AccessFlags2::NONE);
-    let range = vk::ImageSubresourceRange::default()
-        .aspect_mask(vk::ImageAspectFlags::COLOR)
-        .level_count(1)
-        .layer_count(1);
+    let range =
+        vk::ImageSubresourceRange::default().aspect_mask(vk::ImageAspectFlags::COLOR).level_count(1).layer_count(1);
     let barriers = [vk::ImageMemoryBarrier2::default()
         // The acquisition's semaphore is waited for at this stage, so the first barrier follows it.
         .src_stage_mask(vk::PipelineStageFlags2::ALL_TRANSFER)

@@ -13,6 +13,33 @@
 //! A frame of the paper, however long, is never in the way of the interface, and a lost device or a crash ends the worker
 //! alone. The two speak by [`protocol`].
 
+pub mod application;
+mod bench_tab;
+mod camera;
 pub mod client;
+mod compare;
+mod controls;
+mod drawer;
+mod error;
+mod false_colour;
+pub mod interface;
+mod keep_tab;
+mod keys;
+pub mod layout;
+mod painter;
+mod parameters_panel;
+mod passes_panel;
+mod picture_view;
+mod pictures;
+mod program;
 pub mod protocol;
+mod screen;
+pub mod session;
+mod table_view;
+mod target_view;
+mod times_tab;
+mod top_bar;
 pub mod worker;
+
+pub use application::{Options, run};
+pub use error::Error;

@@ -40,6 +40,10 @@ pub struct Painter {
     target: Option<Target>,
     /// A pass of the target's format: all others share its pipeline.
     model: Option<Pass>,
+    /// What was drawn last.
+    drawn: (Vec<Corner>, Vec<u32>),
+    runs: Vec<Run>,
+    has_new_texels: bool,
 }
 
 /// A texture of the interface.
@@ -55,9 +59,11 @@ struct Target {
     view: Arc<ImageView>,
     /// Draws with the texture of the interface's letters, after clearing.
     first: Option<Pass>,
+    is_drawn: bool,
 }
 
 /// Triangles of one texture inside one rectangle.
+#[derive(Debug, Clone, PartialEq)]
 struct Run {
     texture: TextureId,
     clip: egui::Rect,
@@ -81,6 +87,9 @@ impl Painter {
             indices: indices(device, 1 << 18)?,
             target: None,
             model: None,
+            drawn: Default::default(),
+            runs: Vec::new(),
+            has_new_texels: false,
         })
     }
 
@@ -101,6 +110,7 @@ impl Painter {
     }
 
     fn change(&mut self, id: TextureId, delta: &ImageDelta) -> Result<(), Error> {
+        self.has_new_texels = true;
         let ImageData::Color(image) = &delta.image;
         let [width, height] = image.size.map(|side| side as u32);
         if width == 0 || height == 0 {
@@ -132,7 +142,9 @@ impl Painter {
             (None, _) => {
                 let texture = Texture { view: fresh("interface texture")?, filter, pass: None };
                 self.textures.insert(id, texture);
-                if id == LETTERS && let Some(target) = &mut self.target {
+                if id == LETTERS
+                    && let Some(target) = &mut self.target
+                {
                     target.first = None;
                 }
                 Ok(())
@@ -142,7 +154,13 @@ impl Painter {
         }
     }
 
-    /// Draws `primitives`, whose places are in points of `pixels_per_point`, into the window's picture, and gives it.
+    /// The window's picture as it was last drawn.
+    pub fn picture(&self) -> Option<Arc<ImageView>> {
+        self.target.as_ref().filter(|target| target.is_drawn).map(|target| target.view.clone())
+    }
+
+    /// Draws `primitives`, whose places are in points of `pixels_per_point`, into the window's picture, and gives it;
+    /// `None` where it would be what it is.
     ///
     /// # Errors
     /// Any error of the Vulkan layer.
@@ -151,9 +169,13 @@ impl Painter {
         (width, height, format): (u32, u32, vk::Format),
         pixels_per_point: f32,
         primitives: &[ClippedPrimitive],
-    ) -> Result<Arc<ImageView>, Error> {
+    ) -> Result<Option<Arc<ImageView>>, Error> {
         let view = self.sized(width, height, format)?;
-        let runs = self.fill(primitives, pixels_per_point)?;
+        let has_changed = self.fill(primitives, pixels_per_point)?;
+        if !has_changed && !self.has_new_texels && self.target.as_ref().is_some_and(|target| target.is_drawn) {
+            return Ok(None);
+        }
+        let runs = std::mem::take(&mut self.runs);
         // The first clears, with or without triangles of its own.
         let mut groups = vec![(LETTERS, 0..0)];
         for (index, run) in runs.iter().enumerate() {
@@ -182,7 +204,12 @@ impl Painter {
             }
             Ok::<(), Error>(())
         })?;
-        Ok(view)
+        self.runs = runs;
+        self.has_new_texels = false;
+        if let Some(target) = &mut self.target {
+            target.is_drawn = true;
+        }
+        Ok(Some(view))
     }
 
     /// The window's picture in that size and format.
@@ -198,7 +225,7 @@ impl Painter {
         let desc = ImageDesc::new_2d("interface", format, width, height);
         let view = Image::new(self.shaders.device(), desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
         self.forget_passes();
-        self.target = Some(Target { view: view.clone(), first: None });
+        self.target = Some(Target { view: view.clone(), first: None, is_drawn: false });
         Ok(view)
     }
 
@@ -210,8 +237,8 @@ impl Painter {
         }
     }
 
-    /// Writes corners and indices into the buffers, made larger where they must be.
-    fn fill(&mut self, primitives: &[ClippedPrimitive], pixels_per_point: f32) -> Result<Vec<Run>, Error> {
+    /// Writes corners and indices into the buffers, made larger where they must be; false where all is as it was.
+    fn fill(&mut self, primitives: &[ClippedPrimitive], pixels_per_point: f32) -> Result<bool, Error> {
         let meshes = primitives.iter().filter_map(|clipped| match &clipped.primitive {
             Primitive::Mesh(mesh) if !mesh.indices.is_empty() => Some((clipped.clip_rect, mesh)),
             _ => None,
@@ -228,8 +255,12 @@ impl Painter {
             order.extend(indices.iter().map(|index| base + index));
             runs.push(Run { texture: *texture_id, clip, first, count });
         }
+        let bytes_of = bytemuck::cast_slice::<Corner, u8>;
+        if bytes_of(&all) == bytes_of(&self.drawn.0) && order == self.drawn.1 && runs == self.runs {
+            return Ok(false);
+        }
         let device = self.shaders.device().clone();
-        let (wanted_corners, wanted_indices) = (bytemuck::cast_slice(&all), bytemuck::cast_slice(&order));
+        let (wanted_corners, wanted_indices) = (bytes_of(&all), bytemuck::cast_slice(&order));
         if self.corners.size_bytes() < wanted_corners.len() as u64 {
             self.corners = corners(&device, wanted_corners.len() as u64 * 2)?;
             self.forget_passes();
@@ -240,7 +271,9 @@ impl Painter {
         }
         self.corners.write(0, wanted_corners)?;
         self.indices.write(0, wanted_indices)?;
-        Ok(runs)
+        self.drawn = (all, order);
+        self.runs = runs;
+        Ok(true)
     }
 
     /// The pass that draws with a texture; `None` for one that is not there.

@@ -167,7 +167,8 @@ mod tests {
     #[test]
     fn a_window_without_pixels_has_no_swapchain() {
         let free = extent(u32::MAX, u32::MAX);
-        for (current, window) in [(extent(0, 0), (640, 480)), (extent(0, 7), (640, 480)), (free, (0, 480)), (free, (640, 0))]
+        for (current, window) in
+            [(extent(0, 0), (640, 480)), (extent(0, 7), (640, 480)), (free, (0, 480)), (free, (640, 0))]
         {
             assert_eq!(planned(&capabilities(current), window), None, "{current:?} {window:?}");
         }

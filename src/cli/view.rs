@@ -1,0 +1,178 @@
+//! `view`: the paper in a window, live, pass by pass.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
+
+use super::failure::Failure;
+use super::options::MachineArgs;
+use crate::gpu::swapchain::PresentMode;
+use crate::measure::study::{Study, Visitor};
+use crate::papers;
+use crate::window;
+
+/// The window itself.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Window")]
+struct WindowArgs {
+    /// Frame that is shown first
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=i64::from(u32::MAX - 1)))]
+    frame: u32,
+    /// Fill the display
+    #[arg(long)]
+    fullscreen: bool,
+    /// Way of presenting pictures; the display says which it offers
+    #[arg(long, value_enum, default_value = "fifo")]
+    present_mode: PresentWord,
+    /// Size of text and controls, 0.5 to 4, times the display's own scale
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = parse_scale)]
+    scale: f32,
+    /// Play from the start, and end after N frames of the paper
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    exit_after: Option<u32>,
+    /// Write where the window's controls are, as JSON, after each frame of the window
+    #[arg(long, value_name = "FILE", hide = true)]
+    controls: Option<PathBuf>,
+}
+
+/// [`PresentMode`] as it is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum PresentWord {
+    /// Every picture in turn, at the display's pace
+    Fifo,
+    /// As fifo, and at once where one comes late
+    FifoRelaxed,
+    /// The newest picture at the display's pace
+    Mailbox,
+    /// At once
+    Immediate,
+}
+
+impl PresentWord {
+    fn mode(self) -> PresentMode {
+        match self {
+            PresentWord::Fifo => PresentMode::Fifo,
+            PresentWord::FifoRelaxed => PresentMode::FifoRelaxed,
+            PresentWord::Mailbox => PresentMode::Mailbox,
+            PresentWord::Immediate => PresentMode::Immediate,
+        }
+    }
+}
+
+fn parse_scale(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(scale) if (0.5..=4.0).contains(&scale) => Ok(scale),
+        _ => Err(format!("{text:?} is not a scale of 0.5 to 4")),
+    }
+}
+
+/// The verb, of a command with the options of the scene and of variants.
+pub fn command(scene: Command) -> Command {
+    WindowArgs::augment_args(MachineArgs::augment_args(scene))
+}
+
+/// Opens the window on a paper whose set-up was checked.
+pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
+    let window = WindowArgs::from_arg_matches(matches)?;
+    let machine = MachineArgs::from_arg_matches(matches)?.resolve(0);
+    let variants: Vec<&String> = matches.get_many("variant").into_iter().flatten().collect();
+    if variants.len() > 2 || variants.iter().any(|variant| *variant == "all") {
+        return Err(Failure::Input("--variant: a window shows one variant, or two beside each other".into()));
+    }
+    let of_machine = Command::new("machine");
+    let of_machine = MachineArgs::augment_args(of_machine);
+    let of_window = WindowArgs::augment_args(Command::new("window"));
+    let is_of = |command: &Command, id: &str| command.get_arguments().any(|argument| argument.get_id() == id);
+    let mut names = Names(Vec::new());
+    let Ok(()) = papers::each(&mut names);
+    let options = window::Options {
+        papers: names.0,
+        paper: S::PAPER.to_owned(),
+        arguments: typed(matches, |id| !is_of(&of_machine, id) && !is_of(&of_window, id)),
+        common: typed(matches, |id| is_of(&of_machine, id)),
+        frame: window.frame,
+        is_fullscreen: window.fullscreen,
+        present_mode: window.present_mode.mode(),
+        scale: window.scale,
+        exit_after: window.exit_after,
+        validate: machine.validate,
+        controls: window.controls,
+    };
+    let ended = window::run(options, |quit| {
+        // Without a handler Ctrl-C ends the program, and the worker ends when its window is gone.
+        let _ = ctrlc::set_handler(move || quit());
+    });
+    ended.map_err(Failure::from)
+}
+
+/// The options that were typed, of those that are wanted, as one would type them.
+fn typed(matches: &ArgMatches, is_wanted: impl Fn(&str) -> bool) -> Vec<OsString> {
+    let mut words = Vec::new();
+    for id in matches.ids().map(clap::Id::as_str) {
+        if matches.value_source(id) != Some(ValueSource::CommandLine) || !is_wanted(id) {
+            continue;
+        }
+        let option = |value: Option<&std::ffi::OsStr>| {
+            let mut word = OsString::from(format!("--{}", id.replace('_', "-")));
+            if let Some(value) = value {
+                word.push("=");
+                word.push(value);
+            }
+            word
+        };
+        match matches.try_get_one::<bool>(id) {
+            Ok(Some(true)) => words.push(option(None)),
+            Ok(_) => {}
+            Err(_) => words.extend(matches.get_raw(id).into_iter().flatten().map(|value| option(Some(value)))),
+        }
+    }
+    words
+}
+
+/// Names of the papers.
+struct Names(Vec<&'static str>);
+
+impl Visitor for Names {
+    type Error = std::convert::Infallible;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Self::Error> {
+        self.0.push(S::PAPER);
+        Ok(())
+    }
+}
+
+/// `fumarole view [PAPER] ...` as `fumarole PAPER view ...`; without a paper the first of the list.
+pub fn reordered(arguments: Vec<OsString>) -> Vec<OsString> {
+    if arguments.get(1).is_none_or(|verb| verb != "view") {
+        return arguments;
+    }
+    let mut names = Names(Vec::new());
+    let Ok(()) = papers::each(&mut names);
+    let mut rest = arguments.into_iter();
+    let program = rest.next().unwrap_or_default();
+    let verb = rest.next().unwrap_or_default();
+    let mut rest = rest.peekable();
+    let named = rest.next_if(|word| names.0.iter().any(|name| word == name));
+    let first = names.0.first().copied().unwrap_or_default();
+    let paper = named.unwrap_or_else(|| OsString::from(first));
+    [program, paper, verb].into_iter().chain(rest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(text: &str) -> Vec<OsString> {
+        text.split(' ').map(OsString::from).collect()
+    }
+
+    #[test]
+    fn the_paper_may_follow_the_verb_or_be_left_out() {
+        assert_eq!(reordered(words("fumarole view gas --frame 3")), words("fumarole gas view --frame 3"));
+        assert_eq!(reordered(words("fumarole view --frame 3")), words("fumarole lava view --frame 3"));
+        assert_eq!(reordered(words("fumarole gas view")), words("fumarole gas view"));
+        assert_eq!(reordered(words("fumarole")), words("fumarole"));
+    }
+}

@@ -1,0 +1,434 @@
+//! The loop of events: what happens to the window goes to the interface, what the interface asks for goes to the worker,
+//! and a frame is drawn when something has changed.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui_winit::accesskit_winit;
+use winit::application::ApplicationHandler;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::{Fullscreen, Window, WindowId};
+
+use super::client::Client;
+use super::controls;
+use super::error::Error;
+use super::interface::{Interface, Wish};
+use super::layout::Layout;
+use super::protocol::{Ended, Event};
+use super::screen::{Drawn, Screen};
+use crate::gpu::live::LiveObjects;
+use crate::gpu::swapchain::PresentMode;
+
+/// What a window is opened with.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Names of the papers, in the order of their list.
+    pub papers: Vec<&'static str>,
+    /// The paper that is shown first.
+    pub paper: String,
+    /// Arguments of the first worker behind the verb: the paper's options.
+    pub arguments: Vec<OsString>,
+    /// Those that a worker of any paper gets.
+    pub common: Vec<OsString>,
+    /// Frame that is shown first.
+    pub frame: u32,
+    /// The window fills its display.
+    pub is_fullscreen: bool,
+    /// Way of presenting.
+    pub present_mode: PresentMode,
+    /// Size of text and controls, on top of the display's own scale.
+    pub scale: f32,
+    /// Plays from the start, and ends after so many frames of the paper.
+    pub exit_after: Option<u32>,
+    /// The validation layer is on, in the window as in the worker.
+    pub validate: bool,
+    /// File that tells where the window's controls are.
+    pub controls: Option<PathBuf>,
+}
+
+/// What wakes the loop, beside the display's own events.
+#[derive(Debug)]
+pub enum Wake {
+    /// The worker has said something.
+    Worker,
+    /// The display's assistive tools want something.
+    Accessibility(accesskit_winit::Event),
+    /// Ctrl-C, or a signal that ends the program.
+    Quit,
+}
+
+impl From<accesskit_winit::Event> for Wake {
+    fn from(event: accesskit_winit::Event) -> Self {
+        Wake::Accessibility(event)
+    }
+}
+
+/// Opens the window, and returns when its user closes it. `on_quit` is given what ends the window from elsewhere.
+///
+/// # Errors
+/// [`Error::NoDisplay`] without a display; [`Error::Refused`] where the first worker refuses; any error of the Vulkan
+/// layer, as a lost device.
+pub fn run(options: Options, on_quit: impl FnOnce(Box<dyn Fn() + Send>)) -> Result<(), Error> {
+    let events = event_loop()?;
+    let proxy = events.create_proxy();
+    let quit = proxy.clone();
+    // A loop that has ended hears nothing, and needs nothing.
+    on_quit(Box::new(move || drop(quit.send_event(Wake::Quit))));
+    let mut application = Application { options, proxy, open: None, failure: None, live: None };
+    let ended = events.run_app(&mut application);
+    let Application { open, failure, live, options, .. } = application;
+    let said = open.as_ref().and_then(|open| open.validation_message());
+    let messages = open.as_ref().map(|open| open.screen.device().instance().clone());
+    drop(open);
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    ended.map_err(|error| Error::Loop { reason: error.to_string() })?;
+    if let Some(instance) = messages {
+        instance.check_messages()?;
+    }
+    if let Some(first) = said {
+        return Err(crate::gpu::Error::Validation { count: 1, first }.into());
+    }
+    let alive = live.map(|live| live.alive()).unwrap_or_default();
+    if options.validate && !alive.is_empty() {
+        return Err(Error::Loop { reason: format!("objects were left alive: {alive:?}") });
+    }
+    Ok(())
+}
+
+/// The loop. A library of the display that is missing is the loop's error as well: winit panics there.
+fn event_loop() -> Result<EventLoop<Wake>, Error> {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let built = std::panic::catch_unwind(|| EventLoop::<Wake>::with_user_event().build());
+    std::panic::set_hook(hook);
+    match built {
+        Ok(Ok(events)) => Ok(events),
+        Ok(Err(error)) => {
+            let text = error.to_string();
+            // Behind the place in winit's source.
+            let reason = text.rsplit_once("): ").map_or(text.as_str(), |(_, reason)| reason).to_owned();
+            Err(Error::NoDisplay { reason })
+        }
+        Err(panic) => {
+            let words = panic.downcast_ref::<String>().cloned();
+            let reason = words.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+            let reason = reason.unwrap_or_else(|| "a library of the display is missing".to_owned());
+            Err(Error::NoDisplay { reason })
+        }
+    }
+}
+
+struct Application {
+    options: Options,
+    proxy: EventLoopProxy<Wake>,
+    open: Option<Open>,
+    failure: Option<Error>,
+    live: Option<Arc<LiveObjects>>,
+}
+
+/// The open window.
+struct Open {
+    client: Option<Client>,
+    interface: Interface,
+    input: egui_winit::State,
+    context: egui::Context,
+    screen: Screen,
+    window: Arc<Window>,
+    next_frame: Option<Instant>,
+    frames_left: Option<u32>,
+    had_worker: bool,
+    /// A frame is asked of the display.
+    is_due: bool,
+    controls: Option<PathBuf>,
+}
+
+/// Whether the window goes on.
+enum Flow {
+    On,
+    Ended,
+}
+
+impl Application {
+    fn open(&self, events: &ActiveEventLoop) -> Result<Open, Error> {
+        let options = &self.options;
+        let layout = Layout::load();
+        let (width, height) = layout.window_size;
+        let attributes = Window::default_attributes()
+            .with_title("fumarole")
+            .with_inner_size(winit::dpi::LogicalSize::new(width, height))
+            .with_min_inner_size(winit::dpi::PhysicalSize::new(1, 1))
+            .with_fullscreen(options.is_fullscreen.then_some(Fullscreen::Borderless(None)))
+            // Assistive tools want to know a window before it is seen.
+            .with_visible(false);
+        let window = events
+            .create_window(attributes)
+            .map_err(|error| Error::NoDisplay { reason: format!("making a window: {error}") })?;
+        let window = Arc::new(window);
+        let screen = Screen::new(&window, options.validate, options.present_mode)?;
+        let context = egui::Context::default();
+        if options.controls.is_some() {
+            context.enable_accesskit();
+        }
+        context.set_zoom_factor(options.scale);
+        let mut input = egui_winit::State::new(
+            context.clone(),
+            egui::ViewportId::ROOT,
+            &window,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            Some(screen.most_texels()),
+        );
+        input.init_accesskit(events, &window, self.proxy.clone());
+        window.set_visible(true);
+        let mut interface = Interface::new(&context, options.papers.clone(), &options.paper, layout);
+        interface.begin(options.frame, options.exit_after.is_some());
+        let mut arguments = options.common.clone();
+        arguments.extend(options.arguments.iter().cloned());
+        Ok(Open {
+            client: Some(self.worker(&options.paper, &arguments)?),
+            interface,
+            input,
+            context,
+            screen,
+            window,
+            next_frame: None,
+            frames_left: options.exit_after,
+            had_worker: false,
+            is_due: false,
+            controls: options.controls.clone(),
+        })
+    }
+
+    fn worker(&self, paper: &str, options: &[OsString]) -> Result<Client, Error> {
+        let no_worker = |error: std::io::Error| Error::Worker { reason: error.to_string() };
+        let mut arguments: Vec<OsString> = vec![paper.into(), "worker".into()];
+        arguments.extend(options.iter().cloned());
+        let program = super::program::umbrella().map_err(no_worker)?;
+        let proxy = self.proxy.clone();
+        // A loop that has ended hears nothing, and needs nothing.
+        Client::spawn(&program, &arguments, move || drop(proxy.send_event(Wake::Worker))).map_err(no_worker)
+    }
+
+    /// Draws a frame, and does what the interface wishes.
+    fn frame(&mut self, events: &ActiveEventLoop) -> Result<Flow, Error> {
+        let Some(open) = &mut self.open else { return Ok(Flow::On) };
+        if let Flow::Ended = open.hear()? {
+            return Ok(Flow::Ended);
+        }
+        let wishes = open.draw()?;
+        for wish in wishes {
+            match wish {
+                Wish::Ask(request) => {
+                    if let Some(open) = &mut self.open
+                        && let Some(client) = &mut open.client
+                    {
+                        client.send(request);
+                    }
+                }
+                Wish::Paper(paper) => self.start(&paper, &[])?,
+                Wish::Restart(paper) => {
+                    let arguments = self.options.arguments.clone();
+                    let own = if paper == self.options.paper { arguments } else { Vec::new() };
+                    self.start(&paper, &own)?;
+                }
+                Wish::Fullscreen => {
+                    if let Some(open) = &self.open {
+                        let full = open.window.fullscreen().is_none().then_some(Fullscreen::Borderless(None));
+                        open.window.set_fullscreen(full);
+                    }
+                }
+                Wish::Quit => return Ok(Flow::Ended),
+            }
+        }
+        self.schedule(events);
+        Ok(Flow::On)
+    }
+
+    /// Another worker takes the place of the one that is there.
+    fn start(&mut self, paper: &str, own: &[OsString]) -> Result<(), Error> {
+        if let Some(open) = &mut self.open {
+            open.client = None;
+        }
+        let mut arguments = self.options.common.clone();
+        arguments.extend(own.iter().cloned());
+        let client = self.worker(paper, &arguments)?;
+        if let Some(open) = &mut self.open {
+            open.client = Some(client);
+        }
+        Ok(())
+    }
+
+    fn schedule(&self, events: &ActiveEventLoop) {
+        let next = self.open.as_ref().and_then(|open| open.next_frame);
+        events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+    }
+
+    fn end(&mut self, events: &ActiveEventLoop, failure: Option<Error>) {
+        if self.failure.is_none() {
+            self.failure = failure;
+        }
+        if let Some(open) = &mut self.open {
+            let size = open.window.inner_size().to_logical::<f32>(open.window.scale_factor());
+            open.interface.remember((size.width, size.height));
+        }
+        events.exit();
+    }
+}
+
+impl Open {
+    /// Takes what the worker has said.
+    fn hear(&mut self) -> Result<Flow, Error> {
+        while let Some(event) = self.client.as_mut().and_then(Client::try_receive) {
+            match &event {
+                Event::Ready(_) => self.had_worker = true,
+                Event::Ended(ended) if !self.had_worker => return Err(refused(ended)),
+                Event::Frame(_) => {
+                    if let Some(left) = &mut self.frames_left {
+                        *left = left.saturating_sub(1);
+                    }
+                }
+                _ => {}
+            }
+            self.interface.take(event);
+            if self.frames_left == Some(0) {
+                return Ok(Flow::Ended);
+            }
+        }
+        Ok(Flow::On)
+    }
+
+    fn draw(&mut self) -> Result<Vec<Wish>, Error> {
+        self.is_due = false;
+        let started = Instant::now();
+        let input = self.input.take_egui_input(&self.window);
+        let interface = &mut self.interface;
+        let output = self.context.run(input, |context| interface.show(context));
+        self.screen.update(&output.textures_delta)?;
+        let pixels_per_point = output.pixels_per_point;
+        let primitives = self.context.tessellate(output.shapes, pixels_per_point);
+        let laid_out = started.elapsed();
+        let drawn = self.screen.draw(pixels_per_point, &primitives)?;
+        self.screen.free(&output.textures_delta);
+        if let Some(path) = &self.controls
+            && let Some(update) = &output.platform_output.accesskit_update
+        {
+            controls::write(path, update, pixels_per_point)?;
+        }
+        self.input.handle_platform_output(&self.window, output.platform_output);
+        let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
+        self.next_frame = delay.filter(|delay| *delay < Duration::from_secs(3600)).map(|delay| Instant::now() + delay);
+        match drawn {
+            Drawn::Yes(painted) => self.interface.drew(laid_out + painted),
+            Drawn::Later { is_soon: true } => {
+                let soon = Instant::now() + Duration::from_millis(50);
+                self.next_frame = Some(self.next_frame.map_or(soon, |next| next.min(soon)));
+            }
+            Drawn::Unchanged | Drawn::Later { .. } => {}
+        }
+        Ok(self.interface.wishes())
+    }
+
+    fn validation_message(&self) -> Option<String> {
+        self.interface.session().validation.first().cloned()
+    }
+
+    /// Asks the display for a frame.
+    fn ask(&mut self) {
+        if !std::mem::replace(&mut self.is_due, true) {
+            self.window.request_redraw();
+        }
+    }
+}
+
+fn refused(ended: &Ended) -> Error {
+    let last = ended.stderr.iter().rev().find(|line| !line.trim().is_empty());
+    let message = last.map_or("the program that draws for the window ended without a word", |line| line.as_str());
+    let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
+    Error::Refused { message, code: ended.code.unwrap_or(1) }
+}
+
+impl ApplicationHandler<Wake> for Application {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        match self.open(events) {
+            Ok(mut open) => {
+                self.live = Some(open.screen.device().live().clone());
+                open.ask();
+                self.open = Some(open);
+            }
+            Err(failure) => self.end(events, Some(failure)),
+        }
+    }
+
+    fn user_event(&mut self, events: &ActiveEventLoop, wake: Wake) {
+        match wake {
+            Wake::Quit => self.end(events, None),
+            Wake::Worker => self.wake(events),
+            Wake::Accessibility(event) => {
+                if let Some(open) = &mut self.open {
+                    match event.window_event {
+                        accesskit_winit::WindowEvent::InitialTreeRequested => open.context.enable_accesskit(),
+                        accesskit_winit::WindowEvent::ActionRequested(request) => {
+                            open.input.on_accesskit_action_request(request);
+                        }
+                        accesskit_winit::WindowEvent::AccessibilityDeactivated => open.context.disable_accesskit(),
+                    }
+                    open.ask();
+                }
+            }
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        match &event {
+            WindowEvent::CloseRequested => return self.end(events, None),
+            WindowEvent::RedrawRequested => {
+                match self.frame(events) {
+                    Ok(Flow::On) => {}
+                    Ok(Flow::Ended) => self.end(events, None),
+                    Err(failure) => self.end(events, Some(failure)),
+                }
+                return;
+            }
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                open.screen.resized();
+                open.ask();
+            }
+            WindowEvent::Occluded(false) => open.ask(),
+            _ => {}
+        }
+        if open.input.on_window_event(&open.window, &event).repaint {
+            open.ask();
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        if let Some(open) = &mut self.open
+            && open.next_frame.is_some_and(|next| next <= Instant::now())
+        {
+            open.next_frame = None;
+            open.ask();
+        }
+        self.schedule(events);
+    }
+}
+
+impl Application {
+    /// The worker has said something. A window that the display does not ask to draw, as a hidden one, hears it as well.
+    fn wake(&mut self, events: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        match open.hear() {
+            Ok(Flow::On) => open.ask(),
+            Ok(Flow::Ended) => self.end(events, None),
+            Err(failure) => self.end(events, Some(failure)),
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Values of a target as colours: a channel through a ramp, or three channels as light.
+
+use egui::{Color32, ColorImage};
+
+use super::protocol::{TargetValues, ValueKind};
+
+/// How values become colours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drawing {
+    pub channel: Channel,
+    /// Values at the two ends.
+    pub range: (f64, f64),
+    /// Powers of two that values are multiplied by.
+    pub exposure: f32,
+    pub ramp: Ramp,
+    /// Of depths 1 / (1 - depth): the distance in near planes for a far plane that is far away.
+    pub is_linear_depth: bool,
+}
+
+/// What is drawn of a texel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channel {
+    /// The first three as red, green and blue.
+    Colour,
+    /// One alone.
+    One(usize),
+}
+
+/// Colours of a single channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ramp {
+    Grey,
+    /// Dark blue over green to yellow, of even steps to the eye.
+    Viridis,
+    /// Blue below the middle, red above.
+    Diverging,
+    /// A colour of its own for each integer.
+    Labels,
+}
+
+impl Ramp {
+    pub const ALL: [Ramp; 4] = [Ramp::Grey, Ramp::Viridis, Ramp::Diverging, Ramp::Labels];
+
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Ramp::Grey => "grey",
+            Ramp::Viridis => "viridis",
+            Ramp::Diverging => "diverging",
+            Ramp::Labels => "labels",
+        }
+    }
+
+    /// The colour at `share` of the range.
+    fn colour(self, share: f64) -> Color32 {
+        const VIRIDIS: [[u8; 3]; 9] = [
+            [68, 1, 84],
+            [71, 44, 122],
+            [59, 81, 139],
+            [44, 113, 142],
+            [33, 144, 141],
+            [39, 173, 129],
+            [92, 200, 99],
+            [170, 220, 50],
+            [253, 231, 37],
+        ];
+        const DIVERGING: [[u8; 3]; 5] =
+            [[33, 102, 172], [146, 197, 222], [247, 247, 247], [244, 165, 130], [178, 24, 43]];
+        const GREY: [[u8; 3]; 2] = [[0; 3], [255; 3]];
+        let stops: &[[u8; 3]] = match self {
+            Ramp::Grey | Ramp::Labels => &GREY,
+            Ramp::Viridis => &VIRIDIS,
+            Ramp::Diverging => &DIVERGING,
+        };
+        let at = share.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+        let (low, part) = ((at as usize).min(stops.len() - 2), at - (at as usize).min(stops.len() - 2) as f64);
+        let mix = |i: usize| (f64::from(stops[low][i]) * (1.0 - part) + f64::from(stops[low + 1][i]) * part).round();
+        Color32::from_rgb(mix(0) as u8, mix(1) as u8, mix(2) as u8)
+    }
+}
+
+/// Colour of what is no number, and of values that stand for none.
+pub const NONE: Color32 = Color32::from_rgb(255, 0, 255);
+
+/// The values' numbers at a texel, one a channel.
+pub fn texel(values: &TargetValues, x: u32, y: u32) -> Option<Vec<f64>> {
+    if x >= values.width || y >= values.height {
+        return None;
+    }
+    let first = (y as usize * values.width as usize + x as usize) * values.channels as usize;
+    (first..first + values.channels as usize).map(|index| number(values, index)).collect()
+}
+
+/// The number at an index of the block.
+pub fn number(values: &TargetValues, index: usize) -> Option<f64> {
+    let bytes = &values.block.bytes;
+    let word = || bytes.get(index * 4..index * 4 + 4).and_then(|word| word.first_chunk::<4>().copied());
+    match values.kind {
+        ValueKind::U8 => bytes.get(index).map(|byte| f64::from(*byte)),
+        ValueKind::F32 => word().map(|word| f64::from(f32::from_le_bytes(word))),
+        ValueKind::U32 => word().map(|word| f64::from(u32::from_le_bytes(word))),
+        ValueKind::I32 => word().map(|word| f64::from(i32::from_le_bytes(word))),
+    }
+}
+
+/// The picture of the values; `None` for a block that is not theirs.
+pub fn draw(values: &TargetValues, drawing: &Drawing, is_srgb: bool) -> Option<ColorImage> {
+    let (width, height, channels) = (values.width as usize, values.height as usize, values.channels as usize);
+    let texels = width.checked_mul(height)?;
+    number(values, (texels * channels).checked_sub(1)?)?;
+    let gain = f64::from(drawing.exposure).exp2();
+    let sentinels = |channel: usize| values.statistics.get(channel).map_or(&[][..], |s| &s.sentinels);
+    let (low, high) = drawing.range;
+    let scale = if high > low { 1.0 / (high - low) } else { 0.0 };
+    let share = |value: f64| ((value - low) * scale * gain).clamp(0.0, 1.0);
+    let pixels = match drawing.channel {
+        Channel::Colour => (0..texels)
+            .map(|at| {
+                let of = |channel: usize| number(values, at * channels + channel).unwrap_or(0.0);
+                let rgb = [of(0), of(1), of(2)];
+                if rgb.iter().any(|value| !value.is_finite()) {
+                    return NONE;
+                }
+                if is_srgb {
+                    return Color32::from_rgb(rgb[0] as u8, rgb[1] as u8, rgb[2] as u8);
+                }
+                let [red, green, blue] = rgb.map(|value| encoded(share(value)));
+                Color32::from_rgb(red, green, blue)
+            })
+            .collect(),
+        Channel::One(channel) => {
+            let channel = channel.min(channels - 1);
+            let table: Vec<Color32> = (0..=255).map(|step| drawing.ramp.colour(f64::from(step) / 255.0)).collect();
+            let none = sentinels(channel);
+            (0..texels)
+                .map(|at| {
+                    let value = number(values, at * channels + channel).unwrap_or(f64::NAN);
+                    if !value.is_finite() || none.contains(&value) {
+                        return NONE;
+                    }
+                    let value = if drawing.is_linear_depth { linear_depth(value) } else { value };
+                    if drawing.ramp == Ramp::Labels {
+                        return label(value);
+                    }
+                    table[(share(value) * 255.0).round() as usize]
+                })
+                .collect()
+        }
+    };
+    Some(ColorImage::new([width, height], pixels))
+}
+
+/// Distance in near planes of a depth from 0 to 1.
+pub fn linear_depth(depth: f64) -> f64 {
+    1.0 / (1.0 - depth).max(1e-6)
+}
+
+/// Light, 0 to 1, as sRGB encodes it.
+fn encoded(light: f64) -> u8 {
+    let value = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+    (value * 255.0).round() as u8
+}
+
+/// A colour that differs from those of the numbers near by.
+fn label(value: f64) -> Color32 {
+    let hash = (value as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let hue = (hash >> 40) as f32 / (1 << 24) as f32;
+    egui::ecolor::Hsva::new(hue, 0.65, 0.9, 1.0).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::protocol::{Block, Statistics, TargetChoice};
+    use super::*;
+
+    fn floats(width: u32, channels: u32, numbers: &[f32]) -> TargetValues {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        TargetValues {
+            choice: TargetChoice { side: 0, name: "t".into(), layer: 0, first_row: 0 },
+            kind: ValueKind::F32,
+            width,
+            height: numbers.len() as u32 / width / channels,
+            channels,
+            block: Block { offset: 0, len: bytes.len() as u64, bytes },
+            statistics: vec![Statistics { sentinels: vec![-1.0], ..Statistics::default() }],
+            is_written: true,
+        }
+    }
+
+    fn grey(range: (f64, f64)) -> Drawing {
+        let channel = Channel::One(0);
+        Drawing { channel, range, exposure: 0.0, ramp: Ramp::Grey, is_linear_depth: false }
+    }
+
+    #[test]
+    fn a_ramp_runs_from_end_to_end_and_shows_what_is_none() {
+        let values = floats(5, 1, &[0.0, 2.0, 4.0, f32::NAN, -1.0]);
+        let image = draw(&values, &grey((0.0, 4.0)), false).expect("a picture");
+        let level = |at: usize| image.pixels[at].r();
+        assert_eq!((level(0), level(1), level(2)), (0, 128, 255));
+        assert_eq!((image.pixels[3], image.pixels[4]), (NONE, NONE));
+    }
+
+    #[test]
+    fn exposure_doubles() {
+        let drawing = Drawing { exposure: 1.0, ..grey((0.0, 1.0)) };
+        let image = draw(&floats(1, 1, &[0.25]), &drawing, false).expect("a picture");
+        assert_eq!(image.pixels[0].r(), 128);
+    }
+
+    #[test]
+    fn colours_are_light_encoded_in_srgb() {
+        let drawing = Drawing { channel: Channel::Colour, ..grey((0.0, 1.0)) };
+        let image = draw(&floats(1, 3, &[1.0, 0.214_041_14, 0.0]), &drawing, false).expect("a picture");
+        assert_eq!(image.pixels[0], Color32::from_rgb(255, 127, 0));
+    }
+
+    #[test]
+    fn a_block_of_another_length_is_no_picture() {
+        let mut values = floats(2, 1, &[0.0, 1.0]);
+        values.block.bytes.pop();
+        assert!(draw(&values, &grey((0.0, 1.0)), false).is_none());
+        assert_eq!(texel(&values, 2, 0), None);
+    }
+}

@@ -1,0 +1,371 @@
+//! The interface as a whole: its panels, and what it wishes of the worker and the window. It knows neither: events come in,
+//! wishes go out.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use egui::{CentralPanel, Context, RichText, SidePanel, TopBottomPanel};
+
+use super::bench_tab::Bench;
+use super::keep_tab::Saving;
+use super::layout::{Layout, Theme};
+use super::pictures::Pictures;
+use super::protocol::{Assignment, Event, MeasureChoice, Request, TargetChoice, ThumbnailChoice, Verb};
+use super::session::Session;
+use super::{camera, compare, drawer, keys, parameters_panel, passes_panel, picture_view, target_view, top_bar};
+
+/// What the interface wants done.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Wish {
+    /// A request to the worker.
+    Ask(Request),
+    /// Another paper.
+    Paper(String),
+    /// A new worker of this paper, in place of one that has ended.
+    Restart(String),
+    /// All of the display, or a window again.
+    Fullscreen,
+    /// The end.
+    Quit,
+}
+
+/// What the middle of the window shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    Picture,
+    Target,
+}
+
+/// What the answer with a command line is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CommandUse {
+    Copy,
+    Bench,
+}
+
+/// The interface.
+pub struct Interface {
+    pub(super) papers: Vec<&'static str>,
+    pub(super) paper: String,
+    pub(super) session: Session,
+    pub(super) layout: Layout,
+    pub(super) pictures: Pictures,
+    pub(super) shown: Shown,
+    /// Index of the pass that is looked at.
+    pub(super) pass: Option<usize>,
+    pub(super) target: Option<TargetChoice>,
+    pub(super) after: Option<u32>,
+    pub(super) measure: MeasureChoice,
+    pub(super) picture_view: picture_view::PictureView,
+    pub(super) target_view: target_view::TargetView,
+    pub(super) flight: camera::Flight,
+    pub(super) fields: parameters_panel::Fields,
+    pub(super) saving: Saving,
+    pub(super) bench: Bench,
+    pub(super) frame_text: Option<String>,
+    pub(super) command_use: CommandUse,
+    /// A line for the user: what was copied or written.
+    pub(super) note: Option<String>,
+    pub(super) has_keys: bool,
+    pub(super) is_plot_paused: bool,
+    /// Line under the picture: place and value at the pointer.
+    pub(super) pointed: String,
+    pub(super) interface_ms: VecDeque<f32>,
+    /// Requests at the start, once the worker is ready.
+    first: Vec<Request>,
+    wishes: Vec<Wish>,
+}
+
+impl Interface {
+    /// The interface of a window that begins with `paper`.
+    pub fn new(context: &Context, papers: Vec<&'static str>, paper: &str, layout: Layout) -> Self {
+        apply_theme(context, layout.theme);
+        context.all_styles_mut(|style| {
+            style.spacing.item_spacing = egui::vec2(6.0, 4.0);
+            style.interaction.tooltip_delay = 0.3;
+        });
+        // The window's own keys do this.
+        context.options_mut(|options| options.zoom_with_keyboard = true);
+        Interface {
+            papers,
+            paper: paper.to_owned(),
+            session: Session::default(),
+            measure: MeasureChoice { times: 0, counters: false },
+            layout,
+            pictures: Pictures::default(),
+            shown: Shown::Picture,
+            pass: None,
+            target: None,
+            after: None,
+            picture_view: Default::default(),
+            target_view: Default::default(),
+            flight: Default::default(),
+            fields: Default::default(),
+            saving: Default::default(),
+            bench: Default::default(),
+            frame_text: None,
+            command_use: CommandUse::Copy,
+            note: None,
+            has_keys: false,
+            is_plot_paused: false,
+            pointed: String::new(),
+            interface_ms: VecDeque::new(),
+            first: Vec::new(),
+            wishes: Vec::new(),
+        }
+    }
+
+    /// What is asked for once the worker is ready.
+    pub fn begin(&mut self, frame: u32, is_playing: bool) {
+        if frame > 0 {
+            self.first.push(Request::GoTo(frame));
+        }
+        if is_playing {
+            self.first.push(Request::Play);
+        }
+    }
+
+    /// What the worker has told.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Takes an event of the worker over.
+    pub fn take(&mut self, event: Event) {
+        if let Event::Ready(_) = event {
+            let mut first = std::mem::take(&mut self.first);
+            first.push(Request::Memory);
+            first.push(Request::Measure(self.measure));
+            first.into_iter().for_each(|request| self.ask(request));
+        }
+        let is_built = matches!(event, Event::Built(_));
+        let has_picture = matches!(event, Event::Frame(_));
+        let answer = self.session.take(event);
+        if has_picture {
+            self.pictures.is_new = true;
+        }
+        if is_built {
+            self.ask(Request::Memory);
+            self.check_choices();
+        }
+        match answer {
+            Some(Event::Command(arguments)) => self.answered(arguments),
+            Some(Event::Kept(files)) => self.note = Some(format!("wrote {}", summary(&files))),
+            _ => {}
+        }
+    }
+
+    /// Other targets and passes may be there now.
+    fn check_choices(&mut self) {
+        let Some(built) = self.session.side_built(0) else { return };
+        let (pass_count, names) = (built.passes.len(), &built.targets);
+        if self.pass.is_some_and(|pass| pass >= pass_count) {
+            self.pass = None;
+        }
+        let is_there = self.target.as_ref().is_none_or(|target| names.iter().any(|one| one.name == target.name));
+        if !is_there {
+            self.look_at(None);
+        }
+        if self.after.is_some_and(|after| after as usize >= pass_count) {
+            self.set_after(None);
+        }
+    }
+
+    fn answered(&mut self, arguments: Vec<String>) {
+        match self.command_use {
+            CommandUse::Copy => {
+                let words = std::iter::once("fumarole".to_owned()).chain(arguments);
+                let line = shlex::try_join(words.collect::<Vec<_>>().iter().map(String::as_str)).unwrap_or_default();
+                self.note = Some(format!("copied: {line}"));
+                self.pictures.to_copy = Some(line);
+            }
+            CommandUse::Bench => self.bench.start(arguments),
+        }
+    }
+
+    /// A frame of the interface took so long.
+    pub fn drew(&mut self, time: Duration) {
+        self.interface_ms.push_back(time.as_secs_f32() * 1e3);
+        if self.interface_ms.len() > 120 {
+            self.interface_ms.pop_front();
+        }
+    }
+
+    /// What the interface has wished since the last call.
+    pub fn wishes(&mut self) -> Vec<Wish> {
+        std::mem::take(&mut self.wishes)
+    }
+
+    /// Remembers the layout.
+    pub fn remember(&mut self, window_size: (f32, f32)) {
+        if window_size.0 >= 1.0 && window_size.1 >= 1.0 {
+            self.layout.window_size = window_size;
+        }
+        self.layout.save();
+    }
+
+    pub(super) fn wish(&mut self, wish: Wish) {
+        self.wishes.push(wish);
+    }
+
+    pub(super) fn ask(&mut self, request: Request) {
+        self.wishes.push(Wish::Ask(request));
+    }
+
+    pub(super) fn set(&mut self, name: &str, values: Vec<String>) {
+        self.ask(Request::Set(vec![Assignment { name: name.to_owned(), values }]));
+    }
+
+    pub(super) fn ask_command(&mut self, verb: Verb, command_use: CommandUse) {
+        self.command_use = command_use;
+        self.ask(Request::Command(verb));
+    }
+
+    pub(super) fn set_after(&mut self, after: Option<u32>) {
+        if self.after != after {
+            self.after = after;
+            self.ask(Request::After(after));
+        }
+    }
+
+    pub(super) fn look_at(&mut self, target: Option<TargetChoice>) {
+        self.shown = if target.is_some() { Shown::Target } else { Shown::Picture };
+        if self.target != target {
+            self.target.clone_from(&target);
+            self.target_view.reset();
+            self.ask(Request::Target(target));
+        }
+    }
+
+    /// Looks at a pass: its targets come as thumbnails.
+    pub(super) fn select_pass(&mut self, pass: Option<usize>) {
+        self.pass = pass;
+        let names = pass.map(|pass| self.targets_of(pass)).unwrap_or_default();
+        let choice = (!names.is_empty()).then_some(ThumbnailChoice { side: 0, names, longest_px: 160 });
+        self.ask(Request::Thumbnails(choice));
+    }
+
+    fn targets_of(&self, pass: usize) -> Vec<String> {
+        let Some(built) = self.session.side_built(0) else { return Vec::new() };
+        let Some(info) = built.passes.get(pass) else { return Vec::new() };
+        let mut names: Vec<String> = Vec::new();
+        for &index in info.written_targets.iter().chain(&info.read_targets) {
+            if let Some(target) = built.targets.get(index).filter(|target| !names.contains(&target.name)) {
+                names.push(target.name.clone());
+            }
+        }
+        names
+    }
+
+    pub(super) fn change_paper(&mut self, paper: &str) {
+        self.paper = paper.to_owned();
+        self.session = Session::default();
+        self.pictures = Pictures::default();
+        (self.pass, self.after, self.target, self.shown) = (None, None, None, Shown::Picture);
+        self.fields = Default::default();
+        self.picture_view = Default::default();
+        (self.note, self.frame_text) = (None, None);
+        self.wish(Wish::Paper(paper.to_owned()));
+    }
+
+    pub(super) fn restart(&mut self) {
+        let paper = self.paper.clone();
+        self.session = Session { validation: std::mem::take(&mut self.session.validation), ..Session::default() };
+        self.wish(Wish::Restart(paper));
+    }
+
+    /// Lays all panels out.
+    pub fn show(&mut self, context: &Context) {
+        keys::handle(context, self);
+        self.pictures.update(context, &self.session);
+        if let Some(line) = self.pictures.to_copy.take() {
+            context.copy_text(line);
+        }
+        TopBottomPanel::top("top").show(context, |ui| top_bar::show(ui, self));
+        TopBottomPanel::bottom("status").show(context, |ui| top_bar::show_status(ui, self));
+        if self.layout.has_drawer {
+            let drawn = TopBottomPanel::bottom("drawer")
+                .resizable(true)
+                .default_height(self.layout.drawer_height)
+                .min_height(60.0)
+                .show(context, |ui| drawer::show(ui, self));
+            self.layout.drawer_height = drawn.response.rect.height();
+        }
+        if self.layout.has_passes {
+            let drawn = SidePanel::left("passes")
+                .resizable(true)
+                .default_width(self.layout.passes_width)
+                .min_width(160.0)
+                .show(context, |ui| passes_panel::show(ui, self));
+            self.layout.passes_width = drawn.response.rect.width();
+        }
+        if self.layout.has_parameters {
+            let drawn = SidePanel::right("parameters")
+                .resizable(true)
+                .default_width(self.layout.parameters_width)
+                .min_width(160.0)
+                .show(context, |ui| parameters_panel::show(ui, self));
+            self.layout.parameters_width = drawn.response.rect.width();
+        }
+        let frame = egui::Frame::central_panel(&context.style()).inner_margin(4.0);
+        CentralPanel::default().frame(frame).show(context, |ui| self.show_middle(ui));
+        keys::show_list(context, self);
+        self.bench.poll(context);
+    }
+
+    fn show_middle(&mut self, ui: &mut egui::Ui) {
+        if let Some(problem) = self.session.problem.clone() {
+            let mut is_read = false;
+            egui::Frame::group(ui.style()).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    is_read = ui.small_button("x").on_hover_text("Take this message away").clicked();
+                    ui.label(RichText::new(problem).color(ui.visuals().error_fg_color).monospace());
+                });
+            });
+            if is_read {
+                self.session.problem = None;
+            }
+        }
+        if let Some(ended) = self.session.ended.clone() {
+            egui::Frame::group(ui.style()).show(ui, |ui| {
+                ui.label(RichText::new(ending(&ended)).color(ui.visuals().error_fg_color));
+                ended.stderr.iter().for_each(|line| drop(ui.monospace(line)));
+                if ui.button("Start it again").clicked() {
+                    self.restart();
+                }
+            });
+        }
+        match self.shown {
+            Shown::Target => target_view::show(ui, self),
+            Shown::Picture if self.session.side_count() > 1 => compare::show(ui, self),
+            Shown::Picture => picture_view::show(ui, self),
+        }
+    }
+}
+
+/// The end of a worker in words.
+fn ending(ended: &super::protocol::Ended) -> String {
+    match (ended.signal, ended.code) {
+        (Some(signal), _) => format!("The program that draws was ended by signal {signal}."),
+        (None, Some(code)) => format!("The program that draws ended with exit code {code}."),
+        (None, None) => "The program that draws has ended.".to_owned(),
+    }
+}
+
+/// The files in few words.
+fn summary(files: &[String]) -> String {
+    match files {
+        [] => "nothing".to_owned(),
+        [one] => one.clone(),
+        [first, .., last] => format!("{} files, {first} to {last}", files.len()),
+    }
+}
+
+/// Colours of the window.
+pub(super) fn apply_theme(context: &Context, theme: Theme) {
+    context.set_theme(match theme {
+        Theme::System => egui::ThemePreference::System,
+        Theme::Light => egui::ThemePreference::Light,
+        Theme::Dark => egui::ThemePreference::Dark,
+    });
+}

@@ -1,0 +1,155 @@
+//! What the worker has told so far.
+
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use super::protocol::{
+    Built, DeviceLimits, Ended, Event, Frame, Memory, ParameterInfo, Progress, Ready, Setup, SideBuilt, SideSetup,
+    SideTimes,
+};
+
+/// Points of the plots that are kept: minutes of frames.
+const HISTORY: usize = 4096;
+/// Lines of warnings and messages that are kept.
+const LINES: usize = 500;
+
+/// A point of the plots.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// When it came.
+    pub at: Instant,
+    /// Milliseconds of the frame of each side, or of each pass of the first side.
+    pub values_ms: Vec<f64>,
+}
+
+/// The worker as the window knows it.
+#[derive(Default)]
+pub struct Session {
+    pub ready: Option<Ready>,
+    pub setup: Option<Setup>,
+    pub built: Option<Built>,
+    pub frame: Option<Frame>,
+    pub times: Vec<SideTimes>,
+    /// Milliseconds of frames, each side's.
+    pub frames: VecDeque<Point>,
+    /// Milliseconds of passes of the first side, as medians came.
+    pub passes: VecDeque<Point>,
+    pub progress: Option<Progress>,
+    /// What could not be done last.
+    pub problem: Option<String>,
+    pub warnings: Vec<String>,
+    pub limits: Option<DeviceLimits>,
+    pub memory: Option<Memory>,
+    pub kept: Vec<String>,
+    pub validation: Vec<String>,
+    pub ended: Option<Ended>,
+    /// Last request that something was heard of.
+    pub heeds: u64,
+}
+
+impl Session {
+    /// Takes an event over; gives back what is not a state: an answer.
+    pub fn take(&mut self, event: Event) -> Option<Event> {
+        match event {
+            Event::Ready(ready) => {
+                self.warnings.clone_from(&ready.warnings);
+                self.ready = Some(ready);
+            }
+            Event::Setup(setup) => {
+                self.heeds = self.heeds.max(setup.heeds);
+                self.setup = Some(setup);
+            }
+            Event::Built(built) => {
+                self.heeds = self.heeds.max(built.heeds);
+                // A shader that was mended, a value that can be drawn again.
+                self.problem = None;
+                self.built = Some(built);
+                self.times.clear();
+                self.passes.clear();
+            }
+            Event::Frame(frame) => {
+                self.heeds = self.heeds.max(frame.heeds);
+                let values_ms = frame.sides.iter().map(|side| side.frame_ms).collect();
+                push(&mut self.frames, values_ms);
+                self.frame = Some(*frame);
+            }
+            Event::Times(times) => {
+                if let Some(first) = times.first() {
+                    let of_pass =
+                        |pass: &super::protocol::PassTimes| pass.gpu_ms.unwrap_or(0.0) + pass.host_ms.unwrap_or(0.0);
+                    push(&mut self.passes, first.passes.iter().map(of_pass).collect());
+                }
+                self.times = times;
+            }
+            Event::Progress(progress) => {
+                self.progress = Some(progress).filter(|progress| progress.done < progress.total);
+            }
+            Event::Failed { id, problem } => {
+                self.heeds = self.heeds.max(id);
+                self.progress = None;
+                self.problem = Some(problem);
+            }
+            Event::Warning(warning) => add(&mut self.warnings, [warning]),
+            Event::Limits(limits) => self.limits = Some(limits),
+            Event::Memory(memory) => self.memory = Some(memory),
+            Event::Kept(files) => {
+                self.kept.clone_from(&files);
+                return Some(Event::Kept(files));
+            }
+            Event::Validation(messages) => add(&mut self.validation, messages),
+            Event::Ended(ended) => {
+                self.progress = None;
+                self.ended = Some(ended);
+            }
+            answer @ Event::Command(_) => return Some(answer),
+        }
+        None
+    }
+
+    /// The declared parameters.
+    pub fn parameters(&self) -> &[ParameterInfo] {
+        self.ready.as_ref().map_or(&[], |ready| &ready.parameters)
+    }
+
+    /// Index of a parameter.
+    pub fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters().iter().position(|parameter| parameter.name == name)
+    }
+
+    /// What is set on a side.
+    pub fn side(&self, side: usize) -> Option<&SideSetup> {
+        self.setup.as_ref()?.sides.get(side)
+    }
+
+    /// A side as it is built.
+    pub fn side_built(&self, side: usize) -> Option<&SideBuilt> {
+        self.built.as_ref()?.sides.get(side)
+    }
+
+    /// Number of the sides.
+    pub fn side_count(&self) -> usize {
+        self.setup.as_ref().map_or(1, |setup| setup.sides.len().max(1))
+    }
+
+    /// Number of the frame that is shown.
+    pub fn number(&self) -> u32 {
+        self.frame.as_ref().map_or(0, |frame| frame.number)
+    }
+
+    /// The clock plays.
+    pub fn is_playing(&self) -> bool {
+        self.frame.as_ref().is_some_and(|frame| frame.is_playing)
+    }
+}
+
+fn push(points: &mut VecDeque<Point>, values_ms: Vec<f64>) {
+    points.push_back(Point { at: Instant::now(), values_ms });
+    if points.len() > HISTORY {
+        points.pop_front();
+    }
+}
+
+fn add(lines: &mut Vec<String>, more: impl IntoIterator<Item = String>) {
+    lines.extend(more);
+    lines.drain(..lines.len().saturating_sub(LINES));
+}

@@ -1,0 +1,105 @@
+//! Frame and pass times over the last minutes.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui};
+
+use super::interface::Interface;
+use super::session::Point;
+
+/// Time that the plots show.
+const SPAN: Duration = Duration::from_secs(180);
+
+/// The plots.
+pub fn show(ui: &mut Ui, face: &mut Interface) {
+    ui.horizontal(|ui| {
+        ui.toggle_value(&mut face.is_plot_paused, "Hold").on_hover_text("The plots stay as they are");
+        ui.weak("the last 3 minutes; frames without stamps left, passes by stamped frames right");
+    });
+    let held = ui.data_mut(|data| data.get_temp::<Instant>(ui.id().with("held")));
+    let now = match (face.is_plot_paused, held) {
+        (true, Some(held)) => held,
+        _ => Instant::now(),
+    };
+    let keep = face.is_plot_paused.then_some(now);
+    ui.data_mut(|data| match keep {
+        Some(now) => data.insert_temp(ui.id().with("held"), now),
+        None => data.remove::<Instant>(ui.id().with("held")),
+    });
+    ui.columns(2, |columns| {
+        let sides: Vec<String> = match face.session.side_count() {
+            1 => vec!["frame".into()],
+            _ => vec!["A".into(), "B".into()],
+        };
+        plot(&mut columns[0], &face.session.frames, &sides, now);
+        let built = face.session.side_built(0);
+        let names: Vec<String> =
+            built.map(|side| side.passes.iter().map(|pass| pass.name.clone()).collect()).unwrap_or_default();
+        if face.session.passes.is_empty() {
+            columns[1].weak("Turn times on above the passes to see them here.");
+        } else {
+            plot(&mut columns[1], &face.session.passes, &names, now);
+        }
+    });
+}
+
+/// Lines of the points' values, one a name, from 0 to the largest that is seen.
+fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], now: Instant) {
+    let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::hover());
+    let rect = response.rect;
+    painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    let age = |point: &Point| now.saturating_duration_since(point.at);
+    let seen: Vec<&Point> = points.iter().filter(|point| point.at <= now && age(point) < SPAN).collect();
+    let most = seen.iter().flat_map(|point| &point.values_ms).copied().fold(0.0, f64::max);
+    if most <= 0.0 {
+        return;
+    }
+    let place = |point: &Point, value: f64| {
+        let x = rect.right() - age(point).as_secs_f32() / SPAN.as_secs_f32() * rect.width();
+        Pos2::new(x, rect.bottom() - (value / most) as f32 * (rect.height() - 14.0))
+    };
+    for index in 0..names.len() {
+        let line: Vec<Pos2> =
+            seen.iter().filter_map(|point| Some(place(point, *point.values_ms.get(index)?))).collect();
+        let stroke = Stroke::new(1.5, colour(index, ui.visuals().dark_mode));
+        match line.as_slice() {
+            [] => {}
+            [one] => drop(painter.circle_filled(*one, 2.0, stroke.color)),
+            _ => drop(painter.add(Shape::line(line, stroke))),
+        }
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let text = ui.visuals().text_color();
+    painter.text(rect.left_top(), egui::Align2::LEFT_TOP, format!("{most:.2} ms"), font.clone(), text);
+    legend(&painter, rect, names, font, ui.visuals().dark_mode);
+    if let (Some(pointer), false) = (response.hover_pos(), seen.is_empty()) {
+        let near = seen.iter().min_by(|a, b| {
+            let distance = |point: &Point| (place(point, 0.0).x - pointer.x).abs();
+            distance(a).total_cmp(&distance(b))
+        });
+        if let Some(point) = near {
+            let values = names.iter().zip(&point.values_ms).map(|(name, ms)| format!("{name} {ms:.3} ms"));
+            let lines = values.collect::<Vec<_>>().join("\n");
+            response.on_hover_text(format!("{:.0} s ago\n{lines}", age(point).as_secs_f32()));
+        }
+    }
+}
+
+fn legend(painter: &egui::Painter, rect: Rect, names: &[String], font: egui::FontId, is_dark: bool) {
+    let mut x = rect.left() + 76.0;
+    for (index, name) in names.iter().enumerate() {
+        let drawn =
+            painter.text(Pos2::new(x, rect.top()), egui::Align2::LEFT_TOP, name, font.clone(), colour(index, is_dark));
+        x = drawn.right() + 10.0;
+        if x > rect.right() - 40.0 {
+            return;
+        }
+    }
+}
+
+/// Colours that differ from each other, on dark and on light ground.
+fn colour(index: usize, is_dark: bool) -> Color32 {
+    let hue = (index as f32 * 0.618_034 + 0.58) % 1.0;
+    egui::ecolor::Hsva::new(hue, 0.65, if is_dark { 0.95 } else { 0.6 }, 1.0).into()
+}
