@@ -85,6 +85,25 @@ find_missing() {
         need vulkan-validationlayers 'the Khronos validation layer'
     [ -z "$tests" ] || { has_chromium_library libvk_swiftshader.so && has_chromium_library libVkLayer_khronos_validation.so; } ||
         need chromium-common 'the SwiftShader driver and the current validation layer that Chromium brings'
+    [ -z "$tests" ] || command -v Xvfb >/dev/null ||
+        need xvfb 'Xvfb, a display without a screen, for the tests of the window'
+    [ -z "$tests" ] || command -v openbox >/dev/null ||
+        need openbox 'a small window manager for the same tests'
+    [ -z "$tests" ] || command -v xdotool >/dev/null ||
+        need xdotool 'xdotool for the same tests'
+    [ -z "$tests" ] || command -v weston >/dev/null ||
+        need weston 'weston, a Wayland compositor, for the same tests'
+    # The window loads these when it opens.
+    for library in libX11-xcb.so.1:libx11-xcb1 libXcursor.so.1:libxcursor1 libXi.so.6:libxi6 \
+        libxkbcommon-x11.so.0:libxkbcommon-x11-0; do
+        [ -z "$tests" ] || has_library "${library%%:*}" ||
+            need "${library##*:}" "${library%%:*}, which windows need"
+    done
+}
+
+# Whether a library is where the system looks for libraries.
+has_library() {
+    ldconfig -p 2>/dev/null | grep -qF "$1 "
 }
 
 # need PACKAGE WORDS: the package by Debian's name.
@@ -115,6 +134,19 @@ package_here() {
     arch:mesa-vulkan-drivers) echo vulkan-swrast ;;
     suse:mesa-vulkan-drivers) echo libvulkan_lvp ;;
     fedora:vulkan-validationlayers | arch:vulkan-validationlayers) echo vulkan-validation-layers ;;
+    fedora:xvfb) echo xorg-x11-server-Xvfb ;;
+    arch:xvfb) echo xorg-server-xvfb ;;
+    suse:xvfb) echo xorg-x11-server-Xvfb ;;
+    fedora:libxkbcommon-x11-0 | arch:libxkbcommon-x11-0) echo libxkbcommon-x11 ;;
+    fedora:libxcursor1) echo libXcursor ;;
+    fedora:libxi6) echo libXi ;;
+    arch:libxcursor1) echo libxcursor ;;
+    arch:libxi6) echo libxi ;;
+    suse:libxcursor1) echo libXcursor1 ;;
+    suse:libxi6) echo libXi6 ;;
+    fedora:libx11-xcb1) echo libX11-xcb ;;
+    arch:libx11-xcb1) echo libx11 ;;
+    suse:libx11-xcb1) echo libX11-xcb1 ;;
     fedora:chromium-common | arch:chromium-common | suse:chromium-common) echo chromium ;;
     *) echo "$1" ;;
     esac

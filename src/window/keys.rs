@@ -58,7 +58,9 @@ pub fn handle(context: &Context, face: &mut Interface) {
     if asks_for_list {
         face.has_keys = !face.has_keys;
     }
-    clock(face, &pressed);
+    // Space presses the control that has the focus.
+    let has_focus = context.memory(|memory| memory.focused().is_some());
+    clock(face, &pressed, has_focus);
     if shifted(Key::OpenBracket) {
         stop_at(face, -1);
     }
@@ -66,7 +68,6 @@ pub fn handle(context: &Context, face: &mut Interface) {
         stop_at(face, 1);
     }
     look(context, face, &pressed);
-    let has_focus = context.memory(|memory| memory.focused().is_some());
     if !has_focus {
         camera::steer_by_keys(context, face);
     }
@@ -117,8 +118,8 @@ fn global(context: &Context, face: &mut Interface) {
     }
 }
 
-fn clock(face: &mut Interface, pressed: &impl Fn(Key) -> bool) {
-    if pressed(Key::Space) {
+fn clock(face: &mut Interface, pressed: &impl Fn(Key) -> bool, has_focus: bool) {
+    if !has_focus && pressed(Key::Space) {
         let request = if face.session.is_playing() { Request::Pause } else { Request::Play };
         face.ask(request);
     }

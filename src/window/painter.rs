@@ -320,11 +320,16 @@ impl Painter {
 const LETTERS: TextureId = TextureId::Managed(0);
 
 fn corners(device: &Arc<Device>, size_bytes: u64) -> Result<Arc<Buffer>, Error> {
-    let desc = BufferDesc::new("interface corners", size_bytes).usage(vk::BufferUsageFlags::VERTEX_BUFFER);
-    Buffer::new(device, desc.location(Location::Upload))
+    filled(device, BufferDesc::new("interface corners", size_bytes).usage(vk::BufferUsageFlags::VERTEX_BUFFER))
 }
 
 fn indices(device: &Arc<Device>, size_bytes: u64) -> Result<Arc<Buffer>, Error> {
-    let desc = BufferDesc::new("interface indices", size_bytes).usage(vk::BufferUsageFlags::INDEX_BUFFER);
-    Buffer::new(device, desc.location(Location::Upload))
+    filled(device, BufferDesc::new("interface indices", size_bytes).usage(vk::BufferUsageFlags::INDEX_BUFFER))
+}
+
+/// A mapped buffer of zeros: a pass reads all of what it binds.
+fn filled(device: &Arc<Device>, desc: BufferDesc) -> Result<Arc<Buffer>, Error> {
+    let buffer = Buffer::new(device, desc.location(Location::Upload))?;
+    buffer.write(0, &vec![0; buffer.size_bytes() as usize])?;
+    Ok(buffer)
 }

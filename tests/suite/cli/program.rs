@@ -104,6 +104,12 @@ impl Program {
         self
     }
 
+    /// Runs without a variable of the environment.
+    pub fn without(mut self, name: &str) -> Self {
+        self.command.env_remove(name);
+        self
+    }
+
     /// Runs in `folder`, so that `fumarole-out/` lands there.
     pub fn inside(mut self, folder: &Path) -> Self {
         self.command.current_dir(folder);

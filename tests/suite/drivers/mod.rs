@@ -81,7 +81,7 @@ fn library(name: &str) -> PathBuf {
 }
 
 /// A manifest of SwiftShader, for `VK_DRIVER_FILES`.
-fn driver_manifest(folder: &TempDir) -> PathBuf {
+pub fn driver_manifest(folder: &TempDir) -> PathBuf {
     let library = library("libvk_swiftshader.so");
     let icd = serde_json::json!({ "library_path": library, "api_version": "1.3.0" });
     let manifest = serde_json::json!({ "file_format_version": "1.0.0", "ICD": icd });
