@@ -85,12 +85,15 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     let of_machine = MachineArgs::augment_args(of_machine);
     let of_window = WindowArgs::augment_args(Command::new("window"));
     let is_of = |command: &Command, id: &str| command.get_arguments().any(|argument| argument.get_id() == id);
+    // Groups of options have names too.
+    let paper = super::declared::command::<S>();
+    let is_option = |id: &str| paper.find_subcommand("view").is_some_and(|view| is_of(view, id));
     let mut names = Names(Vec::new());
     let Ok(()) = papers::each(&mut names);
     let options = window::Options {
         papers: names.0,
         paper: S::PAPER.to_owned(),
-        arguments: typed(matches, |id| !is_of(&of_machine, id) && !is_of(&of_window, id)),
+        arguments: typed(matches, |id| is_option(id) && !is_of(&of_machine, id) && !is_of(&of_window, id)),
         common: typed(matches, |id| is_of(&of_machine, id)),
         frame: window.frame,
         is_fullscreen: window.fullscreen,

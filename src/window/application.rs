@@ -111,7 +111,8 @@ fn event_loop() -> Result<EventLoop<Wake>, Error> {
         Ok(Err(error)) => {
             let text = error.to_string();
             // Behind the place in winit's source.
-            let reason = text.rsplit_once("): ").map_or(text.as_str(), |(_, reason)| reason).to_owned();
+            let reason = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+            let reason = reason.map_or(text.as_str(), |(_, reason)| reason).trim_end_matches('.').to_owned();
             Err(Error::NoDisplay { reason })
         }
         Err(panic) => {
@@ -346,7 +347,8 @@ impl Open {
 }
 
 fn refused(ended: &Ended) -> Error {
-    let last = ended.stderr.iter().rev().find(|line| !line.trim().is_empty());
+    let words = || ended.stderr.iter().rev().filter(|line| !line.trim().is_empty());
+    let last = words().find(|line| line.starts_with("error: ") && !line.contains("--help")).or_else(|| words().next());
     let message = last.map_or("the program that draws for the window ended without a word", |line| line.as_str());
     let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
     Error::Refused { message, code: ended.code.unwrap_or(1) }

@@ -23,6 +23,7 @@ pub struct Fields {
 
 /// The parameters by their groups.
 pub fn show(ui: &mut Ui, face: &mut Interface) {
+    ui.set_min_width(ui.available_width());
     ui.horizontal(|ui| {
         ui.strong("Parameters");
         let search = TextEdit::singleline(&mut face.fields.search).hint_text("search").desired_width(f32::INFINITY);

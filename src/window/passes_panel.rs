@@ -7,6 +7,8 @@ use super::protocol::{MeasureChoice, PassInfo, PassTimes, Request, TargetChoice}
 
 /// The passes, the slider through the frame, and the pass that is looked at.
 pub fn show(ui: &mut Ui, face: &mut Interface) {
+    // A panel is as wide as its user has made it, whatever it holds.
+    ui.set_min_width(ui.available_width());
     show_measuring(ui, face);
     let Some(built) = face.session.side_built(0) else {
         ui.weak("The passes are known when the paper is built.");
