@@ -103,3 +103,27 @@ fn contradictions_are_refused() {
     }
     assert!(entries(out.path()).is_empty(), "nothing was written");
 }
+
+#[test]
+fn a_film_is_one_file_of_all_frames_and_an_older_one_stays_until_it_is_whole() {
+    let out = folder();
+    let film = out.path().join("a.y4m");
+    render(out.path()).args("--frame 0..2 --film a.y4m --film-rate 25 --quiet").run().succeeded();
+    let bytes = std::fs::read(&film).unwrap();
+    let header = b"YUV4MPEG2 W96 H64 F25:1 Ip A1:1 C444 XCOLORRANGE=LIMITED\n";
+    assert!(bytes.starts_with(header));
+    assert_eq!(bytes.len(), header.len() + 2 * (6 + 3 * 96 * 64));
+    assert_eq!(entries(out.path()), ["a.y4m"], "and no pictures");
+    let ended = render(out.path()).args("--film a.y4m --image b.png").run().succeeded();
+    assert_eq!(ended.stderr.matches("wrote ").count(), 2, "{}", ended.stderr);
+    assert_eq!(entries(out.path()), ["a.y4m", "b.png"]);
+    assert_eq!(std::fs::read(&film).unwrap().len(), header.len() + 6 + 3 * 96 * 64);
+
+    render(out.path()).args("--film a.mp4").run().refused(2, &["a.mp4", ".y4m"]);
+    render(out.path()).args("--film a.y4m --film-rate 0").run().misused(&["--film-rate", "0"]);
+    render(out.path()).args("--film-rate 5").run().misused(&["--film"]);
+    render(out.path()).args("--film no/such/").run().refused(2, &["no/such"]);
+    // The mesh is not there: what was filmed before stays.
+    render(out.path()).args("--film a.y4m --mesh no-such.obj").run().refused(2, &["no-such.obj"]);
+    assert_eq!(std::fs::read(&film).unwrap().len(), header.len() + 6 + 3 * 96 * 64);
+}

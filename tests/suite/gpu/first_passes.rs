@@ -66,8 +66,15 @@ fn errors_before_the_end_are_errors() {
         let target = color_target(device, "a", vk::Format::R32_SFLOAT, 4, 4);
         let pass = paint_pass(&shaders, "first", &target, BLACK, Blend::Replace);
         let mut recorder = Recorder::new(device).unwrap();
-        let mut run = |count| recorder.run_first(Mode::Plain, count, |frame| frame.graphics(&pass, |_| {})).map(drop);
-        // Nothing is drawn by it.
+        let mut run = |count| {
+            let record = |frame: &mut Frame<'_>| {
+                frame.graphics(&pass, |draw| {
+                    draw.vertices(3);
+                })
+            };
+            recorder.run_first(Mode::Plain, count, record).map(drop)
+        };
+        // It lacks its constants.
         assert!(matches!(run(1), Err(Error::Pass { .. })));
         assert!(run(0).is_ok());
         let wait = recorder.run_first(Mode::Plain, 0, |frame| frame.wait_for(&pass)).map(drop);

@@ -59,8 +59,11 @@ impl Worker {
     }
 
     fn spawn(program: &Path, before: Vec<OsString>, paper: &str, options: &str) -> Self {
-        let verb = format!("{paper} worker --validate --device");
-        let arguments = [before, words(&verb), vec![wanted_device().into()], words(options)].concat();
+        let mut verb = words(&format!("{paper} worker --validate"));
+        if !options.contains("--device") {
+            verb.extend(["--device".into(), wanted_device().into()]);
+        }
+        let arguments = [before, verb, words(options)].concat();
         let (wake, woken) = mpsc::channel();
         let client = Client::spawn(program, &arguments, move || {
             let _gone = wake.send(());
@@ -166,12 +169,27 @@ pub fn picture(frame: &Frame, side: usize) -> Rgba8 {
     pixels(frame.sides[side].picture.as_ref().expect("a picture"))
 }
 
+/// The options, of which the last of a name counts.
+fn last_of_each(options: &str) -> Vec<OsString> {
+    let mut kept: Vec<(&str, Vec<OsString>)> = Vec::new();
+    for word in options.split_whitespace() {
+        if word.starts_with("--") {
+            let name = word.split('=').next().unwrap();
+            kept.retain(|(other, _)| *other != name);
+            kept.push((name, vec![word.into()]));
+        } else {
+            kept.last_mut().unwrap().1.push(word.into());
+        }
+    }
+    kept.into_iter().flat_map(|(_, words)| words).collect()
+}
+
 /// What `render` with these options draws.
 pub fn rendered(paper: &str, options: &str) -> Rgba8 {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("picture.png");
     let mut command = Command::new(program());
-    command.args(words(&format!("{paper} render --quiet {options} --device"))).arg(wanted_device());
+    command.args([paper, "render", "--quiet", "--device"]).arg(wanted_device()).args(last_of_each(options));
     let ended = command.arg("--image").arg(&file).output().unwrap();
     assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
     read_png(&file).unwrap()

@@ -18,12 +18,12 @@ fn two_sides_stand_at_one_camera_and_clock_with_their_difference() {
         let mut worker = Worker::small("caustics");
         worker.frame_after(0);
         worker.client.send(Request::Difference(true));
-        worker.client.send(Request::Sides(vec![variant("level-map"), variant("volumetric")]));
+        worker.client.send(Request::Sides(vec![variant("level-map"), variant("stencil")]));
         worker.client.send(set("camera", "0.5,4,3,0,-2,0"));
         let frame = worker.frame_of(Request::GoTo(2));
         let options = format!("{} --camera=0.5,4,3,0,-2,0 --frame 2", small("caustics"));
         let sides = [picture(&frame, 0), picture(&frame, 1)];
-        for (side, variant) in sides.iter().zip(["level-map", "volumetric"]) {
+        for (side, variant) in sides.iter().zip(["level-map", "stencil"]) {
             assert!(*side == rendered("caustics", &format!("{options} --variant {variant}")), "{variant}");
         }
         let expected = compare(&sides[0], &sides[1], None).unwrap();
