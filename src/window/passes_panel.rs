@@ -153,8 +153,9 @@ pub fn milliseconds(value: Option<f64>) -> String {
 /// Frame times apart from the interface's own.
 fn show_sum(ui: &mut Ui, face: &mut Interface) {
     for (index, side) in face.session.times.iter().enumerate() {
-        let sum: f64 = side.passes.iter().filter_map(|pass| pass.gpu_ms).sum();
-        let host: f64 = side.passes.iter().filter_map(|pass| pass.host_ms).sum();
+        // From 0 on: a sum of nothing is -0.
+        let sum = side.passes.iter().filter_map(|pass| pass.gpu_ms).fold(0.0, |sum, ms| sum + ms);
+        let host = side.passes.iter().filter_map(|pass| pass.host_ms).fold(0.0, |sum, ms| sum + ms);
         let name = if face.session.side_count() > 1 { ["A: ", "B: "][index.min(1)] } else { "" };
         let frame = side.frame_ms.map(|ms| format!(", a frame without stamps {ms:.2} ms")).unwrap_or_default();
         ui.label(format!("{name}GPU {sum:.2} ms, host {host:.2} ms{frame}; median of {} frames", side.samples));
