@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use fumarole::window::client::Client;
-use fumarole::window::protocol::{Ended, Event, Request};
+use fumarole::window::protocol::{Event, Request};
 
 fn shell(script: &str) -> Client {
     let arguments = ["-c", script, "worker"].map(OsString::from);
@@ -29,11 +29,10 @@ fn events(client: &mut Client) -> Vec<Event> {
 #[test]
 fn a_death_is_an_event_with_its_code_and_last_words() {
     let mut client = shell(r#"echo '{"warning":"x"}'; echo; echo no JSON; echo out of paper >&2; exit 7"#);
-    let ended = Ended { code: Some(7), signal: None, stderr: vec![] };
     let events = events(&mut client);
     assert_eq!(events[0], Event::Warning("x".into()));
     let [_, Event::Ended(last)] = &events[..] else { panic!("{events:?}") };
-    assert_eq!((last.code, last.signal), (ended.code, ended.signal));
+    assert_eq!((last.code, last.signal), (Some(7), None));
     assert!(last.stderr.contains(&"out of paper".to_owned()) && last.stderr.contains(&"no JSON".to_owned()));
     assert!(!client.is_alive());
     // Nobody hears; nothing fails.

@@ -42,7 +42,7 @@ fn a_picture_is_that_of_render_and_a_camera_moves_without_building() {
         assert_eq!(builds(&worker), 1, "{paper}: the camera is no reason to build");
 
         assert!(picture(&worker.frame_of(unset("camera")), 0) == shown, "{paper}: back");
-        assert_eq!(worker.setup().sides[0].set.contains(&"camera".to_owned()), false);
+        assert!(!worker.setup().sides[0].set.contains(&"camera".to_owned()));
         worker.quit();
     });
 }
