@@ -12,4 +12,5 @@ mod gas;
 mod gpu;
 mod lava;
 mod terrain;
+#[cfg(feature = "window")]
 mod window;
