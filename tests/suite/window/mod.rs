@@ -1,6 +1,7 @@
 //! The window and its worker.
 
 mod client;
+mod headless;
 mod scene;
 mod worker;
 mod worker_answers;

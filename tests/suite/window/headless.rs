@@ -1,0 +1,42 @@
+//! Without a display, and without a window.
+
+use fumarole::gpu::{Device, Instance, PhysicalDevice};
+
+use crate::cli::program::fumarole;
+
+fn is_of_windows(extension: &str) -> bool {
+    extension.contains("surface") || extension.contains("swapchain")
+}
+
+#[test]
+fn no_extension_of_windows_is_asked_for_without_one() {
+    for validate in [false, true] {
+        let instance = Instance::new(validate).unwrap();
+        assert!(!instance.extensions().iter().any(|name| is_of_windows(name)), "{:?}", instance.extensions());
+        for physical in PhysicalDevice::enumerate(&instance).unwrap() {
+            if physical.lacks(&[]).is_empty() {
+                let device = Device::open(&instance, physical).unwrap();
+                assert!(!device.extensions().iter().any(|name| is_of_windows(name)), "{:?}", device.extensions());
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_display_there_is_one_line_and_exit_code_3() {
+    let view = fumarole("view caustics").without("DISPLAY").without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
+    view.run().refused(3, &["opening a window", "render"]);
+}
+
+#[test]
+fn what_no_paper_takes_is_refused_before_a_window_opens() {
+    for (arguments, word) in [
+        ("view caustics --planes 0", "planes"),
+        ("view --scale 9", "scale"),
+        ("view gas --variant all", "variant"),
+        ("caustics view --present-mode sometimes", "present-mode"),
+        ("view lava --exit-after 0", "exit-after"),
+    ] {
+        fumarole(arguments).without("DISPLAY").without("WAYLAND_DISPLAY").run().misused(&[word]);
+    }
+}
