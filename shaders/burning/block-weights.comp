@@ -1,7 +1,10 @@
 #version 450
 
+#pragma variants DIRECTION=placed,random
+
 // The weight of a block is the number of its live vertices (3.5.1). A vertex that is consumed or goes to another block
-// unbalances the block that it was in; the direction follows from its position about the block's midpoint (3.5.2).
+// unbalances the block that it was in; the direction follows from its position about the block's midpoint (3.5.2),
+// or is random, which 3.5.1 finds adequate for games.
 // Integer sums, so that the order of threads cannot matter.
 
 layout(local_size_x = 64) in;
@@ -10,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
 #include "burning/blocks.glsl"
+#include "burning/hash.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 9, std430) readonly buffer OldState {
@@ -78,8 +82,13 @@ void main() {
             }
             bool is_consumed = old_state[vertex].left > 0.0 && !is_live;
             if (label >= INITIAL && (is_consumed || (is_live && cell != old_cell))) {
+#ifdef DIRECTION_RANDOM
+                uvec3 random = hash(uvec3(constants.seed, vertex, clock.tick));
+                ivec3 signs = 2 * ivec3(random >> 31u) - 1;
+#else
                 vec3 offset = now.position - midpoint_of(old_cell);
                 ivec3 signs = ivec3(sign(vec3(-offset.z, offset.y, offset.x)));
+#endif
                 atomicAdd(blocks[old_cell].pitch_sign, signs.x);
                 atomicAdd(blocks[old_cell].yaw_sign, signs.y);
                 atomicAdd(blocks[old_cell].roll_sign, signs.z);

@@ -38,6 +38,7 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     uint fire_pool; // most fire particles
     uint smoke_pool; // most smoke particles
     float charring; // 1 of a material that chars and glows, 0 of wax
+    float evaporation_per_tick; // of the height of a puddle
 } constants;
 
 // Areas of the heat boundary, from the outside in (3.3, 4.3).

@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants OBJECT=whole,parts
+
 // A tick of the particles (3.6). Each rises, flickers and ends; its index in the pool gives the group that the next one
 // in it is born to. A flame whose block has left the combustion-ready area moves: it is born anew in the neighbour with
 // most live vertices that is ready, and goes out without one. Smoke is in the air already and stays there. A hash of
@@ -14,6 +16,7 @@ layout(local_size_x = 64) in;
 #include "burning/billboards.glsl"
 #include "burning/blocks.glsl"
 #include "burning/vertices.glsl"
+#include "burning/posed.glsl"
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
     VertexState new_state[];
@@ -118,6 +121,9 @@ Particle born(uint block, uint particle, bool is_fire) {
     vec3 random = unit(hash(uvec3(particle, clock.tick, constants.seed)));
     vec3 more = unit(hash(uvec3(clock.tick, constants.seed, particle)));
     vec3 position = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+#ifdef OBJECT_PARTS
+    position = posed(vertex, position);
+#endif
     float radius = billboards.particle_radius;
     position += radius * vec3(more.x - 0.5, 0.2 + (is_fire ? 0.0 : SMOKE_ABOVE / radius), more.y - 0.5);
     vec2 life = is_fire ? FIRE_LIFE : SMOKE_LIFE;

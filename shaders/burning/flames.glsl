@@ -1,6 +1,8 @@
 // Flame groups (3.6): one a block. Of the pools of fire and smoke particles, which are maxima, a group gets a number in
 // proportion to the block's live vertices, while the block is in the combustion-ready area.
 
+#include "burning/hash.glsl"
+
 // The group of a block; one more beyond the last ends them.
 struct Group {
     uint first_fire; // particle
@@ -16,19 +18,6 @@ struct Particle {
     float block; // that it was born in
     vec2 random; // two numbers of its own, 0 to 1
 };
-
-// Jarzynski and Olano's PCG (2020): one hash of three numbers.
-uvec3 hash(uvec3 v) {
-    v = v * 1664525u + 1013904223u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v ^= v >> 16u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    return v;
-}
 
 vec3 unit(uvec3 h) {
     return vec3(h >> 8u) / 16777216.0;

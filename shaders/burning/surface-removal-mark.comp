@@ -1,9 +1,10 @@
 #version 450
 
-#pragma variants PARTS=kept,free
+#pragma variants OBJECT=kept,free,parts
 
 // A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless parts
 // are kept and its block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
+// Where parts fall, none is kept; what is consumed leaves ash on the ground below it, and so do parts beyond the most.
 
 layout(local_size_x = 64) in;
 
@@ -12,6 +13,8 @@ layout(local_size_x = 64) in;
 #include "burning/grid.glsl"
 #include "burning/blocks.glsl"
 #include "burning/vertices.glsl"
+#include "burning/posed.glsl"
+#include "burning/ash.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
     uint triangles[];
@@ -29,7 +32,7 @@ layout(set = 0, binding = 18, std430) buffer Clock {
     Counts clock;
 };
 
-#ifdef PARTS_KEPT
+#ifdef OBJECT_KEPT
 layout(set = 0, binding = 14, std430) readonly buffer Cells {
     uint cells[];
 };
@@ -62,20 +65,44 @@ bool is_needed(uint block) {
 }
 #endif
 
+#ifdef OBJECT_PARTS
+layout(set = 0, binding = 71, std430) buffer Ash {
+    uint ash[];
+};
+
+void leave_ash(uvec3 at) {
+    vec3 sum = vec3(0.0);
+    for (uint corner = 0u; corner < 3u; corner++) {
+        sum += posed(at[corner], new_state[at[corner]].position);
+    }
+    ivec2 cell = ivec2(floor(ash_coordinates(sum.xz / 3.0)));
+    if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, ivec2(ASH_CELLS)))) {
+        atomicAdd(ash[cell.y * ASH_CELLS + cell.x], 1u);
+    }
+}
+#endif
+
 void main() {
     uint triangle = gl_GlobalInvocationID.x;
     if (triangle >= constants.triangle_count || removed[triangle] == 1u) {
         return;
     }
     uvec3 at = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);
-    if (new_state[at.x].left > 0.0 || new_state[at.y].left > 0.0 || new_state[at.z].left > 0.0) {
+    bool is_consumed = new_state[at.x].left <= 0.0 && new_state[at.y].left <= 0.0 && new_state[at.z].left <= 0.0;
+#ifdef OBJECT_PARTS
+    is_consumed = is_consumed || part_of[at.x] == DUST;
+#endif
+    if (!is_consumed) {
         return;
     }
-#ifdef PARTS_KEPT
+#ifdef OBJECT_KEPT
     if (is_needed(cells[at.x])) {
         return;
     }
 #endif
     removed[triangle] = 1u;
+#ifdef OBJECT_PARTS
+    leave_ash(at);
+#endif
     atomicAdd(clock.removed_triangles, 1u);
 }

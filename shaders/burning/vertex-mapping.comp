@@ -1,13 +1,16 @@
 #version 450
 
+#pragma variants OBJECT=whole,parts
+
 // Each vertex rotated with its block about the block's midpoint, just before it is drawn (3.5.3); the simulated
-// position stays.
+// position stays. Where parts fall, each goes on with its own.
 
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
+#include "burning/posed.glsl"
 
 layout(set = 0, binding = 10, std430) readonly buffer NewState {
     VertexState new_state[];
@@ -33,5 +36,8 @@ void main() {
     VertexState now = new_state[vertex];
     uint block = cells[vertex];
     vec3 position = rotated_with_block(now.position, block, new_rotations[block].xyz);
+#ifdef OBJECT_PARTS
+    position = posed(vertex, position);
+#endif
     mapped[vertex] = MappedVertex(position, now.left / constants.flammability);
 }

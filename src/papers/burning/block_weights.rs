@@ -2,6 +2,7 @@
 
 use super::buffers::Buffers;
 use super::model::Model;
+use super::parameters::Parameters;
 use super::ping_pong::{PingPong, build, new, old};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
@@ -9,14 +10,23 @@ use crate::gpu::{Error, Pass, ShaderLibrary};
 ///
 /// # Errors
 /// Those of the Vulkan layer.
-pub fn block_weights(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<2>, Error> {
+pub fn block_weights(
+    shaders: &ShaderLibrary,
+    parameters: &Parameters,
+    buffers: &Buffers,
+    model: &Model,
+) -> Result<PingPong<2>, Error> {
     let step = |shader: &str| {
         Pass::compute("block-weights", "3.5.1", shader)
             .with("constants", &buffers.constants)
             .with("Blocks", &buffers.blocks)
     };
     let clear = step("burning/block-weights-clear.comp");
-    let count = step("burning/block-weights.comp")
+    let count = match parameters.random_rotation {
+        true => step("burning/block-weights-random.comp"),
+        false => step("burning/block-weights-placed.comp"),
+    };
+    let count = count
         .with("Labels", &buffers.labels)
         .with("Cells", &buffers.cells)
         .with("Clock", &buffers.clock)

@@ -51,6 +51,7 @@ host_block! {
         fire_pool: u32,
         smoke_pool: u32,
         charring: f32,
+        evaporation_per_tick: f32,
     }
 }
 
@@ -375,6 +376,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         fire_pool: p.fire,
         smoke_pool: p.smoke,
         charring: if p.chars(variant) { 1.0 } else { 0.0 },
+        evaporation_per_tick: (f64::from(p.evaporation_per_s) * tick_s) as f32,
     }
 }
 

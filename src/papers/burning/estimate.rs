@@ -6,6 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::{Welded, own_levels};
 use super::parameters::{Parameters, Variant};
+use super::{draw_ground, falling, parts, puddle};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -13,7 +14,7 @@ use crate::scene::Mesh;
 const NUMBER: f64 = 4.0;
 const VECTOR: f64 = 16.0;
 /// Passes of a tick, and of a frame beside them.
-const PASSES: u64 = 16;
+const PASSES: u64 = 28;
 
 /// Vertices, edges and triangles of a mesh.
 #[derive(Clone, Copy)]
@@ -62,6 +63,12 @@ impl Parameters {
         // Four lists of three numbers and the stream; labels and marks twice; statuses of all levels' triangles twice.
         let statuses = if variant.refines() && levels > 0 { 2.0 * NUMBER * 4.0 / 3.0 } else { 0.0 };
         let of_triangle = 5.0 * 3.0 * NUMBER + 4.0 * NUMBER + statuses;
+        let (collapses, has_puddle) = (self.collapses(variant), self.has_puddle(variant));
+        let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
+        let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX);
+        let of_look = if_so(collapses, parts::BYTES + falling::BYTES)
+            + if_so(has_puddle, puddle::BYTES)
+            + if_so(self.has_ash(variant), draw_ground::BYTES);
         let of_block =
             2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + size_of::<Group>() as f64;
 
@@ -75,6 +82,7 @@ impl Parameters {
             bytes: vec![
                 ("levels", of_vertex * vertices + of_corner * corners + of_triangle * triangles),
                 ("blocks", of_block * blocks),
+                ("look", of_look),
                 ("fire", 2.0 * size_of::<Particle>() as f64 * particles),
                 ("texture", NUMBER * texture),
                 ("size", 2.0 * NUMBER * pixels),

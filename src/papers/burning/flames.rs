@@ -9,6 +9,7 @@ use super::buffers::Buffers;
 use super::draw::Draw;
 use super::model::Model;
 use super::parameters::Parameters;
+use super::parts::Parts;
 use super::ping_pong::{PingPong, build, new};
 use crate::gpu::transfer::{update, upload};
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
@@ -80,7 +81,7 @@ impl Flames {
         parameters: &Parameters,
         buffers: &mut Buffers,
         model: &Model,
-        draw: &Draw,
+        (draw, parts): (&Draw, Option<&Parts>),
     ) -> Result<Option<Self>, Error> {
         let particle_count = parameters.fire + parameters.smoke;
         if particle_count == 0 {
@@ -116,7 +117,11 @@ impl Flames {
             .with("Groups", &groups)
             .with("Listed", &listed)
             .with("Ready", &ready);
-        let burn = step("burning/flames.comp")
+        let burn = match parts {
+            None => step("burning/flames-whole.comp"),
+            Some(parts) => step("burning/flames-parts.comp").with("PartOf", &parts.part_of).with("Parts", &parts.parts),
+        };
+        let burn = burn
             .with("billboards", &billboards)
             .with("Blocks", &buffers.blocks)
             .with("Clock", &buffers.clock)

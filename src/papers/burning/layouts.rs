@@ -3,6 +3,8 @@
 use super::buffers::{BlockCounts, Constants, Counts, RestVertex, VertexState};
 use super::draw::ViewBlock;
 use super::flames::{BillboardsBlock, Group, Particle};
+use super::parts::{Part, Progress};
+use super::puddle::Film;
 use super::texture::TextureLevel;
 use crate::papers::layout::{block, check_block, check_list};
 
@@ -15,11 +17,17 @@ fn the_buffers_hold_what_the_shaders_read() {
     let clock = block("burning/heat-boundary-clock.comp", "Clock");
     let counts = clock.members[0].block.as_ref().expect("it is a structure");
     assert_eq!(counts.check_host::<Counts>(), Ok(()));
-    check_block::<BillboardsBlock>("burning/flames.comp", "billboards");
+    check_block::<BillboardsBlock>("burning/flames-whole.comp", "billboards");
     check_list::<RestVertex>("burning/heat-boundary-vertices.comp", "Rest");
     check_list::<VertexState>("burning/internal-deformation.comp", "NewState");
-    check_list::<BlockCounts>("burning/block-weights.comp", "Blocks");
+    check_list::<BlockCounts>("burning/block-weights-placed.comp", "Blocks");
     check_list::<TextureLevel>("burning/draw-textured.frag", "TextureLevels");
-    check_list::<Group>("burning/flames.comp", "Groups");
-    check_list::<Particle>("burning/flames.comp", "Particles");
+    check_list::<Group>("burning/flames-whole.comp", "Groups");
+    check_list::<Particle>("burning/flames-whole.comp", "Particles");
+    check_list::<Part>("burning/falling.comp", "Parts");
+    let films = block("burning/puddle.comp", "Films");
+    assert_eq!(films.members[0].block.as_ref().expect("it is a structure").check_host::<Film>(), Ok(()));
+    let searching = block("burning/parts-number.comp", "Searching");
+    let progress = searching.members[0].block.as_ref().expect("it is a structure");
+    assert_eq!(progress.check_host::<Progress>(), Ok(()));
 }

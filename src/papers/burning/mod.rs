@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! each tick of 1/60 s:
-//!   heat-boundary ─► (refinement) ─► internal-deformation ─► block-weights ─► block-rotation ─► flames ─┐
-//!     ┌──────────────────────────────────────────────────────────────────────────────────────────────┘
+//!   heat-boundary ─► (refinement) ─► internal-deformation ─► block-weights ─► block-rotation ─┐
+//!     ┌──────────────────────────────────────────────────────────────────────────────────────┘
+//!     └─► (parts ─► falling, or puddle) ─► flames ─┐
+//!     ┌─────────────────────────────────┘
 //! each frame:
-//!     └─► vertex-mapping ─► surface-removal ─► normals ─► draw ─► draw-fire
+//!     └─► vertex-mapping ─► surface-removal ─► normals ─► draw ─► (draw-ground ─► draw-puddle) ─► draw-fire
 //! ```
 //!
 //! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the
@@ -17,9 +19,11 @@ mod block_weights;
 mod buffers;
 mod draw;
 mod draw_fire;
+mod draw_ground;
 mod draw_wire;
 mod estimate;
 pub mod experiments;
+mod falling;
 mod flames;
 mod framing;
 mod heat_boundary;
@@ -30,7 +34,9 @@ mod loading;
 pub mod model;
 mod normals;
 pub mod parameters;
+mod parts;
 mod ping_pong;
+mod puddle;
 pub mod reference;
 mod refinement;
 pub mod setup;
@@ -44,13 +50,16 @@ use self::block_rotation::block_rotation;
 use self::block_weights::block_weights;
 use self::draw::Draw;
 use self::draw_fire::DrawFire;
+use self::draw_ground::{DrawGround, ash};
 use self::draw_wire::DrawWire;
+use self::falling::falling;
 use self::heat_boundary::heat_boundary;
 use self::internal_deformation::InternalDeformation;
 use self::loading::Loading;
 use self::model::Model;
 use self::normals::Normals;
 use self::ping_pong::PingPong;
+use self::puddle::{DrawPuddle, Puddle};
 use self::refinement::Refinement;
 use self::surface_removal::SurfaceRemoval;
 use self::vertex_mapping::vertex_mapping;
@@ -62,7 +71,9 @@ use crate::scene::{Camera, Mesh};
 pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
-pub use self::parameters::{Material, Parameters, Shading, TICKS_PER_S, Variant};
+pub use self::parameters::{Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
+pub use self::parts::{MOST_PARTS, Part, Parts, SEARCH_TICKS};
+pub use self::puddle::{Film, PUDDLE_CELLS, PUDDLE_HALF_WIDTH};
 pub use self::texture::{Level, Texture, with_levels};
 
 /// Features that a device needs for this paper, beyond the baseline of the Vulkan layer.
@@ -85,12 +96,17 @@ pub struct Burning {
     internal_deformation: InternalDeformation,
     block_weights: PingPong<2>,
     block_rotation: PingPong<1>,
+    parts: Option<Parts>,
+    falling: Option<PingPong<6>>,
+    puddle: Option<Puddle>,
     flames: Option<Flames>,
     vertex_mapping: PingPong<1>,
     surface_removal: SurfaceRemoval,
     normals: Normals,
     draw: Draw,
     draw_wire: Option<DrawWire>,
+    draw_ground: Option<DrawGround>,
+    draw_puddle: Option<DrawPuddle>,
     draw_fire: Option<DrawFire>,
     /// Slices of ticks since the fire was lit.
     slices: u64,
@@ -123,7 +139,17 @@ impl Burning {
         let draw = Draw::new(shaders, label, (variant, parameters), &buffers, &model)?;
         let has_wire = parameters.shading == Shading::Wire;
         let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
-        let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, &draw)?;
+        let has_parts = parameters.collapses(variant);
+        let parts = has_parts.then(|| Parts::new(shaders, label, &mut buffers, &model)).transpose()?;
+        let falling = parts.as_ref().map(|parts| falling(shaders, label, &buffers, parts, &model)).transpose()?;
+        let has_puddle = parameters.has_puddle(variant);
+        let puddle = has_puddle.then(|| Puddle::new(shaders, label, &mut buffers, &model)).transpose()?;
+        let draw_puddle =
+            puddle.as_ref().map(|puddle| DrawPuddle::new(shaders, label, &buffers, &draw, puddle)).transpose()?;
+        let ash = parameters.has_ash(variant).then(|| ash(shaders, label, &mut buffers)).transpose()?;
+        let seen_ash = ash.as_ref().filter(|_| parameters.has_ground());
+        let draw_ground = seen_ash.map(|ash| DrawGround::new(shaders, &buffers, &draw, ash)).transpose()?;
+        let flames = Flames::new(shaders, label, parameters, &mut buffers, &model, (&draw, parts.as_ref()))?;
         let draw_fire = flames.as_ref().map(|flames| DrawFire::new(shaders, &buffers, &draw, flames)).transpose()?;
         let mut burning = Burning {
             device: device.clone(),
@@ -137,22 +163,28 @@ impl Burning {
                 &buffers,
                 &model,
             )?,
-            block_weights: block_weights(shaders, &buffers, &model)?,
+            block_weights: block_weights(shaders, parameters, &buffers, &model)?,
             block_rotation: block_rotation(shaders, variant, &buffers, &model)?,
             flames,
-            vertex_mapping: vertex_mapping(shaders, &buffers, &model)?,
+            vertex_mapping: vertex_mapping(shaders, &buffers, parts.as_ref(), &model)?,
             surface_removal: SurfaceRemoval::new(
                 shaders,
                 label,
                 (variant, parameters),
                 &buffers,
                 refinement.as_ref(),
+                parts.as_ref().zip(ash.as_ref()),
                 &model,
             )?,
+            parts,
+            falling,
+            puddle,
             refinement,
             normals: Normals::new(shaders, &buffers, &model)?,
             draw,
             draw_wire,
+            draw_ground,
+            draw_puddle,
             draw_fire,
             parameters: parameters.clone(),
             model,
@@ -218,6 +250,13 @@ impl Burning {
             }
             self.block_weights.record(frame, tick)?;
             self.block_rotation.record(frame, tick)?;
+            if let (Some(parts), Some(falling)) = (&self.parts, &self.falling) {
+                parts.record(frame, self.ticks())?;
+                falling.record(frame, tick)?;
+            }
+            if let Some(puddle) = &self.puddle {
+                puddle.record(frame, tick)?;
+            }
             if let Some(flames) = &self.flames {
                 flames.record(frame, tick)?;
             }
@@ -248,6 +287,16 @@ impl Burning {
     /// The refinement pattern, of an object that is refined.
     pub fn refinement(&self) -> Option<&Refinement> {
         self.refinement.as_ref()
+    }
+
+    /// The parts that fall, of an object whose parts do.
+    pub fn parts(&self) -> Option<&Parts> {
+        self.parts.as_ref()
+    }
+
+    /// The puddle, of what melts.
+    pub fn puddle(&self) -> Option<&Puddle> {
+        self.puddle.as_ref()
     }
 
     /// Every buffer.
@@ -345,6 +394,12 @@ impl Paper for Burning {
         if let Some(draw_wire) = &self.draw_wire {
             draw_wire.record(frame)?;
         }
+        if let Some(draw_ground) = &self.draw_ground {
+            draw_ground.record(frame)?;
+        }
+        if let Some(draw_puddle) = &self.draw_puddle {
+            draw_puddle.record(frame, self.newest())?;
+        }
         if let Some(draw_fire) = &self.draw_fire {
             draw_fire.record(frame)?;
         }
@@ -426,6 +481,15 @@ impl Paper for Burning {
         ];
         if let Some(refinement) = &self.refinement {
             targets.push(Target::integers("statuses", &refinement.statuses, 1));
+        }
+        if let Some(puddle) = &self.puddle {
+            targets.push(Target::words("puddle", &puddle.heights[self.newest()], PUDDLE_CELLS));
+            targets.push(Target::words("film", &puddle.film, 8));
+        }
+        if let Some(parts) = &self.parts {
+            targets.push(Target::words("part-of", &parts.part_of, 1));
+            targets.push(Target::words("vertex-weights", &parts.weights, 1));
+            targets.push(Target::table("parts", &parts.parts, 24));
         }
         if let Some(surface) = &self.draw.surface {
             targets.push(Target::table("texture-coordinates", &surface.coordinates, 2));

@@ -77,6 +77,23 @@ impl Choice for Material {
     ];
 }
 
+/// Whose pictures are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Look {
+    /// Parts that nothing holds fall, wax gathers in a puddle, and the ground is drawn.
+    Natural,
+    /// The text's own, which its experiments measure.
+    Dissertation,
+}
+
+impl Choice for Look {
+    const ALL: &'static [Look] = &[Look::Natural, Look::Dissertation];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("natural", "Parts that nothing holds fall, wax gathers in a puddle, and the ground is drawn"),
+        ("dissertation", "The text alone, which its experiments measure: what burns is gone, and there is no ground"),
+    ];
+}
+
 /// The quantity that colours the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Shading {
@@ -161,6 +178,8 @@ pub struct Parameters {
     pub phi: f32,
     /// gamma of eq. 4.
     pub gamma: f32,
+    /// Blocks turn in random directions, not by what they lose (3.5.1).
+    pub random_rotation: bool,
     /// x of 3.5.2: a neighbour's fraction of a block's rotation.
     pub spread: f32,
     /// omega of table 6.1.
@@ -169,7 +188,7 @@ pub struct Parameters {
     pub chi: f32,
     /// upsilon of table 6.1.
     pub upsilon: f32,
-    /// Height that nothing melts below; without, the object's base.
+    /// Height of the ground, which nothing melts below; without, the object's base.
     pub floor: Option<f32>,
     /// Fraction of L at which a vertex of a solid leaves the deforming group (5.5); 0 for never.
     pub retire_at: f32,
@@ -181,8 +200,16 @@ pub struct Parameters {
     pub time_division: u32,
     /// Loads what never changes before the first frame (3.7.4), not in every frame.
     pub preload: bool,
-    /// Keeps what holds a neighbouring block to the rest (3.5.4).
+    /// Keeps what holds a neighbouring block to the rest (3.5.4), where parts do not fall.
     pub keep_connected: bool,
+    /// What is ours beside the text.
+    pub look: Look,
+    /// Lets parts that nothing holds fall, of the natural look.
+    pub collapse: bool,
+    /// Draws the ground, of the natural look.
+    pub ground: bool,
+    /// Height of the puddle of what melts that evaporates in a second, of the natural look.
+    pub evaporation_per_s: f32,
     /// Most fire particles.
     pub fire: u32,
     /// Most smoke particles.
@@ -230,6 +257,7 @@ impl Default for Parameters {
             rho: 0.5,
             phi: 0.5,
             gamma: 0.1,
+            random_rotation: false,
             spread: 0.5,
             omega: 0.8,
             chi: 4.0,
@@ -241,6 +269,10 @@ impl Default for Parameters {
             time_division: 1,
             preload: true,
             keep_connected: true,
+            look: Look::Natural,
+            collapse: true,
+            ground: true,
+            evaporation_per_s: 0.0,
             fire: 3000,
             smoke: 1800,
             particle_radius: 0.02,
@@ -285,7 +317,10 @@ const PARTICLES: Range = Range::from(0.0).to(1e6);
 
 const ACTIVE_LIMIT: &str = "Halt the boundary while more vertices are active; 0 never does";
 const PRELOAD: &str = "Load what never changes before the first frame, or again in every frame";
-const KEEP_CONNECTED: &str = "Never leave a block that has weight without neighbours, or let pieces come off";
+const KEEP_CONNECTED: &str =
+    "Never leave a block that has weight without neighbours, or let pieces come off; off where parts fall";
+const RANDOM_ROTATION: &str = "Turn blocks in random directions, not by where they lose their vertices";
+const COLLAPSE: &str = "Let parts that nothing holds fall, of the natural look, or leave them in place";
 
 /// A field of [`Parameters`].
 macro_rules! p {
@@ -342,11 +377,12 @@ impl Parameters {
             row("rho", p!(rho), FRACTION, "Material density", "table 3.1"),
             row("phi", p!(phi), FRACTION, "Bond strength", "table 3.1"),
             row("gamma", p!(gamma), FRACTION, "Rotation of blocks", "eq. 4"),
+            row("random-rotation", p!(random_rotation), any, RANDOM_ROTATION, "3.5.1").cost(Cost::Pipelines),
             row("spread", p!(spread), FRACTION, "x, a block's share of its neighbours' rotation", "3.5.2"),
             row("omega", p!(omega), FRACTION, "melting: longest edge", "table 6.1").unit("mean edges"),
             row("chi", p!(chi), R::from(2.0).to(1e3), "melting: longest over shortest edge", "table 6.1"),
             row("upsilon", p!(upsilon), FRACTION, "melting: fraction of a violation folded in a tick", "table 6.1"),
-            row("floor", p!(floor), R::from(-10.0).to(1.0), "melting: height that nothing sinks below", "")
+            row("floor", p!(floor), R::from(-10.0).to(1.0), "Height of the ground; melting sinks no lower", "")
                 .unit("diagonals")
                 .default_text("the object's base"),
             row(
@@ -365,6 +401,17 @@ impl Parameters {
                 .unit("frames"),
             row("preload", p!(preload), any, PRELOAD, "3.7.4").cost(Cost::Buffers),
             row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
+            row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines).everyday(),
+            row("collapse", p!(collapse), any, COLLAPSE, "").cost(Cost::Pipelines),
+            row(
+                "evaporation",
+                p!(evaporation_per_s),
+                R::from(0.0).to(1.0),
+                "melting: height of the puddle that evaporates, of the natural look",
+                "",
+            )
+            .unit("diagonals a second"),
+            row("ground", p!(ground), any, "Draw the ground, of the natural look", "").cost(Cost::Pipelines),
             row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6")
                 .unit("particles")
                 .cost(Cost::Buffers)
@@ -447,6 +494,26 @@ impl Parameters {
             None => variant != Variant::Melting,
             Some(material) => material != Material::Wax,
         }
+    }
+
+    /// True where parts that nothing holds fall.
+    pub fn collapses(&self, variant: Variant) -> bool {
+        self.look == Look::Natural && self.collapse && variant.removes()
+    }
+
+    /// True where what melts gathers in a puddle.
+    pub fn has_puddle(&self, variant: Variant) -> bool {
+        self.look == Look::Natural && variant == Variant::Melting
+    }
+
+    /// True where ash comes down.
+    pub fn has_ash(&self, variant: Variant) -> bool {
+        self.has_ground() || self.collapses(variant)
+    }
+
+    /// True where the ground is drawn.
+    pub fn has_ground(&self) -> bool {
+        self.look == Look::Natural && self.ground && self.shading == Shading::Lit
     }
 
     /// Slices of ticks that are due after frame `number`, counted from the start of the simulation: one a tick without

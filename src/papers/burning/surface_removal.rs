@@ -1,10 +1,13 @@
 //! `surface-removal` (3.5.4): consumed triangles leave the drawn stream, and the mesh is not rebuilt.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use super::buffers::Buffers;
 use super::model::Model;
 use super::parameters::{Parameters, Variant};
+use super::parts::Parts;
 use super::ping_pong::{self, new};
 use super::refinement::Refinement;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
@@ -47,6 +50,8 @@ pub struct SurfaceRemoval {
 }
 
 impl SurfaceRemoval {
+    /// `fallen` are the parts that fall, and the ash that they leave.
+    ///
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn new(
@@ -55,6 +60,7 @@ impl SurfaceRemoval {
         (variant, parameters): (Variant, &Parameters),
         buffers: &Buffers,
         refinement: Option<&Refinement>,
+        fallen: Option<(&Parts, &Arc<Buffer>)>,
         model: &Model,
     ) -> Result<Self, Error> {
         let step =
@@ -66,11 +72,15 @@ impl SurfaceRemoval {
         };
         let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(sum_count));
         let sums = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
-        let mark = match parameters.keep_connected {
-            true => step("burning/surface-removal-mark-kept.comp")
+        let mark = match (fallen, parameters.keep_connected) {
+            (Some((parts, ash)), _) => step("burning/surface-removal-mark-parts.comp")
+                .with("PartOf", &parts.part_of)
+                .with("Parts", &parts.parts)
+                .with("Ash", ash),
+            (None, true) => step("burning/surface-removal-mark-kept.comp")
                 .with("Cells", &buffers.cells)
                 .with("Blocks", &buffers.blocks),
-            false => step("burning/surface-removal-mark-free.comp"),
+            (None, false) => step("burning/surface-removal-mark-free.comp"),
         };
         let mark =
             mark.with("Triangles", &buffers.triangles).with("Removed", &buffers.removed).with("Clock", &buffers.clock);

@@ -2,18 +2,28 @@
 
 use super::buffers::Buffers;
 use super::model::Model;
+use super::parts::Parts;
 use super::ping_pong::{PingPong, build, new};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
-/// Makes the pass.
+/// Makes the pass; where parts fall, it moves them.
 ///
 /// # Errors
 /// Those of the Vulkan layer.
-pub fn vertex_mapping(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<1>, Error> {
-    let map = Pass::compute("vertex-mapping", "3.5.3", "burning/vertex-mapping.comp")
-        .with("constants", &buffers.constants)
-        .with("Cells", &buffers.cells)
-        .with("Mapped", &buffers.mapped);
+pub fn vertex_mapping(
+    shaders: &ShaderLibrary,
+    buffers: &Buffers,
+    parts: Option<&Parts>,
+    model: &Model,
+) -> Result<PingPong<1>, Error> {
+    let pass = |shader: &str| Pass::compute("vertex-mapping", "3.5.3", shader);
+    let map = match parts {
+        None => pass("burning/vertex-mapping-whole.comp"),
+        Some(parts) => {
+            pass("burning/vertex-mapping-parts.comp").with("PartOf", &parts.part_of).with("Parts", &parts.parts)
+        }
+    };
+    let map = map.with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Mapped", &buffers.mapped);
     let newest = [new("NewState", &buffers.states), new("NewRotations", &buffers.rotations)];
     Ok(PingPong::new([(build(shaders, map, &newest)?, model.vertex_count())]))
 }

@@ -7,7 +7,7 @@ use fumarole::gpu::transfer::read_buffer;
 use fumarole::gpu::{Buffer, Compiler, Device, Mode, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
 use fumarole::papers::burning::model::with_triangles;
-use fumarole::papers::burning::{BlockCounts, Burning, Counts, Parameters, Variant, VertexState};
+use fumarole::papers::burning::{BlockCounts, Burning, Counts, Look, Parameters, Variant, VertexState};
 use fumarole::scene::{Mesh, shapes};
 
 /// A closed object of about 1,000 triangles.
@@ -15,9 +15,14 @@ pub fn ball() -> Mesh {
     with_triangles(&shapes::sphere(32, 32), 1000)
 }
 
+/// The text's own look.
+pub fn text() -> Parameters {
+    Parameters { look: Look::Dissertation, ..Parameters::default() }
+}
+
 /// Small pictures of a fast fire.
 pub fn quick() -> Parameters {
-    Parameters { width: 32, height: 24, speed_per_s: 0.5, flammability: 20, blocks: [4, 4, 4], ..Parameters::default() }
+    Parameters { width: 32, height: 24, speed_per_s: 0.5, flammability: 20, blocks: [4, 4, 4], ..text() }
 }
 
 pub struct Fire {

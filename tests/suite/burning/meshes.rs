@@ -10,7 +10,7 @@ use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::fire::{Fire, quick};
+use super::fire::{Fire, quick, text};
 use crate::common::gpu_test;
 
 fn mesh(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
@@ -80,7 +80,7 @@ fn bad_geometry_burns_without_nan() {
 
 #[test]
 fn coincident_corners_are_one_vertex() {
-    let parameters = Parameters::default();
+    let parameters = text();
     let model = |mesh: &Mesh, levels| {
         let parameters = Parameters { levels: Some(levels), ..parameters.clone() };
         Model::new(mesh, Variant::Shell, &parameters, 1 << 27).unwrap()
@@ -144,7 +144,7 @@ fn meshes_come_to_their_counts() {
 fn several_sources_burn_from_the_nearest() {
     let sources = [Vec3::new(0.5, 0.0, 0.0), Vec3::new(-0.5, 0.3, 0.0)];
     let distances = |sources: &[Vec3]| -> Vec<f32> {
-        let parameters = Parameters { sources: sources.to_vec(), ..Parameters::default() };
+        let parameters = Parameters { sources: sources.to_vec(), ..text() };
         let model = Model::new(&shapes::sphere(16, 16), Variant::Shell, &parameters, 1 << 27).unwrap();
         model.rest.iter().map(|r| r.boundary_distance).collect()
     };
@@ -157,7 +157,7 @@ fn several_sources_burn_from_the_nearest() {
 
 #[test]
 fn more_triangles_than_the_device_binds_are_refused() {
-    let parameters = Parameters { levels: Some(5), ..Parameters::default() };
+    let parameters = Parameters { levels: Some(5), ..text() };
     let error = Model::new(&shapes::cuboid(), Variant::Shell, &parameters, 100_000).err().unwrap().to_string();
     assert!(error.contains("`levels` 5"), "{error}");
 }

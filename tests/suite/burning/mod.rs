@@ -1,6 +1,7 @@
 //! The paper `burning` on the device: against its laws.
 
 mod dump;
+mod falling;
 mod fire;
 mod flames;
 mod flames_oracle;
@@ -9,6 +10,7 @@ mod melting;
 mod meshes;
 mod oracle;
 mod pictures;
+mod puddle;
 mod refinement;
 mod refusals;
 mod solid;

@@ -12,7 +12,7 @@ use fumarole::scene::{Mesh, MeshSource, shapes};
 use glam::{DVec3, Vec3};
 
 use super::dump;
-use super::fire::Fire;
+use super::fire::{Fire, text};
 use super::twin::Twin;
 use crate::common::gpu_test;
 
@@ -25,14 +25,7 @@ const STEPS: [u32; 3] = [1, 50, 200];
 
 /// A boundary that has crossed half of the object after 200 ticks and has left burnt-out vertices behind.
 fn parameters() -> Parameters {
-    Parameters {
-        speed_per_s: 0.15,
-        flammability: 40,
-        level_of_detail: Some(5),
-        width: 64,
-        height: 48,
-        ..Parameters::default()
-    }
+    Parameters { speed_per_s: 0.15, flammability: 40, level_of_detail: Some(5), width: 64, height: 48, ..text() }
 }
 
 /// About 1,500 triangles of the scanned bunny: no two alike.
@@ -267,6 +260,11 @@ fn outline(triangles: &[[usize; 3]]) -> BTreeSet<[usize; 2]> {
 #[test]
 fn shell() {
     compare(Variant::Shell, &parameters(), &bunny());
+}
+
+#[test]
+fn blocks_in_random_directions() {
+    compare(Variant::Shell, &Parameters { random_rotation: true, ..parameters() }, &bunny());
 }
 
 #[test]

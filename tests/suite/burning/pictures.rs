@@ -12,7 +12,7 @@ use fumarole::papers::burning::model::with_triangles;
 use fumarole::papers::burning::{Parameters, Shading, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
 
-use super::fire::{Fire, ball, quick};
+use super::fire::{Fire, ball, quick, text};
 use crate::common::gpu_test;
 
 /// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
@@ -32,8 +32,7 @@ fn the_object_fills_its_share_of_the_picture() {
         // A tall object its height, a wide one the width.
         for (mesh, by_height) in [(MeshSource::Bunny, true), (MeshSource::Teapot, false)] {
             let (width, height) = (120, if by_height { 90 } else { 120 });
-            let parameters =
-                Parameters { shading: Shading::Normals, fire: 0, smoke: 0, width, height, ..Parameters::default() };
+            let parameters = Parameters { shading: Shading::Normals, fire: 0, smoke: 0, width, height, ..text() };
             let mut fire = Fire::new(device, Variant::Shell, &parameters, &mesh.load().unwrap());
             fire.frame(0);
             let texels = read_image(device, fire.paper.picture()).unwrap();
@@ -80,7 +79,7 @@ fn the_pictures_are_the_golden_ones() {
                 smoke: 100,
                 width: 128,
                 height: 96,
-                ..Parameters::default()
+                ..text()
             };
             let mut fire = Fire::new(device, variant, &parameters, &object(variant));
             fire.frame(0);

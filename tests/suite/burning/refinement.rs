@@ -13,6 +13,7 @@ use fumarole::scene::shapes::{cuboid, sphere};
 use fumarole::scene::{Camera, Mesh};
 use glam::Vec3;
 
+use super::fire::text;
 use crate::common::gpu_test;
 
 /// A fire that crosses the object in about 180 ticks and leaves holes soon after.
@@ -25,7 +26,7 @@ fn parameters() -> Parameters {
         level_of_detail: Some(5),
         width: 64,
         height: 48,
-        ..Parameters::default()
+        ..text()
     }
 }
 

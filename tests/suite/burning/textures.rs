@@ -11,7 +11,7 @@ use fumarole::papers::burning::{Parameters, Texture, Variant, with_levels};
 use fumarole::scene::{Mesh, shapes};
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 
-use super::fire::Fire;
+use super::fire::{Fire, text};
 use crate::common::gpu_test;
 
 const WIDTH: u32 = 96;
@@ -53,7 +53,7 @@ fn covered(texture: &Arc<Texture>) -> Parameters {
         smoke: 0,
         width: WIDTH,
         height: HEIGHT,
-        ..Parameters::default()
+        ..text()
     }
 }
 
@@ -69,7 +69,7 @@ fn children_have_the_coordinates_of_their_own_coarse_triangle() {
         *coordinate += Vec2::new((vertex / 4) as f32 * 3.0, 0.0);
     }
     for levels in 0..=3 {
-        let parameters = Parameters { levels: Some(levels), ..Parameters::default() };
+        let parameters = Parameters { levels: Some(levels), ..text() };
         let model = Model::new(&mesh, Variant::LowPoly, &parameters, 1 << 27).unwrap();
         let lattice = &model.lattice;
         assert_eq!(lattice.texture_coordinates.len(), lattice.welds.len());

@@ -13,8 +13,8 @@ use self::refining::{Measured, is_half_refined};
 use self::sweeps::Limited;
 pub use self::timeline::snapshot;
 use self::timeline::{Snapshot, busiest_tick, follow};
-use super::Variant;
 use super::setup::Setup;
+use super::{Look, Parameters, Variant};
 use crate::field;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
@@ -178,7 +178,7 @@ fn plot(svg: String) -> [(String, String); 1] {
 }
 
 fn frame_rate(context: &mut Context<'_>, claim: &Claim) -> Result<(), Error> {
-    let setup = context.over(claim.preset.setup())?;
+    let setup = context.over(of_the_text(claim.preset.setup()))?;
     let mut machine = context.open()?;
     let tick = busiest_tick(&whole_fire(context, &mut machine, &setup, claim.variant())?)?;
     let Swept { mut rows, stopped } = context.sweep(&mut machine, &[claim.point(&setup, tick)])?;
@@ -191,7 +191,8 @@ fn frame_rate(context: &mut Context<'_>, claim: &Claim) -> Result<(), Error> {
 
 /// Every frame of each box until half of its coarse triangles are refined, once unless more is asked for.
 fn refined_against_subdivided(context: &mut Context<'_>) -> Result<(), Error> {
-    let setups = refining::TABLE.iter().map(|line| context.over(line.setup())).collect::<Result<Vec<_>, _>>()?;
+    let setups =
+        refining::TABLE.iter().map(|line| context.over(of_the_text(line.setup()))).collect::<Result<Vec<_>, _>>()?;
     let mut machine = context.open()?;
     let mut measured = Vec::new();
     let mut stopped = None;
@@ -214,9 +215,15 @@ fn refined_against_subdivided(context: &mut Context<'_>) -> Result<(), Error> {
     publish(context, &machine, rows, table, &plot(svg), stopped)
 }
 
+/// The setup with the dissertation's look: experiments measure the text's own passes, unless another look is given.
+fn of_the_text(setup: Setup) -> Setup {
+    let parameters = Parameters { look: Look::Dissertation, ..setup.parameters };
+    Setup { parameters, ..setup }
+}
+
 /// The preset that was named, or that of section 3.8, with what was given over it.
 fn named_or_shell(context: &Context<'_>) -> Result<Setup, Error> {
-    context.over(context.preset.as_ref().unwrap_or(&presets::RESULTS_3_8).setup())
+    context.over(of_the_text(context.preset.as_ref().unwrap_or(&presets::RESULTS_3_8).setup()))
 }
 
 fn blocks(context: &mut Context<'_>) -> Result<(), Error> {
@@ -276,7 +283,7 @@ fn sequence(context: &mut Context<'_>) -> Result<(), Error> {
             figure.frames.clone_from(moments);
         }
         for sheet in &mut figure.sheets {
-            sheet.setup = context.over(sheet.setup.clone())?;
+            sheet.setup = context.over(of_the_text(sheet.setup.clone()))?;
         }
     }
     let mut machine = context.open()?;
@@ -288,7 +295,7 @@ fn sequence(context: &mut Context<'_>) -> Result<(), Error> {
 }
 
 fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
-    let setup = context.over(sweeps::scaling_setup())?;
+    let setup = context.over(of_the_text(sweeps::scaling_setup()))?;
     let counts = if context.options.counts.is_empty() { &sweeps::COUNTS[..] } else { &context.options.counts };
     let points = sweeps::scaling_points(&setup, counts);
     points.iter().try_for_each(|point| point.study.check())?;

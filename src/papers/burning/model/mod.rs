@@ -5,6 +5,7 @@ mod boundary;
 mod count;
 mod incidence;
 mod lattice;
+mod touching;
 pub mod tree;
 mod weld;
 
@@ -47,13 +48,15 @@ pub struct Model {
     pub mean_edge: f32,
     /// Places of ignition.
     pub sources: Vec<Vec3>,
-    /// Height that nothing melts below.
+    /// Height of the ground, which nothing melts below.
     pub floor: f32,
     /// 1 where the triangles wind so that their normals point out of the enclosed volume, or else -1.
     pub outward: f32,
     /// Farthest that a vertex of a solid comes from its position at rest: [`CHAR_FRACTION`] of its volume over its
     /// surface, a quarter of a ball's radius.
     pub char_depth: f32,
+    /// Pairs of vertices at which separate parts of the mesh touch and hold each other.
+    pub touching: Vec<[u32; 2]>,
     /// Each edge of the mesh has two triangles, which run along it in opposite directions.
     pub is_closed: bool,
     /// Triangles of the mesh that were left out because two of their corners coincide.
@@ -117,13 +120,15 @@ impl Model {
         };
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
         let volume = enclosed_volume(positions, &triangles);
+        let mean_edge = mean_edge(positions, &triangles);
         Ok(Model {
+            touching: touching::touching(positions, &triangles, mean_edge),
             levels,
             rest: positions.iter().map(at_rest).collect(),
             incidence,
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
-            mean_edge: mean_edge(positions, &triangles),
+            mean_edge,
             outward: if volume < 0.0 { -1.0 } else { 1.0 },
             char_depth: (CHAR_FRACTION * volume.abs() / surface(positions, &triangles)) as f32,
             floor: parameters.floor.unwrap_or(bounds.min.y),

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::boundary::area;
+use super::flames::pcg3d;
 use super::{State, Tick, Variant};
 
 /// Margin of the grid around the mesh on each side, in diagonals.
@@ -135,7 +136,10 @@ impl Tick<'_> {
             if (is_consumed || (is_live && old != new)) && state.labels[v] >= area::INITIAL {
                 let offset = state.positions[v] - grid.midpoint(old);
                 let sign = |x: f64| if x == 0.0 { 0 } else { x.signum() as i32 };
-                let signs = [-sign(offset.z), sign(offset.y), sign(offset.x)];
+                let signs = match self.constants.random_rotation {
+                    true => pcg3d([self.constants.seed, v as u32, state.tick]).map(|h| 2 * (h >> 31) as i32 - 1),
+                    false => [-sign(offset.z), sign(offset.y), sign(offset.x)],
+                };
                 for (sum, sign) in state.blocks[old].signs.iter_mut().zip(signs) {
                     *sum += sign;
                 }

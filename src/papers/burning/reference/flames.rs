@@ -88,7 +88,7 @@ pub enum Fate {
 }
 
 /// Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020: pcg3d.
-fn pcg3d(seed: [u32; 3]) -> [u32; 3] {
+pub(super) fn pcg3d(seed: [u32; 3]) -> [u32; 3] {
     let mut v = seed.map(|x| x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
     let mix = |v: &mut [u32; 3]| {
         for (to, a, b) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {

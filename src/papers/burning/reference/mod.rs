@@ -7,6 +7,7 @@
 mod blocks;
 pub mod boundary;
 pub mod displacement;
+pub mod falling;
 #[cfg(test)]
 mod fixtures;
 pub mod flames;
@@ -54,6 +55,10 @@ pub struct Constants {
     /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
     pub active_limit: u32,
     pub keep_connected: bool,
+    /// Signs of rotations are random (3.5.1).
+    pub random_rotation: bool,
+    /// Of what is random.
+    pub seed: u32,
     /// Fraction of the flammability below which a vertex of a solid leaves the deforming group (section 5.5).
     pub retire_at: f64,
 }
@@ -82,6 +87,8 @@ impl Constants {
             floor,
             active_limit: p.active_limit,
             keep_connected: p.keep_connected,
+            random_rotation: p.random_rotation,
+            seed: p.noise_seed(),
             retire_at: p.retire_at.into(),
         }
     }

@@ -1,0 +1,16 @@
+#version 450
+
+// A square of the ground below the object.
+
+#include "burning/constants.glsl"
+#include "burning/view.glsl"
+
+layout(location = 0) out vec3 position;
+
+const float HALF_WIDTH = 3.0; // diagonals
+
+void main() {
+    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
+    position = vec3(HALF_WIDTH * corner.x, constants.floor_y, HALF_WIDTH * corner.y);
+    gl_Position = view.view_projection * vec4(position, 1.0);
+}

@@ -1,0 +1,50 @@
+#version 450
+
+// The vertices of the parts that lie still, for others to meet.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/parts.glsl"
+#include "burning/meeting.glsl"
+#include "burning/rotation.glsl"
+#include "burning/vertices.glsl"
+
+layout(set = 0, binding = 10, std430) readonly buffer NewState {
+    VertexState new_state[];
+};
+
+layout(set = 0, binding = 14, std430) readonly buffer Cells {
+    uint cells[];
+};
+
+layout(set = 0, binding = 17, std430) readonly buffer NewRotations {
+    vec4 new_rotations[]; // pitch, yaw, roll
+};
+
+layout(set = 0, binding = 65, std430) readonly buffer PartOf {
+    uint part_of[];
+};
+
+layout(set = 0, binding = 66, std430) readonly buffer Parts {
+    Part parts[];
+};
+
+layout(set = 0, binding = 76, std430) buffer Lying {
+    uint lying[];
+};
+
+void main() {
+    uint vertex = gl_GlobalInvocationID.x;
+    if (vertex >= constants.vertex_count) {
+        return;
+    }
+    uint part = part_of[vertex];
+    if (part >= MOST_PARTS || parts[min(part, MOST_PARTS - 1u)].rests == 0.0) {
+        return;
+    }
+    uint block = cells[vertex];
+    vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    vec3 position = turned(parts[part].orientation, place) + parts[part].offset;
+    atomicMin(lying[entry_of(cell_at(position))], vertex);
+}

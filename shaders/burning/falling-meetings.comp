@@ -1,0 +1,54 @@
+#version 450
+
+// The directions and gaps of the meetings that were found: one thread each, before parts move.
+
+layout(local_size_x = 64) in;
+
+#include "burning/constants.glsl"
+#include "burning/parts.glsl"
+#include "burning/contacts.glsl"
+#include "burning/rotation.glsl"
+#include "burning/vertices.glsl"
+
+layout(set = 0, binding = 10, std430) readonly buffer NewState {
+    VertexState new_state[];
+};
+
+layout(set = 0, binding = 14, std430) readonly buffer Cells {
+    uint cells[];
+};
+
+layout(set = 0, binding = 17, std430) readonly buffer NewRotations {
+    vec4 new_rotations[]; // pitch, yaw, roll
+};
+
+layout(set = 0, binding = 65, std430) readonly buffer PartOf {
+    uint part_of[];
+};
+
+layout(set = 0, binding = 66, std430) readonly buffer Parts {
+    Part parts[];
+};
+
+#include "burning/met.glsl"
+
+layout(set = 0, binding = 70, std430) readonly buffer Contacts {
+    int contacts[];
+};
+
+layout(set = 0, binding = 77, std430) buffer Met {
+    vec4 met[];
+};
+
+void main() {
+    uint thread = gl_GlobalInvocationID.x;
+    if (thread >= MOST_PARTS * MEETINGS) {
+        return;
+    }
+    uint part = thread / MEETINGS;
+    int vertex = contacts[part * WORDS + GAPS + MEETINGS + thread % MEETINGS];
+    if (vertex != FARTHEST) {
+        Meeting meeting = meeting_of(part, position_of(uint(vertex)));
+        met[thread] = vec4(meeting.toward, meeting.gap);
+    }
+}

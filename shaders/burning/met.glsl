@@ -1,0 +1,39 @@
+// The nearest ball of another part.
+
+#include "burning/meeting.glsl"
+
+layout(set = 0, binding = 76, std430) readonly buffer Lying {
+    uint lying[]; // vertex, NONE without any
+};
+
+struct Meeting {
+    uint vertex; // NONE without any
+    vec3 toward; // from it, a unit vector
+    float gap; // diagonals, below 0 where the balls overlap
+};
+
+vec3 position_of(uint vertex) {
+    uint block = cells[vertex];
+    vec3 place = rotated_with_block(new_state[vertex].position, block, new_rotations[block].xyz);
+    uint part = min(part_of[vertex], MOST_PARTS - 1u);
+    return turned(parts[part].orientation, place) + parts[part].offset;
+}
+
+Meeting meeting_of(uint part, vec3 position) {
+    Meeting nearest = Meeting(NONE, vec3(0.0), 0.0);
+    float width = ball_width();
+    ivec3 middle = cell_at(position);
+    for (int i = 0; i < 27; i++) {
+        ivec3 cell = middle + ivec3(i % 3, (i / 3) % 3, i / 9) - 1;
+        uint other = lying[entry_of(cell)];
+        if (other != NONE) {
+            vec3 apart = position - position_of(other);
+            float distance_apart = length(apart);
+            bool is_near = part_of[other] != part && distance_apart > 1e-6 && distance_apart < 2.0 * width;
+            if (is_near && (nearest.vertex == NONE || distance_apart - width < nearest.gap)) {
+                nearest = Meeting(other, apart / distance_apart, distance_apart - width);
+            }
+        }
+    }
+    return nearest;
+}

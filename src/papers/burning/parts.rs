@@ -1,0 +1,282 @@
+//! `parts`: the connected parts of the object, found anew every [`SEARCH_TICKS`] ticks, with their moments. Ours: the
+//! dissertation's objects fall apart in place.
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::{Vec3, Vec4};
+
+use super::buffers::Buffers;
+use super::model::Model;
+use super::ping_pong::{self, new};
+use crate::gpu::transfer::upload;
+use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    /// A part as a rigid body (`burning/parts.glsl`).
+    #[derive(Default)]
+    pub struct Part {
+        /// Unit quaternion that turns places in the object to the world.
+        pub orientation: Vec4,
+        /// Added to a turned place, diagonals.
+        pub offset: Vec3,
+        /// 1 while it lies still.
+        pub rests: f32,
+        /// Of the centre of mass, diagonals a second.
+        pub velocity: Vec3,
+        /// Ticks since it last lay still.
+        pub fallen_ticks: f32,
+        /// Radians a second.
+        pub spin: Vec3,
+        /// Of its vertices.
+        pub weight: f32,
+        /// Centre of mass, a place in the object.
+        pub center: Vec3,
+        /// Over its weight, with that of its height above the ground: diagonals squared a second squared.
+        pub energy: f32,
+        /// The place about which its moments are taken.
+        pub anchor: Vec3,
+        /// Root of the mean squared distance of its vertices from the centre.
+        pub extent: f32,
+    }
+}
+
+host_block! {
+    /// How far the search is (`burning/parting.glsl`).
+    #[derive(Default)]
+    pub(super) struct Progress {
+        is_unsettled: u32,
+        is_numbered: u32,
+        part_count: u32,
+        moment_bits: u32,
+    }
+}
+
+host_block! {
+    /// Push constants of `burning/parts-unite.comp`.
+    struct Touches {
+        /// Pairs of vertices that touch.
+        count: u32,
+    }
+}
+
+/// Parts that fall at most; what comes off beyond them is ash at once.
+pub const MOST_PARTS: u32 = 1024;
+/// Ticks from one search for parts to the next: what comes off begins to fall within twice as many.
+pub const SEARCH_TICKS: u64 = 4;
+/// Words of a part's moments (`burning/moments.glsl`).
+const MOMENTS: u32 = 19;
+/// Vertices that a thread sums up (`burning/parts-moments.comp`).
+const RUN: u32 = 16;
+/// Weight of a vertex of mean area, and the greatest.
+const MEAN_WEIGHT: f64 = 16.0;
+const MOST_WEIGHT: f64 = 255.0;
+
+/// Of the buffers, beside those of a number a vertex; what a restart brings back is there twice.
+pub(super) const BYTES: u32 = 4 * MOST_PARTS * size_of::<Part>() as u32 + 2 * 4 * MOST_PARTS * MOMENTS;
+/// Numbers of a vertex.
+pub(super) const NUMBERS_OF_VERTEX: u32 = 2 * 4 + 1;
+
+/// The pass with its buffers.
+pub struct Parts {
+    /// uint\[N\]: the part of each vertex; [`MOST_PARTS`] and more where it is in none.
+    pub part_of: Arc<Buffer>,
+    /// [`Part`] of each, as many as the search counted.
+    pub parts: Arc<Buffer>,
+    /// uint\[N\]: the weight of each vertex.
+    pub weights: Arc<Buffer>,
+    pub(super) progress: Arc<Buffer>,
+    pub(super) sums: Arc<Buffer>,
+    /// Takes over the parts that were found, and sums their moments.
+    take: [[Pass; 4]; 2],
+    reset: Pass,
+    unite: [Pass; 2],
+    flatten: Pass,
+    check: Pass,
+    number: Pass,
+    vertex_count: u32,
+    triangle_count: u32,
+    touches: Touches,
+}
+
+impl Parts {
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn new(shaders: &ShaderLibrary, label: &str, buffers: &mut Buffers, model: &Model) -> Result<Self, Error> {
+        let table = |name: &str, bytes: &[u8]| {
+            upload(shaders.device(), &format!("{label}/{name}"), vk::BufferUsageFlags::STORAGE_BUFFER, bytes)
+        };
+        let list = |name: &str, list: &[u32]| table(name, bytemuck::cast_slice(list));
+        let count = model.vertex_count();
+        let weights = weights(model);
+        let total: u64 = weights.iter().map(|&weight| u64::from(weight)).sum();
+        let progress = Progress { moment_bits: moment_bits(total), ..Progress::default() };
+        let none = vec![u32::MAX; count as usize];
+        let zeros = vec![0; count as usize];
+        let roots = list("roots", &(0..count).collect::<Vec<_>>())?;
+        let attached = list("attached", &zeros)?;
+        let numbers = list("part-numbers", &zeros)?;
+        let part_of = list("part-of", &none)?;
+        let parts = table("parts", bytemuck::cast_slice(&vec![Part::default(); MOST_PARTS as usize]))?;
+        let inherited = table("inherited-parts", bytemuck::cast_slice(&vec![Part::default(); MOST_PARTS as usize]))?;
+        let sums = list("moments", &vec![0; (MOST_PARTS * MOMENTS) as usize])?;
+        let progress = table("parts-progress", bytemuck::bytes_of(&progress))?;
+        let weights = list("vertex-weights", &weights)?;
+        let pairs: &[[u32; 2]] = if model.touching.is_empty() { &[[0, 0]] } else { &model.touching };
+        let touching = list("touching", pairs.as_flattened())?;
+        for buffer in [&roots, &attached, &numbers, &part_of, &parts, &inherited, &sums, &progress] {
+            buffers.keep(shaders, buffer)?;
+        }
+        let step = |name: &str| {
+            Pass::compute("parts", "", &format!("burning/parts-{name}.comp")).with("constants", &buffers.constants)
+        };
+        let searched = |name: &str| step(name).with("Searching", &progress);
+        let state = new("NewState", &buffers.states);
+        let rotations = new("NewRotations", &buffers.rotations);
+        let placed = |name: &str| searched(name).with("Cells", &buffers.cells).with("Parts", &parts);
+        let inherit = placed("inherit")
+            .with("Roots", &roots)
+            .with("Attached", &attached)
+            .with("Numbers", &numbers)
+            .with("PartOf", &part_of)
+            .with("Inherited", &inherited);
+        let inherit = ping_pong::build(shaders, inherit, &[state, rotations])?;
+        let adopt = searched("adopt")
+            .with("Roots", &roots)
+            .with("Attached", &attached)
+            .with("Numbers", &numbers)
+            .with("PartOf", &part_of)
+            .with("Parts", &parts)
+            .with("Inherited", &inherited)
+            .build(shaders)?;
+        let clear = Pass::compute("parts", "", "burning/parts-clear.comp").with("Sums", &sums).build(shaders)?;
+        let moments = placed("moments").with("PartOf", &part_of).with("Sums", &sums).with("Weights", &weights);
+        let moments = ping_pong::build(shaders, moments, &[state, rotations])?;
+        let reset = searched("reset").with("Roots", &roots).with("Attached", &attached).build(shaders)?;
+        let unite = step("unite")
+            .constants::<Touches>()
+            .with("Triangles", &buffers.triangles)
+            .with("Removed", &buffers.removed)
+            .with("Roots", &roots)
+            .with("Touching", &touching);
+        let unite = ping_pong::build(shaders, unite, &[state])?;
+        let flatten = searched("flatten").with("Roots", &roots).build(shaders)?;
+        let check = searched("check")
+            .with("Triangles", &buffers.triangles)
+            .with("Removed", &buffers.removed)
+            .with("Roots", &roots)
+            .with("Attached", &attached)
+            .build(shaders)?;
+        let number = searched("number")
+            .with("Roots", &roots)
+            .with("Attached", &attached)
+            .with("Numbers", &numbers)
+            .build(shaders)?;
+        let [even, odd] = [0, 1].map(|tick| {
+            let [inherit, moments] = [&inherit, &moments].map(|passes| passes[tick].clone());
+            Pass::steps([
+                inherit,
+                adopt.clone(),
+                clear.clone(),
+                moments,
+                reset.clone(),
+                unite[tick].clone(),
+                flatten.clone(),
+                check.clone(),
+                number.clone(),
+            ])
+        });
+        let [inherit, adopt, clear, moments, reset, unite, flatten, check, number] = even;
+        let [odd_inherit, odd_adopt, odd_clear, odd_moments, _, odd_unite, ..] = odd;
+        Ok(Parts {
+            part_of,
+            parts,
+            weights,
+            progress,
+            sums,
+            take: [[inherit, adopt, clear, moments], [odd_inherit, odd_adopt, odd_clear, odd_moments]],
+            reset,
+            unite: [unite, odd_unite],
+            flatten,
+            check,
+            number,
+            vertex_count: count,
+            triangle_count: model.triangle_count(),
+            touches: Touches { count: model.touching.len() as u32 },
+        })
+    }
+
+    /// Records the part of the search that belongs to `tick`, the ticks since the fire was lit with this one.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, tick: u64) -> Result<(), Error> {
+        let newest = (tick % 2) as usize;
+        let mut run = |step: &Pass, threads: u32| {
+            frame.compute(step, |dispatch| {
+                dispatch.threads(threads, 1, 1);
+            })
+        };
+        match tick % SEARCH_TICKS {
+            0 => {
+                let [inherit, adopt, clear, moments] = &self.take[newest];
+                run(inherit, self.vertex_count)?;
+                run(adopt, self.vertex_count.max(MOST_PARTS))?;
+                run(clear, MOST_PARTS * MOMENTS)?;
+                run(moments, self.vertex_count.div_ceil(RUN))?;
+                run(&self.reset, self.vertex_count)
+            }
+            1 => self.unite(frame, newest),
+            2 => {
+                self.unite(frame, newest)?;
+                frame.compute(&self.flatten, |dispatch| {
+                    dispatch.threads(self.vertex_count, 1, 1);
+                })
+            }
+            _ => {
+                run(&self.check, self.triangle_count)?;
+                run(&self.number, 1)
+            }
+        }
+    }
+
+    fn unite(&self, frame: &mut Frame<'_>, newest: usize) -> Result<(), Error> {
+        frame.compute(&self.unite[newest], |dispatch| {
+            dispatch.constants(&self.touches).threads(self.triangle_count + self.touches.count, 1, 1);
+        })
+    }
+}
+
+/// A third of the area of each vertex's triangles at rest, in whole numbers.
+fn weights(model: &Model) -> Vec<u32> {
+    let mut areas = vec![0.0; model.rest.len()];
+    for triangle in &model.triangles {
+        let [a, b, c] = triangle.map(|vertex| model.rest[vertex as usize].position.as_dvec3());
+        let area = (b - a).cross(c - a).length();
+        triangle.iter().for_each(|&vertex| areas[vertex as usize] += area);
+    }
+    let mean = (areas.iter().sum::<f64>() / areas.len().max(1) as f64).max(f64::MIN_POSITIVE);
+    areas.iter().map(|area| (area / mean * MEAN_WEIGHT).round().clamp(1.0, MOST_WEIGHT) as u32).collect()
+}
+
+/// Bits of a word of a moment: as many as no sum over weights of that `total` passes 32 with, and two words a number of
+/// 32-bit floats hold.
+fn moment_bits(total: u64) -> u32 {
+    let of_weights = u64::BITS - total.leading_zeros();
+    (u32::BITS - of_weights.min(u32::BITS - 1)).min(12)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_of_words_fit() {
+        for total in [1_u64, 16, 16_000, 1 << 20, (1 << 20) - 1, 90_000_000, (1 << 31) - 1] {
+            let bits = moment_bits(total);
+            assert!(bits >= 1 && total * ((1 << bits) - 1) <= u64::from(u32::MAX), "{total}: {bits}");
+        }
+        assert_eq!(moment_bits(16_000), 12);
+    }
+}

@@ -1,0 +1,148 @@
+//! `puddle` and `draw-puddle`: what melts gathers on the ground. Ours: the dissertation's wax loses its volume.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::buffers::Buffers;
+use super::draw::Draw;
+use super::model::Model;
+use super::ping_pong::{self, PingPong, new, old};
+use crate::gpu::transfer::upload;
+use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Load, Pass, ShaderLibrary};
+use crate::host_block;
+
+host_block! {
+    /// Volumes of the wax (`burning/puddle.glsl`), in 2^32ths of a cubed diagonal.
+    #[derive(Default)]
+    pub struct Film {
+        /// That the mesh encloses after the tick.
+        pub mesh_volume: i32,
+        /// That it enclosed after the first tick.
+        pub volume_at_start: i32,
+        /// Of the puddle before the tick.
+        pub puddle_volume: u32,
+        /// Of the puddle after it.
+        pub spread_volume: u32,
+        /// That has evaporated.
+        pub evaporated: u32,
+        /// Of the vertices that melted in the tick.
+        pub weight: u32,
+        /// 1 after the first tick.
+        pub has_started: u32,
+        /// That had evaporated before the tick.
+        pub evaporated_before: u32,
+    }
+}
+
+/// Cells along each side.
+pub const PUDDLE_CELLS: u32 = 128;
+/// Of the square that they cover about the object's base, diagonals.
+pub const PUDDLE_HALF_WIDTH: f32 = 1.28;
+/// Triangles that a thread sums up (`burning/puddle-volume.comp`).
+const RUN: u32 = 16;
+
+/// Of the buffers: heights twice over, what has melted, and the corners of the drawn cells.
+pub(super) const BYTES: u32 = 4 * PUDDLE_CELLS * PUDDLE_CELLS * (2 * 2 + 1 + 6);
+
+/// The pass with its buffers.
+pub struct Puddle {
+    steps: PingPong<5>,
+    /// uint\[cells\] twice, ping-pong as the states are: volume over each cell.
+    pub heights: [Arc<Buffer>; 2],
+    /// [`Film`].
+    pub film: Arc<Buffer>,
+}
+
+impl Puddle {
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn new(shaders: &ShaderLibrary, label: &str, buffers: &mut Buffers, model: &Model) -> Result<Self, Error> {
+        let cells = PUDDLE_CELLS * PUDDLE_CELLS;
+        let zeros = |name: &str, bytes: usize| {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            upload(shaders.device(), &format!("{label}/{name}"), usage, &vec![0; bytes])
+        };
+        let heights = [zeros("puddle-a", 4 * cells as usize)?, zeros("puddle-b", 4 * cells as usize)?];
+        let film = zeros("film", size_of::<Film>())?;
+        let melted = zeros("melted", 4 * cells as usize)?;
+        for buffer in heights.iter().chain([&film]) {
+            buffers.keep(shaders, buffer)?;
+        }
+        let step = |name: &str| Pass::compute("puddle", "", &format!("burning/{name}.comp")).with("Films", &film);
+        let clear = step("puddle-clear").with("Melted", &melted);
+        let volume = step("puddle-volume").with("constants", &buffers.constants).with("Triangles", &buffers.triangles);
+        let weights = step("puddle-weights")
+            .with("constants", &buffers.constants)
+            .with("Labels", &buffers.labels)
+            .with("Alive", &buffers.alive)
+            .with("Melted", &melted);
+        let spread = step("puddle").with("constants", &buffers.constants).with("Melted", &melted);
+        let [before, after] = [old("OldState", &buffers.states), new("NewState", &buffers.states)];
+        let rising = [old("OldHeights", &heights), new("NewHeights", &heights)];
+        let build = |pass, swapped: &[_]| ping_pong::build(shaders, pass, swapped);
+        let steps = PingPong::new([
+            (build(clear, &[])?, cells),
+            (build(volume, &[after])?, model.triangle_count().div_ceil(RUN)),
+            (build(step("puddle-start"), &[])?, 1),
+            (build(weights, &[before, after])?, model.vertex_count()),
+            (build(spread, &rising)?, cells),
+        ]);
+        Ok(Puddle { steps, heights, film })
+    }
+
+    /// Records the tick that writes the state of index `tick`.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
+        self.steps.record(frame, tick)
+    }
+}
+
+/// The pass that draws the puddle's surface.
+pub struct DrawPuddle {
+    passes: [Pass; 2],
+    index_count: u32,
+}
+
+impl DrawPuddle {
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        buffers: &Buffers,
+        draw: &Draw,
+        puddle: &Puddle,
+    ) -> Result<Self, Error> {
+        let indices: Vec<u32> = (0..PUDDLE_CELLS * PUDDLE_CELLS).flat_map(corners_of_cell).collect();
+        let usage = vk::BufferUsageFlags::INDEX_BUFFER;
+        let grid = upload(shaders.device(), &format!("{label}/puddle-grid"), usage, bytemuck::cast_slice(&indices))?;
+        let pass = Pass::graphics("draw-puddle", "", "burning/draw-puddle.vert", "burning/draw-puddle.frag")
+            .with("constants", &buffers.constants)
+            .with("view", &draw.view)
+            .indices(&grid)
+            .color(&draw.picture, Load::Keep, Blend::Replace)
+            .depth(&draw.depth, Load::Keep, DepthTest::LessWrite);
+        let passes = ping_pong::build(shaders, pass, &[new("Heights", &puddle.heights)])?;
+        Ok(DrawPuddle { passes, index_count: indices.len() as u32 })
+    }
+
+    /// Draws the puddle after the tick that wrote the state of index `newest`.
+    ///
+    /// # Errors
+    /// Those of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, newest: usize) -> Result<(), Error> {
+        frame.graphics(&self.passes[newest], |draw| {
+            draw.indices(self.index_count);
+        })
+    }
+}
+
+/// Two triangles of a cell, by the numbers of its corners.
+fn corners_of_cell(cell: u32) -> [u32; 6] {
+    let row = PUDDLE_CELLS + 1;
+    let first = cell / PUDDLE_CELLS * row + cell % PUDDLE_CELLS;
+    [first, first + row, first + 1, first + 1, first + row, first + row + 1]
+}
