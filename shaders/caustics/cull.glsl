@@ -2,13 +2,7 @@
 // each; its pairs with a plane are tested together first.
 
 #include "caustics/ray.glsl"
-
-struct Cell {
-    float height; // of the plane along V, from the rays' reference point, metres
-    float lower; // lowest height accepted, along V from the box's centre, metres
-    float upper; // first height no longer accepted
-    float _pad; // 0
-};
+#include "caustics/cell.glsl"
 
 layout(push_constant) uniform Cull {
     vec2 center; // of the box along U and W, from the rays' reference point, metres

@@ -17,7 +17,7 @@ layout(location = 0) out float caustics;
 void main() {
     vec3 water_dx = dFdx(surface.xyz);
     vec3 water_dy = dFdy(surface.xyz);
-    float height = texelFetch(sampler2D(position_map, nearest), ivec2(gl_FragCoord.xy) / int(plane.coverage), 0).r;
+    float height = texelFetch(sampler2D(position_map, nearest), ivec2(gl_FragCoord.xy), 0).r;
     if (height < accepted.x || height >= accepted.y || !is_lit(surface.w)) {
         discard;
     }

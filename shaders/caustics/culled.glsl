@@ -7,5 +7,4 @@ layout(push_constant) uniform Plane {
     float absorption_per_m; // K of eq. 4-17
     float texel_area_m2;
     uint vertices; // of the water
-    uint coverage; // texels a side that are drawn for a texel of the position map
 } plane;

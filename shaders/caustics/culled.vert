@@ -9,13 +9,7 @@ layout(std430, set = 0, binding = 3) readonly buffer Rays {
 } rays;
 
 #include "caustics/culled.glsl"
-
-struct Cell {
-    float height; // of the plane along V, from the rays' reference point, metres
-    float lower; // lowest height accepted, along V from the box's centre, metres
-    float upper; // first height no longer accepted
-    float _pad; // 0
-};
+#include "caustics/cell.glsl"
 
 layout(std430, set = 0, binding = 2) readonly buffer Cells {
     Cell list[];

@@ -19,7 +19,7 @@ layout(set = 0, binding = 4) uniform View {
     uint most_steps; // of a ray in it
 } view;
 
-#include "caustics/receiver-tree.glsl"
+#include "common/triangle-tree.glsl"
 
 const vec3 DEEP_WATER = vec3(0.004, 0.030, 0.055); // light scattered back by deep water, as the cast's background
 const float SAME_PLANE = 0.003; // distance of a texel's point from the face that is seen, as a fraction of the camera's distance

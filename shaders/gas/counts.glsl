@@ -7,4 +7,6 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
     uint lights;
     uint octaves; // of turbulence
     uint attenuations; // of a fragment for each light: 1 where light-attenuation runs, else 0
+    uint samples; // of an increment along the viewer's ray
+    uint jitter; // their places: RANDOM or BLUE_NOISE
 } counts;

@@ -1,7 +1,7 @@
 // Section "Volume rendering". The viewer's ray goes through the volumes of a pixel up to the depth that `sort` found,
 // cut at every fragment and at every entry and exit of a volume (figure 1). Each section is marched in increments of
-// the step, the last one scaled, with a sample at a random point of each (Monte Carlo), and becomes a fragment with a
-// full mask at its depth in the pixel's list.
+// the step, the last one scaled, with a sample at a random point of each, or of each of its parts (Monte Carlo), and becomes
+// a fragment with a full mask at its depth in the pixel's list.
 //
 // - An increment adds T_before albedo (1 - exp(-tau rho dt)) sum(I_i phase), premultiplied. The text's sum adds I rho
 //   dt: tau is missing there, and this is its exact integral for constant density.
@@ -33,7 +33,25 @@ layout(set = 0, binding = 13, std430) buffer Sections {
 const float PI = 3.14159265;
 const float SOLID_OPACITY = 0.99; // of which no more is marched
 
-float random(uint pixel_index, uint number) {
+// In the order of the host's `Jitter`.
+const uint RANDOM = 0u;
+const uint BLUE_NOISE = 1u;
+const uint MASK_SIDE = 64u;
+
+layout(set = 0, binding = 21, std430) readonly buffer Jitter {
+    uint ranks[]; // of the texels of a mask of blue noise, row by row
+};
+
+// A number of 0 to 1 for a sample of a pixel. By the mask all samples of a ray lie at one place of their parts, which goes on by the
+// golden ratio from frame to frame: errors then depend on it alone, and differ from pixel to pixel as the mask does.
+float place_in_part(uint pixel_index, uint number) {
+    if (counts.jitter == BLUE_NOISE) {
+        uint column = pixel_index % frame.size.x % MASK_SIDE;
+        uint row = pixel_index / frame.size.x % MASK_SIDE;
+        uint h = (ranks[row * MASK_SIDE + column] << 20u) + 0x80000u;
+        h += uint(frame.number) * 0x9e3779b9u;
+        return float(h >> 8u) / 16777216.0;
+    }
     uint h = scramble(pixel_index * 0x9e3779b9u ^ scramble(number ^ scramble(frame.noise_seed + uint(frame.number))));
     return float(h >> 8u) / 16777216.0;
 }
@@ -85,6 +103,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         }
     }
     is_cut = is_cut || volume < counts.volumes;
+    step_m /= float(counts.samples);
     float early = has_solid ? max(frame.early_end, 1.0 - SOLID_OPACITY) : frame.early_end;
     float length_m = (extent.y - extent.x) * scale;
     Gas gas = begun;
@@ -96,7 +115,7 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         uint increments = is_entry && gas.increments > 0u ? gas.increments - 1u : gas.increments;
         float from = float(increments) * step_m;
         float increment = min(step_m, length_m - from);
-        float at_m = from + increment * random(pixel_index, first_number + increments);
+        float at_m = from + increment * place_in_part(pixel_index, first_number + increments);
         if (is_entry && gas.increments == 0u) {
             at_m = 0.0;
         }

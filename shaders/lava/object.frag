@@ -22,12 +22,15 @@ const vec3 SKY = vec3(0.8, 0.9, 1.1);
 const float OF_THE_GLOW = 0.4;
 
 void main() {
+    vec3 face = cross(dFdx(world_m), dFdy(world_m));
     float nearest = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).r;
     if ((eye_depth_m + scene.epsilon_m) * scene.depth_per_m >= nearest) {
         discard;
     }
     vec3 normal = facing / max(length(facing), 1.0e-20);
-    normal = dot(normal, world_m - object.eye_m) > 0.0 ? -normal : normal;
+    // By the face: at an outline a vertex normal may point away from an eye that sees the face.
+    float side = dot(face, world_m - object.eye_m) > 0.0 ? -1.0 : 1.0;
+    normal = side * dot(normal, face) < 0.0 ? -normal : normal;
     vec3 lit = PAINT * mix(OF_THE_GLOW * scene.glow, SKY, 0.5 + 0.5 * normal.y);
     color = vec4(toned(lit, object.exposure, object.knee), 1.0);
 }

@@ -14,6 +14,7 @@ layout(set = 0, binding = 0, std140) uniform Light {
     vec2 drape_cells; // columns and rows of the first map's cells
     float drape_first_column; // where the draped picture begins
     int is_draped;
+    vec3 eye; // world, metres
 } light;
 
 vec3 view_direction(vec2 pixel) {

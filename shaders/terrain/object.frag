@@ -19,6 +19,10 @@ void main() {
     float sunlit = texelFetch(shadow, min(pixel, textureSize(shadow, 0) - 1), 0).x;
     vec3 direction = view_direction(vec2(pixel));
     vec3 normal = facing / max(length(facing), 1.0e-20);
-    normal = dot(normal, direction) > 0.0 ? -normal : normal;
+    // By the face: at an outline a vertex normal may point away from an eye that sees the face.
+    vec3 place = direction / gl_FragCoord.w;
+    vec3 face = cross(dFdx(place), dFdy(place));
+    float side = dot(face, direction) > 0.0 ? -1.0 : 1.0;
+    normal = side * dot(normal, face) < 0.0 ? -normal : normal;
     picture = vec4(encoded(lit_color(PAINT, normal, sunlit, length(direction) / gl_FragCoord.w)), 1.0);
 }

@@ -2,6 +2,7 @@
 
 #[cfg(test)]
 mod layout;
+mod triangle_tree;
 
 use crate::measure::study::Visitor;
 

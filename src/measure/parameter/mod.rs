@@ -19,7 +19,9 @@ use serde_json::{Map, Value as Json};
 
 pub use error::{ParameterError, components};
 pub use range::Range;
-pub use value::{Choice, Extents, EyeAndTarget, Shape, Size, Value, one, parse_extents, parse_finite, parse_numbers};
+pub use value::{
+    Choice, Extents, EyeAndTarget, Shape, Size, Value, one, parse_extents, parse_finite, parse_numbers, with_place,
+};
 
 /// Reads and writes a value of type `T` in a set-up `S`.
 pub struct Field<S, T> {

@@ -82,6 +82,22 @@ pub fn one<'a>(texts: &[&'a OsStr]) -> Result<&'a str, String> {
     }
 }
 
+/// A text and the numbers after its last `@`; `None` where what follows looks like no numbers, since a file's name may hold
+/// an `@` itself.
+///
+/// # Errors
+/// What is a number neither way.
+pub fn with_place(text: &OsStr) -> Result<Option<(&str, Vec<f32>)>, String> {
+    let is_number = |c: char| c.is_ascii_digit() || "+-.,eE ".contains(c);
+    match text.to_str().and_then(|text| text.rsplit_once('@')) {
+        Some((name, place)) if !place.is_empty() && place.chars().all(is_number) => {
+            let numbers = place.split(',').map(|part| parse_finite(part.trim())).collect::<Result<_, _>>()?;
+            Ok(Some((name, numbers)))
+        }
+        _ => Ok(None),
+    }
+}
+
 /// A number that is neither NaN nor infinite.
 ///
 /// # Errors

@@ -65,9 +65,11 @@ impl CausticsMap {
         volumes: &IlluminationVolumes,
         water: &WaterSurface,
         position_map: &Arc<ImageView>,
+        shadows: Option<&ShadowMap>,
     ) -> Result<Self, Error> {
         let Maps { map, drawn, coverage } = Maps::new(context)?;
-        let culled = CulledMap::new(context, lit, volumes, water, position_map, &drawn)?;
+        let scope = Scope { context, volumes, water, position_map: Some(position_map), shadows };
+        let culled = CulledMap::new(scope, lit, position_map, &drawn)?;
         Ok(CausticsMap { drawing: Drawing::Culled(Box::new(culled)), coverage, map })
     }
 

@@ -6,11 +6,10 @@ use std::sync::Arc;
 use ash::vk;
 use glam::DVec3;
 
-use super::illumination_volumes::IlluminationVolumes;
+use super::intersections::{OptionConstants, Options, Scope};
 use super::planes;
 use super::receiver::LitReceiver;
-use super::resources::{BLACK, Context};
-use super::water_surface::WaterSurface;
+use super::resources::BLACK;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
@@ -62,7 +61,6 @@ host_block! {
         absorption_per_m: f32,
         texel_area_m2: f32,
         vertices: u32,
-        coverage: u32,
     }
 }
 
@@ -78,6 +76,8 @@ pub struct CulledMap {
     caustics_map: Pass,
     constants: CullConstants,
     draw: DrawConstants,
+    /// In their place beside the thesis's reading.
+    options: Option<OptionConstants>,
 }
 
 impl CulledMap {
@@ -86,13 +86,12 @@ impl CulledMap {
     /// # Errors
     /// Errors of the Vulkan layer; [`Error::Limit`] for more pairs than a buffer can list.
     pub fn new(
-        context: Context<'_>,
+        scope: Scope<'_>,
         lit: &LitReceiver,
-        volumes: &IlluminationVolumes,
-        water: &WaterSurface,
         position_map: &Arc<ImageView>,
         drawn: &Arc<ImageView>,
     ) -> Result<Self, Error> {
+        let Scope { context, volumes, water, shadows, .. } = scope;
         let shaders = context.shaders;
         let offset = lit.aligned.center - volumes.reference;
         let mut uniform = Vec::new();
@@ -137,9 +136,32 @@ impl CulledMap {
         let extent = lit.aligned.extent;
         let center = [offset.x as f32, offset.z as f32];
         let texels = f64::from(context.parameters.map_size);
-        let coverage = context.parameters.coverage;
-        let drawn_texels = texels * f64::from(coverage);
         let vertices = water.grid.vertex_count();
+        let options = Options::of(scope);
+        let (vertex, fragment) = match (&options, shadows) {
+            (None, _) => ("caustics/culled.vert", "caustics/culled.frag"),
+            (Some(_), None) => {
+                ("caustics/caustics-map-options-kept.vert", "caustics/caustics-map-options-kept-off.frag")
+            }
+            (Some(_), Some(_)) => {
+                ("caustics/caustics-map-options-kept.vert", "caustics/caustics-map-options-kept-on.frag")
+            }
+        };
+        let mut caustics_map = Pass::graphics("caustics-map", "6.1", vertex, fragment)
+            .indices(&pairs)
+            .indirect(&arguments)
+            .with("position_map", position_map)
+            .with("nearest", context.nearest)
+            .with("cells", &cells)
+            .with("rays", &volumes.rays)
+            .color(drawn, BLACK, Blend::Add);
+        caustics_map = match options {
+            None => caustics_map.constants::<DrawConstants>(),
+            Some(_) => caustics_map.constants::<OptionConstants>(),
+        };
+        if let Some(shadows) = shadows {
+            caustics_map = caustics_map.with("shadow_map", &shadows.map);
+        }
         Ok(CulledMap {
             position_pyramid: Pass::compute("position-pyramid", "6.1", "caustics/position-pyramid.comp")
                 .constants::<LevelConstants>()
@@ -176,16 +198,7 @@ impl CulledMap {
                 .with("blocks", &block_sums)
                 .with("pairs", &pairs)
                 .build(shaders)?,
-            caustics_map: Pass::graphics("caustics-map", "6.1", "caustics/culled.vert", "caustics/culled.frag")
-                .indices(&pairs)
-                .indirect(&arguments)
-                .constants::<DrawConstants>()
-                .with("position_map", position_map)
-                .with("nearest", context.nearest)
-                .with("cells", &cells)
-                .with("rays", &volumes.rays)
-                .color(drawn, BLACK, Blend::Add)
-                .build(shaders)?,
+            caustics_map: caustics_map.build(shaders)?,
             constants: CullConstants {
                 center,
                 texels_per_m: [(texels / extent.x) as f32, (texels / extent.z) as f32],
@@ -204,10 +217,10 @@ impl CulledMap {
                 to_clip: [(2.0 / extent.x) as f32, (2.0 / extent.z) as f32],
                 up: volumes.axes.along(DVec3::Y).as_vec3().to_array(),
                 absorption_per_m: lit.absorption_per_m,
-                texel_area_m2: (extent.x * extent.z / drawn_texels.powi(2)) as f32,
+                texel_area_m2: (extent.x * extent.z / texels.powi(2)) as f32,
                 vertices,
-                coverage,
             },
+            options: options.map(|options| options.of_receiver(lit, volumes)),
             levels,
         })
     }
@@ -236,7 +249,11 @@ impl CulledMap {
             })?;
         }
         frame.graphics(&self.caustics_map, |draw| {
-            draw.constants(&self.draw).indices_indirect();
+            match &self.options {
+                None => draw.constants(&self.draw),
+                Some(options) => draw.constants(options),
+            }
+            .indices_indirect();
         })
     }
 }

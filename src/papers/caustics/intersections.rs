@@ -33,7 +33,7 @@ host_block! {
 
 host_block! {
     /// The same beside the thesis's reading.
-    struct OptionConstants {
+    pub(super) struct OptionConstants {
         center: [f32; 2],
         to_clip: [f32; 2],
         height: f32,
@@ -87,7 +87,7 @@ pub struct Scope<'a> {
 
 /// Numbers of a configuration that departs from the thesis's reading; those of the plane are zero.
 #[derive(Clone, Copy)]
-struct Options(OptionConstants);
+pub(super) struct Options(OptionConstants);
 
 /// A pass that draws the intersection triangles of each plane.
 pub struct Intersections {
@@ -175,7 +175,7 @@ fn builder(
     options: &Option<Options>,
 ) -> PassBuilder {
     if options.is_some() {
-        Pass::graphics(name, section, "caustics/caustics-map-options.vert", fragment)
+        Pass::graphics(name, section, "caustics/caustics-map-options-all.vert", fragment)
             .with("rays", &scope.volumes.rays)
             .indices(&scope.water.indices)
             .constants::<OptionConstants>()
@@ -189,7 +189,7 @@ fn builder(
 
 impl Options {
     /// `None` for the thesis's own reading.
-    fn of(Scope { context, volumes, water, shadows, .. }: Scope<'_>) -> Option<Self> {
+    pub(super) fn of(Scope { context, volumes, water, shadows, .. }: Scope<'_>) -> Option<Self> {
         let parameters = context.parameters;
         let by_vertex = parameters.intensity == IntensityRule::Vertex;
         if parameters.coverage == 1 && !by_vertex && shadows.is_none() {
@@ -211,6 +211,11 @@ impl Options {
             constants.shadow_top = (offset.y + bounds.extent.y / 2.0) as f32;
         }
         Some(Options(constants))
+    }
+
+    /// For triangles of all planes of a receiver, which have their planes from elsewhere.
+    pub(super) fn of_receiver(&self, lit: &LitReceiver, volumes: &IlluminationVolumes) -> OptionConstants {
+        self.of_plane(PlaneConstants::new(lit, &Cell { plane: 0.0, lower: 0.0, upper: 0.0 }, volumes), lit)
     }
 
     fn of_plane(&self, plane: PlaneConstants, lit: &LitReceiver) -> OptionConstants {

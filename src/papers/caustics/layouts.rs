@@ -3,12 +3,12 @@
 use super::culled_map::CellBlock;
 use super::illumination_volumes::Ray;
 use super::receiver::BoxBlock;
-use super::receiver_tree::Node;
 use super::stencil_volumes::VolumesBlock;
 use super::underwater::CameraBlock;
 use super::view::ViewBlock;
 use super::water_surface::{MapBlock, VERTEX_FLOATS, WaveBlock};
 use crate::papers::layout::{block, check_block, check_constants_member, check_list};
+use crate::papers::triangle_tree::Node;
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
@@ -16,7 +16,7 @@ fn the_buffers_hold_what_the_shaders_read() {
         check_list::<WaveBlock>(shader, "waves");
     }
     check_list::<Ray>("caustics/illumination-volumes.comp", "rays");
-    for shader in ["caustics/cull.comp", "caustics/culled.vert"] {
+    for shader in ["caustics/cull.comp", "caustics/culled.vert", "caustics/caustics-map-options-kept.vert"] {
         check_list::<CellBlock>(shader, "cells");
     }
     for shader in ["caustics/cull.comp", "caustics/cull-bounds.comp", "caustics/culled.vert"] {

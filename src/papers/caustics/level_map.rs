@@ -94,7 +94,7 @@ impl LevelMap {
             };
             let shadows = shadow_maps.get(lit.light);
             let caustics_map = if is_culled {
-                CausticsMap::culled(context, lit, volumes, water, maps.position())?
+                CausticsMap::culled(context, lit, volumes, water, maps.position(), shadows)?
             } else {
                 CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?
             };

@@ -34,7 +34,6 @@ mod position_diffuse_map;
 mod position_map;
 mod read_positions;
 mod receiver;
-mod receiver_tree;
 mod receivers;
 pub mod reference;
 mod reference_planes;
@@ -85,6 +84,11 @@ pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Flo
 
 /// Parameters of the viewer and the clock alone, as constants.
 pub const DRAWN: [&str; 3] = ["camera", "samples", "time-step"];
+
+/// Slope of water, root of the mean square, above which point sampling is warned of.
+const STEEP: f64 = 0.12;
+/// The coverage that ends the warning.
+const AVERAGED: u32 = 4;
 
 /// The paper under one variant.
 pub struct Caustics {
@@ -255,6 +259,36 @@ impl Caustics {
         self.lit_receivers.iter().map(|lit| lit.cells.len()).collect()
     }
 
+    /// The warning when the light that reaches the receivers passes water beyond the border of a height map.
+    fn small_map(&self) -> Option<String> {
+        let map = self.parameters.water_map.as_ref()?;
+        let (map_m, mesh_m) = (map.extent_m(), self.grid().extent_m());
+        map_m.cmplt(mesh_m).any().then(|| {
+            format!(
+                "the water map {} covers {:.2} x {:.2} m of the water's mesh of {:.2} x {:.2} m; beyond its border the \
+                 border's heights go on",
+                map.name(),
+                map_m.x,
+                map_m.y,
+                mesh_m.x,
+                mesh_m.y
+            )
+        })
+    }
+
+    /// The warning when maps are sampled at texel centres under water that folds its light strongly.
+    fn steep_water(&self) -> Option<String> {
+        let slope = self.parameters.mean_slope();
+        let is_sampled = !self.lit_receivers.is_empty() && self.parameters.coverage < AVERAGED;
+        (is_sampled && slope > STEEP).then(|| {
+            format!(
+                "water of slope {slope:.2} (root of the mean square) folds its light: a caustics map that is sampled at texel \
+                 centres, as the thesis's is, misses slivers of folded triangles or takes them for too bright; `coverage` \
+                 {AVERAGED} or more averages them"
+            )
+        })
+    }
+
     fn time_s(&self, number: u32) -> f64 {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }
@@ -375,6 +409,10 @@ impl Paper for Caustics {
         self.record(frame, number)?;
         self.is_viewed = true;
         self.view.record(frame, self.time_s(number))
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.small_map().into_iter().chain(self.steep_water()).collect()
     }
 
     fn camera(&self) -> Option<Camera> {

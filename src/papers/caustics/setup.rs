@@ -11,7 +11,6 @@ use super::axes;
 use super::experiments::{self, Options};
 use crate::field;
 use crate::gpu::{self, Device, Feature, Mode, ShaderLibrary};
-use crate::measure::Error;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
 use crate::measure::estimate::Estimate;
@@ -21,9 +20,8 @@ use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::papers::caustics::{
-    Caustics, DRAWN, IntensityRule, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap,
-};
+use crate::measure::{Error, Paper as _};
+use crate::papers::caustics::{Caustics, DRAWN, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
@@ -35,11 +33,6 @@ const GAP_M: f32 = 0.3;
 const FLOOR_CELLS: u32 = 8;
 /// Side of the pool's floor in receivers.
 const FLOOR_SIZE: f32 = 3.0;
-
-/// Slope of water, root of the mean square, above which point sampling is warned of.
-const STEEP: f64 = 0.12;
-/// The coverage that ends the warning.
-const AVERAGED: u32 = 4;
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -209,10 +202,7 @@ impl Study for Setup {
         let floors = floors_ms(machine, measured)?;
         let metrics = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Metrics {
             results: results(&built.paper, measurement, floor_ms),
-            warnings: [self.small_map(&built.paper), self.steep_water(&built.paper), self.unheeded(built.variant)]
-                .into_iter()
-                .flatten()
-                .collect(),
+            warnings: built.paper.warnings(),
         });
         Ok(metrics.collect())
     }
@@ -389,48 +379,6 @@ pub fn water_map(source: &HeightMapSource, spacing_m: Option<f32>, range_m: Opti
         map = map.with_spacing_m(DVec2::splat(f64::from(spacing_m)))?;
     }
     Ok(WaterMap::new(source.to_string(), Arc::new(map)))
-}
-
-impl Setup {
-    /// The warning when the light that reaches the receivers passes water beyond the border of a height map.
-    fn small_map(&self, paper: &Caustics) -> Option<String> {
-        let map = self.parameters.water_map.as_ref()?;
-        let (map_m, mesh_m) = (map.extent_m(), paper.grid().extent_m());
-        map_m.cmplt(mesh_m).any().then(|| {
-            format!(
-                "the water map {} covers {:.2} x {:.2} m of the water's mesh of {:.2} x {:.2} m; beyond its border the \
-                 border's heights go on",
-                map.name(),
-                map_m.x,
-                map_m.y,
-                mesh_m.x,
-                mesh_m.y
-            )
-        })
-    }
-}
-
-impl Setup {
-    /// The warning when options are given that a variant does not heed.
-    fn unheeded(&self, variant: Variant) -> Option<String> {
-        let is_given = self.parameters.intensity == IntensityRule::Vertex || self.parameters.shadows;
-        (is_given && variant == Variant::Culled).then(|| {
-            "culled heeds neither `intensity` vertex nor `shadows`: its light is the level map's without".to_owned()
-        })
-    }
-
-    /// The warning when maps are sampled at texel centres under water that folds its light strongly.
-    fn steep_water(&self, paper: &Caustics) -> Option<String> {
-        let slope = self.parameters.mean_slope();
-        let is_sampled = !paper.plane_counts().is_empty() && self.parameters.coverage < AVERAGED;
-        (is_sampled && slope > STEEP).then(|| {
-            format!(
-                "water of slope {slope:.2} (root of the mean square) folds its light: a caustics map that is sampled at texel \
-                 centres, as the thesis's is, misses slivers of folded triangles or takes them for too bright; `coverage` \
-                 {AVERAGED} or more averages them"
-            )
-        })
-    }
 }
 
 fn map_value(map: &WaterMap) -> Json {

@@ -7,7 +7,6 @@ use ash::vk;
 
 use super::parameters::Parameters;
 use super::receiver::ReceiverInput;
-use super::receiver_tree::ReceiverTree;
 use super::resources::Context;
 use super::underwater::Underwater;
 use super::water::LEVEL_M;
@@ -15,6 +14,7 @@ use super::water_surface::{MapBlock, Shape, WaterSurface};
 use crate::gpu::transfer::{read_image, update};
 use crate::gpu::{Blend, Buffer, Device, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
+use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
 
 host_block! {
     pub struct ViewBlock {
@@ -92,7 +92,8 @@ impl View {
         let Context { shaders, parameters, nearest, .. } = context;
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
         let picture = context.image("picture", vk::Format::R8G8B8A8_SRGB, usage)?.view()?;
-        let tree = ReceiverTree::new(context, receivers)?;
+        let tree = TriangleTree::over(receivers.iter().map(|receiver| &receiver.mesh));
+        let tree = DeviceTree::new(context.device(), context.label, &tree)?;
         let block = block(parameters, underwater, tree.node_count);
         let view = context.upload("view", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
         let pass = |shader| {

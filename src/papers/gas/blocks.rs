@@ -40,6 +40,8 @@ host_block! {
         lights: u32,
         octaves: u32,
         attenuations: u32,
+        samples: u32,
+        jitter: u32,
     }
 }
 
@@ -252,6 +254,8 @@ impl CountsBlock {
             lights: parameters.lights.len() as u32,
             octaves: parameters.octaves(),
             attenuations: gas.has_attenuations.into(),
+            samples: parameters.samples,
+            jitter: parameters.jitter as u32,
         }
     }
 }

@@ -12,6 +12,7 @@ mod a_buffer;
 mod axes;
 mod band;
 mod blocks;
+mod blue_noise;
 mod capacity;
 mod context;
 mod density_table;

@@ -7,10 +7,11 @@ use ash::vk;
 use super::blocks::{
     CountsBlock, FrameBlock, GasUse, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets,
 };
+use super::blue_noise;
 use super::capacity::Capacity;
 use super::context::Context;
 use super::model::Object;
-use super::parameters::Parameters;
+use super::parameters::{Jitter, Parameters};
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, BufferDesc, Error, Location};
 
@@ -28,6 +29,8 @@ pub struct SceneBuffers {
     pub lights: Arc<Buffer>,
     /// The random table of the fog's front, floats.
     pub offsets: Arc<Buffer>,
+    /// The mask of blue noise, if it is used: ranks.
+    pub jitter: Arc<Buffer>,
     /// Vertices of all objects, [`VertexBlock`]s.
     pub vertices: Arc<Buffer>,
     /// Triangles of all objects, [`TriangleBlock`]s.
@@ -56,6 +59,10 @@ impl SceneBuffers {
             volumes.push(bytemuck::Zeroable::zeroed());
         }
         let lights: Vec<LightBlock> = parameters.lights.iter().map(LightBlock::from).collect();
+        let mask = match parameters.jitter {
+            Jitter::Random => vec![0],
+            Jitter::BlueNoise => blue_noise::mask(parameters.seed),
+        };
         let mut vertices = Vec::new();
         let mut triangles = Vec::new();
         for (number, object) in objects.iter().enumerate() {
@@ -80,6 +87,7 @@ impl SceneBuffers {
             volumes: storage("volumes", bytemuck::cast_slice(&volumes))?,
             lights: storage("lights", bytemuck::cast_slice(&lights))?,
             offsets: storage("offsets", bytemuck::cast_slice(&offsets(parameters.seed)))?,
+            jitter: storage("jitter", bytemuck::cast_slice(&mask))?,
             vertices: storage("vertices", bytemuck::cast_slice(&vertices))?,
             triangles: storage("triangles", bytemuck::cast_slice(&triangles))?,
             objects: mapped("objects", size_of::<ObjectBlock>() * objects.len().max(1), STORAGE)?,

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use super::axes;
 use super::capacity::BufferLimit;
 use super::experiments::{self, Options};
+use super::parameters::placed_object::PlacedObject;
 use super::parameters::volumes::{self, Placement};
 use super::parameters::{default_volume, validate_object};
 use crate::field;
@@ -25,7 +26,7 @@ use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
-use crate::scene::{Light, MeshSource};
+use crate::scene::Light;
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -34,8 +35,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// The scene whose surfaces there are.
     pub scene: Preset,
-    /// Polygon meshes that stand in the scene beside its own surfaces, at their own size.
-    pub objects: Vec<MeshSource>,
+    /// Polygon meshes that stand in the scene beside its own surfaces.
+    pub objects: Vec<PlacedObject>,
     /// Triangles that all surfaces together are divided into at least; as they are, without.
     pub surface_triangles: Option<u64>,
     /// Layers behind the scene that each fill the picture.
@@ -158,7 +159,7 @@ impl Study for Setup {
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
-            objects.push(Object::new(source.load()?, Vec3::splat(0.6)));
+            objects.push(source.load()?);
         }
         self.divide_surfaces(&mut objects);
         objects.extend(self.layers());
@@ -266,7 +267,9 @@ impl Study for Setup {
             Parameter::new("object", field!(Setup.objects))
                 .help(
                     "Polygon mesh in the scene: teapot, sphere, box, bunny, plane, or an OBJ, PLY, STL, glTF or GLB \
-                     file",
+                     file. Without a place it has the file's own coordinates in metres and is grey; \
+                     @X,Y,Z[,DEGREES[,SCALE[,R,G,B[,OPACITY]]]]: the middle of its lower side in metres, its turn about the \
+                     vertical, the factor of its own size, its colour, linear, and its opacity, each 0 to 1",
                 )
                 .cost(Cost::Buffers)
                 .everyday(),

@@ -41,6 +41,7 @@ impl VolumeMarch {
             .with("Volumes", &scene.volumes)
             .with("Lights", &scene.lights)
             .with("Offsets", &scene.offsets)
+            .with("Jitter", &scene.jitter)
             .with("Heads", &lists.heads)
             .with("Links", &lists.links)
             .with("Pixels", &lists.pixels)

@@ -59,6 +59,7 @@ use self::read_positions::ReadPositions;
 use self::splats::Splats;
 use self::targets::{Context, EMPTY};
 use self::visibility::Visibility;
+use crate::gpu::transfer::read_image;
 use crate::gpu::{Blend, Buffer, Error, Feature, Frame, ImageView, Load, Pass, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
@@ -98,8 +99,12 @@ pub struct Lava {
     pub splatting: Splatting,
     /// `None` without polygon objects.
     objects: Option<Objects>,
-    /// On objects that the camera cannot show.
-    object_warnings: Vec<String>,
+    /// On lava and objects that the camera cannot show.
+    view_warnings: Vec<String>,
+    /// The objects' meshes, to be held against the surface once it is drawn.
+    meshes: Vec<Mesh>,
+    /// On objects under the surface of the last frame.
+    buried: Vec<String>,
     /// `None` but for a picture of particles instead of the surface.
     points: Option<ParticlePoints>,
     lacks_geometry_stage: bool,
@@ -246,8 +251,20 @@ impl Paper for Lava {
         }
     }
 
+    /// Looks for objects under the surface.
+    fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        if !self.meshes.is_empty() {
+            let surface = &self.isosurface.normal_height.surface;
+            let bytes = read_image(shaders.device(), surface)?;
+            let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
+            let (columns, rows) = (surface.width(), surface.height());
+            self.buried = placement::buried(&self.meshes, &texels, columns, rows, self.parameters.space_m);
+        }
+        Ok(true)
+    }
+
     fn warnings(&self) -> Vec<String> {
-        let mut warnings = self.object_warnings.clone();
+        let mut warnings = [&self.view_warnings[..], &self.buried].concat();
         if self.lacks_geometry_stage {
             warnings.push(
                 "the device has no geometry stage: the splats are instanced quads, so times of `accumulate-depths`, \
@@ -303,6 +320,7 @@ impl Lava {
         rock: &Rock,
         objects: &[Mesh],
     ) -> Result<Self, Error> {
+        let parameters = &reaching(parameters, objects);
         let context = Context { shaders, label, parameters };
         let has_geometry_stage = shaders.device().physical().has(Feature::GeometryShader);
         let instanced = !(parameters.geometry_stage && has_geometry_stage);
@@ -310,7 +328,8 @@ impl Lava {
         let isosurface = Isosurface::new(context, &animation.cluster.vertices, instanced)?;
         let splatting = Splatting::new(shaders, label, parameters, &isosurface.normal_height.surface, rock, instanced)?;
         let Splatting { splats, visibility, normalisation, .. } = &splatting;
-        let object_warnings = placement::warnings(objects, &parameters.camera, parameters.aspect());
+        let view_warnings = view_warnings(parameters, objects);
+        let meshes = objects.to_vec();
         let objects = match objects {
             [] => None,
             meshes => Some(Objects::new(context, meshes, splats, visibility, normalisation)?),
@@ -327,7 +346,9 @@ impl Lava {
             isosurface,
             splatting,
             objects,
-            object_warnings,
+            view_warnings,
+            meshes,
+            buried: Vec::new(),
             points,
             lacks_geometry_stage,
             repeats: false,
@@ -340,6 +361,7 @@ impl Lava {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn set_drawn(&mut self, parameters: &Parameters, rock: &Rock, objects: &[Mesh]) -> Result<(), Error> {
+        let parameters = &reaching(parameters, objects);
         self.parameters = parameters.clone();
         self.splatting.splats.set_scene(parameters, rock)?;
         self.splatting.normalisation.set_tone(parameters);
@@ -349,7 +371,7 @@ impl Lava {
         if let Some(drawn) = &mut self.objects {
             drawn.set_constants(parameters);
         }
-        self.object_warnings = placement::warnings(objects, &parameters.camera, parameters.aspect());
+        self.view_warnings = view_warnings(parameters, objects);
         Ok(())
     }
 
@@ -378,6 +400,19 @@ impl Lava {
         // Whole tiles change nothing and would cost precision.
         (drift_m % f64::from(self.parameters.rock_tile_m)) as f32
     }
+}
+
+/// The numbers with a camera that reaches space and objects.
+fn reaching(parameters: &Parameters, objects: &[Mesh]) -> Parameters {
+    let camera = placement::reaching(&parameters.camera, parameters.space_m, objects, parameters.aspect());
+    Parameters { camera, ..parameters.clone() }
+}
+
+/// Lines on lava and objects that the camera cannot show.
+fn view_warnings(parameters: &Parameters, objects: &[Mesh]) -> Vec<String> {
+    let Parameters { camera, space_m, width, height, .. } = parameters;
+    let of_space = placement::space_warning(camera, *space_m, (*width, *height));
+    of_space.into_iter().chain(placement::warnings(objects, camera, parameters.aspect())).collect()
 }
 
 impl Animation {

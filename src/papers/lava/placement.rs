@@ -3,12 +3,12 @@
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 use serde_json::{Value as Json, json};
 
 use crate::measure::Error;
-use crate::measure::parameter::{Shape, Value, one, parse_finite};
-use crate::scene::{Camera, Mesh, MeshSource};
+use crate::measure::parameter::{Shape, Value, one, with_place};
+use crate::scene::{Bounds, Camera, Mesh, MeshSource};
 
 /// Place of an object in the simulation space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,21 +67,99 @@ impl Object {
     }
 }
 
+/// The camera with its near and far plane moved so that space and objects lie between them, where they do not: a view from
+/// far away is no reason for a black picture. `aspect` is the picture's width over height.
+pub fn reaching(camera: &Camera, space_m: Vec3, meshes: &[Mesh], aspect: f32) -> Camera {
+    let space = Bounds { min: Vec3::ZERO, max: space_m };
+    let all: Vec<Bounds> = meshes.iter().map(Mesh::bounds).chain([space]).collect();
+    let forward = (camera.target - camera.eye).normalize_or(Vec3::NEG_Z);
+    let depth = |corner: Vec3| (corner - camera.eye).dot(forward);
+    let farthest = |b: &Bounds| depth(Vec3::select(forward.cmpgt(Vec3::ZERO), b.max, b.min));
+    let far_m = 1.01 * all.iter().map(farthest).fold(0.0, f32::max);
+    if far_m <= camera.far_m || !far_m.is_finite() {
+        return *camera;
+    }
+    // What is seen at some distance has at least so much of it along the view.
+    let half = (camera.vertical_fov_rad / 2.0).tan();
+    let along = (1.0 + half * half * (1.0 + aspect * aspect)).sqrt().recip();
+    let distance = |b: &Bounds| camera.eye.distance(camera.eye.clamp(b.min, b.max));
+    let nearest_m = all.iter().map(distance).fold(f32::INFINITY, f32::min);
+    Camera { near_m: camera.near_m.max(0.9 * along * nearest_m), far_m, ..*camera }
+}
+
+/// Pixels below which the lava is hard to find in a picture.
+const FEW_PIXELS: f32 = 8.0;
+
+/// A line where the camera does not show the space, or shows it as a few pixels of a picture of `width` x `height`.
+pub fn space_warning(camera: &Camera, space_m: Vec3, (width, height): (u32, u32)) -> Option<String> {
+    let to_clip = camera.projection(width as f32 / height as f32) * camera.view();
+    let corners = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * space_m);
+    let clip: Vec<Vec4> = corners.map(|corner| to_clip * corner.extend(1.0)).collect();
+    if is_outside(&clip) {
+        return Some("the lava is outside the picture: turn `camera` towards it".to_owned());
+    }
+    if clip.iter().any(|corner| corner.w <= 0.0) {
+        return None;
+    }
+    let places = clip.iter().map(|corner| corner.truncate().truncate() / corner.w);
+    let (low, high) = places.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let pixels = ((high - low) / 2.0 * Vec2::new(width as f32, height as f32)).max_element();
+    (pixels < FEW_PIXELS).then(|| {
+        format!("the lava is {pixels:.1} pixels large in the picture: bring `camera` nearer, or make `size` larger")
+    })
+}
+
+/// Whether all points lie beyond one side of the picture or of its depths.
+fn is_outside(clip: &[Vec4]) -> bool {
+    let beyond = |is_beyond: fn(Vec4) -> bool| clip.iter().all(|&p| is_beyond(p));
+    beyond(|p| p.x > p.w)
+        || beyond(|p| p.x < -p.w)
+        || beyond(|p| p.y > p.w)
+        || beyond(|p| p.y < -p.w)
+        || beyond(|p| p.z > p.w)
+        || beyond(|p| p.z < 0.0)
+}
+
+/// Lines on the objects that lie under the surface wholly. `surface` has a texel for each of `columns` x `rows` over the
+/// space, normals and heights in metres.
+pub fn buried(meshes: &[Mesh], surface: &[[f32; 4]], columns: u32, rows: u32, space_m: Vec3) -> Vec<String> {
+    let texels = Vec2::new(columns as f32, rows as f32);
+    // The least height around a place: no interpolation lies lower.
+    let height_m = |place: Vec3| {
+        let at = Vec2::new(place.x / space_m.x, place.z / space_m.z) * texels - 0.5;
+        let texel = |x: f32, y: f32| {
+            let [x, y] = [x.clamp(0.0, texels.x - 1.0), y.clamp(0.0, texels.y - 1.0)].map(|c| c as usize);
+            surface.get(y * columns as usize + x).map_or(f32::NEG_INFINITY, |texel| texel[3])
+        };
+        let (low, high) = (at.floor(), at.floor() + 1.0);
+        texel(low.x, low.y).min(texel(high.x, low.y)).min(texel(low.x, high.y)).min(texel(high.x, high.y))
+    };
+    let is_under = |place: &Vec3| {
+        let is_inside = place.x >= 0.0 && place.x <= space_m.x && place.z >= 0.0 && place.z <= space_m.z;
+        is_inside && place.y < height_m(*place)
+    };
+    let warning = |(number, mesh): (usize, &Mesh)| {
+        let highest_m = mesh.bounds().max.y;
+        mesh.positions.iter().all(is_under).then(|| {
+            let all = meshes.len();
+            format!(
+                "`object` {number} of {all}, {}, lies under the lava, which hides it from above: its highest point is at \
+                 {highest_m} m",
+                mesh.name
+            )
+        })
+    };
+    (1..).zip(meshes).filter_map(warning).collect()
+}
+
 /// Lines on the objects that a camera cannot show: outside of its view, or around its eye. `aspect` is the picture's
 /// width over height.
 pub fn warnings(meshes: &[Mesh], camera: &Camera, aspect: f32) -> Vec<String> {
     let to_clip = camera.projection(aspect) * camera.view();
     let warning = |(number, mesh): (usize, &Mesh)| {
         let clip: Vec<_> = mesh.positions.iter().map(|p| to_clip * p.extend(1.0)).collect();
-        let beyond = |is_beyond: fn(glam::Vec4) -> bool| clip.iter().all(|&p| is_beyond(p));
-        let is_outside = beyond(|p| p.x > p.w)
-            || beyond(|p| p.x < -p.w)
-            || beyond(|p| p.y > p.w)
-            || beyond(|p| p.y < -p.w)
-            || beyond(|p| p.z > p.w)
-            || beyond(|p| p.z < 0.0);
         let bounds = mesh.bounds();
-        let lies = if is_outside {
+        let lies = if is_outside(&clip) {
             "is outside the picture"
         } else if bounds.contains(camera.eye) {
             "surrounds the camera"
@@ -101,15 +179,12 @@ impl Value for Object {
     fn parse(texts: &[&OsStr]) -> Result<Self, String> {
         let source = |text: &OsStr| <MeshSource as Value>::parse(&[text]);
         let [text] = texts else { return one(texts).map(|_| Object { source: MeshSource::Box, place: Place::Fitted }) };
-        // A file's name may hold an @ itself: only what looks like a place is one.
-        let placed = text.to_str().and_then(|text| text.rsplit_once('@'));
-        let is_number = |c: char| c.is_ascii_digit() || "+-.,eE ".contains(c);
-        match placed {
-            Some((name, "own")) => Ok(Object { source: source(OsStr::new(name))?, place: Place::Own }),
-            Some((name, place)) if !place.is_empty() && place.chars().all(is_number) => {
-                Ok(Object { source: source(OsStr::new(name))?, place: at(place)? })
-            }
-            _ => Ok(Object { source: source(text)?, place: Place::Fitted }),
+        if let Some(name) = text.to_str().and_then(|text| text.strip_suffix("@own")) {
+            return Ok(Object { source: source(OsStr::new(name))?, place: Place::Own });
+        }
+        match with_place(text)? {
+            Some((name, numbers)) => Ok(Object { source: source(OsStr::new(name))?, place: at(&numbers)? }),
+            None => Ok(Object { source: source(text)?, place: Place::Fitted }),
         }
     }
 
@@ -135,9 +210,8 @@ impl Value for Object {
 }
 
 /// `X,Y,Z[,DEGREES[,SCALE]]`.
-fn at(text: &str) -> Result<Place, String> {
-    let numbers = text.split(',').map(|part| parse_finite(part.trim())).collect::<Result<Vec<_>, _>>()?;
-    let (base, turn_deg, scale) = match numbers[..] {
+fn at(numbers: &[f32]) -> Result<Place, String> {
+    let (base, turn_deg, scale) = match *numbers {
         [x, y, z] => ([x, y, z], 0.0, None),
         [x, y, z, turn_deg] => ([x, y, z], turn_deg, None),
         [x, y, z, turn_deg, scale] => ([x, y, z], turn_deg, Some(scale)),
@@ -195,6 +269,43 @@ mod tests {
         assert!(is_near(placed.min + 0.25 * Vec3::new(side.z, 0.0, side.x), Vec3::new(0.5, 0.25, 1.0)), "{placed:?}");
         assert!(parse("box@0,0,0,0,1e38").unwrap().load(space).is_ok());
         assert!(parse("box@0,0,0,0,3e38").unwrap().load(space).is_err());
+    }
+
+    #[test]
+    fn a_camera_reaches_what_there_is_to_see() {
+        let near = crate::papers::lava::CAMERAS[0].1;
+        let space = Vec3::new(4.0, 1.0, 1.0);
+        assert_eq!(reaching(&near, space, &[], 1.5), near);
+        let away = Camera { eye: Vec3::new(2.0, 3000.0, 4000.0), ..near };
+        let camera = reaching(&away, space, &[], 1.5);
+        assert!(camera.near_m > 3500.0 && camera.near_m < 4999.0 && camera.far_m > 5000.0, "{camera:?}");
+        let beside = parse("sphere@-0.7,3.0,2.2").unwrap().load(space).unwrap();
+        let camera = reaching(&away, space, &[beside], 1.5);
+        assert!(camera.near_m < 4990.0 && camera.far_m < 5100.0);
+    }
+
+    #[test]
+    fn a_picture_without_lava_says_so() {
+        let (near, space) = (crate::papers::lava::CAMERAS[0].1, Vec3::new(4.0, 1.0, 1.0));
+        assert_eq!(space_warning(&near, space, (800, 600)), None);
+        let inside = Camera { eye: Vec3::new(2.0, 0.9, 0.5), ..near };
+        assert_eq!(space_warning(&inside, space, (800, 600)), None);
+        let away = Camera { target: 2.0 * near.eye, ..near };
+        assert!(space_warning(&away, space, (800, 600)).unwrap().contains("outside"));
+        let far = reaching(&Camera { eye: 1000.0 * near.eye, ..near }, space, &[], 1.5);
+        assert!(space_warning(&far, space, (800, 600)).unwrap().contains("pixels large"));
+    }
+
+    #[test]
+    fn what_lies_under_the_surface_wholly_is_named() {
+        let space = Vec3::new(4.0, 1.0, 1.0);
+        // A slope from 0 at x = 0 to 0.9 m.
+        let surface: Vec<[f32; 4]> = (0..2).flat_map(|_| (0..4).map(|x| [0.0, 1.0, 0.0, 0.3 * x as f32])).collect();
+        let said = |text: &str| buried(&[parse(text).unwrap().load(space).unwrap()], &surface, 4, 2, space);
+        assert!(said("sphere@3,0,0.5,0,0.1")[0].contains("under the lava"));
+        for text in ["sphere@1,0,0.5,0,0.2", "sphere@3,0.9,0.5,0,0.1", "sphere@5,-3,0.5,0,0.1"] {
+            assert!(said(text).is_empty(), "{text}");
+        }
     }
 
     #[test]

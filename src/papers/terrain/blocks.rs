@@ -21,7 +21,7 @@ host_block! {
     pub struct TerrainBlock {
         /// The camera, in the map's frame.
         pub eye: Vec3,
-        /// Nodes that a pixel covers at a depth of 1 m.
+        /// Nodes that a pixel covers at a depth of 1 m; on steep land those over which it rises by a pixel.
         pub pixel_nodes: f32,
         /// To the middle of pixel (0, 0), for 1 m of depth.
         pub corner_direction: Vec3,
@@ -131,6 +131,9 @@ host_block! {
         pub drape_first_column: f32,
         /// 1 where a picture lies over the first map.
         pub is_draped: i32,
+        /// World, metres.
+        pub eye: Vec3,
+        _pad: f32,
     }
 }
 
@@ -168,7 +171,7 @@ impl TerrainBlock {
         let to_sun = ground.to_frame.transform_vector3(parameters.sun.direction().as_dvec3());
         let flat = TerrainBlock {
             eye: framed.eye.as_vec3(),
-            pixel_nodes: (rays.pixel_m() / ground.spacing_m.max_element()) as f32,
+            pixel_nodes: (rays.pixel_m() / ground.spacing_m.max_element() / ground.steepness) as f32,
             corner_direction: framed.corner.as_vec3(),
             near_m,
             right_step: framed.across.as_vec3(),
@@ -249,6 +252,8 @@ impl LightBlock {
             drape_cells: UVec2::new(columns, shape.height - 1).as_vec2(),
             drape_first_column: if repeated > 0 { repeated as f32 - 0.5 } else { 0.0 },
             is_draped: scene.is_draped.into(),
+            eye: rays.eye.as_vec3(),
+            _pad: 0.0,
         }
     }
 }

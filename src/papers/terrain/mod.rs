@@ -1,9 +1,9 @@
 //! `terrain`: S. I. Vyatkin's terrain from a shape texture, ray-cast without triangles.
 //!
 //! ```text
-//! geometric-transformation (host) ─► depth ─► normal (─► shadow) ─► illumination
-//!                                                    (─► object-depth (─► object-hits ─► object-shadow) ─► objects)
-//! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow) ─► illumination (...)   (mesh)
+//! geometric-transformation (host) ─► depth ─► normal (─► shadow (─► occlusion)) ─► illumination
+//!                                  (─► object-depth (─► object-hits ─► object-shadow ─► object-occlusion) ─► objects)
+//! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow (─► occlusion)) ─► illumination (...)   (mesh)
 //! ```
 
 mod axes;
@@ -34,6 +34,7 @@ mod object_hits;
 mod object_shadow;
 mod object_source;
 mod objects;
+mod occlusion;
 mod parameters;
 mod placement;
 mod pyramid;
@@ -68,6 +69,7 @@ use self::object_hits::ObjectHits;
 use self::object_shadow::object_shadow;
 pub use self::object_source::{ObjectSource, Stand};
 use self::objects::{ObjectMesh, Objects};
+use self::occlusion::{HostOcclusion, occlusion};
 pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Cover, Pyramid, Shape, Texel};
@@ -79,6 +81,7 @@ use self::stage::{Build, PixelPass, Stage, Traversal};
 use crate::gpu::transfer::read_image;
 use crate::gpu::{DepthTest, Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
+use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
 use crate::scene::{Camera, HeightMap, Suspect};
 
 /// The features that this paper needs of a device, beyond the baseline of the Vulkan layer.
@@ -111,6 +114,8 @@ struct HostPasses {
     depth: HostDepth,
     normal: HostNormal,
     shadow: Option<HostShadow>,
+    /// With objects that throw shadows.
+    occlusion: Option<HostOcclusion>,
     illumination: HostIllumination,
     show: Show,
 }
@@ -120,6 +125,8 @@ struct Shading {
     depth: Arc<ImageView>,
     normal: PixelPass,
     shadow: Option<PixelPass>,
+    /// With objects that throw shadows.
+    occlusion: Option<PixelPass>,
     illumination: PixelPass,
 }
 
@@ -127,9 +134,16 @@ struct Shading {
 struct ObjectPasses {
     meshes: Vec<ObjectMesh>,
     depth: ObjectDepth,
-    /// None where the maps throw no shadows.
-    shadow: Option<(ObjectHits, PixelPass)>,
+    /// None where nothing throws shadows.
+    shadow: Option<ObjectShadows>,
     objects: Objects,
+}
+
+/// Where objects are seen, and what reaches them of the sun's light past the maps and past each other.
+struct ObjectShadows {
+    hits: ObjectHits,
+    shadow: PixelPass,
+    occlusion: PixelPass,
 }
 
 impl Terrain {
@@ -165,23 +179,25 @@ impl Terrain {
         let build = Build { shaders, label, parameters, stage, traversal };
         let scene = Scene::new(parameters, inputs);
         let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene.maps, (drape, traversal));
+        let casts = parameters.shadows && !inputs.objects.is_empty();
+        let tree = casts.then(|| TriangleTree::over(inputs.objects));
+        let device_tree = tree.as_ref().map(|tree| DeviceTree::new(shaders.device(), label, tree)).transpose()?;
         let (device_scene, technique) = match variant {
             Variant::Cpu => {
-                let host = HostPasses::new(&build, &scene, inputs.drape)?;
-                let shades_objects = parameters.shadows && !inputs.objects.is_empty();
-                (shades_objects.then(|| on_device(None)).transpose()?, Technique::Cpu(host))
+                let host = HostPasses::new(&build, &scene, inputs.drape, tree)?;
+                (casts.then(|| on_device(None)).transpose()?, Technique::Cpu(host))
             }
             Variant::GpuCompute | Variant::GpuFragment | Variant::DdaCompute | Variant::DdaFragment => {
                 let maps = on_device(inputs.drape)?;
                 let depth = depth(&build, &maps)?;
-                let shading = Shading::new(&build, &maps, &depth.target)?;
+                let shading = Shading::new(&build, &maps, &depth.target, device_tree.as_ref())?;
                 (Some(maps), Technique::RayCast(depth, shading))
             }
             Variant::Mesh => {
                 let maps = on_device(inputs.drape)?;
                 let base = BasePass::new(&build, &maps)?;
                 let mesh = Mesh::new(&build, &scene.grounds, &maps, &base)?;
-                let shading = Shading::new(&build, &maps, &base.target)?;
+                let shading = Shading::new(&build, &maps, &base.target, device_tree.as_ref())?;
                 (Some(maps), Technique::Mesh(base, mesh, shading))
             }
         };
@@ -194,10 +210,10 @@ impl Terrain {
             objects: None,
         };
         if !inputs.objects.is_empty() {
-            let maps = terrain.device_scene.as_ref().filter(|_| parameters.shadows);
+            let casters = terrain.device_scene.as_ref().zip(device_tree.as_ref());
             let build = Build { stage: Stage::Fragment, ..build };
             let (depth, picture) = (terrain.depth(), terrain.picture());
-            terrain.objects = Some(ObjectPasses::new(&build, inputs.objects, (depth, picture), maps)?);
+            terrain.objects = Some(ObjectPasses::new(&build, inputs.objects, (depth, picture), casters)?);
         }
         Ok(terrain)
     }
@@ -234,7 +250,10 @@ impl Terrain {
                 let maps = (&host.maps[..], &view);
                 let hits = host.depth.record(frame, maps);
                 let normals = host.normal.record(frame, maps, hits);
-                let sunlit = host.shadow.as_mut().map_or(&[][..], |shadow| shadow.record(frame, maps, hits));
+                let mut sunlit = host.shadow.as_mut().map_or(&[][..], |shadow| shadow.record(frame, maps, hits));
+                if let Some(occlusion) = &mut host.occlusion {
+                    sunlit = occlusion.record(frame, &view, (hits, sunlit));
+                }
                 let colors = host.illumination.record(frame, &view, (hits, normals, sunlit));
                 // Polygons are drawn by the device, so the processor's picture has to be there first.
                 if shows || self.objects.is_some() {
@@ -271,7 +290,8 @@ pub fn void_warnings<'a>(maps: impl ExactSizeIterator<Item = &'a HeightMap>) -> 
 }
 
 impl HostPasses {
-    fn new(build: &Build<'_>, scene: &Scene, drape: Option<&Drape>) -> Result<Self, Error> {
+    /// `tree` has the objects that throw shadows.
+    fn new(build: &Build<'_>, scene: &Scene, drape: Option<&Drape>, tree: Option<TriangleTree>) -> Result<Self, Error> {
         let parameters = build.parameters;
         Ok(HostPasses {
             show: Show::new(build)?,
@@ -279,52 +299,65 @@ impl HostPasses {
             depth: HostDepth::new(parameters),
             normal: HostNormal::new(parameters),
             shadow: parameters.shadows.then(|| HostShadow::new(parameters)),
+            occlusion: tree.map(|tree| HostOcclusion::new(parameters, tree)),
             illumination: HostIllumination::new(parameters, drape),
         })
     }
 }
 
 impl Shading {
-    fn new(build: &Build<'_>, scene: &DeviceScene, depth: &Arc<ImageView>) -> Result<Self, Error> {
+    /// `tree` has the objects that throw shadows.
+    fn new(
+        build: &Build<'_>,
+        scene: &DeviceScene,
+        depth: &Arc<ImageView>,
+        tree: Option<&DeviceTree>,
+    ) -> Result<Self, Error> {
         let normal = normal(build, scene, depth)?;
         let shadow = build.parameters.shadows.then(|| shadow(build, "shadow", scene, depth)).transpose()?;
-        let sunlit = shadow.as_ref().map_or_else(|| all_lit(build, ""), |shadow| Ok(shadow.target.clone()))?;
-        let illumination = illumination(build, scene, [depth, &normal.target, &sunlit])?;
-        Ok(Shading { depth: depth.clone(), normal, shadow, illumination })
+        let of_maps = shadow.as_ref().map_or_else(|| all_lit(build, ""), |shadow| Ok(shadow.target.clone()))?;
+        let occlusion = tree.map(|tree| occlusion(build, "occlusion", (&scene.light, tree), [depth, &of_maps]));
+        let occlusion = occlusion.transpose()?;
+        let sunlit = occlusion.as_ref().map_or(&of_maps, |occlusion| &occlusion.target);
+        let illumination = illumination(build, scene, [depth, &normal.target, sunlit])?;
+        Ok(Shading { depth: depth.clone(), normal, shadow, occlusion, illumination })
     }
 
     fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.normal.record(frame)?;
-        self.shadow.as_ref().map_or(Ok(()), |shadow| shadow.record(frame))?;
+        [&self.shadow, &self.occlusion].into_iter().flatten().try_for_each(|pass| pass.record(frame))?;
         self.illumination.record(frame)
     }
 
     fn targets(&self) -> Vec<Target> {
         let mut targets = vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal.target)];
         targets.extend(self.shadow.as_ref().map(|shadow| Target::image("shadow", &shadow.target)));
+        targets.extend(self.occlusion.as_ref().map(|occlusion| Target::image("occlusion", &occlusion.target)));
         targets
     }
 }
 
 impl ObjectPasses {
-    /// `scene` is that of the maps that throw shadows.
+    /// `casters` are the maps and the objects that throw shadows.
     fn new(
         build: &Build<'_>,
         meshes: &[crate::scene::Mesh],
         (depth, picture): (&Arc<ImageView>, &Arc<ImageView>),
-        scene: Option<&DeviceScene>,
+        casters: Option<(&DeviceScene, &DeviceTree)>,
     ) -> Result<Self, Error> {
         let depth = ObjectDepth::new(build, depth)?;
         let meshes = meshes.iter().map(|mesh| ObjectMesh::new(build, mesh)).collect::<Result<Vec<_>, _>>()?;
-        let shadow = scene.map(|scene| -> Result<_, Error> {
+        let shadow = casters.map(|(scene, tree)| -> Result<_, Error> {
             let hits = ObjectHits::new(build, &meshes, &depth)?;
             let shadow = object_shadow(build, scene, &hits)?;
-            Ok((hits, shadow))
+            let images = [&hits.target, &shadow.target];
+            let occlusion = occlusion(build, "object-occlusion", (&depth.light, tree), images)?;
+            Ok(ObjectShadows { hits, shadow, occlusion })
         });
         let shadow = shadow.transpose()?;
         let (sunlit, test) = match &shadow {
             None => (all_lit(build, "/objects")?, DepthTest::LessWrite),
-            Some((_, shadow)) => (shadow.target.clone(), DepthTest::EqualReadOnly),
+            Some(shadows) => (shadows.occlusion.target.clone(), DepthTest::EqualReadOnly),
         };
         let objects = Objects::new(build, &meshes, (&depth, test), &sunlit, picture)?;
         Ok(ObjectPasses { meshes, depth, shadow, objects })
@@ -332,16 +365,21 @@ impl ObjectPasses {
 
     fn record(&self, frame: &mut Frame<'_>, view: &SceneView) -> Result<(), Error> {
         self.depth.record(frame, view)?;
-        if let Some((hits, shadow)) = &self.shadow {
+        if let Some(ObjectShadows { hits, shadow, occlusion }) = &self.shadow {
             hits.record(frame, &self.meshes, view)?;
             shadow.record(frame)?;
+            occlusion.record(frame)?;
         }
         self.objects.record(frame, &self.meshes, view)
     }
 
     fn targets(&self) -> Vec<Target> {
-        let shadow = |(hits, shadow): &(ObjectHits, PixelPass)| {
-            [Target::image("object-hits", &hits.target), Target::image("object-shadow", &shadow.target)]
+        let shadow = |ObjectShadows { hits, shadow, occlusion }: &ObjectShadows| {
+            [
+                Target::image("object-hits", &hits.target),
+                Target::image("object-shadow", &shadow.target),
+                Target::image("object-occlusion", &occlusion.target),
+            ]
         };
         self.shadow.iter().flat_map(shadow).collect()
     }
@@ -369,14 +407,18 @@ impl Paper for Terrain {
             if let Some(shadow) = &shading.shadow {
                 counts.push(("shadow", unfinished(&shadow.target, &is_light, 1)?));
             }
+            if let Some(occlusion) = &shading.occlusion {
+                counts.push(("occlusion", unfinished(&occlusion.target, &is_light, 1)?));
+            }
         }
-        if let Some((_, shadow)) = self.objects.as_ref().and_then(|objects| objects.shadow.as_ref()) {
-            counts.push(("object-shadow", unfinished(&shadow.target, &is_light, 1)?));
+        if let Some(shadows) = self.objects.as_ref().and_then(|objects| objects.shadow.as_ref()) {
+            counts.push(("object-shadow", unfinished(&shadows.shadow.target, &is_light, 1)?));
+            counts.push(("object-occlusion", unfinished(&shadows.occlusion.target, &is_light, 1)?));
         }
         let Some((pass, rays)) = counts.into_iter().find(|(_, rays)| *rays > 0) else { return Ok(true) };
         let problem = format!(
             "{rays} rays did not end: this driver leaves a shader's loops early, as after 65,535 iterations together; take a \
-             smaller map, `interpolation` bilinear, `lod` pixel or variant cpu"
+             smaller map or `object`, `interpolation` bilinear, `lod` pixel or variant cpu"
         );
         Err(Error::Pass { pass: pass.into(), problem })
     }

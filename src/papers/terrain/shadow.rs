@@ -16,7 +16,8 @@ use super::scene::{DeviceScene, texels};
 use super::stage::{Build, PixelPass};
 use crate::gpu::{Error, Frame, ImageView, PassInfo};
 
-const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+/// Format of what is left of the sun's light.
+pub const FORMAT: vk::Format = vk::Format::R32_SFLOAT;
 
 /// A single texel for where the sun reaches everything; `name` goes before its own.
 ///

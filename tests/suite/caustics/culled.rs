@@ -6,7 +6,7 @@ use std::slice::from_ref;
 use fumarole::gpu::Compiler;
 use fumarole::measure::study::Study;
 use fumarole::papers::caustics::setup::Setup;
-use fumarole::papers::caustics::{Parameters, Variant, WaveParameters};
+use fumarole::papers::caustics::{IntensityRule, Parameters, Variant, WaveParameters};
 use fumarole::scene::{Light, MeshSource};
 use glam::Vec3;
 
@@ -52,6 +52,9 @@ fn culling_loses_nothing_at_the_edges() {
             Parameters { waves: steep, planes: 31, ..parameters(low) },
             Parameters { lights: vec![OBLIQUE, POINT], planes: 17, map_size: 97, water_triangles: 777, ..base.clone() },
             Parameters { coverage: 3, planes: 9, ..base.clone() },
+            Parameters { intensity: IntensityRule::Vertex, planes: 9, ..base.clone() },
+            Parameters { shadows: true, intensity: IntensityRule::Vertex, coverage: 2, planes: 9, ..parameters(low) },
+            Parameters { shadows: true, lights: vec![OBLIQUE, POINT], planes: 17, ..base.clone() },
             Parameters { map_size: 1, water_triangles: 2, ..base },
         ];
         let receivers = [teapot(), bowl()];

@@ -1,6 +1,7 @@
 //! The march of turbulent gas and of solids against rays in double precision.
 
 use fumarole::papers::gas::model::{DensityFunction, Front, Shape, SolidTexture, Swirl, Volume};
+use fumarole::papers::gas::parameters::Jitter;
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::{Rays, Sampling};
 use fumarole::papers::gas::{Parameters, Variant};
@@ -88,6 +89,39 @@ fn every_gas_is_marched_as_its_rays_are() {
                 assert!(worst < 5e-5, "{:?}, {variant:?}: {worst}", gas.texture.function);
             }
         }
+    });
+}
+
+/// Several samples of an increment, at random or by blue noise, are those of the rays; and their error is less, or finer.
+#[test]
+fn samples_lie_where_they_are_told() {
+    gpu_test(|device| {
+        for (gas, samples, jitter) in
+            [(gases()[1], 3, Jitter::Random), (gases()[3], 1, Jitter::BlueNoise), (gases()[1], 4, Jitter::BlueNoise)]
+        {
+            let parameters = Parameters { steps: 12, samples, jitter, ..parameters(vec![gas]) };
+            for (variant, is_shadowed) in [(Variant::None, false), (Variant::Traced, true)] {
+                let drawing = Drawing::of(device, variant, &parameters, &[]);
+                let differences = differences(&drawing, &parameters, is_shadowed, Sampling::Random);
+                assert!(worst(&differences) < 5e-5, "{samples} {jitter:?} {variant:?}: {}", worst(&differences));
+            }
+        }
+        // Over each 3 x 3 pixels the errors of blue noise cancel as those of random samples do not.
+        let gas = Volume { falloff: 1.0, tau_per_m: 3.0, ..gases()[0] };
+        let grain = |jitter, samples| {
+            let parameters = Parameters { steps: 6, jitter, samples, ..parameters(vec![gas]) };
+            let drawing = Drawing::of(device, Variant::None, &parameters, &[]);
+            let errors = differences(&drawing, &parameters, false, Sampling::Fine(40));
+            let at = |x: u32, y: u32| errors[(y * WIDTH + x) as usize].y;
+            let means = (1..HEIGHT - 1)
+                .flat_map(|y| (1..WIDTH - 1).map(move |x| (x, y)))
+                .map(|(x, y)| (0..9).map(|i| at(x + i % 3 - 1, y + i / 3 - 1)).sum::<f64>() / 9.0);
+            means.map(|mean| mean * mean).sum::<f64>().sqrt()
+        };
+        let [random, blue, several] =
+            [(Jitter::Random, 1), (Jitter::BlueNoise, 1), (Jitter::Random, 4)].map(|(j, s)| grain(j, s));
+        println!("grain: random {random:.2e}, blue noise {blue:.2e}, four samples {several:.2e}");
+        assert!(blue < 0.6 * random && several < 0.5 * random, "{random} {blue} {several}");
     });
 }
 

@@ -19,6 +19,10 @@ pub struct Drawing {
     pub normals: Vec<[f32; 4]>,
     /// The maps' shadow, 1 in the sunlight; empty where the variant has no such target.
     pub sunlit: Vec<f32>,
+    /// What objects leave of it on the land, and on objects where `object_hits` has them; empty without.
+    pub occlusion: Vec<f32>,
+    pub object_hits: Vec<f32>,
+    pub object_occlusion: Vec<f32>,
 }
 
 impl Drawing {
@@ -80,6 +84,9 @@ impl Painter {
             hits: texels("depth").into_iter().map(Hit::from_texel).collect(),
             normals: texels("normal"),
             sunlit: floats("shadow").unwrap_or_default(),
+            occlusion: floats("occlusion").unwrap_or_default(),
+            object_hits: floats("object-hits").unwrap_or_default(),
+            object_occlusion: floats("object-occlusion").unwrap_or_default(),
         }
     }
 }

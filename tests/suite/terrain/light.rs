@@ -179,7 +179,13 @@ fn objects_stand_in_the_terrain_s_shadow() {
                     Drawing::with(device, variant, &parameters, &inputs)
                 };
                 let (with, without) = (of(true), of(false));
-                assert!(with.passes.ends_with(&["object-depth", "object-hits", "object-shadow", "objects"]));
+                assert!(with.passes.ends_with(&[
+                    "object-depth",
+                    "object-hits",
+                    "object-shadow",
+                    "object-occlusion",
+                    "objects"
+                ]));
                 let last = if variant == Variant::Cpu { "show" } else { "illumination" };
                 assert!(without.passes.ends_with(&[last, "object-depth", "objects"]), "{:?}", without.passes);
                 let (mut lit, mut dark) = (0, 0);
@@ -202,5 +208,120 @@ fn objects_stand_in_the_terrain_s_shadow() {
                 assert!(lit > 100 && dark > 100, "{variant:?} {lod:?}: {lit} in the sun, {dark} in the shadow");
             }
         }
+    });
+}
+
+/// Whether a ray in double precision meets a triangle grown by `slack` of its size; brute force.
+fn is_hidden(triangles: &[[DVec3; 3]], origin: DVec3, direction: DVec3, slack: f64) -> bool {
+    triangles.iter().any(|&[a, b, c]| {
+        let (ab, ac) = (b - a, c - a);
+        let across = direction.cross(ac);
+        let determinant = ab.dot(across);
+        let turned = (origin - a).cross(ab);
+        let (v, w) = ((origin - a).dot(across) / determinant, direction.dot(turned) / determinant);
+        let is_before = ac.dot(turned) / determinant > 1e-2 * (1.0 - 100.0 * slack);
+        v.min(w) > -slack && v + w < 1.0 + slack && is_before
+    })
+}
+
+/// Whether the sun stands behind a face at `place` that the eye sees, or nearly: a sheet without thickness is dark there, and no ray
+/// meets anything.
+fn is_seen_from_behind(triangles: &[[DVec3; 3]], place: DVec3, towards: DVec3, to_sun: DVec3) -> bool {
+    triangles.iter().any(|&[a, b, c]| {
+        let face = (b - a).cross(c - a).normalize();
+        let is_own = (place - a).dot(face).abs() < 1e-2 && is_hidden(&[[a, b, c]], place - 10.0 * face, face, 1e-2);
+        let seen = if face.dot(towards) > 0.0 { -face } else { face };
+        is_own && seen.dot(to_sun) < 0.03
+    })
+}
+
+/// Objects shadow the land and each other where rays in double precision meet a triangle; what single precision moves across an
+/// edge is left to either side.
+#[test]
+fn objects_cast_shadows_where_rays_meet_their_triangles() {
+    gpu_test(|device| {
+        let maps = [level(61, 1.0, 0.0)];
+        let sun = Sun { azimuth_rad: 250f32.to_radians(), elevation_rad: 35f32.to_radians() };
+        let place = |x: f32, z: f32, size: f32| {
+            Mat4::from_translation(Vec3::new(x, 1.0 + size, z)) * Mat4::from_scale(Vec3::splat(size))
+        };
+        let pot = Mat4::from_translation(Vec3::new(-30.0, 0.9, 5.0)) * Mat4::from_scale(Vec3::splat(14.0));
+        let objects = [
+            shapes::teapot().transformed(&pot),
+            shapes::cuboid().transformed(&place(30.0, -15.0, 8.0)),
+            shapes::cuboid().transformed(&place(70.0, 40.0, 4.0)),
+        ];
+        let corners = |mesh: &fumarole::scene::Mesh| -> Vec<[DVec3; 3]> {
+            let corner = |&i: &u32| mesh.positions[i as usize].as_dvec3();
+            mesh.indices.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]).collect()
+        };
+        let triangles: Vec<[DVec3; 3]> = objects.iter().flat_map(corners).collect();
+        let camera = Camera {
+            eye: Vec3::new(60.0, 90.0, 170.0),
+            target: Vec3::new(5.0, 5.0, 0.0),
+            up: Vec3::Y,
+            vertical_fov_rad: 0.6,
+            near_m: 1.0,
+            far_m: 1e5,
+        };
+        let (width, height) = (120, 90);
+        let rays = Rays::new(&camera, width, height);
+        let to_sun = sun.direction().as_dvec3();
+        let inputs = Inputs { maps: &maps, objects: &objects, ..Inputs::default() };
+        for &variant in Variant::ALL {
+            let base_level_m = Some(0.0);
+            let parameters = Parameters {
+                view: View::Camera(camera),
+                sun,
+                base_level_m,
+                shadows: true,
+                width,
+                height,
+                ..Parameters::default()
+            };
+            let drawing = Drawing::with(device, variant, &parameters, &inputs);
+            let objects = (&drawing.object_hits, &drawing.object_occlusion);
+            let (objects, occlusion) =
+                (objects.0.as_chunks::<4>().0.iter().map(|hit| (hit[0], hit[3] > 0.0)), objects.1);
+            let mut seen = vec![("object-occlusion", objects.collect::<Vec<_>>(), occlusion)];
+            if variant != Variant::Cpu {
+                let land = drawing.hits.iter().map(|hit| (hit.depth_m, hit.surface != Surface::Sky));
+                seen.push(("occlusion", land.collect(), &drawing.occlusion));
+            }
+            for (name, hits, light) in seen {
+                let (mut lit, mut dark, mut either) = (0, 0, 0);
+                for (pixel, ((depth_m, is_seen), light)) in hits.into_iter().zip(light).enumerate() {
+                    if !is_seen {
+                        continue;
+                    }
+                    let (x, y) = (pixel as u32 % width, pixel as u32 / width);
+                    let direction = rays.corner + f64::from(x) * rays.across + f64::from(y) * rays.down;
+                    let place = rays.eye + f64::from(depth_m) * direction;
+                    let [surely, perhaps] = [-1e-3, 1e-3].map(|slack| is_hidden(&triangles, place, to_sun, slack));
+                    if is_seen_from_behind(&triangles, place, direction, to_sun) {
+                        continue;
+                    }
+                    match (surely, perhaps) {
+                        (true, true) => dark += i32::from(*light == 0.0),
+                        (false, false) => lit += i32::from(*light == 1.0),
+                        _ => either += 1,
+                    }
+                    if surely == perhaps {
+                        assert_eq!(*light, if surely { 0.0 } else { 1.0 }, "{variant:?} {name} at {x}, {y}: {place}");
+                    }
+                }
+                let least = if name == "occlusion" { 100 } else { 5 };
+                assert!(lit > 200 && dark > least && either < 30, "{variant:?} {name}: {lit} {dark} {either}");
+            }
+        }
+        // The processor's picture is the device's.
+        let picture = |variant| {
+            let parameters =
+                Parameters { view: View::Camera(camera), sun, shadows: true, width, height, ..Parameters::default() };
+            Drawing::with(device, variant, &parameters, &inputs).picture
+        };
+        let [host, compute] = [Variant::Cpu, Variant::GpuCompute].map(picture);
+        let differing = host.pixels().iter().zip(compute.pixels()).filter(|(a, b)| a.abs_diff(**b) > 3).count();
+        assert!(differing < 60, "{differing} bytes");
     });
 }

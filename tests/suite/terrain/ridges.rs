@@ -67,11 +67,13 @@ fn far_silhouettes_are_within_a_pixel_of_brute_force() {
     gpu_test(|device| {
         let mut random = Random::new(61);
         let size = (88, 44);
-        for (base, interpolation) in BASES.into_iter().flat_map(|base| INTERPOLATIONS.map(|i| (base, i))) {
-            let map = ridges(&mut random, (200, 161), 3000.0);
+        let cases = BASES.into_iter().flat_map(|base| INTERPOLATIONS.map(|i| (base, i, 3000.0)));
+        // And walls, as an exaggeration of 30 makes them.
+        for (base, interpolation, height_m) in cases.chain(INTERPOLATIONS.map(|i| (Base::Plane, i, 90_000.0))) {
+            let map = ridges(&mut random, (200, 161), height_m);
             let world = World::alone("ridges", base, interpolation, None, map);
             for (number, sides) in [2.0, 5.0, 12.0].into_iter().enumerate() {
-                let middle = world.point(DVec2::splat(0.5), 1500.0);
+                let middle = world.point(DVec2::splat(0.5), 0.5 * f64::from(height_m));
                 let away_m = sides * world.side_m();
                 let towards = glam::DVec3::new(0.5, 0.12, 1.0).normalize();
                 let camera = Camera {
@@ -100,7 +102,7 @@ fn far_silhouettes_are_within_a_pixel_of_brute_force() {
                     let is_ground = |surface| !matches!(surface, Surface::Sky | Surface::Base);
                     let found: Vec<bool> = drawing.hits.iter().map(|hit| is_ground(hit.surface)).collect();
                     let found = silhouette(&found, size);
-                    let name = format!("{base:?} {interpolation:?} {variant:?} {sides} sides");
+                    let name = format!("{base:?} {interpolation:?} {variant:?} {sides} sides, {height_m} m");
                     let seen = expected.iter().filter(|row| **row < size.1).count();
                     assert!(seen > 20, "{name}: only {seen} columns show land");
                     for (column, row) in found.iter().enumerate() {

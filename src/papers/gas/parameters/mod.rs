@@ -1,12 +1,13 @@
 //! The paper's parameters under its own names, each declared once.
 
+pub mod placed_object;
 pub mod volumes;
 
 use glam::Vec3;
 
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
 use crate::field;
-use crate::measure::parameter::{self, Cost, EyeAndTarget, Field, Parameter, Range, Size};
+use crate::measure::parameter::{self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Size};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
@@ -40,6 +41,26 @@ impl crate::measure::Variant for Variant {
     }
 }
 
+/// Place of a sample in its part of an increment along the viewer's ray.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Jitter {
+    /// By a hash of pixel and sample.
+    Random,
+    /// At one place for each ray, by a mask of blue noise.
+    BlueNoise,
+}
+
+impl Choice for Jitter {
+    const ALL: &'static [Self] = &[Jitter::Random, Jitter::BlueNoise];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("random", "The paper's: at random, alike from pixel to pixel"),
+        (
+            "blue-noise",
+            "At one place for each ray, by a mask of blue noise: far apart in neighbouring pixels, so that the grain is fine",
+        ),
+    ];
+}
+
 /// Most volumes and lights of a scene: the shaders keep one value for each in registers.
 pub const MAX_VOLUMES: usize = 8;
 pub const MAX_LIGHTS: usize = 4;
@@ -60,6 +81,10 @@ pub struct Parameters {
     pub camera: Camera,
     /// Increments along the longest side of a volume, 1 to 100,000.
     pub steps: u32,
+    /// Samples in each increment of a viewer's ray, 1 to 64.
+    pub samples: u32,
+    /// Their places.
+    pub jitter: Jitter,
     /// Entries of the density and shadow tables along each axis, 2 to 512.
     pub table_size: u32,
     /// Octaves of turbulence go on while the scale exceeds it; 0.0001 to 1 texture units.
@@ -102,6 +127,8 @@ impl Default for Parameters {
                 far_m: 100.0,
             },
             steps: 40,
+            samples: 1,
+            jitter: Jitter::Random,
             table_size: 64,
             pixel_size: 1.0 / 16.0,
             shadow_threshold: 0.0,
@@ -177,6 +204,17 @@ impl Parameters {
                 .help("Steps along a volume's longest side")
                 .section("Volume rendering")
                 .default_text("the scene's, 40")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("samples", field!(Parameters.samples))
+                .range(Range::from(1.0).to(64.0))
+                .help("Samples in each increment along the viewer's ray, each of its own part; the paper's is one")
+                .section("Volume rendering")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("jitter", field!(Parameters.jitter))
+                .help("Place of a sample in its part")
+                .section("Volume rendering")
                 .cost(Cost::Buffers)
                 .everyday(),
             Parameter::new("table", field!(Parameters.table_size))

@@ -8,14 +8,15 @@ use glam::DVec3;
 use super::density::{Medium, inwardness};
 use super::noise::scramble;
 use super::phase::phase;
+use crate::papers::gas::blue_noise;
 use crate::papers::gas::model::Volume;
-use crate::papers::gas::parameters::Parameters;
+use crate::papers::gas::parameters::{Jitter, Parameters};
 use crate::scene::Light;
 
 /// Positions of the samples of a viewer's ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
-    /// One in each increment, at the point that the random numbers of frame and seed say (Monte Carlo).
+    /// One in each part of an increment, at the point that the numbers of frame and seed say (Monte Carlo).
     Random,
     /// So many in the middles of each increment's parts: the integral that the random ones estimate.
     Fine(u32),
@@ -36,12 +37,18 @@ pub struct Rays<'a> {
     /// The densities of the frame.
     pub medium: Medium,
     number: u32,
+    /// Ranks of the mask of blue noise; empty where samples lie at random.
+    mask: Vec<u32>,
 }
 
 impl<'a> Rays<'a> {
     /// Of scene frame `number`.
     pub fn new(parameters: &'a Parameters, number: u32) -> Self {
-        Rays { parameters, medium: Medium::new(parameters, number), number }
+        let mask = match parameters.jitter {
+            Jitter::Random => Vec::new(),
+            Jitter::BlueNoise => blue_noise::mask(parameters.seed),
+        };
+        Rays { parameters, medium: Medium::new(parameters, number), number, mask }
     }
 
     pub fn eye(&self) -> DVec3 {
@@ -134,7 +141,8 @@ impl March<'_> {
     /// Marches the gas between two cuts; true where the transparency left ends the tracing.
     fn section(&mut self, inside: &[&Volume], from: f64, to: f64) -> bool {
         let parameters = self.rays.parameters;
-        let step = inside.iter().map(|v| f64::from(v.step_m(parameters.steps))).fold(f64::INFINITY, f64::min);
+        let step = inside.iter().map(|v| f64::from(v.step_m(parameters.steps))).fold(f64::INFINITY, f64::min)
+            / f64::from(parameters.samples);
         let early = f64::from(parameters.early_end);
         let early = if inside.iter().any(|v| v.is_solid) { early.max(0.01) } else { early };
         let increments = ((to - from) / step).ceil() as u32;
@@ -156,8 +164,15 @@ impl March<'_> {
         false
     }
 
-    /// The device's random number of this increment, 0 to 1: integers, so exact.
+    /// The device's number of this sample, 0 to 1: integers, so exact.
     fn random(&self) -> f64 {
+        if !self.rays.mask.is_empty() {
+            let (width, side) = (self.rays.parameters.width, blue_noise::SIDE as u32);
+            let (column, row) = (self.pixel % width % side, self.pixel / width % side);
+            let rank = self.rays.mask[(row * side + column) as usize];
+            let moved = 0x9e37_79b9_u32.wrapping_mul(self.rays.number);
+            return f64::from(((rank << 20) + 0x8_0000).wrapping_add(moved) >> 8) / 16_777_216.0;
+        }
         let of_frame = scramble(self.rays.parameters.noise_seed().wrapping_add(self.rays.number));
         let h = scramble(self.pixel.wrapping_mul(0x9e37_79b9) ^ scramble(self.number ^ of_frame));
         f64::from(h >> 8) / 16_777_216.0

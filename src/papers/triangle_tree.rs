@@ -1,19 +1,21 @@
-//! The receivers' triangles in a tree of boxes: the rays of the finished picture look there for what they hit first.
+//! Triangles of meshes in a tree of boxes, on the host and on the device: rays look there for what they meet.
 
 use std::sync::Arc;
 
 use ash::vk;
 use glam::Vec3;
 
-use super::receiver::ReceiverInput;
-use super::resources::Context;
-use crate::gpu::{Buffer, Error};
+use crate::gpu::transfer::upload;
+use crate::gpu::{Buffer, Device, Error};
 use crate::host_block;
+use crate::scene::Mesh;
 
 /// Triangles in a leaf at most.
 const LEAF_TRIANGLES: usize = 4;
 /// Bits of [`Node::leaf`] that count triangles.
 const COUNT_BITS: u32 = 3;
+/// Rounding must not let a ray through between two triangles.
+const EDGE_SLACK: f32 = 1e-5;
 
 host_block! {
     /// A box of the tree; its children follow it, so that no stack is needed.
@@ -26,42 +28,39 @@ host_block! {
 }
 
 /// The tree on the device.
-pub struct ReceiverTree {
+pub struct DeviceTree {
     /// A [`Node`] each, parents before children.
     pub nodes: Arc<Buffer>,
     /// Length of the nodes.
     pub node_count: u32,
-    /// x, y and z of every vertex of every receiver, metres.
+    /// x, y and z of every vertex of every mesh, metres.
     pub corners: Arc<Buffer>,
     /// Three indices of corners a triangle, leaf by leaf.
     pub triangles: Arc<Buffer>,
 }
 
-impl ReceiverTree {
+impl DeviceTree {
+    /// `label` goes before the names of the buffers.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer; [`Error::Limit`] for more triangles than a storage buffer holds.
-    pub fn new(context: Context<'_>, receivers: &[ReceiverInput]) -> Result<Self, Error> {
-        let mut corners: Vec<Vec3> = Vec::new();
-        let mut triangles: Vec<[u32; 3]> = Vec::new();
-        for ReceiverInput { mesh, .. } in receivers {
-            let first = corners.len() as u32;
-            corners.extend(&mesh.positions);
-            triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
-        }
-        let tree = Tree::over(&corners, &triangles);
-        let storage = |name, bytes: &[u8]| context.upload(name, vk::BufferUsageFlags::STORAGE_BUFFER, bytes);
-        Ok(ReceiverTree {
+    pub fn new(device: &Arc<Device>, label: &str, tree: &TriangleTree) -> Result<Self, Error> {
+        let storage = |name: &str, bytes: &[u8]| {
+            upload(device, &format!("{label}/{name}"), vk::BufferUsageFlags::STORAGE_BUFFER, bytes)
+        };
+        Ok(DeviceTree {
             nodes: storage("tree-nodes", bytemuck::cast_slice(&tree.nodes))?,
             node_count: tree.nodes.len() as u32,
-            corners: storage("tree-corners", bytemuck::cast_slice(&corners))?,
+            corners: storage("tree-corners", bytemuck::cast_slice(&tree.corners))?,
             triangles: storage("tree-triangles", bytemuck::cast_slice(&tree.triangles))?,
         })
     }
 }
 
 /// The tree in host memory.
-struct Tree {
+pub struct TriangleTree {
     nodes: Vec<Node>,
+    corners: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
 }
 
@@ -79,16 +78,61 @@ impl Item {
     }
 }
 
-impl Tree {
-    fn over(corners: &[Vec3], triangles: &[[u32; 3]]) -> Self {
+impl TriangleTree {
+    /// The triangles of all `meshes`, at least one.
+    pub fn over<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> Self {
+        let mut corners: Vec<Vec3> = Vec::new();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for mesh in meshes {
+            let first = corners.len() as u32;
+            corners.extend(&mesh.positions);
+            triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
+        }
         let item = |&triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
             Item { triangle, low: a.min(b).min(c), high: a.max(b).max(c) }
         };
         let mut items: Vec<Item> = triangles.iter().map(item).collect();
-        let mut tree = Tree { nodes: Vec::new(), triangles: Vec::with_capacity(items.len()) };
+        let triangles = Vec::with_capacity(items.len());
+        let mut tree = TriangleTree { nodes: Vec::new(), corners, triangles };
         tree.add(&mut items);
         tree
+    }
+
+    /// Whether a ray of unit direction meets a triangle, on either side; as `first_hit` of `common/triangle-tree.glsl`.
+    pub fn is_met(&self, origin: Vec3, direction: Vec3) -> bool {
+        let inverse = Vec3::select(direction.abs().cmplt(Vec3::splat(1e-9)), Vec3::splat(1e-9), direction).recip();
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            let (to_low, to_high) =
+                ((Vec3::from_array(node.low) - origin) * inverse, (Vec3::from_array(node.high) - origin) * inverse);
+            let entry = to_low.min(to_high).max_element().max(0.0);
+            let exit = to_low.max(to_high).min_element();
+            if entry > exit + 1e-5 * exit.abs() {
+                at = node.skip as usize;
+                continue;
+            }
+            let (first, count) = ((node.leaf >> COUNT_BITS) as usize, (node.leaf & ((1 << COUNT_BITS) - 1)) as usize);
+            if self.triangles[first..first + count].iter().any(|triangle| self.meets(triangle, origin, direction)) {
+                return true;
+            }
+            at += 1;
+        }
+        false
+    }
+
+    fn meets(&self, triangle: &[u32; 3], origin: Vec3, direction: Vec3) -> bool {
+        let [a, b, c] = triangle.map(|corner| self.corners[corner as usize]);
+        let (ab, ac) = (b - a, c - a);
+        let across = direction.cross(ac);
+        let determinant = ab.dot(across);
+        let turned = (origin - a).cross(ab);
+        let weight_b = (origin - a).dot(across) / determinant;
+        let weight_c = direction.dot(turned) / determinant;
+        determinant != 0.0
+            && weight_b.min(weight_c) >= -EDGE_SLACK
+            && weight_b + weight_c <= 1.0 + EDGE_SLACK
+            && ac.dot(turned) / determinant > 0.0
     }
 
     /// Adds the node of `items` and all below it: halves along the longest side of the middles' box.
@@ -118,13 +162,14 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::random::Random;
     use crate::scene::shapes;
 
     #[test]
     fn every_triangle_lies_in_one_leaf_and_in_all_boxes_above_it() {
         let mesh = shapes::teapot();
         let triangles: Vec<[u32; 3]> = mesh.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-        let tree = Tree::over(&mesh.positions, &triangles);
+        let tree = TriangleTree::over([&mesh]);
         let sorted = |mut list: Vec<[u32; 3]>| {
             list.sort_unstable();
             list
@@ -145,5 +190,24 @@ mod tests {
             }
         }
         assert_eq!(seen, tree.triangles.len());
+    }
+
+    #[test]
+    fn a_ray_meets_the_tree_where_it_meets_a_triangle() {
+        let mesh = shapes::teapot();
+        let tree = TriangleTree::over([&mesh]);
+        let bounds = mesh.bounds();
+        let mut random = Random::new(5);
+        let mut met = 0;
+        for _ in 0..2000 {
+            let target = bounds.min + bounds.diagonal() * Vec3::new(random.unit(), random.unit(), random.unit());
+            let direction = random.direction();
+            let origin = target - 20.0 * direction;
+            let any = tree.triangles.iter().any(|triangle| tree.meets(triangle, origin, direction));
+            assert_eq!(tree.is_met(origin, direction), any);
+            assert!(!tree.is_met(origin, -direction));
+            met += i32::from(any);
+        }
+        assert!((500..1900).contains(&met), "{met}");
     }
 }

@@ -1,4 +1,4 @@
-// The receivers' triangles in a tree of boxes, children after their parents: `skip` is the node after all that lies in a box.
+// Triangles of meshes in a tree of boxes, children after their parents: `skip` is the node after all that lies in a box.
 
 struct Node {
     vec3 low; // corners of the box, metres
