@@ -197,7 +197,8 @@ impl TerrainBlock {
             is_float: is_float.into(),
             node_normals_below: match (parameters.normals, parameters.interpolation) {
                 (Normals::Surface, _) | (Normals::Auto, Interpolation::Bicubic) => 0.0,
-                (Normals::Auto, Interpolation::Bilinear) => 1.0,
+                // In the nodes of `pixel_nodes`.
+                (Normals::Auto, Interpolation::Bilinear) => (1.0 / ground.steepness) as f32,
                 (Normals::Nodes, _) => f32::MAX,
             },
             ..Zeroable::zeroed()
