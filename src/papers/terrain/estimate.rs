@@ -54,9 +54,15 @@ impl Parameters {
         let of_pixel = of_pixel + if is_mesh { NUMBER } else { 0.0 };
         let light = if self.shadows && !is_host { NUMBER * if maps > 1.0 { 2.0 } else { 1.0 } } else { 0.0 };
         let objects = if inputs.objects.is_empty() { 0.0 } else { NUMBER };
-        let lit_objects = if shades_objects { VECTOR + NUMBER * if maps > 1.0 { 2.0 } else { 1.0 } } else { 0.0 };
+        let lit_objects = if shades_objects { VECTOR + NUMBER * if maps > 1.0 { 3.0 } else { 2.0 } } else { 0.0 };
+        let occlusion = if shades_objects && !is_host { NUMBER } else { 0.0 };
         let mesh_bytes: usize =
             inputs.objects.iter().map(|mesh| 24 * mesh.positions.len() + 4 * mesh.indices.len()).sum();
+        // The tree of the objects' triangles: halves of halves, down to four of them.
+        let triangles: usize = inputs.objects.iter().map(|mesh| mesh.triangle_count()).sum();
+        let leaves = f64::from((triangles.div_ceil(4) as u32).max(1).next_power_of_two());
+        let corners: usize = inputs.objects.iter().map(|mesh| 12 * mesh.positions.len()).sum();
+        let tree = if shades_objects { 32.0 * (2.0 * leaves - 1.0) + (corners + 12 * triangles) as f64 } else { 0.0 };
         let mesh_vertices: usize = inputs.objects.iter().map(|mesh| mesh.indices.len()).sum();
 
         let surface = if self.interpolation == Interpolation::Bicubic { 8.0 } else { 1.0 };
@@ -65,10 +71,10 @@ impl Parameters {
             bytes: vec![
                 (map, if on_device { levels } else { 0.0 } + indices),
                 ("drape", NUMBER * if on_device { drape } else { 0.0 }),
-                ("size", (of_pixel + light + objects + lit_objects) * pixels),
-                ("object", mesh_bytes as f64),
+                ("size", (of_pixel + light + objects + lit_objects + occlusion) * pixels),
+                ("object", mesh_bytes as f64 + tree),
             ],
-            passes: Some(("object", 8 + 3 * inputs.maps.len() as u64 + 2 * inputs.objects.len() as u64)),
+            passes: Some(("object", 10 + 3 * inputs.maps.len() as u64 + 2 * inputs.objects.len() as u64)),
             draws: None,
             invocations: vec![
                 ("size", rays * (10.0 + STEP * steps * surface)),
