@@ -72,6 +72,15 @@ has_chromium_library() {
     return 1
 }
 
+# Whether a Chromium is there that the tests of the report's page can drive: tests/suite/page/browser.rs has the same list.
+has_browser() {
+    [ -x "${FUMAROLE_TEST_BROWSER:-}" ] && return
+    for program in chromium-headless-shell chromium chromium-browser google-chrome; do
+        command -v "$program" >/dev/null && return
+    done
+    return 1
+}
+
 # Collects the missing pieces in words and as packages.
 find_missing() {
     missing='' packages=''
@@ -85,6 +94,8 @@ find_missing() {
         need vulkan-validationlayers 'the Khronos validation layer'
     [ -z "$tests" ] || { has_chromium_library libvk_swiftshader.so && has_chromium_library libVkLayer_khronos_validation.so; } ||
         need chromium-common 'the SwiftShader driver and the current validation layer that Chromium brings'
+    [ -z "$tests" ] || has_browser ||
+        need chromium-headless-shell 'a Chromium without a window'
     [ -z "$tests" ] || command -v Xvfb >/dev/null ||
         need xvfb 'Xvfb, a display without a screen, for the tests of the window'
     [ -z "$tests" ] || command -v openbox >/dev/null ||
@@ -147,7 +158,7 @@ package_here() {
     fedora:libx11-xcb1) echo libX11-xcb ;;
     arch:libx11-xcb1) echo libx11 ;;
     suse:libx11-xcb1) echo libX11-xcb1 ;;
-    fedora:chromium-common | arch:chromium-common | suse:chromium-common) echo chromium ;;
+    fedora:chromium-* | arch:chromium-* | suse:chromium-*) echo chromium ;;
     *) echo "$1" ;;
     esac
 }

@@ -1,6 +1,6 @@
 //! `all`: every paper's quick benchmark, one record and a picture of each.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
 use clap::{Args, Parser};
@@ -18,7 +18,7 @@ use crate::measure::machine::Machine;
 use crate::measure::measure::Schedule;
 use crate::measure::study::{Study, Visitor};
 use crate::papers;
-use crate::report::record::{Limits, Run};
+use crate::report::record::{Limits, Pass, Run};
 use crate::report::trace::TraceRun;
 use crate::report::{Record, environment};
 
@@ -75,33 +75,44 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     let record = Record::new(machine.environment(), environment::command(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)?;
-    if let (Some(page), Some(json)) = (page, &output.json) {
-        report::write_record(&record, json, &page, output.quiet)?;
+    if let (Some(page), Some(json)) = (&page, &output.json) {
+        report::write_record(&record, json, page, output.quiet)?;
     }
     if !output.quiet {
-        summary(&record, &output).iter().for_each(|line| outcome::say(line));
+        summary(&record, &output, page.as_deref()).iter().for_each(|line| outcome::say(line));
     }
     Ok(())
 }
 
-/// The slowest pass of every variant, where everything lies, and what to try next; a line each.
-fn summary(record: &Record, output: &OutputArgs) -> Vec<String> {
-    let mut lines = vec!["slowest passes".to_owned()];
+/// The papers with the slowest pass of every variant, the files, and what to try next; a line each.
+fn summary(record: &Record, output: &OutputArgs, page: Option<&Path>) -> Vec<String> {
+    let mut papers: Vec<&str> = record.runs.iter().map(|run| run.paper.as_str()).collect();
+    papers.dedup();
+    let mut lines =
+        vec![format!("{} papers in {} variants; the slowest pass of each", papers.len(), record.runs.len())];
     lines.extend(record.runs.iter().filter_map(|run| {
         let (pass, ms) = slowest(run)?;
-        Some(format!("  {} {}: {pass}, {ms:.1} ms", run.paper, run.variant))
+        let near = pass.share_of_limit().zip(pass.bound.as_ref());
+        let near =
+            near.map_or_else(String::new, |(share, bound)| format!(", {:.0} % of limit ({bound})", 100.0 * share));
+        Some(format!("  {} {}: {}, {ms:.1} ms{near}", run.paper, run.variant, pass.name))
     }));
-    lines.push(format!("record and pictures are in {}", output.out.display()));
+    let pictures = record.runs.iter().filter_map(|run| Some(run.image.as_ref()?.path.clone()));
+    let files = [output.json.as_deref(), output.csv.as_deref(), output.trace.as_deref(), page];
+    let files = files.into_iter().flatten().map(|path| path.display().to_string()).chain(pictures);
+    lines.push(format!("files: {}", files.collect::<Vec<_>>().join(", ")));
     lines.push(
-        "next: fumarole PAPER bench --preset NAME, fumarole PAPER passes, fumarole PAPER experiment --list".into(),
+        "next: fumarole PAPER bench --preset NAME, fumarole PAPER bench --profile PASS, fumarole PAPER experiment --list, \
+         fumarole report DIR"
+            .into(),
     );
     lines
 }
 
-fn slowest(run: &Run) -> Option<(&str, f64)> {
+fn slowest(run: &Run) -> Option<(&Pass, f64)> {
     let times = run.passes.iter().filter_map(|pass| {
         let time = pass.gpu_ms.as_ref().or(pass.host_ms.as_ref())?;
-        Some((pass.name.as_str(), time.median))
+        Some((pass, time.median))
     });
     times.max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -1,18 +1,22 @@
 //! `bench`: one configuration in one or more variants, interleaved.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
-use super::options::{CommonArgs, MeasureArgs, OutputArgs};
+use super::options::{CaptureTool, CommonArgs, DepthArgs, MeasureArgs, OutputArgs};
 use super::outcome;
 use super::processes;
 use super::spelling;
 use super::watch::{patiently, watched};
 use crate::content;
+use crate::gpu::{Mode, RenderDoc};
 use crate::measure::bench::{Bench, Loaded, build, load};
-use crate::measure::machine::Machine;
+use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::picture;
+use crate::measure::profile::{self, profile};
 use crate::measure::study::Study;
+use crate::measure::{Paper, Variant};
 use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
 use crate::report::{Record, environment};
@@ -23,7 +27,12 @@ const REPEAT: u32 = 3;
 
 /// Measures `variants` of a study, or has fresh processes measure them, and publishes the record where `common` says, which
 /// has been checked.
-pub fn publish<S: Study>(common: &CommonArgs, study: &S, variants: &[S::Variant]) -> Result<(), Failure> {
+pub fn publish<S: Study>(
+    common: &CommonArgs,
+    depth: &DepthArgs,
+    study: &S,
+    variants: &[S::Variant],
+) -> Result<(), Failure> {
     let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = common;
     if *processes > 1 {
         let record = processes::run(*processes, output.quiet)?;
@@ -31,7 +40,7 @@ pub fn publish<S: Study>(common: &CommonArgs, study: &S, variants: &[S::Variant]
         output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
-    let (record, traces, failed) = measure(study, variants, common)?;
+    let (record, traces, failed) = measure(study, variants, common, depth)?;
     outcome::publish(output, &record, &traces)?;
     failed.map_or(Ok(()), Err)
 }
@@ -40,11 +49,15 @@ fn measure<S: Study>(
     study: &S,
     variants: &[S::Variant],
     common: &CommonArgs,
+    depth: &DepthArgs,
 ) -> Result<(Record, Vec<TraceRun>, Option<Failure>), Failure> {
     let CommonArgs { machine, measure, output } = common;
     let schedule = measure.schedule(FRAMES, REPEAT);
+    // RenderDoc is there from the start, or never.
+    let capture = depth.capture.map(|CaptureTool::Renderdoc| RenderDoc::attach()).transpose()?;
     let loaded = patiently(output.quiet, "loading the scene", || load(study))?;
-    let mut machine = Machine::open(&machine.resolve(measure.process), S::NEEDS)?;
+    let options = MachineOptions { is_profiled: depth.profile.is_some(), ..machine.resolve(measure.process) };
+    let mut machine = Machine::open(&options, S::NEEDS)?;
     // The table names the device itself.
     if output.json_to_stdout() {
         outcome::say_device(output, &machine);
@@ -52,12 +65,28 @@ fn measure<S: Study>(
     for &variant in variants {
         outcome::foretell(output, &study.estimate(&machine.device, &loaded.scene, variant), &machine);
     }
+    let profiled = match &depth.profile {
+        Some(pass) => having_pass(&mut machine, study, &loaded, variants, pass)?,
+        None => Vec::new(),
+    };
     let limits = measure.limits(&mut machine)?;
     let bench = Bench { study, loaded: &loaded, variants, schedule, limits: limits.as_ref() };
     let measured = watched(output.quiet, S::PAPER, |watch| bench.measure(&mut machine, watch))?;
     let (mut runs, traces): (Vec<Run>, Vec<TraceRun>) = measured.into_iter().map(|m| (m.run, m.trace)).unzip();
     for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
         *warning = spelling::options(warning);
+    }
+    for (&variant, run) in variants.iter().zip(&mut runs) {
+        if let Some(pass) = depth.profile.as_deref().filter(|_| profiled.contains(&variant)) {
+            let title = format!("{} {pass}, both compilers", S::PAPER);
+            run.profile = watched(output.quiet, &title, |watch| {
+                profile(&mut machine, &options, (study, &loaded), (variant, pass), schedule, watch)
+            })?;
+        }
+        if let Some(capture) = &capture {
+            let file = capture_frame(&mut machine, capture, study, &loaded, variant, &output.out)?;
+            outcome::wrote(output, &file);
+        }
     }
     // A picture that fails throws no measurement away.
     let mut failed = None;
@@ -74,6 +103,54 @@ fn measure<S: Study>(
         }
     }
     Ok((Record::new(machine.environment(), environment::command(), runs), traces, failed))
+}
+
+/// The variants with a pass of that name.
+///
+/// # Errors
+/// [`Failure::Input`] with the names that there are where none has it.
+fn having_pass<S: Study>(
+    machine: &mut Machine,
+    study: &S,
+    loaded: &Loaded<S>,
+    variants: &[S::Variant],
+    pass: &str,
+) -> Result<Vec<S::Variant>, Failure> {
+    let (mut having, mut known) = (Vec::new(), Vec::new());
+    for &variant in variants {
+        let passes = profile::passes(machine, study, loaded, variant)?;
+        if passes.contains(&pass) {
+            having.push(variant);
+        }
+        known.extend(passes.into_iter().filter(|name| !known.contains(name)).collect::<Vec<_>>());
+    }
+    if having.is_empty() {
+        let known = known.join(", ");
+        return Err(Failure::Input(format!("--profile {pass}: no such pass with shaders here; there are {known}")));
+    }
+    Ok(having)
+}
+
+/// Captures frame 0 of a variant, after a frame that compiles its pipelines.
+fn capture_frame<S: Study>(
+    machine: &mut Machine,
+    capture: &RenderDoc,
+    study: &S,
+    loaded: &Loaded<S>,
+    variant: S::Variant,
+    folder: &Path,
+) -> Result<PathBuf, Failure> {
+    let mut built = build(machine, study, &loaded.scene, variant)?;
+    let recorder = &mut machine.recorder;
+    recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+    built.paper.restart()?;
+    fs::create_dir_all(folder)
+        .map_err(|e| Failure::Input(format!("making the folder {} for captures: {e}", folder.display())))?;
+    let name = folder.join(format!("{}-{}", S::PAPER, variant.as_str()));
+    let file =
+        capture.capture(&name, || recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0)).map(|_| ()))?;
+    machine.check_validation()?;
+    Ok(file)
 }
 
 fn file_sha256(path: &Path) -> Result<String, Failure> {

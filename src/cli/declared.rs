@@ -8,7 +8,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 
 use super::failure::Failure;
-use super::options::{CommonArgs, MachineArgs};
+use super::options::{CommonArgs, DepthArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
@@ -80,7 +80,10 @@ fn bench_command<S: Study>() -> Command {
     let default = format!("that of a preset made for one, or {benched}");
     let variants = variant_list::<S>("Variants to measure, comma-separated, or all", &default);
     let command = with_scene::<S>(Command::new("bench").arg(variants));
-    finish(CommonArgs::augment_args(command), "Time one configuration in one or more variants, interleaved")
+    finish(
+        DepthArgs::augment_args(CommonArgs::augment_args(command)),
+        "Time one configuration in one or more variants, interleaved",
+    )
 }
 
 fn experiment_command<S: Study>() -> Command {
@@ -135,7 +138,7 @@ fn own_command<S: Study>(verb: &Experiment<S>) -> Command {
 
 /// The short help lists everyday options, the long one all of them.
 fn finish(command: Command, about: &'static str) -> Command {
-    let parameters = ["Device", "Measuring", "Output", "Window"];
+    let parameters = ["Device", "Measuring", "In depth", "Output", "Window"];
     let is_everyday = |arg: &Arg| {
         let is_common = arg.get_help_heading().is_none_or(|heading| parameters.contains(&heading));
         !is_common || EVERYDAY.contains(&arg.get_id().as_str())
@@ -336,7 +339,8 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
             let common = CommonArgs::from_arg_matches(matches)?;
             outcome::check(&common.output)?;
             let setup = typed.resolve()?;
-            bench::publish(&common, &setup, &typed.variants(&setup, S::BENCHED)?)
+            let depth = DepthArgs::from_arg_matches(matches)?;
+            bench::publish(&common, &depth, &setup, &typed.variants(&setup, S::BENCHED)?)
         }
         "render" => {
             let setup = typed.resolve()?;

@@ -70,9 +70,11 @@ impl From<gpu::Error> for Failure {
                 Failure::NoDevice(message)
             }
             E::MissingFeature { .. } => Failure::NoDevice(message),
-            E::UnknownDevice { .. } | E::AmbiguousDevice { .. } | E::Limit { .. } | E::Shader { .. } => {
-                Failure::Input(message)
-            }
+            E::UnknownDevice { .. }
+            | E::AmbiguousDevice { .. }
+            | E::Limit { .. }
+            | E::Shader { .. }
+            | E::Capture { .. } => Failure::Input(message),
             E::OutOfMemory { .. }
             | E::Vulkan { .. }
             | E::Allocation { .. }

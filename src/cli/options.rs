@@ -114,6 +114,7 @@ impl MachineArgs {
     pub fn resolve(&self, process: u32) -> MachineOptions {
         MachineOptions {
             process,
+            is_profiled: false,
             device: self.device.clone(),
             validate: self.validate,
             compiler: match self.shader_compiler {
@@ -183,6 +184,24 @@ impl MeasureArgs {
     pub fn limits(&self, machine: &mut Machine) -> Result<Option<Limits>, Failure> {
         if self.no_limits { Ok(None) } else { Ok(Some(limits::measure(machine)?)) }
     }
+}
+
+/// Options of `bench` alone.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "In depth")]
+pub struct DepthArgs {
+    /// Look at one pass: distribution of its times, counters, bytes, floor, both compilers' binaries
+    #[arg(long, value_name = "PASS")]
+    pub profile: Option<String>,
+    /// Capture frame 0 of each variant after it was measured, by a RenderDoc that the program was started from
+    #[arg(long, value_enum, value_name = "TOOL")]
+    pub capture: Option<CaptureTool>,
+}
+
+/// Who captures a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CaptureTool {
+    Renderdoc,
 }
 
 #[derive(Debug, Clone, Args)]

@@ -15,7 +15,8 @@ use crate::report::{Record, environment, json};
 /// Options that the fresh processes do not get, and whether a value follows.
 const OURS: [(&str, bool); 4] = [("--processes", true), ("--process", true), ("--csv", true), ("--quiet", false)];
 /// Options that only the first process gets: it writes what all of them would write alike.
-const OF_THE_FIRST: [(&str, bool); 2] = [("--trace", true), ("--image", true)];
+const OF_THE_FIRST: [(&str, bool); 4] =
+    [("--trace", true), ("--image", true), ("--profile", true), ("--capture", true)];
 
 /// Time that a process has to end by itself.
 const PATIENCE: Duration = Duration::from_secs(5);

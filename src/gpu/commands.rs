@@ -10,6 +10,7 @@ use super::barrier::Barriers;
 use super::bindings::Use;
 use super::device::Device;
 use super::error::{Context, Error};
+use super::extensions::Extension;
 use super::live::Kind;
 use super::pass::Pass;
 use super::tracked::{Held, SubmissionId};
@@ -34,6 +35,8 @@ pub(crate) struct Commands {
     fence: vk::Fence,
     /// The submission that it will be part of.
     pub submission: SubmissionId,
+    /// Number of the frame that the next submission is the last of.
+    pub ends_frame: Option<u64>,
     phase: Phase,
     barriers: Barriers,
     held: Vec<Held>,
@@ -52,6 +55,7 @@ impl Commands {
             buffer: vk::CommandBuffer::null(),
             fence: vk::Fence::null(),
             submission: SubmissionId::new(),
+            ends_frame: None,
             phase: Phase::Idle,
             barriers: Barriers::default(),
             held: Vec::new(),
@@ -136,12 +140,20 @@ impl Commands {
         waits: &[vk::SemaphoreSubmitInfo<'_>],
         signals: &[vk::SemaphoreSubmitInfo<'_>],
     ) -> Result<Instant, Error> {
-        let raw = &self.device.raw;
         let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
-        let submits = [vk::SubmitInfo2::default()
+        let mut boundary = vk::FrameBoundaryEXT::default().flags(vk::FrameBoundaryFlagsEXT::FRAME_END);
+        let mut submit = vk::SubmitInfo2::default()
             .wait_semaphore_infos(waits)
             .command_buffer_infos(&buffers)
-            .signal_semaphore_infos(signals)];
+            .signal_semaphore_infos(signals);
+        if let Some(frame) = self.ends_frame.take()
+            && self.device.physical().has_extension(Extension::FrameBoundary)
+        {
+            boundary.frame_id = frame;
+            submit = submit.push_next(&mut boundary);
+        }
+        let submits = [submit];
+        let raw = &self.device.raw;
         // SAFETY: the buffer is recording: every caller has begun it; nobody else has it.
         unsafe { raw.end_command_buffer(self.buffer) }.context("ending", "a command buffer")?;
         // SAFETY: the queue is locked for the call; the fence is unsignalled since `begin` and not pending; the caller

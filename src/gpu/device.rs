@@ -8,6 +8,7 @@ use ash::{ext, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 
 use super::error::{Context, Error};
+use super::extensions::Extension;
 use super::instance::Instance;
 use super::live::{Kind, LiveObjects};
 use super::physical::{Feature, PhysicalDevice};
@@ -81,6 +82,11 @@ impl Device {
             has_present_fences = physical.has_present_fences(instance);
             enabled.extend(has_present_fences.then_some(ext::swapchain_maintenance1::NAME));
         }
+        enabled.extend(Extension::ALL.into_iter().filter(|one| physical.has_extension(*one)).map(Extension::name));
+        let mut boundary = vk::PhysicalDeviceFrameBoundaryFeaturesEXT::default().frame_boundary(true);
+        let mut executable =
+            vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default().pipeline_executable_info(true);
+        let mut query = vk::PhysicalDevicePerformanceQueryFeaturesKHR::default().performance_counter_query_pools(true);
         let mut maintenance1 =
             vk::PhysicalDeviceSwapchainMaintenance1FeaturesEXT::default().swapchain_maintenance1(true);
         let names: Vec<_> = enabled.iter().map(|name| name.as_ptr()).collect();
@@ -92,6 +98,15 @@ impl Device {
             .push_next(&mut v13);
         if has_present_fences {
             info = info.push_next(&mut maintenance1);
+        }
+        if physical.has_extension(Extension::FrameBoundary) {
+            info = info.push_next(&mut boundary);
+        }
+        if physical.has_extension(Extension::ExecutableProperties) {
+            info = info.push_next(&mut executable);
+        }
+        if physical.has_extension(Extension::PerformanceQuery) {
+            info = info.push_next(&mut query);
         }
         // SAFETY: `physical` belongs to `instance`; the structures outlive the call; the features were asked for.
         let raw = unsafe { instance.raw.create_device(physical.raw, &info, None) }

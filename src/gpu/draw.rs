@@ -11,6 +11,7 @@ use super::device::Device;
 use super::error::Error;
 use super::pass::{Body, DrawBounds, DrawCounts, Inner};
 use super::pass_builder::PassDesc;
+use super::work::Fetched;
 
 /// The common part of draws and dispatches: the pass, its constants, and the first command that was refused.
 struct BodyCommands<'a> {
@@ -74,16 +75,17 @@ impl<'a> BodyCommands<'a> {
 pub struct Draw<'a> {
     commands: BodyCommands<'a>,
     bounds: DrawBounds,
+    fetched: Fetched,
 }
 
 impl<'a> Draw<'a> {
     pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, bounds: DrawBounds) -> Self {
-        Draw { commands: BodyCommands::new(device, raw, inner), bounds }
+        Draw { commands: BodyCommands::new(device, raw, inner), bounds, fetched: Fetched::default() }
     }
 
-    /// The number of draws, or the first error.
-    pub(super) fn finish(self) -> Result<u32, Error> {
-        self.commands.finish()
+    /// The number of draws and what they fetched, or the first error.
+    pub(super) fn finish(self) -> Result<(u32, Fetched), Error> {
+        Ok((self.commands.finish()?, self.fetched))
     }
 
     /// Sets the push constants of the draws to come: the struct that the pass declares.
@@ -170,6 +172,7 @@ impl<'a> Draw<'a> {
             self.commands.refuse("it has no indirect buffer");
             return self;
         };
+        self.fetched.is_indirect = true;
         if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
             let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
             let BodyCommands { device, raw, .. } = self.commands;
@@ -184,6 +187,10 @@ impl<'a> Draw<'a> {
         if let Some(problem) = self.bounds.problem(counts) {
             self.commands.refuse(problem);
         }
+        let fetched = &mut self.fetched;
+        fetched.vertices = fetched.vertices.max(counts.vertices);
+        fetched.instances = fetched.instances.max(counts.instances);
+        fetched.indices = fetched.indices.max(counts.indices);
         self.commands.is_ready()
     }
 }

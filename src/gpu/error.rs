@@ -51,6 +51,10 @@ pub enum Error {
     Pass { pass: String, problem: String },
     #[error("shader {name}: {problem}")]
     Shader { name: String, problem: String },
+    #[error(
+        "capturing a frame: {reason}; start the program from RenderDoc, or as `renderdoccmd capture PROGRAM OPTIONS`"
+    )]
+    Capture { reason: String },
     #[error("validation: {} message(s), the first: {first}", count)]
     Validation { count: usize, first: String },
 }

@@ -15,8 +15,9 @@ use super::pass::{Body, Pass};
 use super::pass_info::PassInfo;
 use super::query::QueryPool;
 use super::recorder::Recorder;
-use super::sample::{Mode, PassSample, Span};
+use super::sample::{Mode, PassSample, Span, Track};
 use super::transfer;
+use super::work::Fetched;
 
 /// A frame being recorded.
 pub struct Frame<'a> {
@@ -27,6 +28,8 @@ pub struct Frame<'a> {
     /// The pass whose recording failed: the frame is not submitted then.
     pub(super) failed: Option<&'static str>,
     pub(super) end: End,
+    /// Milliseconds from the frame's start to that of this submission's recording.
+    pub(super) recording_ms: f64,
 }
 
 /// Where a frame ends.
@@ -61,7 +64,8 @@ impl Frame<'_> {
         Ok(())
     }
 
-    pub(super) fn finish(&mut self) -> Result<(), Error> {
+    /// Submits and waits; `pass` is the one whose results the host waits for.
+    pub(super) fn finish(&mut self, pass: Option<usize>) -> Result<(), Error> {
         self.check_open()?;
         let r = &mut *self.recorder;
         if self.mode == Mode::Bracketed
@@ -70,11 +74,25 @@ impl Frame<'_> {
             r.write_timestamp(query);
         }
         let submitted_ms = self.started.elapsed().as_secs_f64() * 1e3;
+        // Only what waits for no pass ends the frame.
+        r.commands.ends_frame = pass.is_none().then_some(r.frames);
+        r.frames += u64::from(pass.is_none());
         let finished = r.commands.submit_and_wait()?;
         r.sample.frame_ms = (finished - self.started).as_secs_f64() * 1e3;
+        let spans = [
+            (None, Track::Host, self.recording_ms, submitted_ms),
+            (pass, Track::Wait, submitted_ms, r.sample.frame_ms),
+        ];
+        r.sample.spans.extend(spans.map(|(pass, track, start_ms, end_ms)| Span {
+            pass,
+            start_ms,
+            duration_ms: end_ms - start_ms,
+            track,
+        }));
+        self.recording_ms = r.sample.frame_ms;
         match self.mode {
             Mode::Plain => Ok(()),
-            Mode::Timestamped | Mode::Bracketed => r.read_timestamps(self.mode, submitted_ms),
+            Mode::Timestamped | Mode::Bracketed => r.read_timestamps(self.mode, self.started, submitted_ms),
             Mode::Counted => r.read_counts(),
         }
     }
@@ -88,7 +106,7 @@ impl Frame<'_> {
         self.admit(pass.info())?;
         let at = self.sample_of(pass.info());
         let waiting = Instant::now();
-        self.finish()?;
+        self.finish(Some(at))?;
         // Until the rest of the frame has begun, nothing may be recorded.
         self.failed = Some(pass.info().name);
         let wait_ms = waiting.elapsed().as_secs_f64() * 1e3;
@@ -112,6 +130,7 @@ impl Frame<'_> {
             host_ms: None,
             wait_ms: None,
             counts: None,
+            work: None,
         });
         passes.len() - 1
     }
@@ -176,7 +195,7 @@ impl Frame<'_> {
         self.envelope(pass, |device, commands| {
             let mut dispatch = Dispatch::new(device, commands, &pass.inner, local_size);
             body(&mut dispatch);
-            dispatch.finish()
+            Ok((dispatch.finish()?, Fetched::default()))
         })
     }
 
@@ -190,7 +209,7 @@ impl Frame<'_> {
         transfer::check_uses(&pass.inner.device, pass.info().name, &pass.inner.uses)?;
         self.envelope(pass, |device, commands| {
             transfer::record_copy(&device.raw, commands, from, to);
-            Ok(1)
+            Ok((1, Fetched::default()))
         })?;
         if to.is_readback() {
             let r = &mut *self.recorder;
@@ -211,7 +230,7 @@ impl Frame<'_> {
         let result = work();
         let duration_ms = started.elapsed().as_secs_f64() * 1e3;
         let start_ms = (started - self.started).as_secs_f64() * 1e3;
-        self.recorder.sample.spans.push(Span { pass: at, start_ms, duration_ms, on_gpu: false });
+        self.recorder.sample.spans.push(Span { pass: Some(at), start_ms, duration_ms, track: Track::Host });
         let sample = &mut self.recorder.sample.passes[at];
         *sample.host_ms.get_or_insert(0.0) += duration_ms;
         sample.calls += 1;
@@ -252,7 +271,7 @@ impl Frame<'_> {
     fn envelope(
         &mut self,
         pass: &Pass,
-        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<u32, Error>,
+        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<(u32, Fetched), Error>,
     ) -> Result<(), Error> {
         self.check_open()?;
         self.admit(pass.info())?;
@@ -265,7 +284,7 @@ impl Frame<'_> {
     fn record(
         &mut self,
         pass: &Pass,
-        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<u32, Error>,
+        body: impl FnOnce(&Device, vk::CommandBuffer) -> Result<(u32, Fetched), Error>,
     ) -> Result<(), Error> {
         let name = pass.info().name;
         self.recorder.commands.device.check_own(&pass.inner.device, name, name)?;
@@ -273,7 +292,7 @@ impl Frame<'_> {
         let mode = self.mode;
         let r = &mut *self.recorder;
         r.commands.keep(pass);
-        r.open_label(name);
+        r.open_label(pass.info());
         let device = r.commands.device.clone();
         let commands = r.commands.buffer;
         if let Body::Graphics { indirect: Some(clamp), .. } = &pass.inner.body {
@@ -286,13 +305,14 @@ impl Frame<'_> {
         }
         r.commands.synchronise(pass.info().name, &pass.inner.uses)?;
         r.bind(&pass.inner);
-        let queries = (mode == Mode::Counted).then(|| r.begin_counters(&pass.inner, at));
-        let calls = body(&device, commands);
-        if let Some(queries) = queries {
+        let queries = (mode == Mode::Counted).then(|| r.begin_counters(pass, at));
+        let recorded = body(&device, commands);
+        if let Some(mut queries) = queries {
+            queries.fetched = recorded.as_ref().map_or_else(|_| Fetched::default(), |(_, fetched)| *fetched);
             r.end_counters(queries);
         }
         r.close_label();
-        r.sample.passes[at].calls += calls?;
+        r.sample.passes[at].calls += recorded?.0;
         if mode == Mode::Timestamped {
             r.timestamp(at);
         }

@@ -15,6 +15,7 @@ use super::pipeline::Pipeline;
 use super::render_pass::{Framebuffer, RenderPass};
 use super::shader::Compiler;
 use super::transfer;
+use super::work::Declared;
 
 pub use super::pass_builder::PassBuilder;
 pub use super::rebind::RebindBuilder;
@@ -43,6 +44,10 @@ pub(crate) struct Inner {
     pub stride_bytes: u32,
     /// The description that it was built from.
     pub desc: PassDesc,
+    /// Work that the description fixes.
+    pub declared: Declared,
+    /// Bytes of the attributes of one element of the vertex buffer.
+    pub element_bytes: u64,
 }
 
 pub(crate) enum Body {
@@ -106,7 +111,9 @@ impl Pass {
             counting: None,
             compiler: None,
             binaries: Vec::new(),
+            executables: None,
         });
+        let declared = Declared::copy(&from);
         let inner = Inner {
             device: to.device().clone(),
             pipeline: None,
@@ -116,6 +123,8 @@ impl Pass {
             body: Body::Copy { from, to: to.clone() },
             stride_bytes: 0,
             desc: PassDesc::new(name, section, PassKind::Transfer, Vec::new()),
+            declared,
+            element_bytes: 0,
         };
         Pass { info, inner: Arc::new(inner) }
     }
@@ -140,6 +149,9 @@ impl Pass {
             whole
                 .binaries
                 .extend(info.binaries.iter().filter(|b| !whole.binaries.contains(b)).cloned().collect::<Vec<_>>());
+            if let (Some(all), Some(more)) = (&mut whole.executables, &info.executables) {
+                all.extend(more.iter().cloned());
+            }
             if whole.compiler != info.compiler {
                 whole.compiler = Some(Compiler::Glslang);
             }

@@ -9,6 +9,7 @@ use super::access::Access;
 use super::bindings::{Bindings, Resource, Use};
 use super::buffer::{Buffer, BufferView};
 use super::error::Error;
+use super::executable::executables;
 use super::image::ImageView;
 use super::indirect::ClampDraw;
 use super::pass::{Body, DrawBounds, Inner, Pass};
@@ -18,7 +19,9 @@ use super::physical::Feature;
 use super::pipeline::{Pipeline, Topology, VertexLayout, check_constants};
 use super::program::Program;
 use super::render_pass::{Blend, DepthTest, Framebuffer, Load, RenderPass, Target, Targets};
+use super::sample::Counts;
 use super::shader::{Compiler, ShaderLibrary, ShaderModule};
+use super::work::Declared;
 use crate::shader_build::HostBlock;
 
 /// Everything that the builder was told; kept so that a pass can be rebound to other resources.
@@ -52,7 +55,14 @@ pub(crate) struct PassDesc {
     pub topology: Topology,
     /// Fragment shader and depth state of the draws that alternate with the pass's own.
     pub counting: Option<(String, DepthTest)>,
+    /// Names of resources that every recording touches whole.
+    pub whole: Vec<&'static str>,
+    /// Multiply-adds of a recording by its counters.
+    pub multiply_adds: Option<Formula>,
 }
+
+/// Multiply-adds that follow from counters; `None` where one is absent.
+pub(crate) type Formula = Arc<dyn Fn(&Counts) -> Option<u64> + Send + Sync>;
 
 /// A declared type of push constants.
 #[derive(Clone, Copy)]
@@ -81,6 +91,8 @@ impl PassDesc {
             indirect: None,
             topology: Topology::default(),
             counting: None,
+            whole: Vec::new(),
+            multiply_adds: None,
         }
     }
 
@@ -123,6 +135,7 @@ impl PassDesc {
             counting: self.counting.as_ref().map(|(_, test)| test.as_str()),
             compiler: Some(program.compiler()),
             binaries: program.modules.iter().map(|module| module.binary()).collect(),
+            executables: None,
         }
     }
 }
@@ -158,6 +171,19 @@ impl PassBuilder {
     /// that both have, so that a replacement of that shader may read it too.
     pub fn offer(mut self, name: &'static str, resource: impl Into<Resource>) -> Self {
         self.desc.offered.push((name, resource.into()));
+        self
+    }
+
+    /// Declares that each recording reads every byte of the resources of these names, or writes every byte of those that
+    /// the shaders write: their bytes are then certain.
+    pub fn whole(mut self, names: &[&'static str]) -> Self {
+        self.desc.whole.extend_from_slice(names);
+        self
+    }
+
+    /// Declares how many multiply-adds of 32-bit floats a recording takes at least, by its counters.
+    pub fn multiply_adds(mut self, formula: impl Fn(&Counts) -> Option<u64> + Send + Sync + 'static) -> Self {
+        self.desc.multiply_adds = Some(Arc::new(formula));
         self
     }
 
@@ -259,7 +285,12 @@ impl PassBuilder {
         }
         if desc.kind == PassKind::Compute {
             let pipeline = Pipeline::compute(device, name, &program)?;
-            return finish(shaders, desc, Pipelines { own: pipeline, counting: None, stride_bytes: 0 }, None);
+            return finish(
+                shaders,
+                desc,
+                Pipelines { own: pipeline, counting: None, stride_bytes: 0, element_bytes: 0 },
+                None,
+            );
         }
         pass_check::targets(device, &desc, &program.modules)?;
         let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
@@ -286,7 +317,8 @@ impl PassBuilder {
                 Some(made)
             }
         };
-        let pipelines = Pipelines { own, counting, stride_bytes: layout.stride_bytes };
+        let pipelines =
+            Pipelines { own, counting, stride_bytes: layout.stride_bytes, element_bytes: layout.element_bytes() };
         finish(shaders, desc, pipelines, Some(render_pass))
     }
 }
@@ -299,6 +331,8 @@ pub(super) struct Pipelines {
     pub counting: Option<Arc<Pipeline>>,
     /// From one element of the vertex buffer to the next; 0 without one.
     pub stride_bytes: u32,
+    /// Bytes of the attributes of one element.
+    pub element_bytes: u64,
 }
 
 /// Binds the resources of `desc` to pipelines that were made for it.
@@ -308,7 +342,11 @@ pub(super) fn finish(
     pipelines: Pipelines,
     render_pass: Option<Arc<RenderPass>>,
 ) -> Result<Pass, Error> {
-    let Pipelines { own: pipeline, counting, stride_bytes } = pipelines;
+    let Pipelines { own: pipeline, counting, stride_bytes, element_bytes } = pipelines;
+    if let Some(name) = desc.whole.iter().find(|name| !pipeline.program.slots.iter().any(|slot| slot.name == **name)) {
+        return Err(desc.problem(format!("it declares {name} whole, which its shaders do not name")));
+    }
+    let declared = Declared::new(&desc, &pipeline.program.slots, element_bytes);
     let bindings = Bindings::new(shaders.device(), desc.name, &pipeline.program, &desc.resources)?;
     let device = shaders.device();
     let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
@@ -337,8 +375,22 @@ pub(super) fn finish(
             }
         }
     };
-    let info = Arc::new(desc.describe(&pipeline.program, &uses));
+    let mut info = desc.describe(&pipeline.program, &uses);
+    info.executables = executables(device, desc.name, &pipeline)?;
+    device.name(pipeline.raw, &info.label());
+    let info = Arc::new(info);
     let device = device.clone();
-    let inner = Inner { device, pipeline: Some(pipeline), counting, bindings, uses, body, stride_bytes, desc };
+    let inner = Inner {
+        device,
+        pipeline: Some(pipeline),
+        counting,
+        bindings,
+        uses,
+        body,
+        stride_bytes,
+        element_bytes,
+        desc,
+        declared,
+    };
     Ok(Pass { info, inner: Arc::new(inner) })
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::executable::Executable;
 use super::shader::Compiler;
 
 /// The part of the machine that a pass keeps busy.
@@ -54,6 +55,8 @@ pub struct PassInfo {
     pub compiler: Option<Compiler>,
     /// The SPIR-V of each stage.
     pub binaries: Vec<Binary>,
+    /// What the driver's compiler made of them; `None` where the device does not tell, or was not asked to.
+    pub executables: Option<Vec<Executable>>,
 }
 
 /// The SPIR-V of one stage.
@@ -63,9 +66,20 @@ pub struct Binary {
     pub name: String,
     /// Lower-case hexadecimal SHA-256 of the words, little-endian.
     pub sha256: String,
+    /// Size in bytes.
+    pub bytes: u64,
+    /// Number of its SPIR-V instructions.
+    pub instructions: u64,
+    /// The compiler that made it.
+    pub compiler: Compiler,
 }
 
 impl PassInfo {
+    /// Name and section, as debug labels and the names of its objects have them.
+    pub(super) fn label(&self) -> String {
+        label(self.name, self.section)
+    }
+
     /// A pass of host work.
     pub fn host(name: &'static str, section: &'static str, reads: &[&str], writes: &[&str]) -> Arc<Self> {
         let owned = |words: &[&str]| words.iter().map(|&w| w.to_owned()).collect();
@@ -81,6 +95,12 @@ impl PassInfo {
             counting: None,
             compiler: None,
             binaries: Vec::new(),
+            executables: None,
         })
     }
+}
+
+/// A pass's name with its section, where it has one.
+pub(super) fn label(name: &str, section: &str) -> String {
+    if section.is_empty() { name.to_owned() } else { format!("{name} ({section})") }
 }

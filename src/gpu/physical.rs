@@ -5,6 +5,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::error::{Context, Error};
+use super::extensions::{self, Extension};
 use super::instance::{Instance, version_text};
 use super::portability;
 
@@ -134,6 +135,10 @@ pub struct PhysicalDevice {
     /// device of whole Vulkan.
     pub portability_lacks: Option<Vec<&'static str>>,
     features: Vec<Feature>,
+    extensions: Vec<Extension>,
+    performance_counters: Option<Vec<String>>,
+    /// Opened, it keeps what its compiler tells of pipelines.
+    is_profiled: bool,
     /// `fullDrawIndexUint32`: every 32-bit index is one.
     has_full_indices: bool,
     max_buffer_bytes: u64,
@@ -207,6 +212,7 @@ impl PhysicalDevice {
             let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
             String::from_utf8_lossy(&bytes).into_owned()
         };
+        let extensions = extensions::supported(instance, raw)?;
         Ok(PhysicalDevice {
             raw,
             index,
@@ -226,6 +232,9 @@ impl PhysicalDevice {
             memory,
             queue,
             portability_lacks: portability::lacks(instance, raw)?,
+            performance_counters: extensions::performance_counters(instance, raw, &extensions, queue)?,
+            extensions,
+            is_profiled: false,
             features: supported_features(instance, raw, properties.api_version, queue),
             has_full_indices: core.full_draw_index_uint32 == vk::TRUE,
             max_buffer_bytes: v13.max_buffer_size,
@@ -241,6 +250,7 @@ impl PhysicalDevice {
         }
         let mut again = Self::describe(instance, self.index, self.raw)?;
         again.features.retain(|feature| self.features.contains(feature));
+        again.is_profiled = self.is_profiled;
         Ok(again)
     }
 
@@ -261,6 +271,26 @@ impl PhysicalDevice {
     /// True when the device has `feature`.
     pub fn has(&self, feature: Feature) -> bool {
         self.features.contains(&feature)
+    }
+
+    /// True when the device has `extension`; it is then opened with it.
+    pub fn has_extension(&self, extension: Extension) -> bool {
+        self.extensions.contains(&extension)
+    }
+
+    /// Names of the device's own counters; absent where it has none.
+    pub fn performance_counters(&self) -> Option<&[String]> {
+        self.performance_counters.as_deref()
+    }
+
+    /// The device with pipelines that keep what its compiler tells of them, where it does.
+    pub fn profiled(mut self) -> Self {
+        self.is_profiled = true;
+        self
+    }
+
+    pub(crate) fn keeps_executables(&self) -> bool {
+        self.is_profiled && self.has_extension(Extension::ExecutableProperties)
     }
 
     /// The device as if it lacked `feature`: opened, it does not enable it. The fallbacks for less capable devices can be

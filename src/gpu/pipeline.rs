@@ -23,6 +23,8 @@ pub struct Attribute {
     pub format: vk::Format,
     /// Offset in the vertex, in bytes.
     pub offset_bytes: u32,
+    /// Size in bytes.
+    pub bytes: u64,
 }
 
 /// The layout of the vertices of a pass in their buffer.
@@ -70,13 +72,23 @@ impl VertexLayout {
                     problem: format!("{} has no field {} of {bytes} bytes for its vertex stage", T::NAME, input.name),
                 });
             };
-            attributes.push(Attribute { location: input.location, format, offset_bytes: offset as u32 });
+            attributes.push(Attribute {
+                location: input.location,
+                format,
+                offset_bytes: offset as u32,
+                bytes: bytes as u64,
+            });
         }
         Ok(VertexLayout { stride_bytes: size_of::<T>() as u32, rate: vk::VertexInputRate::VERTEX, attributes })
     }
 }
 
 impl VertexLayout {
+    /// Bytes of the attributes of one element.
+    pub(crate) fn element_bytes(&self) -> u64 {
+        self.attributes.iter().map(|attribute| attribute.bytes).sum()
+    }
+
     /// # Errors
     /// [`Error::Limit`] for more attributes or longer elements than the device fetches.
     pub(crate) fn check_limits(&self, device: &Device, pass: &str) -> Result<(), Error> {
@@ -185,6 +197,7 @@ impl Pipeline {
         let dynamic = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
         let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic);
         let info = vk::GraphicsPipelineCreateInfo::default()
+            .flags(flags(device))
             .stages(&stages)
             .vertex_input_state(&vertex_input)
             .input_assembly_state(&assembly)
@@ -206,7 +219,7 @@ impl Pipeline {
         let [stage] = stages[..] else {
             return Err(Error::Pass { pass: pass.to_owned(), problem: "a compute pass has one shader".into() });
         };
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(program.layout);
+        let info = vk::ComputePipelineCreateInfo::default().flags(flags(device)).stage(stage).layout(program.layout);
         // SAFETY: the module and the layout are alive.
         let made = unsafe { device.raw.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
         Self::guard(device, pass, program, made)
@@ -223,6 +236,15 @@ impl Pipeline {
         device.live().add(Kind::Pipeline);
         device.name(raw, pass);
         Ok(Arc::new(Pipeline { raw, device: device.clone(), program: program.clone() }))
+    }
+}
+
+/// A profiled device's driver keeps what it knows of the pipeline.
+fn flags(device: &Device) -> vk::PipelineCreateFlags {
+    if device.physical().keeps_executables() {
+        vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR | vk::PipelineCreateFlags::CAPTURE_INTERNAL_REPRESENTATIONS_KHR
+    } else {
+        vk::PipelineCreateFlags::empty()
     }
 }
 

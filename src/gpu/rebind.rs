@@ -100,7 +100,12 @@ impl RebindBuilder {
         let Some(own) = old.pipeline.clone() else {
             return Err(desc.problem("a copy has no descriptors to rebind"));
         };
-        let pipelines = Pipelines { own, counting: old.counting.clone(), stride_bytes: old.stride_bytes };
+        let pipelines = Pipelines {
+            own,
+            counting: old.counting.clone(),
+            stride_bytes: old.stride_bytes,
+            element_bytes: old.element_bytes,
+        };
         finish(shaders, desc, pipelines, render_pass)
     }
 }

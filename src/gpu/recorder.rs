@@ -11,12 +11,14 @@ use super::barrier;
 use super::commands::Commands;
 use super::device::{Device, c_text};
 use super::error::Error;
+use super::extensions::Calibration;
 use super::frame::{End, Frame};
-use super::pass::{Body, Inner};
+use super::pass::{Body, Inner, Pass};
 use super::pass_info::PassInfo;
 use super::physical::Feature;
 use super::query::{Counter, QueryPool};
-use super::sample::{Counts, FrameSample, Mode, Span};
+use super::sample::{Counts, FrameSample, Mode, Span, Track};
+use super::work::{Fetched, Work};
 
 /// Queries of one frame; a pass beyond them is reported as not measured.
 const TIMESTAMPS: u32 = 32_768;
@@ -31,6 +33,9 @@ pub struct Recorder {
     pub(super) compute_counts: Option<QueryPool>,
     pub(super) timestamp_mask: u64,
     pub(super) period_ns: f64,
+    calibration: Option<Calibration>,
+    /// Frames that were submitted so far.
+    pub(super) frames: u64,
     /// The pass, as an index into `sample.passes`, of each timestamped interval and of each counter.
     pub(super) intervals: Vec<usize>,
     pub(super) counted: Vec<Counted>,
@@ -41,7 +46,11 @@ pub struct Recorder {
 }
 
 pub(super) struct Counted {
+    /// Index into `sample.passes`.
     pass: usize,
+    recorded: Pass,
+    /// What its draws fetched, known once they are recorded.
+    pub fetched: Fetched,
     samples: Option<u32>,
     graphics: Option<u32>,
     compute: Option<u32>,
@@ -66,6 +75,8 @@ impl Recorder {
             compute_counts: pool(Feature::PipelineStatistics, Counter::Compute, COUNTERS)?,
             timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             period_ns: f64::from(physical.limits.timestamp_period),
+            calibration: Calibration::new(device),
+            frames: 0,
             intervals: Vec::new(),
             counted: Vec::new(),
             overrun: Vec::new(),
@@ -113,17 +124,18 @@ impl Recorder {
         self.sample.bracket_ms = None;
         self.overrun.clear();
         let started = Instant::now();
-        let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None, end };
+        let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None, end, recording_ms: 0.0 };
         frame.begin()?;
         match record(&mut frame) {
             // The error told of the end.
             Err(_) if frame.end == End::Reached && frame.failed.is_none() => {}
             other => other?,
         }
-        frame.finish()?;
+        frame.finish(None)?;
         drop(frame);
         for &pass in &self.overrun {
-            (self.sample.passes[pass].gpu_ms, self.sample.passes[pass].counts) = (None, None);
+            let sample = &mut self.sample.passes[pass];
+            (sample.gpu_ms, sample.counts, sample.work) = (None, None, None);
         }
         Ok(&self.sample)
     }
@@ -183,7 +195,9 @@ impl Recorder {
         barrier::full(device, self.commands.buffer);
     }
 
-    pub(super) fn read_timestamps(&mut self, mode: Mode, submitted_ms: f64) -> Result<(), Error> {
+    /// Gives the timestamps' differences to their passes. `started` is the frame's start, `submitted_ms` after which its work
+    /// was handed in.
+    pub(super) fn read_timestamps(&mut self, mode: Mode, started: Instant, submitted_ms: f64) -> Result<(), Error> {
         let Some(pool) = &mut self.timestamps else { return Ok(()) };
         let (mask, period_ns) = (self.timestamp_mask, self.period_ns);
         let difference_ms = |w: &[u64]| (w[1].wrapping_sub(w[0]) & mask) as f64 * period_ns * 1e-6;
@@ -195,10 +209,16 @@ impl Recorder {
             return Ok(());
         }
         let mut start_ms = submitted_ms;
+        // The device's clock runs on: the first timestamp lies as long before this reading as the ticks between them.
+        if let (Some((ticks, moment)), Some(first)) =
+            (self.calibration.as_ref().and_then(Calibration::now), timestamps.first())
+        {
+            start_ms = (moment - started).as_secs_f64() * 1e3 - difference_ms(&[*first, ticks]);
+        }
         for (window, &pass) in timestamps.windows(2).zip(&self.intervals) {
             let duration_ms = difference_ms(window);
             *self.sample.passes[pass].gpu_ms.get_or_insert(0.0) += duration_ms;
-            self.sample.spans.push(Span { pass, start_ms, duration_ms, on_gpu: true });
+            self.sample.spans.push(Span { pass: Some(pass), start_ms, duration_ms, track: Track::Gpu });
             start_ms += duration_ms;
         }
         Ok(())
@@ -212,21 +232,22 @@ impl Recorder {
         let graphics = read(&mut self.graphics_counts)?;
         let compute = read(&mut self.compute_counts)?;
         for one in &self.counted {
-            let counts = self.sample.passes[one.pass].counts.get_or_insert_with(Counts::default);
-            let add = |total: &mut Option<u64>, value: Option<&u64>| {
-                if let Some(value) = value {
-                    *total.get_or_insert(0) += value;
-                }
+            let at = |values: &[u64], query: Option<u32>, stride: usize, offset: usize| {
+                values.get(query? as usize * stride + offset).copied()
             };
-            if let Some(query) = one.graphics {
-                // Vulkan writes the counters in the order of their bits: primitives, vertices, fragments.
-                let at = query as usize * 3;
-                add(&mut counts.primitives, graphics.get(at));
-                add(&mut counts.vertices, graphics.get(at + 1));
-                add(&mut counts.fragments, graphics.get(at + 2));
-            }
-            add(&mut counts.compute_invocations, one.compute.and_then(|q| compute.get(q as usize)));
-            add(&mut counts.samples_passed, one.samples.and_then(|q| samples.get(q as usize)));
+            // Vulkan writes the counters in the order of their bits: primitives, vertices, fragments.
+            let counts = Counts {
+                primitives: at(&graphics, one.graphics, 3, 0),
+                vertices: at(&graphics, one.graphics, 3, 1),
+                fragments: at(&graphics, one.graphics, 3, 2),
+                compute_invocations: at(&compute, one.compute, 1, 0),
+                samples_passed: at(&samples, one.samples, 1, 0),
+            };
+            let inner = &one.recorded.inner;
+            let sample = &mut self.sample.passes[one.pass];
+            sample.counts.get_or_insert_with(Counts::default).add(&counts);
+            let work = inner.declared.work(&inner.desc, one.fetched, &counts);
+            sample.work.get_or_insert_with(Work::default).add(work);
         }
         Ok(())
     }
@@ -248,7 +269,8 @@ impl Recorder {
         }
     }
 
-    pub(super) fn begin_counters(&mut self, inner: &Inner, pass: usize) -> Counted {
+    pub(super) fn begin_counters(&mut self, recorded: &Pass, pass: usize) -> Counted {
+        let inner = &recorded.inner;
         let is_graphics = matches!(inner.body, Body::Graphics { .. });
         let overrun = &mut self.overrun;
         let mut take = |pool: &mut Option<QueryPool>, wanted: bool| {
@@ -260,6 +282,8 @@ impl Recorder {
         };
         let counted = Counted {
             pass,
+            recorded: recorded.clone(),
+            fetched: Fetched::default(),
             samples: take(&mut self.samples_passed, is_graphics),
             graphics: take(&mut self.graphics_counts, is_graphics),
             compute: take(&mut self.compute_counts, matches!(inner.body, Body::Compute { .. })),
@@ -298,10 +322,11 @@ impl Recorder {
         }
     }
 
-    pub(super) fn open_label(&mut self, name: &'static str) {
+    pub(super) fn open_label(&mut self, info: &PassInfo) {
+        let name = info.name;
         let Some(debug) = &self.commands.device.debug else { return };
         let at = self.labels.iter().position(|(n, _)| *n == name).unwrap_or_else(|| {
-            self.labels.push((name, c_text(name)));
+            self.labels.push((name, c_text(&info.label())));
             self.labels.len() - 1
         });
         let label = vk::DebugUtilsLabelEXT::default().label_name(&self.labels[at].1);

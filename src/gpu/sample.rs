@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::pass_info::PassInfo;
+use super::work::Work;
 
 /// The measurement that a frame is recorded with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +33,17 @@ pub struct Counts {
     pub samples_passed: Option<u64>,
 }
 
+impl Counts {
+    pub(super) fn add(&mut self, other: &Counts) {
+        let add = |sum: &mut Option<u64>, one: Option<u64>| *sum = sum.iter().copied().chain(one).reduce(|a, b| a + b);
+        add(&mut self.vertices, other.vertices);
+        add(&mut self.primitives, other.primitives);
+        add(&mut self.fragments, other.fragments);
+        add(&mut self.compute_invocations, other.compute_invocations);
+        add(&mut self.samples_passed, other.samples_passed);
+    }
+}
+
 /// Measurements of one pass in one frame, summed over its calls.
 #[derive(Debug, Clone)]
 pub struct PassSample {
@@ -49,19 +61,33 @@ pub struct PassSample {
     pub wait_ms: Option<f64>,
     /// Counters, in a counted frame.
     pub counts: Option<Counts>,
+    /// Bytes, samples and triangles by its declaration, in a counted frame.
+    pub work: Option<Work>,
 }
 
 /// The time span of one call of a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// Index into [`FrameSample::passes`].
-    pub pass: usize,
+    /// Index into [`FrameSample::passes`]; `None` for the frame's own recording and last wait.
+    pub pass: Option<usize>,
     /// Start, in milliseconds from the start of recording.
     pub start_ms: f64,
     /// Duration in milliseconds.
     pub duration_ms: f64,
-    /// On the GPU: its clock is laid so that the first timestamp of a submission falls on the host's moment of submitting.
-    pub on_gpu: bool,
+    /// The clock and whose time it is.
+    pub track: Track,
+}
+
+/// Whose time a span is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Track {
+    /// The host works.
+    Host,
+    /// The host waits for the device.
+    Wait,
+    /// The device works. Its clock is calibrated against the host's; where it cannot be, the first timestamp of a
+    /// submission falls on the host's moment of submitting.
+    Gpu,
 }
 
 /// Measurements of a frame.
@@ -73,6 +99,6 @@ pub struct FrameSample {
     pub bracket_ms: Option<f64>,
     /// In the order of first recording.
     pub passes: Vec<PassSample>,
-    /// The time span of each call: host work always, GPU work in a timestamped frame.
+    /// The time span of each call: host work and waits always, GPU work in a timestamped frame.
     pub spans: Vec<Span>,
 }

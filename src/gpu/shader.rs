@@ -100,8 +100,20 @@ impl ShaderLibrary {
             interface,
             compiler,
             sha256,
+            bytes: 4 * words.len() as u64,
+            instructions: instructions(&words),
         }))
     }
+}
+
+/// Number of instructions, each of which begins with its length, after the header of five words.
+fn instructions(words: &[u32]) -> u64 {
+    let (mut rest, mut count) = (words.get(5..).unwrap_or_default(), 0);
+    while let Some(&first) = rest.first() {
+        count += 1;
+        rest = rest.get((first >> 16).max(1) as usize..).unwrap_or_default();
+    }
+    count
 }
 
 /// The first capability that a device is not opened with. The numbers are those of the SPIR-V specification.
@@ -146,12 +158,20 @@ pub struct ShaderModule {
     /// The compiler of the binary.
     pub compiler: Compiler,
     sha256: String,
+    bytes: u64,
+    instructions: u64,
 }
 
 impl ShaderModule {
     /// The identity of the binary.
     pub fn binary(&self) -> Binary {
-        Binary { name: self.name.clone(), sha256: self.sha256.clone() }
+        Binary {
+            name: self.name.clone(),
+            sha256: self.sha256.clone(),
+            bytes: self.bytes,
+            instructions: self.instructions,
+            compiler: self.compiler,
+        }
     }
 
     pub(crate) fn stage(&self) -> Stages {

@@ -262,6 +262,7 @@ fn draw_pipeline(device: &Arc<Device>, modules: [Arc<ShaderModule>; 2]) -> Resul
     let [vertex, fragment] = &modules;
     let (name, inputs) = (fragment.name.clone(), &vertex.interface.inputs);
     let attributes = inputs.iter().zip(0..).map(|(input, i)| Attribute {
+        bytes: 16,
         location: input.location,
         format: vector_format(input.format),
         offset_bytes: 16 * i,

@@ -167,7 +167,8 @@ pub(crate) fn copy_uses(from: &Resource, to: &Arc<Buffer>) -> [Use; 2] {
     ]
 }
 
-fn copied_bytes(from: &Resource) -> u64 {
+/// Bytes of a copy of all of it, texels tightly packed.
+pub(crate) fn copied_bytes(from: &Resource) -> u64 {
     match from {
         Resource::Buffer(view) => view.len_bytes(),
         Resource::Image(view) => {

@@ -3,11 +3,12 @@
 use serde_json::{Map, Value};
 
 use super::config::entries;
+use super::floor::floor;
 use super::measure::{FrameSpan, MeasuredPass, Measurement, Schedule};
 use super::statistics::{median, repetition_noise, summarize};
 use super::study::Identity;
-use crate::gpu::PassKind;
 use crate::gpu::live::MemoryUse;
+use crate::gpu::{self, PassKind, Work};
 use crate::report::record::{
     self, InputFile, Limits, Memory, Pass, ResourceMemory, Run, ShaderBinary, Statistics, Validation,
 };
@@ -46,6 +47,8 @@ pub struct RunMetadata {
     pub limits: Option<Limits>,
     /// GPU time of an empty pass in milliseconds; `None` without timestamps.
     pub stamp_floor_ms: Option<f64>,
+    /// Set where the device is a CPU.
+    pub is_cpu: bool,
     /// State of the validation layer.
     pub validation: Validation,
     /// Doubts about the run, one line each.
@@ -54,7 +57,8 @@ pub struct RunMetadata {
 
 /// Assembles the run.
 pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Schedule) -> Run {
-    let passes: Vec<Pass> = measurement.passes.iter().map(pass).collect();
+    let passes: Vec<Pass> =
+        measurement.passes.iter().map(|p| pass(p, metadata.limits.as_ref(), metadata.is_cpu)).collect();
     let frame_ms = summarize(&measurement.frame_ms);
     let of_passes = |times: fn(&Pass) -> Option<f64>| passes.iter().filter_map(times).sum::<f64>();
     let gpu_ms = of_passes(|p| p.gpu_ms.as_ref().map(|s| s.median));
@@ -101,6 +105,7 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
         limits: metadata.limits,
         results: metadata.results,
         experiment: None,
+        profile: None,
         validation: metadata.validation,
         warnings,
         image: None,
@@ -109,8 +114,11 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
     }
 }
 
-fn pass(measured: &MeasuredPass) -> Pass {
+fn pass(measured: &MeasuredPass, limits: Option<&Limits>, is_cpu: bool) -> Pass {
     let info = &measured.info;
+    let floor = limits.and_then(|limits| {
+        floor(measured.work.as_ref()?, &measured.counts.unwrap_or_default(), info.kind, limits, is_cpu)
+    });
     let is_host = info.kind == PassKind::Host;
     Pass {
         name: info.name.to_owned(),
@@ -124,11 +132,7 @@ fn pass(measured: &MeasuredPass) -> Pass {
         calls: measured.calls,
         submission: (!is_host).then_some(measured.submission),
         shader_compiler: info.compiler.map(|c| c.to_string()),
-        shaders: info
-            .binaries
-            .iter()
-            .map(|binary| ShaderBinary { name: binary.name.clone(), sha256: binary.sha256.clone() })
-            .collect(),
+        shaders: info.binaries.iter().map(shader_binary).collect(),
         gpu_ms: summarize(&measured.gpu_ms),
         host_ms: summarize(&measured.host_ms),
         wait_ms: summarize(&measured.wait_ms),
@@ -139,41 +143,77 @@ fn pass(measured: &MeasuredPass) -> Pass {
             compute_invocations: c.compute_invocations,
             samples_passed: c.samples_passed,
         }),
-        bytes: None,
+        bytes: measured.work.as_ref().map(bytes),
+        floor_ms: floor.as_ref().map(|floor| floor.ms),
+        bound: floor.as_ref().map(|floor| floor.bound.to_owned()),
+        floors: floor.iter().flat_map(|f| &f.terms).map(|(name, ms)| ((*name).to_owned(), *ms)).collect(),
+    }
+}
+
+/// A stage's binary as the record has it.
+pub fn shader_binary(binary: &gpu::Binary) -> ShaderBinary {
+    ShaderBinary {
+        name: binary.name.clone(),
+        sha256: binary.sha256.clone(),
+        bytes: Some(binary.bytes),
+        instructions: Some(binary.instructions),
+    }
+}
+
+fn bytes(work: &Work) -> record::Bytes {
+    record::Bytes {
+        read: work.bytes.read,
+        written: work.bytes.written,
+        at_most: work.bytes_at_most.map(|bytes| record::BytesAtMost { read: bytes.read, written: bytes.written }),
+        uncertain: work.uncertain.clone(),
     }
 }
 
 /// The timestamped frames as a trace.
 pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
-    let events = measurement
-        .spans
-        .iter()
-        .filter_map(|FrameSpan { repetition, frame, frame_start_ms, span }| {
-            let pass = measurement.passes.get(span.pass)?;
-            let mut args = entries([
-                ("section", pass.info.section.into()),
-                ("repetition", (*repetition).into()),
-                ("frame", (*frame).into()),
-                ("calls", pass.calls.into()),
-            ]);
-            let counts = pass.counts.iter().flat_map(|counts| {
-                [
-                    ("vertices", counts.vertices),
-                    ("primitives", counts.primitives),
-                    ("fragments", counts.fragments),
-                    ("compute_invocations", counts.compute_invocations),
-                    ("samples_passed", counts.samples_passed),
-                ]
-            });
-            args.extend(counts.filter_map(|(name, count)| Some((name.to_owned(), count?.into()))));
-            Some(TraceEvent {
-                name: pass.info.name.to_owned(),
-                track: if span.on_gpu { Track::Gpu } else { Track::Host },
-                start_us: (frame_start_ms + span.start_ms) * 1e3,
-                duration_us: span.duration_ms * 1e3,
-                args,
-            })
+    let event = |FrameSpan { repetition, frame, frame_start_ms, span }: &FrameSpan| {
+        let mut args = entries([("repetition", (*repetition).into()), ("frame", (*frame).into())]);
+        let pass = match span.pass {
+            None => None,
+            Some(index) => Some(measurement.passes.get(index)?),
+        };
+        args.extend(pass.into_iter().flat_map(arguments));
+        let name = match (pass, span.track) {
+            (Some(pass), _) => pass.info.name,
+            (None, gpu::Track::Wait) => "wait for the device",
+            (None, _) => "record",
+        };
+        Some(TraceEvent {
+            name: name.to_owned(),
+            track: match span.track {
+                gpu::Track::Host => Track::Host,
+                gpu::Track::Wait => Track::Wait,
+                gpu::Track::Gpu => Track::Gpu,
+            },
+            start_us: (frame_start_ms + span.start_ms) * 1e3,
+            duration_us: span.duration_ms * 1e3,
+            args,
         })
-        .collect();
-    TraceRun { name, events }
+    };
+    TraceRun { name, events: measurement.spans.iter().filter_map(event).collect() }
+}
+
+/// Section, calls, bytes and counters of a pass in one frame; what is not known is left out.
+fn arguments(pass: &MeasuredPass) -> Map<String, Value> {
+    let counts = pass.counts.unwrap_or_default();
+    let work = pass.work.as_ref();
+    let known = [
+        ("calls", Some(u64::from(pass.calls))),
+        ("bytes_read", work.map(|work| work.bytes.read)),
+        ("bytes_written", work.map(|work| work.bytes.written)),
+        ("bytes_read_at_most", work.and_then(|work| Some(work.bytes_at_most?.read))),
+        ("bytes_written_at_most", work.and_then(|work| Some(work.bytes_at_most?.written))),
+        ("vertices", counts.vertices),
+        ("primitives", counts.primitives),
+        ("fragments", counts.fragments),
+        ("compute_invocations", counts.compute_invocations),
+        ("samples_passed", counts.samples_passed),
+    ];
+    let known = known.into_iter().filter_map(|(name, value)| Some((name.to_owned(), Value::from(value?))));
+    entries([("section", pass.info.section.into())]).into_iter().chain(known).collect()
 }

@@ -11,6 +11,7 @@ use super::machine::Machine;
 use super::measure::{Schedule, Watch, measure};
 use super::study::Study;
 use crate::gpu::live::MemoryUse;
+use crate::gpu::physical::DeviceType;
 use crate::measure::{Paper, Variant};
 use crate::report::environment;
 use crate::report::record::{InputFile, Limits, Run};
@@ -160,7 +161,7 @@ impl<S: Study> Bench<'_, S> {
         let metrics = study.metrics(machine, &mut measured)?;
         measured.iter_mut().try_for_each(|(built, _)| inspect(machine, &mut built.paper))?;
         let validation = machine.check_validation()?;
-        let warnings = [machine.warnings(), self.limits.map(limits::warnings).unwrap_or_default()].concat();
+        let warnings = [machine.warnings(), self.limits.and_then(limits::warning).into_iter().collect()].concat();
         let identity = study.identity();
         let inputs = inputs(study)?;
         let runs = measured.iter().zip(metrics).map(|((built, measurement), metrics)| {
@@ -179,6 +180,7 @@ impl<S: Study> Bench<'_, S> {
                 results: metrics.results,
                 limits: self.limits.cloned(),
                 stamp_floor_ms,
+                is_cpu: machine.device.physical().device_type == DeviceType::Cpu,
                 validation,
                 warnings: warnings.iter().cloned().chain(metrics.warnings).collect(),
             };

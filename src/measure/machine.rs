@@ -21,6 +21,8 @@ pub struct MachineOptions {
     pub shader_dir: Option<PathBuf>,
     /// Number of this process among several fresh ones, from 0.
     pub process: u32,
+    /// Keep what the driver's compiler tells of pipelines.
+    pub is_profiled: bool,
 }
 
 /// An open machine.
@@ -45,6 +47,7 @@ impl Machine {
     pub fn open(options: &MachineOptions, needed: &[Feature]) -> Result<Self, Error> {
         let instance = Instance::new(options.validate)?;
         let physical = choose(PhysicalDevice::enumerate(&instance)?, options.device.as_deref(), needed)?;
+        let physical = if options.is_profiled { physical.profiled() } else { physical };
         let device = Device::open(&instance, physical)?;
         Ok(Machine {
             recorder: Recorder::new(&device)?,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, Recorder, Span};
+use crate::gpu::{Counts, Error, FrameSample, Mode, PassInfo, Recorder, Span, Work};
 use crate::measure::Paper;
 
 /// Frames and repetitions to measure.
@@ -57,6 +57,8 @@ pub struct MeasuredPass {
     pub wait_ms: Vec<f64>,
     /// Pipeline statistics of one frame; `None` where none were taken.
     pub counts: Option<Counts>,
+    /// Bytes, samples and triangles of that frame.
+    pub work: Option<Work>,
 }
 
 /// Measurements of one paper.
@@ -154,7 +156,8 @@ pub fn measure(
     for (paper, result) in papers.iter_mut().zip(&mut results) {
         let sample = recorder.run(Mode::Counted, |frame| paper.record(frame, 0))?;
         for pass in &sample.passes {
-            result.pass(pass).counts = pass.counts;
+            let measured = result.pass(pass);
+            (measured.counts, measured.work) = (pass.counts, pass.work.clone());
         }
         tick(expected);
     }
@@ -181,6 +184,7 @@ impl Measurement {
                 host_ms: Vec::new(),
                 wait_ms: Vec::new(),
                 counts: None,
+                work: None,
             });
             self.passes.len() - 1
         });

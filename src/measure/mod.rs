@@ -7,6 +7,7 @@ pub mod config;
 mod error;
 pub mod estimate;
 pub mod experiment;
+pub mod floor;
 pub mod limits;
 pub mod machine;
 #[allow(clippy::module_inception)]
@@ -14,6 +15,7 @@ pub mod measure;
 pub mod paper;
 pub mod parameter;
 pub mod picture;
+pub mod profile;
 pub mod result_table;
 pub mod statistics;
 pub mod stress;

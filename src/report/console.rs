@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::profile::profile;
 use super::record::{Limits, Pass, Record, Run, Summary};
 use super::table::{Align, Style, Table};
 use super::text::one_line;
@@ -14,6 +15,7 @@ pub fn record(record: &Record, style: Style) -> String {
     for item in &record.runs {
         text.push('\n');
         text.push_str(&run(item, style));
+        text.push_str(&profile(item, style));
     }
     if let Some(limits) = record.runs.iter().find_map(|run| run.limits.as_ref()) {
         text.push_str(&limits_line(limits));
@@ -40,17 +42,17 @@ fn limits_line(limits: &Limits) -> String {
         let spread = samples.and_then(|samples| Some(samples.mad? / samples.median));
         spread.map_or_else(String::new, |spread| format!(" ± {:.0} %", 100.0 * spread))
     };
-    let rates = [
-        ("copy_gb_s", limits.copy_gb_s, "copy", "GB/s"),
-        ("fma_gflops", limits.fma_gflops, "multiply-add", "GFLOPS"),
-        ("fill_gpix_s", limits.fill_gpix_s, "fill", "Gpixel/s"),
-        ("blend_gpix_s", limits.blend_gpix_s, "blend", "Gpixel/s"),
-    ];
-    let known: Vec<String> = rates
-        .into_iter()
-        .filter_map(|(name, rate, what, unit)| Some(format!("{what} {:.2} {unit}{}", rate?, spread(name))))
+    let known: Vec<String> = limits
+        .listed()
+        .map(|(name, value, what, unit)| format!("{what} {} {unit}{}", significant(value), spread(name)))
         .collect();
     if known.is_empty() { String::new() } else { format!("\nlimits of the device: {}\n", known.join(", ")) }
+}
+
+/// Three digits that say something.
+fn significant(value: f64) -> String {
+    let before = value.abs().max(f64::MIN_POSITIVE).log10().floor();
+    format!("{value:.*}", (2.0 - before).clamp(0.0, 9.0) as usize)
 }
 
 /// One run: its name, the table of passes in the paper's order, the frame, and what the passes leave
@@ -87,6 +89,7 @@ fn passes(run: &Run) -> Table {
         ("submission", Align::Right),
         ("gpu ms", Align::Right),
         ("fraction", Align::Right),
+        ("share of limit", Align::Right),
         ("host ms", Align::Right),
         ("wait ms", Align::Right),
     ]);
@@ -112,6 +115,9 @@ fn passes(run: &Run) -> Table {
             pass.submission.filter(|_| submissions).map_or_else(String::new, |index| index.to_string()),
             gpu(pass),
             fraction(pass, run).map_or_else(String::new, |fraction| format!("{:.1} %", 100.0 * fraction)),
+            pass.share_of_limit().map_or_else(String::new, |share| {
+                format!("{:.0} % {}", 100.0 * share, pass.bound.as_deref().unwrap_or_default())
+            }),
             host(pass),
             wait(pass),
         ]);

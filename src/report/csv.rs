@@ -20,7 +20,7 @@ struct Row<'a> {
 type Column = (&'static str, fn(&Row) -> String);
 
 /// Names and cells of the columns, in order. Times are milliseconds, sizes bytes.
-const COLUMNS: [Column; 50] = [
+const COLUMNS: [Column; 64] = [
     ("device", |row| row.record.environment.device.name.clone()),
     ("device_type", |row| row.record.environment.device.kind.name().to_owned()),
     ("paper", |row| row.run.paper.clone()),
@@ -62,8 +62,8 @@ const COLUMNS: [Column; 50] = [
     ("fragments", |row| row.statistic(|count| count.fragments)),
     ("compute_invocations", |row| row.statistic(|count| count.compute_invocations)),
     ("samples_passed", |row| row.statistic(|count| count.samples_passed)),
-    ("bytes_read", |row| row.bytes(|bytes| bytes.read)),
-    ("bytes_written", |row| row.bytes(|bytes| bytes.written)),
+    ("bytes_read", |row| row.bytes(|bytes| Some(bytes.read))),
+    ("bytes_written", |row| row.bytes(|bytes| Some(bytes.written))),
     ("date", |row| row.record.environment.date.clone()),
     ("driver_version", |row| cell(row.record.environment.device.driver_version.as_ref())),
     ("lp_num_threads", |row| cell(row.record.environment.host.lp_num_threads)),
@@ -71,6 +71,20 @@ const COLUMNS: [Column; 50] = [
     ("limit_fma_gflops", |row| row.limit(|limits| limits.fma_gflops)),
     ("limit_fill_gpix_s", |row| row.limit(|limits| limits.fill_gpix_s)),
     ("limit_blend_gpix_s", |row| row.limit(|limits| limits.blend_gpix_s)),
+    ("driver", |row| cell(row.record.environment.device.driver.as_ref())),
+    ("rustc", |row| cell(row.record.environment.build.rustc.as_ref())),
+    ("bytes_read_at_most", |row| row.bytes(|bytes| Some(bytes.at_most?.read))),
+    ("bytes_written_at_most", |row| row.bytes(|bytes| Some(bytes.at_most?.written))),
+    ("floor_ms", |row| row.of_pass(|pass| pass.floor_ms)),
+    ("bound", |row| row.of_pass(|pass| pass.bound.clone())),
+    ("share_of_limit", |row| row.of_pass(Pass::share_of_limit)),
+    ("limit_vertex_gvertices_s", |row| row.limit(|limits| limits.vertex_gvertices_s)),
+    ("limit_triangle_gtriangles_s", |row| row.limit(|limits| limits.triangle_gtriangles_s)),
+    ("limit_issue_ginvocations_s", |row| row.limit(|limits| limits.issue_ginvocations_s)),
+    ("limit_empty_draw_ms", |row| row.limit(|limits| limits.empty_draw_ms)),
+    ("limit_empty_dispatch_ms", |row| row.limit(|limits| limits.empty_dispatch_ms)),
+    ("started", |row| cell(row.run.started.as_ref())),
+    ("program_sha256", |row| cell(row.record.environment.build.executable_sha256.as_ref())),
 ];
 
 impl Row<'_> {
@@ -90,8 +104,8 @@ impl Row<'_> {
         cell(self.run.limits.as_ref().and_then(rate))
     }
 
-    fn bytes(&self, value: fn(Bytes) -> u64) -> String {
-        cell(self.pass.and_then(|(_, pass)| pass.bytes).map(value))
+    fn bytes(&self, value: fn(&Bytes) -> Option<u64>) -> String {
+        cell(self.pass.and_then(|(_, pass)| value(pass.bytes.as_ref()?)))
     }
 }
 

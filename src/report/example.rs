@@ -76,6 +76,7 @@ pub fn run() -> Run {
         limits: None,
         results: Map::new(),
         experiment: None,
+        profile: None,
         validation: Validation::Off,
         warnings: vec![],
         image: None,
@@ -96,6 +97,9 @@ pub fn pass(name: &str, kind: PassKind) -> Pass {
         wait_ms: None,
         statistics: None,
         bytes: None,
+        floor_ms: None,
+        bound: None,
+        floors: BTreeMap::new(),
     }
 }
 
@@ -124,10 +128,23 @@ pub fn full() -> Record {
         calls: 30,
         submission: Some(0),
         shader_compiler: Some("glslang".to_owned()),
-        shaders: vec![ShaderBinary { name: "lava/splat.vert".to_owned(), sha256: "1".repeat(64) }],
+        shaders: vec![ShaderBinary {
+            name: "lava/splat.vert".to_owned(),
+            sha256: "1".repeat(64),
+            bytes: Some(420),
+            instructions: Some(40),
+        }],
         gpu_ms: summarize(&[1.5, 2.0, 2.5]),
         statistics: Some(Statistics { vertices: Some(90_000), fragments: Some(1_600_000), ..Statistics::default() }),
-        bytes: Some(Bytes { read: 1024, written: 2048 }),
+        bytes: Some(Bytes {
+            read: 1024,
+            written: 2048,
+            at_most: Some(BytesAtMost { read: 4096, written: 2048 }),
+            uncertain: vec!["density".to_owned()],
+        }),
+        floor_ms: Some(0.5),
+        bound: Some("vertices".to_owned()),
+        floors: BTreeMap::from([("vertices".to_owned(), 0.5), ("memory".to_owned(), 0.25)]),
         ..pass("splat", PassKind::Graphics)
     };
     let run = Run {
@@ -161,6 +178,7 @@ pub fn full() -> Record {
             paper: Some(40.0),
             ours: Some(5.0),
             ratio: Some(0.125),
+            interval: Some([4.0, 6.0]),
         }),
         validation: Validation::Clean,
         warnings: vec!["LP_NUM_THREADS is not set".to_owned()],

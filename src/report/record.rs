@@ -9,6 +9,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+pub use super::limits::Limits;
+pub use super::pass::{
+    Bytes, BytesAtMost, CompiledPass, CompiledStage, Pass, PassKind, Profile, ShaderBinary, StageStatistic, Statistics,
+};
+
 /// The value of [`Record::schema`] that this program writes and reads.
 pub const SCHEMA: &str = "fumarole.bench/1";
 
@@ -190,6 +195,9 @@ pub struct Run {
     pub results: Map<String, Value>,
     /// Row of the experiment; absent outside experiments.
     pub experiment: Option<ExperimentRow>,
+    /// One pass under both compilers; absent without `--profile`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
     /// State of the validation layer during the run.
     pub validation: Validation,
     /// Doubts about the run, one line each.
@@ -210,36 +218,6 @@ impl Run {
     }
 }
 
-/// One pass of the paper; a loop of draws is one pass with its number of calls.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pass {
-    /// Name of the pass, unique within the variant.
-    pub name: String,
-    /// Section of the paper, e.g. `"3.2"`.
-    pub section: Option<String>,
-    /// Kind of the work.
-    pub kind: PassKind,
-    /// Calls in one frame.
-    pub calls: u32,
-    /// Index of the queue submission within the frame, from 0; absent for host work.
-    pub submission: Option<u32>,
-    /// Whose SPIR-V ran; absent where no shader ran.
-    pub shader_compiler: Option<String>,
-    /// The binaries that ran.
-    #[serde(default)]
-    pub shaders: Vec<ShaderBinary>,
-    /// Sum of the pass's calls in a timestamped frame.
-    pub gpu_ms: Option<Summary>,
-    /// Host work that the paper's method needs, without waiting.
-    pub host_ms: Option<Summary>,
-    /// Waiting of the host for the GPU.
-    pub wait_ms: Option<Summary>,
-    /// Absent where no pipeline statistics were taken.
-    pub statistics: Option<Statistics>,
-    /// Absent where the paper states none.
-    pub bytes: Option<Bytes>,
-}
-
 /// A file that a run read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputFile {
@@ -247,37 +225,6 @@ pub struct InputFile {
     pub path: String,
     /// Lower-case hexadecimal SHA-256 of its content, with that of the files that it names.
     pub sha256: String,
-}
-
-/// The SPIR-V of one stage.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShaderBinary {
-    /// Name of the shader.
-    pub name: String,
-    /// Lower-case hexadecimal SHA-256 of its words.
-    pub sha256: String,
-}
-
-/// Kind of a pass's work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PassKind {
-    Graphics,
-    Compute,
-    Transfer,
-    Host,
-}
-
-impl PassKind {
-    /// The name written in the record.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Graphics => "graphics",
-            Self::Compute => "compute",
-            Self::Transfer => "transfer",
-            Self::Host => "host",
-        }
-    }
 }
 
 /// Raw samples and what they come to. A summary has at least one sample; no samples are an absent summary.
@@ -303,30 +250,6 @@ pub struct Summary {
     pub mad: Option<f64>,
 }
 
-/// Pipeline statistics of one frame.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Statistics {
-    /// Vertex-stage invocations.
-    pub vertices: Option<u64>,
-    /// Primitives assembled.
-    pub primitives: Option<u64>,
-    /// Fragment-stage invocations; some devices count whole blocks.
-    pub fragments: Option<u64>,
-    /// Compute-stage invocations, of whole workgroups.
-    pub compute_invocations: Option<u64>,
-    /// Samples that passed every test, discards included.
-    pub samples_passed: Option<u64>,
-}
-
-/// Bytes that a pass must move in one frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Bytes {
-    /// Bytes read from memory.
-    pub read: u64,
-    /// Bytes written to memory.
-    pub written: u64,
-}
-
 /// Bytes allocated for a variant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
@@ -349,22 +272,6 @@ pub struct ResourceMemory {
     pub bytes: u64,
 }
 
-/// The device's own limits, measured in the same process.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
-    /// Bytes read and written by a buffer copy, 10^9 a second.
-    pub copy_gb_s: Option<f64>,
-    /// Operations of 32-bit multiply-adds, two each, 10^9 a second.
-    pub fma_gflops: Option<f64>,
-    /// Pixels written to an 8-bit RGBA target, 10^9 a second.
-    pub fill_gpix_s: Option<f64>,
-    /// Pixels blended additively into an 8-bit RGBA target, 10^9 a second.
-    pub blend_gpix_s: Option<f64>,
-    /// The samples behind each rate, under its name.
-    #[serde(default)]
-    pub samples: BTreeMap<String, Summary>,
-}
-
 /// The row of a paper's table or figure that a run reproduces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ExperimentRow {
@@ -376,6 +283,9 @@ pub struct ExperimentRow {
     pub ours: Option<f64>,
     /// `ours / paper`.
     pub ratio: Option<f64>,
+    /// Ends of the 95 % interval of `ours`; absent where it is no ratio of methods measured in turn.
+    #[serde(default)]
+    pub interval: Option<[f64; 2]>,
 }
 
 /// State of the validation layer.
@@ -462,7 +372,7 @@ mod tests {
             ("/runs/0/passes/1", &full["runs"][0]["passes"][1]),
         ] {
             // What later programs of the schema added, older records lack.
-            let added = ["inputs", "started", "shaders", "samples"];
+            let added = ["inputs", "started", "shaders", "samples", "floor_ms", "bound", "floors"];
             for field in fields.as_object().unwrap().keys().filter(|field| !added.contains(&field.as_str())) {
                 let mut document = full.clone();
                 let object = document.pointer_mut(pointer).unwrap();

@@ -1,6 +1,6 @@
 //! A timeline in Chrome's trace event format, for chrome://tracing and Perfetto.
 //!
-//! Every run is a process with a host track and a GPU track; every event is complete (`"ph": "X"`). Format: "Trace
+//! Every run is a process with tracks of the host's work, of its waits and of the GPU; every event is complete (`"ph": "X"`). Format: "Trace
 //! Event Format", Google, 2016.
 
 use serde_json::{Map, Value, json};
@@ -32,23 +32,29 @@ pub struct TraceEvent {
 /// Clock whose spans a track shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Track {
+    /// Work of the host.
     Host,
+    /// Waits of the host for the device.
+    Wait,
+    /// Work of the device.
     Gpu,
 }
 
 impl Track {
-    const ALL: [Self; 2] = [Self::Host, Self::Gpu];
+    const ALL: [Self; 3] = [Self::Host, Self::Wait, Self::Gpu];
 
     fn id(self) -> u32 {
         match self {
             Self::Host => 1,
-            Self::Gpu => 2,
+            Self::Wait => 2,
+            Self::Gpu => 3,
         }
     }
 
     fn name(self) -> &'static str {
         match self {
             Self::Host => "host",
+            Self::Wait => "wait",
             Self::Gpu => "GPU",
         }
     }

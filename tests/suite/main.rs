@@ -11,6 +11,7 @@ mod faults;
 mod gas;
 mod gpu;
 mod lava;
+mod page;
 mod terrain;
 #[cfg(feature = "window")]
 mod window;

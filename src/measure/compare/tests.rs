@@ -294,7 +294,9 @@ fn what_differs_beside_the_times_is_listed_first() {
     b[0].name = "b.json".to_owned();
     b[0].record.environment.device.driver_version = Some("Mesa 25".to_owned());
     b[0].record.environment.device.kind = DeviceKind::Discrete;
-    let shader = |sha256: &str| vec![ShaderBinary { name: "s.comp".to_owned(), sha256: sha256.to_owned() }];
+    let shader = |sha256: &str| {
+        vec![ShaderBinary { name: "s.comp".to_owned(), sha256: sha256.to_owned(), bytes: None, instructions: None }]
+    };
     let mut a = a;
     a[0].record.runs[0].passes[1].shaders = shader("1");
     b[0].record.runs[0].passes[1].shaders = shader("2");

@@ -102,7 +102,8 @@ pub fn stop_kind(error: &Error) -> Option<StopKind> {
             | E::UnknownDevice { .. }
             | E::AmbiguousDevice { .. }
             | E::MissingFeature { .. }
-            | E::Shader { .. } => None,
+            | E::Shader { .. }
+            | E::Capture { .. } => None,
             E::InUse { .. } | E::Foreign { .. } | E::HostAccess { .. } | E::BeyondEnd { .. } => Some(StopKind::Crash),
         },
         Error::Parameter(_) => Some(StopKind::End),

@@ -42,6 +42,7 @@ impl Combine {
             .constants::<CombineConstants>()
             .with("caustics_map", caustics)
             .with("diffuse_map", diffuse)
+            .whole(&["caustics_map", "diffuse_map"])
             .with("nearest", context.nearest)
             .color(&map, Load::Discard, Blend::Replace)
             .build(context.shaders)?;

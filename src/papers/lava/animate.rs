@@ -55,6 +55,9 @@ impl Animate {
             .constants::<MotionConstants>()
             .with("positions", &start.positions)
             .with("velocities", &start.velocities)
+            .whole(&["positions", "velocities"])
+            // Each coordinate moves by its velocity times the step.
+            .multiply_adds(|counts| Some(3 * counts.samples_passed?))
             .color(&states[0].positions, Load::Discard, Blend::Replace)
             .color(&states[0].velocities, Load::Discard, Blend::Replace)
             .build(shaders)?;

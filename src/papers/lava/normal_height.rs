@@ -31,6 +31,7 @@ impl NormalHeight {
         let pass = Pass::graphics("normal-height", "6.4", "common/fullscreen.vert", "lava/normal-height.frag")
             .constants::<NormalConstants>()
             .with("accumulated_depths", accumulated_depths)
+            .whole(&["accumulated_depths"])
             .color(&surface, Load::Discard, Blend::Replace)
             .build(context.shaders)?;
         let constants = NormalConstants {

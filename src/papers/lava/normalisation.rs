@@ -35,6 +35,7 @@ impl Normalisation {
         let pass = Pass::graphics("normalisation", "7.3", "common/fullscreen.vert", "lava/normalisation.frag")
             .constants::<ToneConstants>()
             .with("accumulated_colors", accumulated_colors)
+            .whole(&["accumulated_colors"])
             .color(&picture, Load::Discard, Blend::Replace)
             .build(context.shaders)?;
         let constants = constants(context.parameters);

@@ -82,7 +82,7 @@ fn section(section: &Section) -> Markup {
         h3 { (section.title) }
         @for line in &section.lines { p { (line) } }
         @if let Some(table) = &section.table {
-            div.wide { table.sortable {
+            div.wide tabindex="0" role="region" aria-label=(section.title) { table.sortable {
                 thead { tr { @for (name, is_number) in table.columns() {
                     th.number[is_number] { button type="button" { (name) } }
                 } } }
@@ -142,19 +142,26 @@ fn environment(record: &Record) -> Markup {
 fn experiment(record: &Record) -> Markup {
     let rows: Vec<_> = record.runs.iter().filter_map(|run| Some((run, run.experiment.as_ref()?))).collect();
     let cell = |value: Option<f64>| html! { td.number data-value=[value] { @if let Some(value) = value { (format!("{value:.3}")) } } };
+    // Where ours is a ratio of methods, ours / paper is the ratio of ratios; both have the ends of their 95 % interval.
+    let ends = |interval: Option<[f64; 2]>, paper: f64| {
+        html! { @for end in [0, 1] { (cell(interval.map(|interval| interval[end] / paper))) } }
+    };
     html! {
         @if !rows.is_empty() {
             h3 { "The paper's table beside ours" }
-            div.wide { table.sortable {
+            p { "From and to are the ends of a 95 % interval, where two methods were measured in turn." }
+            div.wide tabindex="0" role="region" aria-label="the paper's table" { table.sortable {
                 thead { tr {
                     th { button type="button" { "row" } }
                     th { button type="button" { "variant" } }
-                    @for name in ["paper", "ours", "ours / paper", "frame ms"] { th.number { button type="button" { (name) } } }
+                    @for name in ["paper", "ours", "from", "to", "ours / paper", "from", "to", "frame ms"] { th.number { button type="button" { (name) } } }
                 } }
                 tbody { @for (run, row) in rows { tr {
                     td { (row.row) }
                     td { (run.variant) }
-                    (cell(row.paper)) (cell(row.ours)) (cell(row.ratio)) (cell(run.median_frame_ms()))
+                    (cell(row.paper)) (cell(row.ours)) (ends(row.interval, 1.0))
+                    (cell(row.ratio)) (ends(row.interval.filter(|_| row.paper.is_some()), row.paper.unwrap_or(1.0)))
+                    (cell(run.median_frame_ms()))
                 } } }
             } }
         }

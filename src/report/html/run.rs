@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
-use super::bars::bars;
+use super::bars::drawings;
 use super::title;
-use crate::report::record::{Pass, Run, Summary};
+use crate::report::record::{Limits, Pass, Run, Summary};
 
 /// Heading, bars, the table of passes and all else that the record has of the run.
 pub(super) fn run(run: &Run, id: &str) -> Markup {
@@ -26,8 +26,9 @@ pub(super) fn run(run: &Run, id: &str) -> Markup {
             } @else {
                 p.frame { "No frame was measured." }
             }
-            (bars(run))
+            (drawings(run))
             (passes(run))
+            (profile(run))
             @if let Some(row) = &run.experiment {
                 p { "Row of the experiment: " (row.row) ". "
                     @if let Some(ours) = row.ours { "Ours " (number(ours, 3)) "." }
@@ -59,10 +60,12 @@ fn cell(value: Option<f64>, digits: usize) -> Markup {
 
 type Column = (&'static str, fn(&Pass, &Run) -> Option<f64>, usize);
 
-const COLUMNS: [Column; 11] = [
+const COLUMNS: [Column; 17] = [
     ("GPU ms", |pass, _| Some(pass.gpu_ms.as_ref()?.median), 4),
     ("± MAD", |pass, _| pass.gpu_ms.as_ref()?.mad, 4),
     ("% of frame", |pass, run| Some(100.0 * super::bars::milliseconds(pass)? / run.median_frame_ms()?), 1),
+    ("share of limit, %", |pass, _| Some(100.0 * pass.share_of_limit()?), 0),
+    ("floor ms", |pass, _| pass.floor_ms, 4),
     ("host ms", |pass, _| Some(pass.host_ms.as_ref()?.median), 4),
     ("wait ms", |pass, _| Some(pass.wait_ms.as_ref()?.median), 4),
     ("calls", |pass, _| Some(f64::from(pass.calls)), 0),
@@ -71,6 +74,10 @@ const COLUMNS: [Column; 11] = [
     ("fragments", |pass, _| Some(pass.statistics.as_ref()?.fragments? as f64), 0),
     ("invocations", |pass, _| Some(pass.statistics.as_ref()?.compute_invocations? as f64), 0),
     ("samples", |pass, _| Some(pass.statistics.as_ref()?.samples_passed? as f64), 0),
+    ("bytes read", |pass, _| Some(pass.bytes.as_ref()?.read as f64), 0),
+    ("bytes written", |pass, _| Some(pass.bytes.as_ref()?.written as f64), 0),
+    ("read, at most", |pass, _| Some(pass.bytes.as_ref()?.at_most?.read as f64), 0),
+    ("written, at most", |pass, _| Some(pass.bytes.as_ref()?.at_most?.written as f64), 0),
 ];
 
 fn passes(run: &Run) -> Markup {
@@ -80,13 +87,14 @@ fn passes(run: &Run) -> Markup {
     let shown: Vec<&Column> =
         COLUMNS.iter().filter(|(_, value, _)| run.passes.iter().any(|pass| value(pass, run).is_some())).collect();
     html! {
-        div.wide {
+        div.wide tabindex="0" role="region" aria-label="passes" {
             table.sortable {
                 thead { tr {
                     th { button type="button" { "pass" } }
                     th { button type="button" { "section" } }
                     th { button type="button" { "kind" } }
                     @for (name, _, _) in &shown { th.number { button type="button" { (name) } } }
+                    th { button type="button" { "bound by" } }
                     th { button type="button" { "compiler" } }
                 } }
                 tbody { @for pass in &run.passes { tr {
@@ -94,6 +102,7 @@ fn passes(run: &Run) -> Markup {
                     td { (pass.section.as_deref().unwrap_or_default()) }
                     td { (pass.kind.name()) }
                     @for (_, value, digits) in &shown { (cell(value(pass, run), *digits)) }
+                    td { (pass.bound.as_deref().unwrap_or_default()) }
                     td { (pass.shader_compiler.as_deref().unwrap_or_default()) }
                 } } }
             }
@@ -101,16 +110,49 @@ fn passes(run: &Run) -> Markup {
     }
 }
 
+/// One pass under both compilers.
+fn profile(run: &Run) -> Markup {
+    let Some(profile) = &run.profile else { return html! {} };
+    let count = |value: Option<u64>| html! { td.number data-value=[value] { @if let Some(value) = value { (value) } } };
+    html! {
+        h4 { "Pass " (profile.pass) " by both shader compilers" }
+        div.wide tabindex="0" role="region" aria-label="binaries" { table.sortable {
+            thead { tr {
+                th { button type="button" { "compiler" } }
+                th { button type="button" { "shader" } }
+                @for name in ["instructions", "bytes", "GPU ms of the pass"] { th.number { button type="button" { (name) } } }
+            } }
+            tbody { @for compiled in &profile.compilers { @for binary in &compiled.binaries { tr {
+                td { (compiled.compiler) }
+                td { (binary.name) }
+                (count(binary.instructions)) (count(binary.bytes))
+                (cell(compiled.gpu_ms.as_ref().map(|time| time.median), 4))
+            } } } }
+        } }
+        @for reason in profile.compilers.iter().filter_map(|compiled| compiled.fallback.as_ref()) { p { (reason) } }
+    }
+}
+
+/// The device's limits with the spread of their samples.
+fn rates(limits: &Limits) -> Markup {
+    html! {
+        div {
+            h4 { "Limits of the device" }
+            table { tbody {
+                @for (name, value, what, unit) in limits.listed() {
+                    tr {
+                        th scope="row" { (what) ", " (unit) }
+                        td.number { (number(value, 4)) }
+                        td { @if let Some(mad) = limits.samples.get(name).and_then(|samples| samples.mad) { "± " (number(mad, 4)) } }
+                    }
+                }
+            } }
+        }
+    }
+}
+
 /// Parameters, results, memory and limits, folded away.
 fn details(run: &Run) -> Markup {
-    let rates = run.limits.as_ref().map(|limits| {
-        [
-            ("copy, GB/s", limits.copy_gb_s),
-            ("multiply-add, GFLOPS", limits.fma_gflops),
-            ("fill, Gpixel/s", limits.fill_gpix_s),
-            ("blend, Gpixel/s", limits.blend_gpix_s),
-        ]
-    });
     html! {
         details {
             summary { "Parameters, results, memory, limits" }
@@ -133,11 +175,7 @@ fn details(run: &Run) -> Markup {
                         }
                     }
                 }
-                @if let Some(rates) = rates {
-                    (pairs("Limits of the device", rates.into_iter().filter_map(|(name, rate)| {
-                        rate.map(|rate| (name, format!("{rate:.3}")))
-                    })))
-                }
+                @if let Some(limits) = &run.limits { (rates(limits)) }
             }
         }
     }

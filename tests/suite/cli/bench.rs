@@ -98,12 +98,40 @@ fn every_variant_meets_the_schema() {
 }
 
 #[test]
-fn the_limits_of_the_device_are_measured_unless_left_out() {
+fn the_limits_of_the_device_are_measured_and_every_pass_is_set_against_them() {
     let options = "--json --frames 1 --repeat 1 --warmup 1 --variant level-map";
     let record = caustics("bench").tiny().args(options).run().succeeded().json();
-    for limit in ["copy_gb_s", "fma_gflops", "fill_gpix_s", "blend_gpix_s"] {
-        assert!(record["runs"][0]["limits"][limit].as_f64().unwrap() > 0.0, "{limit}");
+    let run = &record["runs"][0];
+    for limit in [
+        "copy_gb_s",
+        "fma_gflops",
+        "fill_gpix_s",
+        "blend_gpix_s",
+        "vertex_gvertices_s",
+        "triangle_gtriangles_s",
+        "issue_ginvocations_s",
+        "empty_draw_ms",
+        "empty_dispatch_ms",
+    ] {
+        assert!(run["limits"][limit].as_f64().unwrap() > 0.0, "{limit}");
+        assert_eq!(run["limits"]["samples"][limit]["median"], run["limits"][limit]);
+        assert!(run["limits"]["samples"][limit]["samples"].as_array().unwrap().len() >= 5, "{limit}");
     }
+    for pass in run["passes"].as_array().unwrap().iter().filter(|pass| pass["kind"] != "host") {
+        let floors = pass["floors"].as_object().unwrap();
+        let bound = pass["bound"].as_str().unwrap();
+        let longest = floors.values().filter_map(Value::as_f64).fold(0.0, f64::max);
+        assert_eq!(floors[bound], longest, "{pass}");
+        assert!(pass["floor_ms"].as_f64().unwrap() >= longest, "{pass}");
+        let at_most = &pass["bytes"]["at_most"];
+        for side in ["read", "written"] {
+            assert!(at_most[side].as_u64().unwrap() >= pass["bytes"][side].as_u64().unwrap(), "{pass}");
+        }
+    }
+    // What reads two textures pixel by pixel and writes one says so to the byte: 64 x 64 of 4, 16 and 8 or 16 bytes.
+    let combine = run["passes"].as_array().unwrap().iter().find(|pass| pass["name"] == "combine").unwrap();
+    assert_eq!(combine["bytes"]["uncertain"], serde_json::json!([]), "{combine}");
+    assert_eq!(combine["bytes"]["read"].as_u64().unwrap() % (64 * 64), 0, "{combine}");
 }
 
 #[test]
@@ -139,7 +167,9 @@ fn every_file_is_written_and_well_formed() {
     let events = trace["traceEvents"].as_array().unwrap();
     let spans: Vec<&Value> = events.iter().filter(|event| event["ph"] == "X").collect();
     let traced: BTreeSet<&str> = spans.iter().map(|span| span["name"].as_str().unwrap()).collect();
-    assert_eq!(traced, pass_names);
+    let expected: BTreeSet<&str> = pass_names.iter().copied().chain(["record", "wait for the device"]).collect();
+    assert_eq!(traced, expected);
+    assert_timeline(&spans);
     assert!(spans.iter().all(|span| span["ts"].as_f64().unwrap() >= 0.0 && span["dur"].as_f64().unwrap() >= 0.0));
 
     let picture = fumarole::image::read_png(&path("png")).unwrap();
@@ -151,6 +181,33 @@ fn every_file_is_written_and_well_formed() {
     // It is the last frame's, as `render` shows it.
     caustics("render --quiet --frame 2 --image last.png").inside(out.path()).tiny().run().succeeded();
     assert_eq!(sha256(&out.path().join("last.png")), sha256(&path("png")));
+}
+
+/// Every stamped frame has the host's work, its waits and the device's work on one clock: what the device does lies inside
+/// the host's waits, and says of its pass what was counted.
+fn assert_timeline(spans: &[&Value]) {
+    let number = |span: &Value, name: &str| span[name].as_f64().unwrap();
+    let frame_of = |span: &Value| {
+        (span["pid"].to_string(), span["args"]["repetition"].to_string(), span["args"]["frame"].to_string())
+    };
+    let on = |track: &str| spans.iter().filter(|span| span["cat"] == track).collect::<Vec<_>>();
+    let frames: BTreeSet<_> = spans.iter().map(|span| frame_of(span)).collect();
+    // Two variants of three frames.
+    assert_eq!(frames.len(), 6);
+    for track in ["host", "wait", "GPU"] {
+        assert_eq!(on(track).iter().map(|span| frame_of(span)).collect::<BTreeSet<_>>(), frames, "{track}");
+    }
+    for span in on("GPU") {
+        let is_within = |wait: &&&&Value| {
+            let (start, end) = (number(wait, "ts") - 300.0, number(wait, "ts") + number(wait, "dur") + 300.0);
+            frame_of(wait) == frame_of(span)
+                && start <= number(span, "ts")
+                && number(span, "ts") + number(span, "dur") <= end
+        };
+        assert!(on("wait").iter().any(|wait| is_within(&wait)), "{span}");
+        assert!(span["args"]["calls"].as_u64().unwrap() > 0 && !span["args"]["section"].is_null(), "{span}");
+        assert!(span["args"]["bytes_read"].as_u64().is_some(), "{span}");
+    }
 }
 
 /// The cells of a line of CSV.

@@ -21,3 +21,4 @@ mod resources;
 mod sequences;
 mod splats;
 mod timing;
+mod work;

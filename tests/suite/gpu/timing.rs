@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use ash::vk;
-use fumarole::gpu::{Blend, Device, FrameSample, Load, Mode, Pass, Recorder};
+use fumarole::gpu::{Blend, Device, FrameSample, Load, Mode, Pass, Recorder, Track};
 use fumarole::host_block;
 
 use super::fixtures::{BLACK, color_target, run, shaders};
@@ -65,8 +65,13 @@ fn timestamped_ms(recorder: &mut Recorder, order: &[&Heavy]) -> Vec<f64> {
     let sum: f64 = times.iter().sum();
     assert!(sum <= sample.frame_ms, "passes {times:?} in a frame of {} ms", sample.frame_ms);
     assert_eq!(sample.bracket_ms, None);
-    for (span, time) in sample.spans.iter().zip(&times) {
-        assert!(span.on_gpu && span.duration_ms == *time);
+    let of = |track| sample.spans.iter().filter(move |span| span.track == track);
+    for (span, time) in of(Track::Gpu).zip(&times) {
+        assert_eq!(span.duration_ms, *time);
+        // The device's clock lies on the host's: its work is inside the wait for it, but for the reading of the clocks.
+        let wait = of(Track::Wait).next().unwrap();
+        let (start, end) = (wait.start_ms - 0.2, wait.start_ms + wait.duration_ms + 0.2);
+        assert!(start <= span.start_ms && span.start_ms + span.duration_ms <= end, "{span:?} in {wait:?}");
     }
     times
 }

@@ -45,6 +45,7 @@ impl Claim {
             row: format!("{}: frames per second", self.section),
             paper: Some(self.frames_per_s),
             ours,
+            interval: None,
             ratio: ours.map(|ours| ours / self.frames_per_s),
         });
     }

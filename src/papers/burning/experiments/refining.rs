@@ -111,11 +111,13 @@ impl Measured {
     pub fn new(line: Line, snapshots: Vec<Snapshot>, rows: Vec<Row>) -> Self {
         let mut measured = Measured { line, snapshots, rows };
         for load in LOADS {
-            let ratio = measured.pair(load).and_then(|pair| pair.speed_up()).map(|r| r.ratio);
+            let speed_up = measured.pair(load).and_then(|pair| pair.speed_up());
+            let ratio = speed_up.as_ref().map(|r| r.ratio);
             let row = ExperimentRow {
                 row: format!("{} triangles {load}", measured.finest()),
                 paper: Some(line.speed_up),
                 ours: ratio,
+                interval: speed_up.map(|r| r.interval),
                 ratio: ratio.map(|ours| ours / line.speed_up),
             };
             let noted = measured.rows.iter_mut().filter(|r| r.label.ends_with(load));

@@ -62,7 +62,8 @@ pub fn block_table(rows: &mut [Row]) -> ResultTable {
         let run = &mut row.run;
         let ours = run.median_frame_ms().map(|ms| 1e3 / ms);
         let ratio = ours.zip(paper).map(|(ours, paper)| ours / paper);
-        run.experiment = Some(ExperimentRow { row: format!("{} blocks", row.label), paper, ours, ratio });
+        run.experiment =
+            Some(ExperimentRow { row: format!("{} blocks", row.label), paper, ours, interval: None, ratio });
         table.push(vec![
             json!(row.label),
             json!(row.x as u64),

@@ -142,6 +142,7 @@ impl Outcome {
                         self.comparison.base.as_str()
                     ),
                     paper: thesis,
+                    interval: Some(ratio.interval),
                     ours: Some(ratio.ratio),
                     ratio: thesis.map(|thesis| ratio.ratio / thesis),
                 });

@@ -128,6 +128,7 @@ impl PaperTable {
                 row: compared.name(),
                 paper: compared.paper_ratio,
                 ours: compared.ours(),
+                interval: compared.ratio.as_ref().map(|ratio| ratio.interval),
                 ratio: compared.ours_over_paper(),
             });
             compared

@@ -16,6 +16,7 @@ pub fn beside_the_thesis(run: &mut Run) {
         row: "frames per second".to_owned(),
         paper: Some(THESIS_FRAMES_PER_S),
         ours,
+        interval: None,
         ratio: ours.map(|ours| ours / THESIS_FRAMES_PER_S),
     });
 }

@@ -133,6 +133,7 @@ impl Outcome {
                 row: format!("{} {}: growth", row.label, axis.label()),
                 paper,
                 ours,
+                interval: None,
                 ratio: ours.zip(paper).map(|(ours, paper)| ours / paper),
             });
         }

@@ -1,0 +1,161 @@
+//! How near passes that do one thing come to the device's limits: copies, fills, blends, multiply-adds, vertices, triangles
+//! and empty invocations, of other sizes than those that the limits were measured with. Each should read 90 to 105 %.
+//! Limits and passes are measured in turn, round after round; a share is the median of the rounds.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use ash::vk;
+use fumarole::gpu::{
+    Blend, Buffer, BufferDesc, Draw, Frame, Image, ImageDesc, ImageView, Load, Mode, Pass, ShaderLibrary, Topology,
+    transfer,
+};
+use fumarole::host_block;
+use fumarole::measure::floor::floor;
+use fumarole::measure::limits;
+use fumarole::measure::machine::{Machine, MachineOptions};
+use fumarole::measure::statistics::median;
+
+host_block! {
+    struct MultiplyAdd {
+        iterations: u32,
+        factor: f32,
+    }
+}
+
+const ROUNDS: usize = 7;
+const FRAMES: usize = 3;
+const ITERATIONS: u32 = 3_000;
+const TIMES: u32 = 12;
+
+type Record = Box<dyn Fn(&mut Frame<'_>) -> Result<(), fumarole::gpu::Error>>;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    fumarole::gpu::pin_software_threads();
+    let mut machine = Machine::open(&MachineOptions::default(), &[])?;
+    println!("{}", machine.description());
+    let is_cpu = machine.device.physical().device_type == fumarole::gpu::physical::DeviceType::Cpu;
+    let passes = passes(&machine.shaders)?;
+    let mut shares: Vec<(String, Vec<f64>)> = passes.iter().map(|(name, _)| (name.clone(), Vec::new())).collect();
+    for round in 0..=ROUNDS {
+        let limits = limits::measure(&mut machine)?;
+        for ((_, record), (name, shares)) in passes.iter().zip(&mut shares) {
+            let mut times = Vec::new();
+            for _ in 0..FRAMES {
+                let sample = machine.recorder.run(Mode::Timestamped, |frame| record(frame))?;
+                times.extend(sample.passes.first().and_then(|pass| pass.gpu_ms));
+            }
+            let sample = machine.recorder.run(Mode::Counted, |frame| record(frame))?;
+            let pass = &sample.passes[0];
+            let (Some(work), Some(ms)) = (&pass.work, median(&times)) else {
+                println!("{name}: this device cannot time it");
+                continue;
+            };
+            let found = floor(work, &pass.counts.unwrap_or_default(), pass.info.kind, &limits, is_cpu);
+            // The first round compiles.
+            if let Some(floor) = found.filter(|_| round > 0) {
+                shares.push(floor.ms / ms);
+            }
+        }
+    }
+    println!("{:28}{:>16}   each round", "pass", "share of limit");
+    for (name, shares) in &shares {
+        let rounds: Vec<String> = shares.iter().map(|share| format!("{:.0}", 100.0 * share)).collect();
+        println!("{name:28}{:>14.1} %   {}", 100.0 * median(shares).unwrap_or(f64::NAN), rounds.join(" "));
+    }
+    Ok(())
+}
+
+fn passes(shaders: &ShaderLibrary) -> Result<Vec<(String, Record)>, Box<dyn Error>> {
+    let device = shaders.device();
+    let mut passes: Vec<(String, Record)> = Vec::new();
+    let bytes = vec![3u8; 96 << 20];
+    let from = transfer::upload(device, "source", vk::BufferUsageFlags::empty(), &bytes)?;
+    let to = Buffer::new(device, BufferDesc::new("destination", bytes.len() as u64))?;
+    let copy = Pass::copy("copy", "", &from, &to);
+    passes.push(("copy of 96 MiB".to_owned(), Box::new(move |frame| frame.copy(&copy))));
+
+    let formats = [
+        (vk::Format::R8G8B8A8_UNORM, "rgba8"),
+        (vk::Format::R32_SFLOAT, "r32f"),
+        (vk::Format::R16G16B16A16_SFLOAT, "rgba16f"),
+        (vk::Format::R32G32B32A32_SFLOAT, "rgba32f"),
+    ];
+    for (format, name) in formats {
+        for (blend, what) in [(Blend::Replace, "fill"), (Blend::Add, "blend")] {
+            let target = target(shaders, format)?;
+            let pass = |load| {
+                Pass::graphics("pixels", "", "common/fullscreen.vert", "limits/constant.frag")
+                    .color(&target, load, blend)
+                    .build(shaders)
+            };
+            let (first, next) = (pass(Load::Clear([0.0; 4]))?, pass(Load::Keep)?);
+            let record = move |frame: &mut Frame<'_>| {
+                (0..TIMES).try_for_each(|number| {
+                    frame.graphics(if number == 0 { &first } else { &next }, |draw| {
+                        draw.vertices(3);
+                    })
+                })
+            };
+            passes.push((format!("{what} of {name}"), Box::new(record)));
+        }
+    }
+
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let threads = 1 << 15;
+    let results = Buffer::new(device, BufferDesc::new("results", u64::from(threads) * 16).usage(usage))?;
+    let multiply_add = Pass::compute("multiply-add", "", "limits/multiply-add.comp")
+        .with("results", &results)
+        .whole(&["results"])
+        .multiply_adds(|counts| Some(32 * u64::from(ITERATIONS) * counts.compute_invocations?))
+        .constants::<MultiplyAdd>()
+        .build(shaders)?;
+    let record = move |frame: &mut Frame<'_>| {
+        frame.compute(&multiply_add, |dispatch| {
+            dispatch.constants(&MultiplyAdd { iterations: ITERATIONS, factor: 0.25 }).threads(threads, 1, 1);
+        })
+    };
+    passes.push(("multiply-adds".to_owned(), Box::new(record)));
+
+    let nothing = Buffer::new(device, BufferDesc::new("nothing", 4).usage(usage))?;
+    let idle = Pass::compute("idle", "", "limits/idle.comp").with("nothing", &nothing).build(shaders)?;
+    let record = move |frame: &mut Frame<'_>| {
+        frame.compute(&idle, |dispatch| {
+            (0..40).for_each(|_| {
+                dispatch.threads(100_000, 1, 1);
+            });
+        })
+    };
+    passes.push(("empty invocations".to_owned(), Box::new(record)));
+
+    let small = target(shaders, vk::Format::R8G8B8A8_UNORM)?;
+    let points = Pass::graphics("vertices", "", "limits/outside.vert", "limits/constant.frag")
+        .topology(Topology::Points)
+        .color(&small, Load::Discard, Blend::Replace)
+        .build(shaders)?;
+    let record = move |frame: &mut Frame<'_>| {
+        frame.graphics(&points, |draw: &mut Draw<'_>| {
+            draw.vertices(600_000);
+        })
+    };
+    passes.push(("vertices".to_owned(), Box::new(record)));
+    let indices: Vec<u32> = (0..900_000).map(|index| index % 3).collect();
+    let usage = vk::BufferUsageFlags::INDEX_BUFFER;
+    let indices = transfer::upload(device, "indices", usage, bytemuck::cast_slice(&indices))?;
+    let triangles = Pass::graphics("triangles", "", "limits/flat.vert", "limits/constant.frag")
+        .indices(&indices)
+        .color(&small, Load::Discard, Blend::Replace)
+        .build(shaders)?;
+    let record = move |frame: &mut Frame<'_>| {
+        frame.graphics(&triangles, |draw: &mut Draw<'_>| {
+            draw.indices(900_000);
+        })
+    };
+    passes.push(("triangles".to_owned(), Box::new(record)));
+    Ok(passes)
+}
+
+fn target(shaders: &ShaderLibrary, format: vk::Format) -> Result<Arc<ImageView>, fumarole::gpu::Error> {
+    let desc = ImageDesc::new_2d("target", format, 1200, 900).usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
+    Image::new(shaders.device(), desc)?.view()
+}

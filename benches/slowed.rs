@@ -1,0 +1,164 @@
+//! Verdicts on a device: a shader that is 10 % slower through `--shader-dir` must be named by its pass and no other, and
+//! equal sides must be found neither faster nor slower. Both by `fumarole ab`, in fresh processes.
+//!
+//! `cargo bench --bench slowed -- PAIRS BLOCKS`: pairs of equal sides (20 without a number), blocks A B B A in each at most
+//! (10). On an idle machine: it takes about half an hour on lavapipe.
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use fumarole::measure::compare::{Clock, Comparison, Verdict};
+use fumarole::measure::statistics::median;
+use fumarole::report::json;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_fumarole");
+/// Of this scene a process takes a second or two, and the pass has most of a frame.
+const SCENE: &str =
+    "gas --variant none --size 240x180 --steps 40 --warmup 1 --frames 5 --repeat 3 --no-limits --seed 1";
+const SHADER: &str = "gas/march.glsl";
+const PASS: &str = "volume";
+const SLOWER: f64 = 0.10;
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+fn main() -> Result<()> {
+    let numbers: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
+    let (pairs, blocks) = (numbers.first().copied().unwrap_or(20), numbers.get(1).copied().unwrap_or(10));
+    let folder = tempfile::tempdir()?;
+    let changed = folder.path().join("shaders");
+    let steps = calibrate(folder.path(), &changed)?;
+    slow_down(&changed, steps)?;
+    println!("{SHADER} with {steps} dependent multiply-adds more, {:.0} % aimed at", 100.0 * SLOWER);
+
+    let options = format!("--shader-dir {}", changed.display());
+    let slowed = ab(folder.path(), &options, 40)?;
+    report("slowed", &slowed);
+    let named = found(&slowed);
+    println!("named: {}\n", if named.is_empty() { "nothing".to_owned() } else { named.join(", ") });
+
+    let mut wrong = 0;
+    for pair in 1..=pairs {
+        let equal = ab(folder.path(), "", blocks)?;
+        let named = found(&equal);
+        wrong += u32::from(!named.is_empty());
+        println!(
+            "equal sides {pair}: {}",
+            if named.is_empty() { "no difference".to_owned() } else { named.join(", ") }
+        );
+    }
+    println!("{wrong} of {pairs} pairs of equal sides have a false verdict");
+    Ok(())
+}
+
+/// How many steps slow the pass down as much as is aimed at: the pass's time grows linearly with them.
+fn calibrate(folder: &Path, changed: &Path) -> Result<u32> {
+    let mut steps = 200.0;
+    for _ in 0..3 {
+        slow_down(changed, steps as u32)?;
+        let mut ratios = Vec::new();
+        for _ in 0..3 {
+            let before = pass_ms(folder, "")?;
+            let after = pass_ms(folder, &format!("--shader-dir {}", changed.display()))?;
+            ratios.push(after / before - 1.0);
+        }
+        let slower = median(&ratios).filter(|&slower| slower > 0.005).ok_or("more steps take no longer")?;
+        steps = (steps * SLOWER / slower).clamp(1.0, 5_000.0);
+    }
+    Ok(steps as u32)
+}
+
+/// Copies the shaders, with a loop of `steps` at the start of the one.
+fn slow_down(folder: &Path, steps: u32) -> Result<()> {
+    copy(&PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders")), folder)?;
+    let path = folder.join(SHADER);
+    let text = fs::read_to_string(&path)?;
+    let work = format!(
+        "void main() {{\n    float busy = float(gl_GlobalInvocationID.x) * 1.0e-6;\n    for (int step = 0; step < {steps}; step++) \
+         {{\n        busy = fma(busy, 0.999, 0.001);\n    }}\n    // Never, and no compiler knows.\n    if (busy > 1.0e9) \
+         {{\n        return;\n    }}\n"
+    );
+    let changed = text.replacen("void main() {\n", &work, 1);
+    if changed == text {
+        return Err(format!("{SHADER} has no main as it is looked for").into());
+    }
+    Ok(fs::write(path, changed)?)
+}
+
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            copy(&entry.path(), &target)?;
+        } else {
+            fs::copy(entry.path(), target)?;
+        }
+    }
+    Ok(())
+}
+
+/// The median time of the pass in a fresh process.
+fn pass_ms(folder: &Path, options: &str) -> Result<f64> {
+    let file = folder.join("one.json");
+    let (paper, scene) = SCENE.split_once(' ').ok_or("a scene")?;
+    let mut command = Command::new(PROGRAM);
+    command.args([paper, "bench", "--quiet"]).args(scene.split(' ')).args(options.split_whitespace());
+    run(command.arg("--json").arg(&file), &[0])?;
+    let record = json::read(&file)?;
+    let pass = record.runs[0].passes.iter().find(|pass| pass.name == PASS);
+    Ok(pass.and_then(|pass| pass.gpu_ms.as_ref()).ok_or("the device times no pass")?.median)
+}
+
+fn ab(folder: &Path, b: &str, blocks: u32) -> Result<Comparison> {
+    let file = folder.join("comparison.json");
+    let mut command = Command::new(PROGRAM);
+    command.args(["ab", "--quiet", "--budget", "3600", "--blocks", &blocks.to_string(), "--out"]).arg(folder);
+    command.arg("--b").arg(b).arg("--json").arg(&file).args(SCENE.split(' '));
+    run(&mut command, &[0])?;
+    Ok(serde_json::from_str(&fs::read_to_string(&file)?)?)
+}
+
+fn run(command: &mut Command, codes: &[i32]) -> Result<()> {
+    let ended = command.output()?;
+    if ended.status.code().is_some_and(|code| codes.contains(&code)) {
+        return Ok(());
+    }
+    Err(format!("{command:?}: {}", String::from_utf8_lossy(&ended.stderr)).into())
+}
+
+/// The frame and the passes that are faster or slower.
+fn found(comparison: &Comparison) -> Vec<String> {
+    let of = |name: &str, verdict| match verdict {
+        Verdict::Faster => Some(format!("{name} FASTER")),
+        Verdict::Slower => Some(format!("{name} SLOWER")),
+        Verdict::Same | Verdict::Unclear => None,
+    };
+    let mut names = Vec::new();
+    for run in &comparison.runs {
+        names.extend(of("frame", run.frame.verdict));
+        names.extend(run.passes.iter().filter_map(|pass| of(&pass.name, pass.time.verdict)));
+    }
+    names
+}
+
+fn report(title: &str, comparison: &Comparison) {
+    for run in &comparison.runs {
+        println!("{title}: {} processes a side", run.a_processes);
+        let frame = ("frame", None, &run.frame);
+        let passes = run.passes.iter().map(|pass| (pass.name.as_str(), Some(pass.clock), &pass.time));
+        for (name, clock, time) in std::iter::once(frame).chain(passes) {
+            let clock = match clock {
+                None => "",
+                Some(Clock::Gpu) => " gpu",
+                Some(Clock::Host) => " host",
+                Some(Clock::Wait) => " wait",
+            };
+            let ratio = time.ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.4}"));
+            let [low, high] = time.interval.map_or([f64::NAN; 2], |interval| interval);
+            println!("  {name}{clock}: {ratio} [{low:.4}, {high:.4}] {:?}", time.verdict);
+        }
+    }
+}

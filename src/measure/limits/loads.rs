@@ -1,0 +1,171 @@
+//! The loads behind the limits.
+
+use ash::vk;
+
+use super::{rate, times};
+use crate::gpu::{
+    Blend, Buffer, BufferDesc, Draw, Error, Image, ImageDesc, Load, Pass, Recorder, ShaderLibrary, Topology, transfer,
+};
+use crate::host_block;
+
+/// Threads of the multiply-adds, each with eight chains of four components, a multiplication and an addition each.
+const THREADS: u32 = 1 << 14;
+const FLOPS_PER_ITERATION: f64 = 64.0;
+const ITERATIONS: u32 = 64;
+/// A side of the target of fill and blend rates: a few megabytes, as a picture has.
+const SIDE: u32 = 1024;
+/// Invocations, vertices and triangles of a load of one.
+const INVOCATIONS: u32 = 1 << 16;
+const VERTICES: u32 = 3 << 14;
+const TRIANGLES: u32 = 1 << 14;
+
+host_block! {
+    struct MultiplyAdd {
+        iterations: u32,
+        factor: f32,
+    }
+}
+
+/// Bytes read and written by copies of a buffer of `bytes`, in 10^9 a second.
+pub fn copy(recorder: &mut Recorder, shaders: &ShaderLibrary, bytes: u64) -> Result<Vec<f64>, Error> {
+    let device = shaders.device();
+    // Uploaded, not only allocated: a driver may map untouched pages to one of zeros.
+    let contents = vec![1u8; bytes as usize];
+    let from = transfer::upload(device, "limits/copy-source", vk::BufferUsageFlags::empty(), &contents)?;
+    let to = Buffer::new(device, BufferDesc::new("limits/copy-destination", bytes))?;
+    let pass = Pass::copy("copy", "", &from, &to);
+    rate(recorder, 2.0 * bytes as f64, |frame, load| (0..load).try_for_each(|_| frame.copy(&pass)))
+}
+
+/// Operations of multiply-adds in 10^9 a second, two each.
+pub fn multiply_add(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+    let desc = BufferDesc::new("limits/results", u64::from(THREADS) * 16).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+    let results = Buffer::new(shaders.device(), desc)?;
+    let pass = Pass::compute("multiply-add", "", "limits/multiply-add.comp")
+        .with("results", &results)
+        .constants::<MultiplyAdd>()
+        .build(shaders)?;
+    rate(recorder, f64::from(THREADS) * f64::from(ITERATIONS) * FLOPS_PER_ITERATION, |frame, load| {
+        frame.compute(&pass, |dispatch| {
+            let constants = MultiplyAdd { iterations: ITERATIONS * load, factor: 0.5 };
+            dispatch.constants(&constants).threads(THREADS, 1, 1);
+        })
+    })
+}
+
+/// Invocations of a kernel that does nothing, in 10^9 a second.
+pub fn issue(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+    let pass = idle(shaders)?;
+    rate(recorder, f64::from(INVOCATIONS), |frame, load| {
+        frame.compute(&pass, |dispatch| {
+            (0..load).for_each(|_| {
+                dispatch.threads(INVOCATIONS, 1, 1);
+            });
+        })
+    })
+}
+
+/// Milliseconds of a pass with one dispatch of one workgroup that does nothing.
+pub fn empty_dispatch(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+    let pass = idle(shaders)?;
+    let times = times(recorder, |frame, load| {
+        (0..load).try_for_each(|_| {
+            frame.compute(&pass, |dispatch| {
+                dispatch.threads(1, 1, 1);
+            })
+        })
+    })?;
+    Ok(times.into_iter().map(|(load, ms)| ms / f64::from(load)).collect())
+}
+
+fn idle(shaders: &ShaderLibrary) -> Result<Pass, Error> {
+    let desc = BufferDesc::new("limits/nothing", 4).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+    let nothing = Buffer::new(shaders.device(), desc)?;
+    Pass::compute("idle", "", "limits/idle.comp").with("nothing", &nothing).build(shaders)
+}
+
+/// Vertices of points outside the picture, in 10^9 a second.
+pub fn vertices(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+    let target = target(shaders, vk::Format::R8G8B8A8_UNORM, 64)?;
+    let pass = Pass::graphics("vertices", "", "limits/outside.vert", "limits/constant.frag")
+        .topology(Topology::Points)
+        .color(&target, Load::Clear([0.0; 4]), Blend::Replace)
+        .build(shaders)?;
+    rate(recorder, f64::from(VERTICES), |frame, load| frame.graphics(&pass, |draw| repeat(load, draw, VERTICES)))
+}
+
+fn repeat(load: u32, draw: &mut Draw<'_>, vertices: u32) {
+    for _ in 0..load {
+        draw.vertices(vertices);
+    }
+}
+
+/// Triangles without area, of three vertices that are shaded once, in 10^9 a second.
+pub fn triangles(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+    let target = target(shaders, vk::Format::R8G8B8A8_UNORM, 64)?;
+    let indices: Vec<u32> = (0..3 * TRIANGLES).map(|index| index % 3).collect();
+    let usage = vk::BufferUsageFlags::INDEX_BUFFER;
+    let indices = transfer::upload(shaders.device(), "limits/indices", usage, bytemuck::cast_slice(&indices))?;
+    let pass = Pass::graphics("triangles", "", "limits/flat.vert", "limits/constant.frag")
+        .indices(&indices)
+        .color(&target, Load::Clear([0.0; 4]), Blend::Replace)
+        .build(shaders)?;
+    rate(recorder, f64::from(TRIANGLES), |frame, load| {
+        frame.graphics(&pass, |draw| {
+            for _ in 0..load {
+                draw.indices(3 * TRIANGLES);
+            }
+        })
+    })
+}
+
+/// Milliseconds of a pass with one draw that covers nothing.
+pub fn empty_draw(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+    let target = target(shaders, vk::Format::R8G8B8A8_UNORM, 64)?;
+    let pass = Pass::graphics("empty", "", "limits/flat.vert", "limits/constant.frag")
+        .color(&target, Load::Discard, Blend::Replace)
+        .build(shaders)?;
+    let times = times(recorder, |frame, load| {
+        (0..load).try_for_each(|_| {
+            frame.graphics(&pass, |draw| {
+                draw.vertices(3);
+            })
+        })
+    })?;
+    Ok(times.into_iter().map(|(load, ms)| ms / f64::from(load)).collect())
+}
+
+/// Pixels of a constant colour, in 10^9 a second. Each fill is a render pass of its own: of opaque ones in the same, a
+/// driver may draw the last alone.
+pub fn fill(
+    recorder: &mut Recorder,
+    shaders: &ShaderLibrary,
+    format: vk::Format,
+    blend: Blend,
+) -> Result<Vec<f64>, Error> {
+    let target = target(shaders, format, SIDE)?;
+    let pass = |load| {
+        Pass::graphics("fill", "", "common/fullscreen.vert", "limits/constant.frag")
+            .color(&target, load, blend)
+            .build(shaders)
+    };
+    // Blending reads what is there.
+    let first = pass(Load::Clear([0.0; 4]))?;
+    let next = if blend == Blend::Replace { pass(Load::Discard)? } else { pass(Load::Keep)? };
+    rate(recorder, f64::from(SIDE) * f64::from(SIDE), |frame, load| {
+        (0..load).try_for_each(|number| {
+            frame.graphics(if number == 0 { &first } else { &next }, |draw| {
+                draw.vertices(3);
+            })
+        })
+    })
+}
+
+fn target(
+    shaders: &ShaderLibrary,
+    format: vk::Format,
+    side: u32,
+) -> Result<std::sync::Arc<crate::gpu::ImageView>, Error> {
+    let desc = ImageDesc::new_2d("limits/target", format, side, side).usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
+    Image::new(shaders.device(), desc)?.view()
+}

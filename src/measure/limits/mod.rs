@@ -1,0 +1,142 @@
+//! The device's own limits, measured in the same process, so that a pass can be shown as a fraction of them.
+//!
+//! Each is the time of a load that does one thing and as little else as possible (`loads.rs`). A load grows until it lasts,
+//! and is then measured several times; every sample is kept.
+
+mod loads;
+
+use std::collections::BTreeMap;
+
+use ash::vk;
+
+use super::machine::Machine;
+use super::statistics::{median, relative_mad, summarize};
+use crate::gpu::{Blend, Error, Feature, Frame, Mode, Recorder};
+use crate::report::record::{Limits, Summary};
+
+/// A load grows until it lasts this long: far above the resolution of a timestamp, short enough for every run.
+const LEAST_MS: f64 = 8.0;
+const SAMPLES: usize = 5;
+/// Limits that scatter more than this are doubted.
+const NOISY: f64 = 0.1;
+/// Bytes of the copied buffer: beyond the caches.
+pub(super) const COPY_BYTES: u64 = 64 << 20;
+/// Bytes of the small copied buffer: inside them.
+const SMALL_COPY_BYTES: u64 = 1 << 20;
+
+/// Formats of colour attachments that are filled and blended, with the name of the rate; the record has the first under
+/// its own fields.
+const FORMATS: [(vk::Format, &str); 4] = [
+    (vk::Format::R8G8B8A8_UNORM, ""),
+    (vk::Format::R32_SFLOAT, "r32f_"),
+    (vk::Format::R16G16B16A16_SFLOAT, "rgba16f_"),
+    (vk::Format::R32G32B32A32_SFLOAT, "rgba32f_"),
+];
+
+/// Name of the fill or blend rate of a format's attachments; `None` for one that is not measured.
+pub fn pixel_rate(format: vk::Format, blends: bool) -> Option<String> {
+    let name = FORMATS.iter().find(|(known, _)| *known == format)?.1;
+    Some(format!("{}_{name}gpix_s", if blends { "blend" } else { "fill" }))
+}
+
+/// Measures every limit; what the device cannot time or do is absent.
+///
+/// # Errors
+/// Any error of the Vulkan layer.
+pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
+    let Machine { recorder, shaders, .. } = machine;
+    let mut found = vec![
+        ("copy_gb_s".to_owned(), loads::copy(recorder, shaders, COPY_BYTES)?),
+        ("small_copy_gb_s".to_owned(), loads::copy(recorder, shaders, SMALL_COPY_BYTES)?),
+        ("fma_gflops".to_owned(), loads::multiply_add(recorder, shaders)?),
+        ("issue_ginvocations_s".to_owned(), loads::issue(recorder, shaders)?),
+        ("vertex_gvertices_s".to_owned(), loads::vertices(recorder, shaders)?),
+        ("triangle_gtriangles_s".to_owned(), loads::triangles(recorder, shaders)?),
+        ("empty_draw_ms".to_owned(), loads::empty_draw(recorder, shaders)?),
+        ("empty_dispatch_ms".to_owned(), loads::empty_dispatch(recorder, shaders)?),
+    ];
+    for (format, _) in FORMATS {
+        for blend in [Blend::Replace, Blend::Add] {
+            let blends = blend == Blend::Add;
+            if let Some(name) = pixel_rate(format, blends).filter(|_| !blends || can_blend(shaders.device(), format)) {
+                found.push((name, loads::fill(recorder, shaders, format, blend)?));
+            }
+        }
+    }
+    let samples: BTreeMap<String, Summary> =
+        found.into_iter().filter_map(|(name, rates)| Some((name, summarize(&rates)?))).collect();
+    let rate = |name: &str| samples.get(name).map(|rates| rates.median);
+    Ok(Limits {
+        copy_gb_s: rate("copy_gb_s"),
+        fma_gflops: rate("fma_gflops"),
+        fill_gpix_s: rate("fill_gpix_s"),
+        blend_gpix_s: rate("blend_gpix_s"),
+        vertex_gvertices_s: rate("vertex_gvertices_s"),
+        triangle_gtriangles_s: rate("triangle_gtriangles_s"),
+        issue_ginvocations_s: rate("issue_ginvocations_s"),
+        empty_draw_ms: rate("empty_draw_ms"),
+        empty_dispatch_ms: rate("empty_dispatch_ms"),
+        samples,
+    })
+}
+
+fn can_blend(device: &crate::gpu::Device, format: vk::Format) -> bool {
+    let feature = match format {
+        vk::Format::R32_SFLOAT => Feature::BlendR32Float,
+        vk::Format::R16G16B16A16_SFLOAT => Feature::BlendRgba16Float,
+        vk::Format::R32G32B32A32_SFLOAT => Feature::BlendRgba32Float,
+        _ => return true,
+    };
+    device.physical().has(feature)
+}
+
+/// A doubt about limits whose samples scatter: something else used the device, or its clock moved.
+pub fn warning(limits: &Limits) -> Option<String> {
+    let spread = |rates: &Summary| relative_mad(&rates.samples).filter(|&spread| spread > NOISY);
+    let noisy = limits.samples.iter().filter_map(|(name, rates)| Some((name, spread(rates)?)));
+    let noisy: Vec<String> = noisy.map(|(name, spread)| format!("{name} {:.0} %", 100.0 * spread)).collect();
+    (!noisy.is_empty()).then(|| format!("limits of the device scatter: {}", noisy.join(", ")))
+}
+
+/// The additive blend rate of a target of four 32-bit floats, in 10^9 pixels a second; `None` without timestamps. The
+/// device must blend into such targets.
+///
+/// # Errors
+/// Any error of the Vulkan layer.
+pub fn float_blend_gpix_s(machine: &mut Machine) -> Result<Option<f64>, Error> {
+    let Machine { recorder, shaders, .. } = machine;
+    Ok(median(&loads::fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, Blend::Add)?))
+}
+
+/// Milliseconds of a load that lasts, with the load, sample after sample; none without timestamps. `record` records it
+/// under one name.
+fn times(
+    recorder: &mut Recorder,
+    record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
+) -> Result<Vec<(u32, f64)>, Error> {
+    let mut once = |load: u32| -> Result<Option<f64>, Error> {
+        let sample = recorder.run(Mode::Timestamped, |frame| record(frame, load))?;
+        Ok(sample.passes.first().and_then(|p| p.gpu_ms).filter(|&ms| ms > 0.0))
+    };
+    // The first use compiles the pipeline.
+    once(1)?;
+    let mut load = 1;
+    while load < 1 << 14 && once(load)?.is_some_and(|ms| ms < LEAST_MS) {
+        load *= 2;
+    }
+    let mut times = Vec::with_capacity(SAMPLES);
+    for _ in 0..SAMPLES {
+        times.extend(once(load)?.map(|ms| (load, ms)));
+    }
+    Ok(times)
+}
+
+/// Amounts in 10^9 a second, where a load of one does `amount`.
+fn rate(
+    recorder: &mut Recorder,
+    amount: f64,
+    record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
+) -> Result<Vec<f64>, Error> {
+    let times = times(recorder, record)?;
+    Ok(times.into_iter().map(|(load, ms)| amount * f64::from(load) / ms * 1e-6).collect())
+}

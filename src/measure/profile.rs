@@ -1,0 +1,113 @@
+//! One pass under both shader compilers, measured in turn in one process: what its binaries are, what the driver made of
+//! them, and how long they take.
+
+use crate::gpu::{Binary, Compiler, Mode, PassInfo, ShaderLibrary};
+use crate::measure::Paper;
+use crate::measure::Variant;
+use crate::measure::assembly::shader_binary;
+use crate::measure::bench::Loaded;
+use crate::measure::error::Error;
+use crate::measure::machine::{Machine, MachineOptions};
+use crate::measure::measure::{Schedule, Watch, measure};
+use crate::measure::statistics::summarize;
+use crate::measure::study::Study;
+use crate::report::record::{CompiledPass, CompiledStage, Profile, StageStatistic};
+use crate::shader_build::NAGA_EXCEPTIONS;
+
+/// Names of the passes of a variant that run on the device, as one frame has them.
+///
+/// # Errors
+/// Any error of the Vulkan layer.
+pub fn passes<S: Study>(
+    machine: &mut Machine,
+    study: &S,
+    loaded: &Loaded<S>,
+    variant: S::Variant,
+) -> Result<Vec<&'static str>, Error> {
+    let mut built = super::bench::build(machine, study, &loaded.scene, variant)?;
+    let sample = machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+    let on_device = sample.passes.iter().filter(|pass| !pass.info.binaries.is_empty());
+    Ok(on_device.map(|pass| pass.info.name).collect())
+}
+
+/// Measures the pass of that name of a variant with the binaries of each compiler, in turn. `None` where the variant has no
+/// such pass.
+///
+/// # Errors
+/// Any error of the Vulkan layer or of the shaders; [`Error::Interrupted`].
+pub fn profile<S: Study>(
+    machine: &mut Machine,
+    options: &MachineOptions,
+    (study, loaded): (&S, &Loaded<S>),
+    (variant, pass): (S::Variant, &str),
+    schedule: Schedule,
+    watch: &mut Watch<'_>,
+) -> Result<Option<Profile>, Error> {
+    let mut made = Vec::new();
+    for compiler in [Compiler::Glslang, Compiler::Naga] {
+        let shaders = ShaderLibrary::new(&machine.device, compiler, options.shader_dir.as_deref())?;
+        let label = format!("{} {compiler}", variant.as_str());
+        let paper = study.make(&shaders, &label, &loaded.scene, variant);
+        made.push((compiler, paper.map_err(|error| shaders.blamed(error))?, shaders));
+    }
+    let measurements = loop {
+        let mut papers: Vec<&mut dyn Paper> = made.iter_mut().map(|(_, paper, _)| paper as &mut dyn Paper).collect();
+        let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
+        machine.device.wait_idle()?;
+        if measurements.iter().any(|m| m.frame_ms.is_empty()) {
+            return Err(Error::Interrupted);
+        }
+        let mut are_settled = true;
+        for (_, paper, shaders) in &mut made {
+            are_settled &= paper.settle(shaders)?;
+        }
+        if are_settled {
+            break measurements;
+        }
+    };
+    let mut compilers = Vec::new();
+    for ((compiler, ..), measurement) in made.iter().zip(&measurements) {
+        let Some(measured) = measurement.passes.iter().find(|measured| measured.info.name == pass) else {
+            return Ok(None);
+        };
+        compilers.push(CompiledPass {
+            compiler: compiler.to_string(),
+            fallback: fallback(*compiler, &measured.info),
+            gpu_ms: summarize(&measured.gpu_ms),
+            binaries: measured.info.binaries.iter().map(shader_binary).collect(),
+            stages: stages(&measured.info),
+        });
+    }
+    let performance_counters = machine.device.physical().performance_counters().map(<[String]>::to_vec);
+    Ok(Some(Profile { pass: pass.to_owned(), compilers, performance_counters }))
+}
+
+/// Why other binaries than the compiler's ran.
+fn fallback(compiler: Compiler, info: &PassInfo) -> Option<String> {
+    let others: Vec<String> = info
+        .binaries
+        .iter()
+        .filter(|binary| binary.compiler != compiler)
+        .map(|Binary { name, .. }| {
+            let reason = NAGA_EXCEPTIONS.iter().find(|(shader, _)| shader == name).map(|(_, reason)| *reason);
+            let reason = reason.unwrap_or("a geometry stage is in the pass, which naga does not have");
+            format!("{name}: {reason}")
+        })
+        .collect();
+    (!others.is_empty()).then(|| others.join("; "))
+}
+
+fn stages(info: &PassInfo) -> Option<Vec<CompiledStage>> {
+    let stages = info.executables.as_ref()?.iter().map(|one| CompiledStage {
+        name: one.name.clone(),
+        description: one.description.clone(),
+        subgroup_size: one.subgroup_size,
+        statistics: one
+            .statistics
+            .iter()
+            .map(|one| StageStatistic { name: one.name.clone(), value: one.value.clone() })
+            .collect(),
+        texts: one.texts.iter().cloned().collect(),
+    });
+    Some(stages.collect())
+}

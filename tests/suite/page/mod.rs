@@ -1,0 +1,227 @@
+//! The page of a report in a real browser: it loads without a word on the console, shows the record's numbers, sorts, moves
+//! its divider, prints, and fits narrow screens and dark rooms. Its structure is kept as `tests/golden/report.txt`;
+//! `FUMAROLE_BLESS=1` writes it anew, and `FUMAROLE_SCREENSHOTS=FOLDER` writes pictures to look at.
+
+mod browser;
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use self::browser::Browser;
+use crate::cli::program::{file, folder, fumarole, sha256};
+use crate::common::beside_others;
+
+const OUTLINE: &str = include_str!("outline.js");
+
+/// A folder with a record of two variants, their pictures, a plot, and the page that shows them with verdicts first.
+fn report(hostile: Option<&str>) -> (TempDir, PathBuf, Value) {
+    let out = folder();
+    let mut record: Value = serde_json::from_str(include_str!("../../data/report.json")).unwrap();
+    for (index, name) in ["level-map", "volumetric"].iter().enumerate() {
+        let path = out.path().join(format!("{name}.png"));
+        let shade = |x: usize, y: usize| [(5 * x) as u8, (7 * y) as u8, 90 * index as u8, 255];
+        let pixels = (0..32).flat_map(|y| (0..48).flat_map(move |x| shade(x, y))).collect();
+        fumarole::image::write_png(&path, &fumarole::image::Rgba8::new(48, 32, pixels).unwrap()).unwrap();
+        record["runs"][index]["image"]["sha256"] = sha256(&path).into();
+    }
+    if let Some(text) = hostile {
+        record["command"] = json!(["fumarole", text]);
+        record["runs"][0]["passes"][1]["name"] = text.into();
+        record["runs"][0]["warnings"] = json!([text]);
+        record["runs"][1]["experiment"]["row"] = text.into();
+        record["runs"][1]["memory"]["by_resource"][0]["name"] = text.into();
+        record["environment"]["device"]["name"] = text.into();
+    }
+    let path = file(&out, "run.json", record.to_string());
+    file(
+        &out,
+        "plot.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 9 6'><rect width='9' height='6'/></svg>",
+    );
+    let page = out.path().join("report.html");
+    let sides = fumarole("report --quiet").inside(out.path()).arg(".").arg("--a").arg(&path).arg("--b").arg(&path);
+    sides.arg("--output").arg(&page).run().succeeded();
+    (out, page, record)
+}
+
+fn shown(browser: &mut Browser, name: &str) {
+    if let Some(folder) = env::var_os("FUMAROLE_SCREENSHOTS") {
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(Path::new(&folder).join(name), browser.screenshot()).unwrap();
+    }
+}
+
+#[test]
+fn the_page_loads_in_silence_and_has_its_structure() {
+    beside_others(|| {
+        let (_out, page, _) = report(None);
+        let mut browser = Browser::start();
+        browser.look(1200, "light", "screen");
+        browser.open(&page);
+        shown(&mut browser, "wide-light.png");
+        let outline = browser.value(OUTLINE).as_str().unwrap().to_owned();
+        // The folder's own name is another each time.
+        let outline = outline.replace(page.parent().unwrap().to_str().unwrap(), "DIR");
+        let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/report.txt");
+        if env::var_os("FUMAROLE_BLESS").is_some() {
+            fs::write(&golden, &outline).unwrap();
+        }
+        let expected = fs::read_to_string(&golden).expect("the golden is there: FUMAROLE_BLESS=1 makes it");
+        for (line, (found, expected)) in outline.lines().zip(expected.lines()).enumerate() {
+            assert_eq!(found, expected, "line {} of the structure", line + 1);
+        }
+        assert_eq!(outline.lines().count(), expected.lines().count());
+        assert!(browser.console.is_empty(), "{:?}", browser.console);
+    });
+}
+
+#[test]
+fn the_pages_numbers_are_the_records_in_the_browser() {
+    beside_others(|| {
+        let (_out, page, record) = report(None);
+        let mut browser = Browser::start();
+        browser.open(&page);
+        for (index, run) in record["runs"].as_array().unwrap().iter().enumerate() {
+            let section =
+                format!("document.querySelectorAll('section.record')[0].querySelectorAll('section.run')[{index}]");
+            let frame = browser.value(&format!("{section}.querySelector('.frame [data-value]').dataset.value"));
+            assert_eq!(frame.as_str().unwrap().parse::<f64>().unwrap(), run["frame_ms"]["median"].as_f64().unwrap());
+            let table = format!(
+                "(() => {{ const table = {section}.querySelector('table'); const heads = \
+                 [...table.tHead.rows[0].cells].map((cell) => cell.textContent); return [...table.tBodies[0].rows].map((row) \
+                 => Object.fromEntries([...row.cells].map((cell, at) => [heads[at], cell.dataset.value ?? \
+                 cell.textContent]))); }})()"
+            );
+            let rows = browser.value(&table);
+            for (row, pass) in rows.as_array().unwrap().iter().zip(run["passes"].as_array().unwrap()) {
+                assert_eq!(row["pass"], pass["name"]);
+                let of = |path: &str| pass.pointer(path).and_then(Value::as_f64);
+                let share = of("/floor_ms").zip(of("/gpu_ms/median")).map(|(floor, gpu)| 100.0 * floor / gpu);
+                for (column, expected) in [
+                    ("GPU ms", of("/gpu_ms/median")),
+                    ("host ms", of("/host_ms/median")),
+                    ("wait ms", of("/wait_ms/median")),
+                    ("floor ms", of("/floor_ms")),
+                    ("share of limit, %", share),
+                    ("vertices", of("/statistics/vertices")),
+                    ("bytes read", of("/bytes/read")),
+                    ("written, at most", of("/bytes/at_most/written")),
+                ] {
+                    let found = row[column].as_str().unwrap().parse::<f64>().ok();
+                    let is_equal = match (found, expected) {
+                        (Some(found), Some(expected)) => (found - expected).abs() <= 1e-12 * expected,
+                        (found, expected) => found == expected,
+                    };
+                    assert!(is_equal, "{column} of {}: {found:?}, {expected:?}", pass["name"]);
+                }
+            }
+        }
+        let ratio = browser.value(
+            "[...document.querySelectorAll('section.record > .wide td.number')].map((cell) => cell.dataset.value ?? '')",
+        );
+        let row = &record["runs"][1]["experiment"];
+        let expected = [row["paper"].as_f64(), row["ours"].as_f64(), Some(1.45), Some(1.55), row["ratio"].as_f64()];
+        for (found, expected) in ratio.as_array().unwrap().iter().zip(expected) {
+            assert_eq!(found.as_str().unwrap().parse::<f64>().ok(), expected, "{ratio}");
+        }
+        assert!(browser.console.is_empty(), "{:?}", browser.console);
+    });
+}
+
+#[test]
+fn tables_sort_by_keyboard_and_the_divider_moves() {
+    beside_others(|| {
+        let (_out, page, _) = report(None);
+        let mut browser = Browser::start();
+        browser.open(&page);
+        let first = "document.querySelector('section.run table.sortable tbody tr td').textContent";
+        assert_eq!(browser.value(first), "reference-planes");
+        // The column of GPU times, twice: ascending, then descending.
+        let button = "document.querySelector('section.run table.sortable th.number button')";
+        browser.value(&format!("{button}.focus()"));
+        browser.press("Enter", 13);
+        let sort = format!("{button}.parentElement.getAttribute('aria-sort')");
+        assert_eq!(browser.value(&sort), "ascending");
+        browser.press("Enter", 13);
+        assert_eq!(browser.value(&sort), "descending");
+        assert_eq!(browser.value(first), "illumination-volumes");
+
+        let divided = "document.querySelector('.divided')";
+        browser.value(&format!("{divided}.querySelector('input').focus()"));
+        browser.press("ArrowRight", 39);
+        assert_eq!(browser.value(&format!("{divided}.style.getPropertyValue('--at')")), "51%");
+        let sizes = format!("[...{divided}.querySelectorAll('img')].map((image) => image.naturalWidth)");
+        assert_eq!(browser.value(&sizes), json!([48, 48]));
+        let caption = browser.value(&format!("{divided}.parentElement.querySelector('figcaption').textContent"));
+        assert!(caption.as_str().unwrap().contains("CIE Luv difference: mean "), "{caption}");
+
+        // Every control is reached by the keyboard, and the command is there to copy.
+        let unreachable = "[...document.querySelectorAll('button, input, summary, a, .wide')].filter((one) => one.tabIndex < 0).length";
+        assert_eq!(browser.value(unreachable), 0);
+        let command = browser.value("document.querySelector('.command code').textContent");
+        assert!(command.as_str().unwrap().starts_with("fumarole caustics bench"), "{command}");
+        assert!(browser.console.is_empty(), "{:?}", browser.console);
+    });
+}
+
+#[test]
+fn narrow_screens_dark_rooms_and_paper_have_their_looks() {
+    beside_others(|| {
+        let (_out, page, _) = report(None);
+        let mut browser = Browser::start();
+        browser.look(360, "dark", "screen");
+        browser.open(&page);
+        shown(&mut browser, "narrow-dark.png");
+        let overflow = "document.documentElement.scrollWidth - document.documentElement.clientWidth";
+        assert_eq!(browser.value(overflow), 0, "nothing is wider than the screen");
+        let contrast = "(() => { const light = (text) => { const [r, g, b] = text.match(/[\\d.]+/g).map(Number).map((v) => v / \
+                        255).map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4); return 0.2126 * r + 0.7152 \
+                        * g + 0.0722 * b; }; const style = getComputedStyle(document.body); const [a, b] = \
+                        [light(style.color), light(style.backgroundColor)]; return [b, (Math.max(a, b) + 0.05) / \
+                        (Math.min(a, b) + 0.05)]; })()";
+        let of = |value: &Value, at: usize| value[at].as_f64().unwrap();
+        let dark = browser.value(contrast);
+        assert!(of(&dark, 0) < 0.1 && of(&dark, 1) > 7.0, "{dark}");
+        assert_eq!(
+            browser.value("getComputedStyle(document.documentElement).scrollBehavior"),
+            "auto",
+            "motion is reduced"
+        );
+        browser.look(1200, "light", "screen");
+        let light = browser.value(contrast);
+        assert!(of(&light, 0) > 0.8 && of(&light, 1) > 7.0, "{light}");
+        assert_eq!(browser.value(overflow), 0);
+
+        browser.look(800, "light", "print");
+        shown(&mut browser, "print.png");
+        assert_eq!(browser.value("getComputedStyle(document.querySelector('nav')).display"), "none");
+        let hidden = "[...document.querySelectorAll('details table')].filter((table) => \
+                      !table.getClientRects().length).length";
+        assert_eq!(browser.value(hidden), 0, "what is folded away is printed");
+        let print = browser.ask("Page.printToPDF", json!({}));
+        assert!(print["data"].as_str().unwrap().len() > 10_000);
+        assert!(browser.console.is_empty(), "{:?}", browser.console);
+    });
+}
+
+#[test]
+fn a_hostile_record_runs_nothing() {
+    beside_others(|| {
+        let hostile =
+            "<img src=x onerror=\"window.hit=1\"></script><script>window.hit=1</script>' onfocus='window.hit=1";
+        let (_out, page, _) = report(Some(hostile));
+        let mut browser = Browser::start();
+        browser.open(&page);
+        assert!(browser.value("window.hit ?? null").is_null());
+        assert_eq!(browser.value("document.scripts.length"), 1);
+        assert_eq!(
+            browser.value("[...document.querySelectorAll('td')].some((cell) => cell.textContent.includes('onerror'))"),
+            true
+        );
+        assert!(browser.console.is_empty(), "{:?}", browser.console);
+    });
+}
