@@ -125,7 +125,7 @@ impl<'a> Draw<'a> {
 
     fn draw(&mut self, first: u32, vertices: u32, instances: u32) -> &mut Self {
         let end = u64::from(first) + u64::from(vertices);
-        if self.is_ready(DrawCounts { vertices: end, instances: instances.into(), indices: 0 }) {
+        if self.is_ready(first, DrawCounts { vertices: end, instances: instances.into(), indices: 0 }) {
             let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: inside the pass's render pass, with pipeline, set and buffers bound and the constants set; vertices
             // and instances lie inside what is bound.
@@ -143,7 +143,7 @@ impl<'a> Draw<'a> {
     pub fn indices_from(&mut self, first: u32, count: u32) -> &mut Self {
         let end = u64::from(first) + u64::from(count);
         // Vertices that indices name beyond the buffer are not fetched: robust buffer access is on.
-        if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: end }) {
+        if self.is_ready(first, DrawCounts { vertices: 0, instances: 1, indices: end }) {
             let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: as for `draw`; the indices lie inside the bound buffer.
             unsafe { device.raw.cmd_draw_indexed(raw, count, 1, first, 0, 0) };
@@ -173,7 +173,7 @@ impl<'a> Draw<'a> {
             return self;
         };
         self.fetched.is_indirect = true;
-        if self.is_ready(DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
+        if self.is_ready(0, DrawCounts { vertices: 0, instances: 1, indices: 0 }) {
             let stride = size_of::<vk::DrawIndexedIndirectCommand>() as u32;
             let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: as for `draw`; the buffer holds one command, which the kernel before the pass has kept inside what
@@ -183,14 +183,17 @@ impl<'a> Draw<'a> {
         self
     }
 
-    fn is_ready(&mut self, counts: DrawCounts) -> bool {
+    /// True when a draw from element `first` up to `counts` may be recorded.
+    fn is_ready(&mut self, first: u32, counts: DrawCounts) -> bool {
         if let Some(problem) = self.bounds.problem(counts) {
             self.commands.refuse(problem);
         }
         let fetched = &mut self.fetched;
-        fetched.vertices = fetched.vertices.max(counts.vertices);
+        let first = u64::from(first);
+        fetched.vertices = fetched.vertices.max(counts.vertices.saturating_sub(first));
         fetched.instances = fetched.instances.max(counts.instances);
-        fetched.indices = fetched.indices.max(counts.indices);
+        fetched.indices = fetched.indices.max(counts.indices.saturating_sub(first));
+        fetched.is_partial |= first > 0;
         self.commands.is_ready()
     }
 }

@@ -99,7 +99,7 @@ impl Work {
     }
 }
 
-/// Elements up to which the draws of a recording fetched, and whether all of them are known.
+/// Elements that the longest draw of a recording fetched, and whether others fetched other ones.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Fetched {
     /// Vertices of draws without indices.
@@ -110,6 +110,8 @@ pub(crate) struct Fetched {
     pub indices: u64,
     /// Set by a draw whose parameters the device made.
     pub is_indirect: bool,
+    /// Set by a draw that does not begin with the first element.
+    pub is_partial: bool,
 }
 
 /// The part of a pass's work that its declaration fixes.
@@ -226,7 +228,7 @@ impl Declared {
             let known = (elements * buffer.element_bytes).min(buffer.buffer_bytes);
             certain.read += known;
             // Indices name vertices in any order.
-            if fetched.indices > 0 || fetched.is_indirect {
+            if fetched.indices > 0 || fetched.is_indirect || fetched.is_partial {
                 beyond.read += buffer.buffer_bytes - known;
                 uncertain.push("vertices".to_owned());
             }
@@ -234,7 +236,7 @@ impl Declared {
         if let Some(bytes) = self.index_bytes {
             let known = (fetched.indices * size_of::<u32>() as u64).min(bytes);
             certain.read += known;
-            if fetched.is_indirect {
+            if fetched.is_indirect || fetched.is_partial {
                 beyond.read += bytes - known;
                 uncertain.push("indices".to_owned());
             }
