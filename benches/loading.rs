@@ -1,9 +1,17 @@
 //! How long the CPU takes for what the papers are given: loading the shipped meshes and height maps, tessellating,
-//! computing normals, sampling the volcano, building a pyramid of maxima, clustering particles.
+//! computing normals, ordering for the vertex cache (and what a device's vertex stage runs before and after), sampling the volcano, building a pyramid of maxima, clustering particles.
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use fumarole::gpu::Mode;
+use fumarole::measure::bench::build;
+use fumarole::measure::machine::{Machine, MachineOptions};
+use fumarole::measure::study::Study;
+use fumarole::measure::{Error, Paper};
+use fumarole::papers::caustics::setup::{Scene, Setup};
+use fumarole::papers::caustics::{ReceiverInput, Variant};
 use fumarole::papers::{lava, terrain};
-use fumarole::scene::{HeightMapSource, MeshSource, shapes, volcano};
+use fumarole::scene::loading::LoadParts;
+use fumarole::scene::{HeightMapSource, Mesh, MeshOptions, MeshSource, shapes, volcano};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -90,6 +98,82 @@ fn tessellation(criterion: &mut Criterion) {
     });
 }
 
+/// A ball of some 52,000 triangles in rows, as shapes are made, and with its triangles in no order, as files may have them.
+fn balls() -> [(&'static str, Mesh); 2] {
+    let rows = shapes::sphere(128, 203);
+    let mut shuffled = rows.clone();
+    let count = shuffled.triangle_count();
+    // A prime that the count has not: each triangle comes once.
+    const STEP: usize = 7_919;
+    let corners = |place: usize| rows.indices[3 * (place * STEP % count)..][..3].to_owned();
+    shuffled.indices = (0..count).flat_map(corners).collect();
+    [("in rows", rows), ("in no order", shuffled)]
+}
+
+/// Invocations of the vertex stage of each pass that draws a receiver of `caustics`.
+fn vertex_invocations(mesh: Mesh) -> Result<Vec<(&'static str, u64)>, Error> {
+    let mut machine = Machine::open(&MachineOptions::default(), Setup::NEEDS)?;
+    let setup = Setup::default();
+    let lift = glam::Mat4::from_translation(glam::Vec3::NEG_Y * (setup.parameters.water_depth_m - 1.0));
+    let receiver = ReceiverInput { mesh: mesh.placed(&lift), albedo: glam::Vec3::ONE };
+    let scene = Scene { receivers: vec![receiver] };
+    let mut built = build(&machine, &setup, &scene, Variant::LevelMap)?;
+    machine.recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0))?;
+    let sample = machine.recorder.run(Mode::Counted, |frame| built.paper.record(frame, 0))?;
+    let drawn = sample.passes.iter().filter(|pass| ["position-diffuse-map", "cast"].contains(&pass.info.name));
+    Ok(drawn.filter_map(|pass| Some((pass.info.name, pass.counts?.vertices?))).collect())
+}
+
+fn vertex_order(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("optimise order");
+    for (name, ball) in balls() {
+        let mut optimised = ball.clone();
+        optimised.optimise_order();
+        match (vertex_invocations(ball.clone()), vertex_invocations(optimised)) {
+            (Ok(before), Ok(after)) => eprintln!(
+                "vertex stage of {} triangles {name}: {before:?} as they are, {after:?} optimised",
+                ball.triangle_count()
+            ),
+            (Err(error), _) | (_, Err(error)) => eprintln!("SKIPPED: the vertex stage is not counted: {error}"),
+        }
+        group.bench_function(format!("{} triangles {name}", ball.triangle_count()), |bencher| {
+            bencher.iter_batched_ref(|| ball.clone(), Mesh::optimise_order, BatchSize::LargeInput);
+        });
+    }
+}
+
+/// A large ball as a binary STL file: reading and joining alone, and with normals and order.
+fn large(criterion: &mut Criterion) {
+    let folder = tempfile::tempdir().expect("a folder for the file");
+    let path = folder.path().join("ball.stl");
+    let ball = shapes::sphere(1_000, 501);
+    let corners = |triangle: &[u32]| -> Vec<u8> {
+        let places = triangle.iter().flat_map(|&corner| ball.positions[corner as usize].to_array());
+        [0.0; 3].into_iter().chain(places).flat_map(f32::to_le_bytes).chain([0; 2]).collect()
+    };
+    let start = [&[0; 80][..], &(ball.triangle_count() as u32).to_le_bytes()].concat();
+    let bytes: Vec<u8> = start.into_iter().chain(ball.indices.chunks_exact(3).flat_map(corners)).collect();
+    std::fs::write(&path, &bytes).expect("room for the file");
+    let source = MeshSource::File(path);
+    let mut group = criterion.benchmark_group("load large");
+    group.sample_size(10).throughput(Throughput::Bytes(bytes.len() as u64));
+    for (name, options) in [("in the file's order", MeshOptions::default()), ("to draw", MeshOptions::to_draw(30.0))] {
+        group.bench_function(format!("{} triangles of STL {name}", ball.triangle_count()), |bencher| {
+            bencher.iter(|| source.load_with(&options).expect("it loads"));
+        });
+        LoadParts::take();
+        source.load_with(&options).expect("it loads");
+        let LoadParts { bytes, read_ms, weld_ms, normals_ms, optimise_ms, .. } = LoadParts::take();
+        let rate = |ms: f64| bytes as f64 / 1e3 / ms;
+        eprintln!(
+            "of which reading {read_ms:.0} ms ({:.0} MB/s), joining {weld_ms:.0} ms ({:.0} MB/s), normals {normals_ms:.0} ms, \
+             ordering {optimise_ms:.0} ms",
+            rate(read_ms),
+            rate(weld_ms)
+        );
+    }
+}
+
 fn normals(criterion: &mut Criterion) {
     let mut mesh = shapes::sphere(256, 256);
     let name = format!("smooth normals of {} triangles", mesh.triangle_count());
@@ -101,5 +185,5 @@ fn normals(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, files, maps, pyramids, clustering, tessellation, normals);
+criterion_group!(benches, files, large, vertex_order, maps, pyramids, clustering, tessellation, normals);
 criterion_main!(benches);

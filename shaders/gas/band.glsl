@@ -7,6 +7,7 @@ layout(push_constant, std430) uniform Band {
     uint end_row; // the row after its last
     uint call; // of the band's dispatches of the pass, from 0
     uint calls; // their number
+    uint first_triangle; // of those that are drawn, among all
 } band;
 
 // The list of a pixel.

@@ -290,6 +290,7 @@ void main() {
     }
     uint next = atomicExchange(heads[list_of(uvec2(pixel))], slot);
     links[slot] = Link(next, mask, near, far);
-    surfaces[slot] = Surface(pack_normal(normalize(normal)), object_index, identity.x, coverage);
+    surfaces[slot] = Surface(pack_normal(normalize(normal)), object_index, band.first_triangle + identity.x,
+        coverage);
     colors[slot] = Color(packHalf2x16(color.xy), packHalf2x16(vec2(color.z, 0.0)) | (packed_opacity << 16u));
 }

@@ -1,4 +1,4 @@
-// All meshes in one, in world space but for the offset of their object.
+// All meshes in one, or a piece of them, in world space but for the offset of their object.
 
 #include "gas/object.glsl"
 

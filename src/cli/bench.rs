@@ -11,7 +11,7 @@ use super::spelling;
 use super::watch::{patiently, watched};
 use crate::content;
 use crate::gpu::{Mode, RenderDoc};
-use crate::measure::bench::{Bench, Loaded, build, load};
+use crate::measure::bench::{Bench, Loaded, build, load_for};
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::picture;
 use crate::measure::profile::{self, profile};
@@ -55,9 +55,9 @@ fn measure<S: Study>(
     let schedule = measure.schedule(FRAMES, REPEAT);
     // RenderDoc is there from the start, or never.
     let capture = depth.capture.map(|CaptureTool::Renderdoc| RenderDoc::attach()).transpose()?;
-    let loaded = patiently(output.quiet, "loading the scene", || load(study))?;
     let options = MachineOptions { is_profiled: depth.profile.is_some(), ..machine.resolve(measure.process) };
-    let mut machine = Machine::open(&options, S::NEEDS)?;
+    let open = || Machine::open(&options, S::NEEDS);
+    let (loaded, mut machine) = patiently(output.quiet, "loading the scene", || load_for(study, variants, open))?;
     // The table names the device itself.
     if output.json_to_stdout() {
         outcome::say_device(output, &machine);

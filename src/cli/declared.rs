@@ -12,7 +12,7 @@ use super::options::{CommonArgs, DepthArgs, MachineArgs};
 use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
-use super::{bench, passes, render, spelling};
+use super::{bench, loading, passes, render, spelling};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::study::{Preset, Study};
@@ -163,7 +163,7 @@ fn finish(command: Command, about: &'static str) -> Command {
 fn with_scene<S: Study>(command: Command) -> Command {
     let presets = S::presets();
     let command = if presets.is_empty() { command } else { command.arg(preset_option(&presets)) };
-    command.args(options(&S::parameters(), &S::default()))
+    command.args(options(&S::parameters(), &S::default())).arg(loading::option())
 }
 
 fn preset_option<S: Study>(presets: &[Preset<S>]) -> Arg {
@@ -328,6 +328,13 @@ fn checked<S: Study>(setup: &S, variants: Vec<S::Variant>) -> Result<Vec<S::Vari
 /// Runs the verb that was typed.
 pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     let Some((verb, matches)) = matches.subcommand() else { return Ok(()) };
+    loading::begin(matches);
+    let result = run_verb::<S>(verb, matches);
+    loading::end();
+    result
+}
+
+fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
     let typed = Typed::<S>::new(matches);
     match verb {
         "passes" => {

@@ -96,6 +96,7 @@ impl From<Error> for Failure {
             Error::Gpu(error) => error.into(),
             Error::Image(error) => error.into(),
             Error::Parameter(error) => Failure::Input(format!("--{error}")),
+            Error::Scene(crate::scene::Error::Interrupted { .. }) => Failure::Running(error.to_string()),
             Error::Scene(_) | Error::Output(_) | Error::Input(_) => Failure::Input(error.to_string()),
             Error::Plot(_) | Error::Interrupted => Failure::Running(error.to_string()),
         }

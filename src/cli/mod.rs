@@ -7,6 +7,7 @@ mod compare;
 mod declared;
 mod devices;
 mod failure;
+mod loading;
 mod options;
 mod outcome;
 mod page;

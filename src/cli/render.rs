@@ -14,7 +14,7 @@ use super::outcome;
 use super::watch::{interrupted, patiently, progress_bar};
 use crate::file::{self, OutputError};
 use crate::image::{self, Rgba8, y4m};
-use crate::measure::bench::build;
+use crate::measure::bench::{Loaded, build, load_for};
 use crate::measure::machine::Machine;
 use crate::measure::picture;
 use crate::measure::study::Study;
@@ -125,8 +125,9 @@ pub fn draw<S: Study>(
     }
 
     let study = resolve()?;
-    let scene = patiently(arguments.quiet, "loading the scene", || study.load())?;
-    let mut machine = Machine::open(&arguments.machine.resolve(0), S::NEEDS)?;
+    let open = || Machine::open(&arguments.machine.resolve(0), S::NEEDS);
+    let loaded = patiently(arguments.quiet, "loading the scene", || load_for(&study, &[variant], open))?;
+    let (Loaded { scene, .. }, mut machine) = loaded;
     outcome::say_device(&output, &machine);
     outcome::foretell(&output, &study.estimate(&machine.device, &scene, variant), &machine);
     let mut built = patiently(arguments.quiet, "making the first frame", || build(&machine, &study, &scene, variant))?;

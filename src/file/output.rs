@@ -36,6 +36,25 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_with(path, |file| file.write_all(bytes))
 }
 
+/// As [`write_with()`], for a file that can be made again: the system writes it out when it likes, so that what is there
+/// after the machine has crashed may be damaged. What killed processes left in its folder is removed.
+///
+/// # Errors
+/// As [`write_with()`].
+pub fn write_unsynced(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let failed = |source| OutputError::Write { path: path.to_owned(), source };
+    let folder = parent(path);
+    create_directory(&folder)?;
+    temporary::sweep(&folder);
+    let mut temporary = create_beside(path).map_err(failed)?;
+    buffered(temporary.as_file_mut(), fill).map_err(failed)?;
+    temporary.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
 /// Writes `path` through `fill`, whole or not at all: for encoders that want a writer.
 ///
 /// # Errors

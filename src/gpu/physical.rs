@@ -264,7 +264,7 @@ impl PhysicalDevice {
     }
 
     /// The largest size of a buffer, in bytes.
-    pub(crate) fn max_buffer_bytes(&self) -> u64 {
+    pub fn max_buffer_bytes(&self) -> u64 {
         self.max_buffer_bytes
     }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use ash::vk;
+use bytemuck::Pod;
 
 use super::access::Access;
 use super::bindings::{Resource, Use};
@@ -24,9 +25,62 @@ pub fn upload(
     usage: vk::BufferUsageFlags,
     bytes: &[u8],
 ) -> Result<Arc<Buffer>, Error> {
-    let size_bytes = bytes.len() as u64;
+    let fill = |at: u64, chunk: &mut [u8]| chunk.copy_from_slice(&bytes[at as usize..][..chunk.len()]);
+    upload_chunks(device, name, usage, bytes.len() as u64, CHUNK_BYTES, fill)
+}
+
+/// Makes a device buffer of `count` values, each asked for once and in order: a list of them is nowhere in memory.
+///
+/// # Errors
+/// As [`upload`].
+pub fn upload_each<T: Pod>(
+    device: &Arc<Device>,
+    name: &str,
+    usage: vk::BufferUsageFlags,
+    count: usize,
+    value: impl Fn(usize) -> T,
+) -> Result<Arc<Buffer>, Error> {
+    let value_bytes = size_of::<T>().max(1);
+    let chunk_bytes = (CHUNK_BYTES / value_bytes as u64).max(1) * value_bytes as u64;
+    // A multiple of what a copy begins at: every value of a buffer is one of four bytes.
+    upload_chunks(device, name, usage, (count * value_bytes) as u64, chunk_bytes, |at, chunk| {
+        let first = at as usize / value_bytes;
+        for (place, bytes) in (first..).zip(chunk.chunks_exact_mut(value_bytes)) {
+            bytes.copy_from_slice(bytemuck::bytes_of(&value(place)));
+        }
+    })
+}
+
+/// Makes a device buffer through a small staging buffer, chunk by chunk; `fill` writes the bytes from the given one on.
+fn upload_chunks(
+    device: &Arc<Device>,
+    name: &str,
+    usage: vk::BufferUsageFlags,
+    size_bytes: u64,
+    chunk_bytes: u64,
+    fill: impl Fn(u64, &mut [u8]),
+) -> Result<Arc<Buffer>, Error> {
     let buffer = Buffer::new(device, BufferDesc::new(name, size_bytes).usage(usage))?;
-    update(&buffer, bytes)?;
+    let desc = BufferDesc::new(format!("{name} staging"), chunk_bytes.min(buffer.size_bytes()));
+    let staging = Buffer::new(device, desc.location(Location::Upload))?;
+    let mut bytes = vec![0; staging.size_bytes() as usize];
+    for first in (0..buffer.size_bytes()).step_by(bytes.len()) {
+        let end = buffer.size_bytes().min(first + bytes.len() as u64);
+        let chunk = &mut bytes[..(end - first) as usize];
+        // A buffer has at least four bytes; those that nothing was given for are zero.
+        fill(first, &mut chunk[..(size_bytes.min(end) - first) as usize]);
+        staging.write(0, chunk)?;
+        let (from, to) = (staging.range(0..end - first)?, buffer.range(first..end)?);
+        let uses = [
+            Use { resource: (&from).into(), access: Access::CopySource, discard: false },
+            Use { resource: (&to).into(), access: Access::CopyDestination, discard: true },
+        ];
+        let region = vk::BufferCopy::default().dst_offset(first).size(end - first);
+        once(device, "upload", &uses, |raw, commands| {
+            // SAFETY: recording; the region lies inside both buffers, as their ranges do; both outlive the submission.
+            unsafe { raw.cmd_copy_buffer(commands, staging.raw, buffer.raw, &[region]) };
+        })?;
+    }
     Ok(buffer)
 }
 
@@ -62,7 +116,7 @@ pub fn copy_buffers(device: &Arc<Device>, pairs: &[(&Arc<Buffer>, &Arc<Buffer>)]
     })
 }
 
-/// Bytes of the staging buffer that images are uploaded through, and of one row at least.
+/// Bytes of the staging buffer that buffers and images are uploaded through; of an image one row at least.
 const CHUNK_BYTES: u64 = 8 << 20;
 
 /// Fills the upper left `width` x `height` texels of a view of one layer, through a small staging buffer, chunk by chunk.

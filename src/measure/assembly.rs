@@ -10,7 +10,7 @@ use super::study::Identity;
 use crate::gpu::live::MemoryUse;
 use crate::gpu::{self, PassKind, Work};
 use crate::report::record::{
-    self, InputFile, Limits, Memory, Pass, ResourceMemory, Run, ShaderBinary, Statistics, Validation,
+    self, InputFile, Limits, Loading, Memory, Pass, ResourceMemory, Run, ShaderBinary, Statistics, Validation,
 };
 use crate::report::trace::{TraceEvent, TraceRun, Track};
 
@@ -35,6 +35,8 @@ pub struct RunMetadata {
     pub started: String,
     /// Milliseconds of loading the input.
     pub load_ms: f64,
+    /// What loading its mesh files consisted of.
+    pub loading: Option<Loading>,
     /// Milliseconds of making the variant's resources and pipelines.
     pub build_ms: f64,
     /// Every live resource of the variant.
@@ -91,6 +93,7 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
         unaccounted_ms: frame_ms.as_ref().filter(|_| is_timestamped).map(|frame| frame.median - gpu_ms - host_ms),
         stamp_floor_ms: metadata.stamp_floor_ms,
         load_ms: Some(metadata.load_ms),
+        loading: metadata.loading,
         pipeline_ms: Some(metadata.build_ms + measurement.first_frame_ms),
         memory: Memory {
             device_bytes: sum(false),

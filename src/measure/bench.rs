@@ -10,12 +10,14 @@ use super::limits;
 use super::machine::Machine;
 use super::measure::{Schedule, Watch, measure};
 use super::study::Study;
+use crate::gpu;
 use crate::gpu::live::MemoryUse;
 use crate::gpu::physical::DeviceType;
 use crate::measure::{Paper, Variant};
 use crate::report::environment;
-use crate::report::record::{InputFile, Limits, Run};
+use crate::report::record::{InputFile, Limits, Loading, Run};
 use crate::report::trace::TraceRun;
+use crate::scene::loading::LoadParts;
 use crate::scene::source_sha256;
 
 /// The input of a study with the time that loading it took.
@@ -24,6 +26,8 @@ pub struct Loaded<S: Study> {
     pub scene: S::Scene,
     /// Milliseconds of loading it.
     pub load_ms: f64,
+    /// What loading its mesh files consisted of; none where there are none.
+    pub loading: Option<Loading>,
 }
 
 /// Loads a study's input.
@@ -31,9 +35,47 @@ pub struct Loaded<S: Study> {
 /// # Errors
 /// As [`Study::load`].
 pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
+    LoadParts::take();
     let started = Instant::now();
     let scene = study.load()?;
-    Ok(Loaded { scene, load_ms: started.elapsed().as_secs_f64() * 1e3 })
+    let load_ms = started.elapsed().as_secs_f64() * 1e3;
+    let parts = LoadParts::take();
+    let loading = Loading {
+        bytes: parts.bytes,
+        read_ms: parts.read_ms,
+        weld_ms: parts.weld_ms,
+        normals_ms: parts.normals_ms,
+        optimise_ms: parts.optimise_ms,
+        cache_ms: parts.cache_ms,
+        from_cache: parts.from_cache,
+    };
+    let has_files = parts.bytes > 0 || parts.from_cache > 0;
+    Ok(Loaded { scene, load_ms, loading: has_files.then_some(loading) })
+}
+
+/// Triangles of files that are read before it is known what device there is: moments.
+const QUICKLY_READ: u64 = 1 << 20;
+
+/// Loads a study's input and opens the device. Of large files the device comes first: what it cannot hold is refused
+/// unread.
+///
+/// # Errors
+/// As [`Study::load`] and [`Machine::open`]; [`gpu::Error::Limit`] by the parameter.
+pub fn load_for<S: Study>(
+    study: &S,
+    variants: &[S::Variant],
+    open: impl FnOnce() -> Result<Machine, gpu::Error>,
+) -> Result<(Loaded<S>, Machine), Error> {
+    let triangles = study.promised_triangles()?;
+    if triangles < QUICKLY_READ {
+        let loaded = load(study)?;
+        return Ok((loaded, open()?));
+    }
+    let machine = open()?;
+    for &variant in variants {
+        study.foresee(triangles, variant).check(&machine.device, variant.as_str())?;
+    }
+    Ok((load(study)?, machine))
 }
 
 /// A variant with its resources, and what they cost.
@@ -174,6 +216,7 @@ impl<S: Study> Bench<'_, S> {
                 inputs: inputs.clone(),
                 started: started.clone(),
                 load_ms: loaded.load_ms,
+                loading: loaded.loading.clone(),
                 build_ms: built.build_ms,
                 memory: built.memory.clone(),
                 peak_bytes: built.peak_bytes,

@@ -12,11 +12,16 @@ const MOST_DRAWS: u64 = 1 << 20;
 /// Invocations of fragment and compute shaders that a CPU finishes in a second, and any other device, roughly.
 const PER_SECOND: (f64, f64) = (1e8, 2e10);
 
+/// Bytes on the device of a triangle that is drawn, at least: three indices, and half a vertex of position and normal.
+pub const DRAWN_BYTES: f64 = 24.0;
+
 /// Memory, passes and shader invocations of a frame, each by the parameter that sets it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Estimate {
     /// Bytes on the device.
     pub bytes: Vec<(&'static str, f64)>,
+    /// Bytes of storage buffers that are not cut into pieces.
+    pub buffers: Vec<(&'static str, f64)>,
     /// Passes of one frame, with the parameter that they follow.
     pub passes: Option<(&'static str, u64)>,
     /// Draws and dispatches inside the passes, where they are many more, with the parameter that they follow.
@@ -35,7 +40,8 @@ impl Estimate {
     /// Passes for a configuration that the device can hold.
     ///
     /// # Errors
-    /// [`Error::Limit`] for more bytes than its largest heap has, or more passes or draws than a frame may have.
+    /// [`Error::Limit`] for more bytes than its largest heap has, a longer buffer than it binds, or more passes or draws than
+    /// a frame may have.
     pub fn check(&self, device: &Device, label: &str) -> Result<(), Error> {
         let memory = &device.physical().memory;
         let heaps = &memory.memory_heaps[..memory.memory_heap_count as usize];
@@ -46,6 +52,10 @@ impl Estimate {
         let total: f64 = self.bytes.iter().map(|(_, bytes)| bytes).sum();
         if let Some((parameter, _)) = largest(&self.bytes).filter(|_| total > limit as f64) {
             return refused("size in bytes of all buffers and images", total as u64, limit, parameter);
+        }
+        let longest = u64::from(device.physical().limits.max_storage_buffer_range);
+        if let Some((parameter, bytes)) = largest(&self.buffers).filter(|(_, bytes)| *bytes > longest as f64) {
+            return refused("size in bytes of a storage buffer", bytes as u64, longest, parameter);
         }
         let recorded = [
             ("count of passes in a frame", self.passes, MOST_PASSES),

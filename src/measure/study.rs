@@ -68,6 +68,20 @@ pub trait Study: Clone + Default + 'static {
         Estimate::default()
     }
 
+    /// Triangles of the mesh files that are read, as far as they say so before they come.
+    ///
+    /// # Errors
+    /// As [`Study::load`].
+    fn promised_triangles(&self) -> Result<u64, Error> {
+        Ok(0)
+    }
+
+    /// What so many triangles of mesh files take in a variant at least: they are not even read where the device cannot hold
+    /// it.
+    fn foresee(&self, _triangles: u64, _variant: Self::Variant) -> Estimate {
+        Estimate::default()
+    }
+
     fn identity(&self) -> Identity;
 
     /// Every parameter, under the names of the options.

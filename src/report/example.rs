@@ -71,6 +71,7 @@ pub fn run() -> Run {
         unaccounted_ms: None,
         stamp_floor_ms: None,
         load_ms: None,
+        loading: None,
         pipeline_ms: None,
         memory: Memory::default(),
         limits: None,
@@ -160,6 +161,15 @@ pub fn full() -> Record {
         unaccounted_ms: Some(2.5),
         stamp_floor_ms: Some(0.01),
         load_ms: Some(12.0),
+        loading: Some(Loading {
+            bytes: 1 << 22,
+            read_ms: 4.0,
+            weld_ms: 3.0,
+            normals_ms: 2.0,
+            optimise_ms: 2.5,
+            cache_ms: 0.5,
+            from_cache: 1,
+        }),
         pipeline_ms: Some(80.0),
         memory: Memory {
             device_bytes: Some(1 << 20),

@@ -184,6 +184,9 @@ pub struct Run {
     pub stamp_floor_ms: Option<f64>,
     /// Loading of the input.
     pub load_ms: Option<f64>,
+    /// What loading mesh files consisted of; absent where none was loaded.
+    #[serde(default)]
+    pub loading: Option<Loading>,
     /// Making of the resources and pipelines, and the first frame less the median of the others.
     pub pipeline_ms: Option<f64>,
     /// Bytes that the variant's resources take.
@@ -204,6 +207,25 @@ pub struct Run {
     pub warnings: Vec<String>,
     /// Picture written with the run; absent without one.
     pub image: Option<ImageFile>,
+}
+
+/// Parts of loading mesh files.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Loading {
+    /// Bytes of the files that were read.
+    pub bytes: u64,
+    /// Reading and parsing.
+    pub read_ms: f64,
+    /// Joining vertices and cutting polygons.
+    pub weld_ms: f64,
+    /// Computing normals that files lack.
+    pub normals_ms: f64,
+    /// Ordering triangles and vertices for the device's vertex cache.
+    pub optimise_ms: f64,
+    /// Finding meshes in the cache, or keeping them there.
+    pub cache_ms: f64,
+    /// Meshes that were found in the cache.
+    pub from_cache: u32,
 }
 
 impl Run {

@@ -13,6 +13,8 @@ pub enum Error {
     UnknownEnding { path: PathBuf, asset: Asset, ending: String, known: String },
     #[error("cannot load {asset} {}: {fault}", path.display())]
     Malformed { path: PathBuf, asset: Asset, fault: Fault },
+    #[error("interrupted while reading {}", path.display())]
+    Interrupted { path: PathBuf },
     #[error("cannot use the camera: {reason}")]
     Camera { reason: String },
     #[error("cannot use the height map: {reason}")]

@@ -1,6 +1,7 @@
 use crate::scene::error::{Fault, Place};
-use crate::scene::{Bounds, normals};
-use glam::{Mat4, Vec2, Vec3};
+use crate::scene::loading::timed;
+use crate::scene::{Bounds, creases, normals};
+use glam::{Mat3, Mat4, Vec2, Vec3};
 
 /// An indexed triangle mesh, counter-clockwise triangles facing out.
 ///
@@ -36,25 +37,20 @@ impl Mesh {
     ///
     /// Triangles still face out after a reflection: their winding is reversed.
     pub fn transformed(&self, transform: &Mat4) -> Self {
-        let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.truncate());
-        // The cofactor matrix is the inverse transpose up to the determinant, and exists for
-        // singular matrices too.
-        let cofactor = glam::Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-        let reflects = x.dot(y.cross(z)) < 0.0;
-        let sign = if reflects { -1.0 } else { 1.0 };
-        let mut mesh = Self {
-            name: self.name.clone(),
-            positions: self.positions.iter().map(|p| transform.transform_point3(*p)).collect(),
-            normals: self.normals.iter().map(|n| (cofactor * *n * sign).normalize_or_zero()).collect(),
-            texture_coordinates: self.texture_coordinates.clone(),
-            indices: self.indices.clone(),
-        };
-        if reflects {
-            for corners in mesh.indices.chunks_exact_mut(3) {
+        self.clone().placed(transform)
+    }
+
+    /// As [`Mesh::transformed`], in place.
+    pub fn placed(mut self, transform: &Mat4) -> Self {
+        let placement = Placement::new(transform);
+        self.positions.iter_mut().for_each(|p| *p = transform.transform_point3(*p));
+        self.normals.iter_mut().for_each(|n| *n = placement.normal(*n));
+        if placement.reflects {
+            for corners in self.indices.chunks_exact_mut(3) {
                 corners.swap(1, 2);
             }
         }
-        mesh
+        self
     }
 
     /// Replaces all normals by area-weighted ones, smooth across vertices at the same position.
@@ -86,30 +82,54 @@ impl Mesh {
         }
         check_texture_coordinates(&self.texture_coordinates, self.positions.len())
     }
+}
 
-    /// A valid mesh from what a file gives: normals may be absent (empty) or, one by one, zero or
-    /// not finite, and are then computed.
-    pub(super) fn from_file(
-        positions: Vec<Vec3>,
-        mut normals: Vec<Vec3>,
-        texture_coordinates: Vec<Vec2>,
-        indices: Vec<u32>,
-    ) -> Result<Self, Fault> {
-        check_geometry(&positions, &indices)?;
-        check_texture_coordinates(&texture_coordinates, positions.len())?;
-        normals.resize(positions.len(), Vec3::ZERO);
-        for normal in &mut normals {
+/// What an affine transform does to normals and windings.
+pub(super) struct Placement {
+    cofactor: Mat3,
+    /// It turns triangles over.
+    pub reflects: bool,
+}
+
+impl Placement {
+    pub fn new(transform: &Mat4) -> Self {
+        let [x, y, z] = [transform.x_axis, transform.y_axis, transform.z_axis].map(|a| a.truncate());
+        let reflects = x.dot(y.cross(z)) < 0.0;
+        // The cofactor matrix is the inverse transpose up to the determinant, and exists for
+        // singular matrices too.
+        let cofactor = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        Placement { cofactor: if reflects { -cofactor } else { cofactor }, reflects }
+    }
+
+    /// Of unit length; zero for what has none.
+    pub fn normal(&self, normal: Vec3) -> Vec3 {
+        (self.cofactor * normal).normalize_or_zero()
+    }
+}
+
+/// What a file gives of a mesh; none of it is checked.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Parts {
+    pub positions: Vec<Vec3>,
+    /// None, or as many as positions; zero or not finite where there is none.
+    pub normals: Vec<Vec3>,
+    /// None, or as many as positions.
+    pub texture_coordinates: Vec<Vec2>,
+    /// Three vertex numbers a triangle.
+    pub indices: Vec<u32>,
+}
+
+impl Parts {
+    /// A valid mesh; normals that are missing are computed, broken at edges sharper than `crease_deg`.
+    pub fn into_mesh(mut self, crease_deg: f32) -> Result<Mesh, Fault> {
+        check_geometry(&self.positions, &self.indices)?;
+        check_texture_coordinates(&self.texture_coordinates, self.positions.len())?;
+        for normal in &mut self.normals {
             *normal = normal.as_dvec3().normalize_or_zero().as_vec3();
         }
-        if normals.contains(&Vec3::ZERO) {
-            let smooth = normals::smooth(&positions, &indices);
-            for (normal, smooth) in normals.iter_mut().zip(smooth) {
-                if *normal == Vec3::ZERO {
-                    *normal = smooth;
-                }
-            }
-        }
-        Ok(Self { name: String::new(), positions, normals, texture_coordinates, indices })
+        timed(|parts| &mut parts.normals_ms, || creases::fill_normals(&mut self, crease_deg));
+        let Parts { positions, normals, texture_coordinates, indices } = self;
+        Ok(Mesh { name: String::new(), positions, normals, texture_coordinates, indices })
     }
 }
 
@@ -226,7 +246,8 @@ mod tests {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let given = [Vec3::NAN, Vec3::ZERO, Vec3::new(0.0, 3.0, 0.0)];
         for (normals, expected) in [(vec![], [Vec3::Z; 3]), (given.to_vec(), [Vec3::Z, Vec3::Z, Vec3::Y])] {
-            let mesh = Mesh::from_file(positions.clone(), normals, vec![], vec![0, 1, 2]).unwrap();
+            let parts = Parts { positions: positions.clone(), normals, indices: vec![0, 1, 2], ..Parts::default() };
+            let mesh = parts.into_mesh(30.0).unwrap();
             assert_eq!(mesh.normals, expected);
             mesh.validate().unwrap();
         }

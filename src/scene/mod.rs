@@ -6,6 +6,7 @@
 
 mod bounds;
 mod camera;
+mod creases;
 mod divide;
 mod error;
 mod file;
@@ -13,12 +14,16 @@ mod formats;
 mod height_map;
 mod identity;
 mod light;
+pub mod loading;
 mod mesh;
+mod mesh_cache;
 mod normals;
+mod numbering;
 mod polygon;
 pub mod random;
 pub mod shapes;
 mod source;
+mod vertex_order;
 
 pub use bounds::Bounds;
 pub use camera::Camera;
@@ -27,5 +32,7 @@ pub use error::{Asset, Error, Fault, Place};
 pub use height_map::{Geographic, HeightMap, HeightMapSource, Samples, Suspect, Voids, volcano};
 pub use identity::source_sha256;
 pub use light::Light;
+pub use loading::MeshOptions;
 pub use mesh::Mesh;
-pub use source::MeshSource;
+pub use mesh_cache::folder as mesh_cache_folder;
+pub use source::{MeshSource, promised_triangles};

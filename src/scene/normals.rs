@@ -1,21 +1,6 @@
 use glam::{DVec3, Vec3};
-use std::collections::HashMap;
 
-/// Numbers points so that equal positions share a number. Numbers are given in the order of first
-/// use.
-#[derive(Default)]
-pub(super) struct Weld(HashMap<[u32; 3], u32>);
-
-impl Weld {
-    /// The number of `position`, and whether it is new. -0 and +0 are equal.
-    pub fn number(&mut self, position: Vec3) -> (u32, bool) {
-        let key = (position + Vec3::ZERO).to_array().map(f32::to_bits);
-        // A mesh has at most u32::MAX vertices, which its loader checks.
-        let next = self.0.len() as u32;
-        let number = *self.0.entry(key).or_insert(next);
-        (number, number == next)
-    }
-}
+use super::numbering::Numbering;
 
 /// Area-weighted vertex normals of a triangle list, in single precision and of unit length.
 ///
@@ -23,9 +8,9 @@ impl Weld {
 /// vertex that no triangle of positive area touches gets +Y. Positions must be finite and indices
 /// in range.
 pub(super) fn smooth(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
-    let mut weld = Weld::default();
-    let points: Vec<u32> = positions.iter().map(|p| weld.number(*p).0).collect();
-    let mut sums = vec![DVec3::ZERO; weld.0.len()];
+    let mut numbering = Numbering::default();
+    let points: Vec<u32> = positions.iter().map(|&p| numbering.number(Numbering::key_of(p))).collect();
+    let mut sums = vec![DVec3::ZERO; numbering.len()];
     for corners in indices.chunks_exact(3) {
         let [a, b, c] = [0, 1, 2].map(|i| corners[i] as usize);
         let area_vector = double_area_vector(positions[a], positions[b], positions[c]);

@@ -1,5 +1,5 @@
 use crate::scene::error::{Fault, Place};
-use crate::scene::mesh;
+use crate::scene::mesh::{self, Parts};
 use earcut::Earcut;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -18,29 +18,76 @@ pub(super) struct PolygonMesh {
     pub texture_coordinates: Vec<Vec2>,
     /// Vertex numbers of all polygons, one after the other.
     pub corners: Vec<u32>,
-    /// Corners of each polygon.
-    pub arities: Vec<u32>,
+    /// Where one ends and the next begins.
+    pub arities: Arities,
 }
 
 impl PolygonMesh {
     /// Cuts every polygon of a file of `size_bytes` into triangles. Polygons of fewer than three
     /// corners (points and lines) are left out.
-    pub fn into_mesh(self, size_bytes: usize) -> Result<mesh::Mesh, Fault> {
+    pub fn into_parts(self, size_bytes: u64) -> Result<Parts, Fault> {
         mesh::check_positions(&self.positions)?;
-        let mut cutter = Cutter { squares_left: CLIPPED_SQUARES + size_bytes as u64, ..Cutter::default() };
-        let mut indices = Vec::with_capacity(self.corners.len());
-        let mut rest = &self.corners[..];
-        for (face, &arity) in self.arities.iter().enumerate() {
-            let Some((polygon, after)) = rest.split_at_checked(arity as usize) else {
-                let reason = format!("{} corners are missing", arity as usize - rest.len());
-                return Err(Fault::new(Place::Face(face), reason));
-            };
-            rest = after;
-            cutter
-                .cut(&self.positions, polygon, &mut indices)
-                .map_err(|reason| Fault::new(Place::Face(face), reason))?;
+        let PolygonMesh { positions, normals, texture_coordinates, corners, arities } = self;
+        let indices = match arities {
+            Arities::Triangles => corners,
+            Arities::Each(arities) => {
+                let mut cutter = Cutter { squares_left: CLIPPED_SQUARES + size_bytes, ..Cutter::default() };
+                let triangles = arities.iter().map(|&arity| (arity as usize).saturating_sub(2)).sum::<usize>();
+                // What a hostile file claims is no reason to allocate: it has so many corners at most.
+                let mut indices = Vec::with_capacity(3 * triangles.min(corners.len()));
+                let mut rest = &corners[..];
+                for (face, &arity) in arities.iter().enumerate() {
+                    let Some((polygon, after)) = rest.split_at_checked(arity as usize) else {
+                        let reason = format!("{} corners are missing", arity as usize - rest.len());
+                        return Err(Fault::new(Place::Face(face), reason));
+                    };
+                    rest = after;
+                    let cut = cutter.cut(&positions, polygon, &mut indices);
+                    cut.map_err(|reason| Fault::new(Place::Face(face), reason))?;
+                }
+                indices
+            }
+        };
+        Ok(Parts { positions, normals, texture_coordinates, indices })
+    }
+}
+
+/// Corners of each polygon.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(super) enum Arities {
+    /// Each has three.
+    #[default]
+    Triangles,
+    /// As many as there are polygons.
+    Each(Vec<u32>),
+}
+
+impl Arities {
+    /// Counts one more polygon; the others have `before` corners.
+    pub fn push(&mut self, arity: u32, before: usize) {
+        match self {
+            Arities::Triangles if arity == 3 => {}
+            Arities::Triangles => {
+                let mut each = vec![3; before / 3];
+                each.push(arity);
+                *self = Arities::Each(each);
+            }
+            Arities::Each(each) => each.push(arity),
         }
-        mesh::Mesh::from_file(self.positions, self.normals, self.texture_coordinates, indices)
+    }
+
+    /// Adds those of polygons that have `corners` together; the others have `before` corners.
+    pub fn append(&mut self, more: Arities, corners: usize, before: usize) {
+        if matches!((&*self, &more), (Arities::Triangles, Arities::Triangles)) {
+            return;
+        }
+        let each = |arities: Arities, corners: usize| match arities {
+            Arities::Triangles => vec![3; corners / 3],
+            Arities::Each(each) => each,
+        };
+        let mut all = each(std::mem::take(self), before);
+        all.extend(each(more, corners));
+        *self = Arities::Each(all);
     }
 }
 
@@ -196,7 +243,8 @@ mod tests {
     fn points_and_lines_are_left_out_and_bad_polygons_named() {
         let mesh = |corners: Vec<u32>, arities: Vec<u32>| {
             let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
-            PolygonMesh { positions, corners, arities, ..PolygonMesh::default() }.into_mesh(0)
+            let arities = Arities::Each(arities);
+            PolygonMesh { positions, corners, arities, ..PolygonMesh::default() }.into_parts(0)
         };
         assert_eq!(mesh(vec![0, 0, 1, 0, 1, 2], vec![1, 2, 3]).unwrap().indices, [0, 1, 2]);
         assert_eq!(mesh(vec![0, 1, 2, 0, 1, 2, 3], vec![3, 4]).unwrap_err().place, Place::Face(1));
@@ -221,10 +269,14 @@ mod tests {
             for (count, times, is_cut) in [(10_000, 1, true), (60_000, 1, false), (1_000, 101, false)] {
                 let positions = make(count);
                 let corners = (0..times).flat_map(|_| 0..count as u32).collect();
-                let polygons =
-                    PolygonMesh { positions, corners, arities: vec![count as u32; times], ..Default::default() };
+                let polygons = PolygonMesh {
+                    positions,
+                    corners,
+                    arities: Arities::Each(vec![count as u32; times]),
+                    ..Default::default()
+                };
                 let started = std::time::Instant::now();
-                let cut = polygons.into_mesh(0);
+                let cut = polygons.into_parts(0);
                 assert_eq!(cut.is_ok(), is_cut, "{count} {:?}", cut.err());
                 // Twenty times what it takes on an idle machine, and less than it took.
                 assert!(started.elapsed().as_secs_f64() < 10.0, "{count}: {:?}", started.elapsed());

@@ -1,3 +1,4 @@
+use crate::scene::loading::{Conditions, MeshOptions, timed};
 use crate::scene::{Error, Mesh, divided, formats, shapes};
 use glam::{UVec2, Vec2};
 use std::convert::Infallible;
@@ -54,16 +55,59 @@ impl MeshSource {
     /// For files only: one that cannot be read, has an unknown ending, is malformed, or holds no
     /// triangle.
     pub fn load(&self) -> Result<Mesh, Error> {
+        self.load_with(&MeshOptions::default())
+    }
+
+    /// As [`MeshSource::load`], with other options.
+    ///
+    /// # Errors
+    /// As [`MeshSource::load`]; [`Error::Interrupted`].
+    pub fn load_with(&self, options: &MeshOptions) -> Result<Mesh, Error> {
+        self.load_under(options, Conditions::current())
+    }
+
+    /// As [`MeshSource::load_with`], for whoever waits and with a cache, or none, of its own.
+    ///
+    /// # Errors
+    /// As [`MeshSource::load_with`].
+    pub fn load_under(&self, options: &MeshOptions, conditions: &Conditions) -> Result<Mesh, Error> {
+        let mut mesh = match self {
+            Self::Teapot => shapes::teapot(),
+            Self::Sphere => shapes::sphere(32, 32),
+            Self::Box => shapes::cuboid(),
+            Self::Bunny => formats::bunny()?,
+            Self::Plane => shapes::plane(Vec2::splat(2.0), UVec2::splat(32)),
+            Self::File(path) => return formats::load(path, options, conditions),
+            Self::Divided(source, triangles) => {
+                let whole = MeshOptions { is_optimised: false, ..*options };
+                divided(&source.load_under(&whole, conditions)?, *triangles)
+            }
+        };
+        if options.is_optimised {
+            timed(|parts| &mut parts.optimise_ms, || mesh.optimise_order());
+        }
+        Ok(mesh)
+    }
+
+    /// Triangles that a file says it has, where it says so before they come.
+    ///
+    /// # Errors
+    /// As [`MeshSource::load`], of what stands before the triangles.
+    pub fn promised_triangles(&self) -> Result<Option<u64>, Error> {
         match self {
-            Self::Teapot => Ok(shapes::teapot()),
-            Self::Sphere => Ok(shapes::sphere(32, 32)),
-            Self::Box => Ok(shapes::cuboid()),
-            Self::Bunny => formats::bunny(),
-            Self::Plane => Ok(shapes::plane(Vec2::splat(2.0), UVec2::splat(32))),
-            Self::File(path) => formats::load(path),
-            Self::Divided(source, triangles) => Ok(divided(&source.load()?, *triangles)),
+            Self::File(path) => formats::promised_triangles(path),
+            Self::Divided(source, _) => source.promised_triangles(),
+            _ => Ok(None),
         }
     }
+}
+
+/// Triangles that the files among these say they have, where they say so before they come.
+///
+/// # Errors
+/// As [`MeshSource::promised_triangles`].
+pub fn promised_triangles<'a>(sources: impl IntoIterator<Item = &'a MeshSource>) -> Result<u64, Error> {
+    sources.into_iter().map(|source| Ok(source.promised_triangles()?.unwrap_or(0))).sum()
 }
 
 impl FromStr for MeshSource {

@@ -82,6 +82,15 @@ pub struct Parameter<S> {
     access: Box<dyn Access<S>>,
 }
 
+/// The crease angle of mesh files, which every paper that draws meshes has.
+pub fn crease_angle<S: 'static>(field: Field<S, f32>) -> Parameter<S> {
+    Parameter::new("crease-angle", field)
+        .range(Range::from(0.0).to(180.0))
+        .unit("degrees")
+        .help("Largest angle between two triangles of a mesh file without normals that are lit as one smooth surface")
+        .cost(Cost::Buffers)
+}
+
 impl<S: 'static> Parameter<S> {
     /// A parameter of any numbers, that costs constants.
     pub fn new<T: Value>(name: &'static str, field: Field<S, T>) -> Self {

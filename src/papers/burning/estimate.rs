@@ -78,9 +78,11 @@ impl Parameters {
         // Of a picture that the object fills to four fifths of its height.
         let of_particle =
             std::f64::consts::PI * (0.8 * f64::from(self.particle_radius) * f64::from(self.height)).powi(2);
+        let parameter = if levels > 0 { "levels" } else { "triangles" };
         Estimate {
+            buffers: vec![(parameter, 3.0 * NUMBER * triangles)],
             bytes: vec![
-                ("levels", of_vertex * vertices + of_corner * corners + of_triangle * triangles),
+                (parameter, of_vertex * vertices + of_corner * corners + of_triangle * triangles),
                 ("blocks", of_block * blocks),
                 ("look", of_look),
                 ("fire", 2.0 * size_of::<Particle>() as f64 * particles),

@@ -24,7 +24,8 @@ use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper as _};
-use crate::scene::{Mesh, MeshSource};
+use crate::scene::loading::CREASE_DEG;
+use crate::scene::{Mesh, MeshOptions, MeshSource};
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -33,6 +34,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// The object that burns.
     pub mesh: MeshSource,
+    /// Crease angle of meshes without normals, degrees.
+    pub crease_deg: f32,
     /// Factors of the mesh along x, y and z.
     pub stretch: Vec3,
     /// Triangles that the mesh is simplified or subdivided to; as it is, without.
@@ -46,10 +49,20 @@ pub struct Setup {
 impl Default for Setup {
     /// The scanned bunny.
     fn default() -> Self {
-        let parameters = Parameters::default();
-        Setup { parameters, mesh: MeshSource::Bunny, stretch: Vec3::ONE, triangles: None, texture: None, preset: None }
+        Setup {
+            parameters: Parameters::default(),
+            mesh: MeshSource::Bunny,
+            crease_deg: CREASE_DEG,
+            stretch: Vec3::ONE,
+            triangles: None,
+            texture: None,
+            preset: None,
+        }
     }
 }
+
+/// Bytes on the device of a triangle of a mesh whose vertices are shared.
+const LEAST_BYTES: f64 = 162.0;
 
 /// A setup with its mesh loaded and brought to its count.
 pub struct Scene {
@@ -70,7 +83,7 @@ impl Setup {
     }
 
     /// The parameters beside the numbers.
-    fn own_parameters() -> [Parameter<Self>; 4] {
+    fn own_parameters() -> [Parameter<Self>; 5] {
         [
             Parameter::new("mesh", field!(Setup.mesh))
                 .help(
@@ -79,6 +92,7 @@ impl Setup {
                 )
                 .cost(Cost::Buffers)
                 .everyday(),
+            parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("stretch", field!(Setup.stretch))
                 .range(Range::above(0.0).to(1000.0))
                 .help("Stretch the mesh along x, y and z")
@@ -111,9 +125,12 @@ impl Study for Setup {
 
     fn load(&self) -> Result<Scene, Error> {
         self.check()?;
-        let mut mesh = self.mesh.load()?;
+        // Where a fire begins, its flames and its base points follow the order of triangles and vertices, so that shapes keep
+        // the one that they were made in.
+        let is_optimised = self.mesh.path().is_some();
+        let mut mesh = self.mesh.load_with(&MeshOptions { crease_deg: self.crease_deg, is_optimised })?;
         if self.stretch != Vec3::ONE {
-            mesh = mesh.transformed(&Mat4::from_scale(self.stretch));
+            mesh = mesh.placed(&Mat4::from_scale(self.stretch));
         }
         let mesh = match self.triangles {
             Some(count) => with_triangles(&mesh, count as usize),
@@ -158,9 +175,31 @@ impl Study for Setup {
         })
     }
 
-    fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
+    fn estimate(&self, device: &Device, scene: &Scene, variant: Variant) -> Estimate {
+        // What is far too large is not even counted.
+        let foreseen = self.foresee(scene.mesh.triangle_count() as u64, variant);
+        if foreseen.check(device, "").is_err() {
+            return foreseen;
+        }
         let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
         parameters.estimate(variant, &scene.mesh)
+    }
+
+    fn promised_triangles(&self) -> Result<u64, Error> {
+        let promised = self.mesh.promised_triangles()?.unwrap_or(0);
+        // Those that are asked for are made of any number.
+        Ok(if self.triangles.is_some() { 0 } else { promised })
+    }
+
+    fn foresee(&self, triangles: u64, variant: Variant) -> Estimate {
+        let levels = self.parameters.levels.or(variant.own_levels()).unwrap_or(0);
+        let parameter = if levels > 0 { "levels" } else { "triangles" };
+        let finest = triangles as f64 * 4_f64.powi(levels as i32);
+        Estimate {
+            bytes: vec![(parameter, LEAST_BYTES * finest)],
+            buffers: vec![(parameter, 12.0 * finest)],
+            ..Estimate::default()
+        }
     }
 
     fn identity(&self) -> Identity {

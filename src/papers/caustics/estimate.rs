@@ -63,6 +63,7 @@ impl Parameters {
             _ => lit * texels * (8.0 + 2.0 * planes * coverage),
         };
         Estimate {
+            buffers: Vec::new(),
             bytes: vec![
                 ("mesh", 24.0 * vertices + 12.0 * triangles),
                 ("mesh", 32.0 * (2.0 * leaves - 1.0) + 12.0 * vertices + 12.0 * triangles),

@@ -10,6 +10,7 @@ use super::parameters::Parameters;
 use super::planes::{self, Cell};
 use super::resources::Context;
 use crate::gpu::pass::PassBuilder;
+use crate::gpu::transfer::upload_each;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 use crate::host_block;
 use crate::scene::Mesh;
@@ -74,19 +75,12 @@ impl Receiver {
     /// Errors of the Vulkan layer.
     pub fn new(context: Context<'_>, input: &ReceiverInput) -> Result<Self, Error> {
         let mesh = &input.mesh;
-        let vertices: Vec<Vertex> = mesh
-            .positions
-            .iter()
-            .zip(&mesh.normals)
-            .map(|(p, n)| Vertex { position: p.to_array(), normal: n.to_array() })
-            .collect();
+        let vertex =
+            |at: usize| Vertex { position: mesh.positions[at].to_array(), normal: mesh.normals[at].to_array() };
+        let (name, usage) = (context.name("receiver"), vk::BufferUsageFlags::VERTEX_BUFFER);
         let indices = bytemuck::cast_slice(&mesh.indices);
         Ok(Receiver {
-            vertices: context.upload(
-                "receiver",
-                vk::BufferUsageFlags::VERTEX_BUFFER,
-                bytemuck::cast_slice(&vertices),
-            )?,
+            vertices: upload_each(context.device(), &name, usage, mesh.positions.len(), vertex)?,
             indices: context.upload("receiver-indices", vk::BufferUsageFlags::INDEX_BUFFER, indices)?,
             index_count: mesh.indices.len() as u32,
             albedo: input.albedo,

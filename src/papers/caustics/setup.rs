@@ -13,7 +13,7 @@ use crate::field;
 use crate::gpu::{self, Device, Feature, Mode, ShaderLibrary};
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
-use crate::measure::estimate::Estimate;
+use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -22,7 +22,9 @@ use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper as _};
 use crate::papers::caustics::{Caustics, DRAWN, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
-use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshSource, Samples, shapes};
+use crate::scene::loading::CREASE_DEG;
+use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshOptions, MeshSource, Samples};
+use crate::scene::{promised_triangles, shapes};
 
 /// Longest side in metres that a receiver is scaled to: the thesis gives no sizes, and waves of about a metre then play
 /// over it.
@@ -41,6 +43,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// Receivers, at least one.
     pub meshes: Vec<MeshSource>,
+    /// Crease angle of meshes without normals, degrees.
+    pub crease_deg: f32,
     /// The pool's floor receives caustics as well.
     pub floor: bool,
     /// Name of the preset that it began with.
@@ -98,6 +102,7 @@ impl Default for Setup {
         Setup {
             parameters: Parameters::default(),
             meshes: vec![MeshSource::Teapot],
+            crease_deg: CREASE_DEG,
             floor: false,
             preset: None,
             parallel_lights: Vec::new(),
@@ -132,7 +137,7 @@ impl Study for Setup {
         let mut receivers = Vec::new();
         let mut next_x = 0.0;
         for source in &self.meshes {
-            let mesh = source.load()?;
+            let mesh = source.load_with(&MeshOptions::to_draw(self.crease_deg))?;
             let bounds = mesh.bounds();
             let longest = bounds.diagonal().max_element();
             let scale = RECEIVER_SIZE_M / longest;
@@ -146,12 +151,12 @@ impl Study for Setup {
             let place =
                 Mat4::from_translation(Vec3::new(next_x, floor_m, 0.0) - foot) * Mat4::from_scale(Vec3::splat(scale));
             next_x += size.x + GAP_M;
-            receivers.push(ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.75, 0.75, 0.72) });
+            receivers.push(ReceiverInput { mesh: mesh.placed(&place), albedo: Vec3::new(0.75, 0.75, 0.72) });
         }
         let width = next_x - GAP_M;
         let center = Mat4::from_translation(Vec3::new(-width / 2.0, 0.0, 0.0));
         for receiver in &mut receivers {
-            receiver.mesh = receiver.mesh.transformed(&center);
+            receiver.mesh = std::mem::take(&mut receiver.mesh).placed(&center);
         }
         if self.floor {
             receivers.push(floor(&receivers, floor_m));
@@ -179,6 +184,14 @@ impl Study for Setup {
 
     fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
         self.parameters.estimate(variant, &scene.receivers)
+    }
+
+    fn promised_triangles(&self) -> Result<u64, Error> {
+        Ok(promised_triangles(&self.meshes)?)
+    }
+
+    fn foresee(&self, triangles: u64, _: Variant) -> Estimate {
+        Estimate { bytes: vec![("mesh", DRAWN_BYTES * triangles as f64)], ..Estimate::default() }
     }
 
     fn identity(&self) -> Identity {
@@ -244,6 +257,7 @@ impl Study for Setup {
                 .default_text("teapot")
                 .cost(Cost::Buffers)
                 .everyday(),
+            parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("floor", field!(Setup.floor))
                 .help("The pool's floor receives caustics as well")
                 .cost(Cost::Buffers)
@@ -396,7 +410,7 @@ fn floor(receivers: &[ReceiverInput], floor_m: f32) -> ReceiverInput {
     let mesh = shapes::plane(size, UVec2::splat(FLOOR_CELLS));
     // Just below the feet, so that no receiver's underside fights with it for the picture's depth.
     let place = Mat4::from_translation(Vec3::new(0.0, floor_m - 1e-3 * RECEIVER_SIZE_M, 0.0));
-    ReceiverInput { mesh: mesh.transformed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
+    ReceiverInput { mesh: mesh.placed(&place), albedo: Vec3::new(0.55, 0.62, 0.62) }
 }
 
 /// The thesis's meshes that we have, a scanned one, and a modelled one from `assets/` where that folder is.

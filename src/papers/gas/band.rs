@@ -14,6 +14,7 @@ host_block! {
         end_row: u32,
         call: u32,
         calls: u32,
+        first_triangle: u32,
     }
 }
 
@@ -37,7 +38,12 @@ impl Band {
 
     pub fn constants(self) -> BandConstants {
         let Band { first_row, end_row, .. } = self;
-        BandConstants { list_row: first_row, first_row, end_row, call: 0, calls: 1 }
+        BandConstants { list_row: first_row, first_row, end_row, call: 0, calls: 1, first_triangle: 0 }
+    }
+
+    /// For the triangles of a piece, of which so many come before.
+    pub fn constants_of_piece(self, first_triangle: u32) -> BandConstants {
+        BandConstants { first_triangle, ..self.constants() }
     }
 
     /// Dispatches a thread a pixel.

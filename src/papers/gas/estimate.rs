@@ -52,6 +52,7 @@ impl Parameters {
         let bands = u64::from(self.height.div_ceil(capacity.rows.max(1)));
         let tables = u64::from(table > 0.0) * (1 + waves);
         Estimate {
+            buffers: Vec::new(),
             bytes: vec![
                 ("size", of_fragment * fragments + of_pixel * band + (RADIANCE + NUMBER) * pixels),
                 ("size", optional(has_volume, bytes_of::<SectionBlock>() * sections)),

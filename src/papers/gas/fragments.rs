@@ -3,13 +3,14 @@
 use super::a_buffer::ABuffer;
 use super::band::{Band, BandConstants};
 use super::context::Context;
+use super::pieces::Piece;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Error, Feature, Frame, Pass, Topology};
 
-/// The pass `fragments`.
+/// The pass `fragments`, a call for each piece of the triangles.
 pub struct Fragments {
-    pass: Pass,
-    vertex_count: u32,
+    /// Each with the triangles before it and its vertices.
+    passes: Vec<(Pass, u32, u32)>,
 }
 
 impl Fragments {
@@ -19,19 +20,43 @@ impl Fragments {
         let parameters = context.parameters;
         let has_geometry_stage =
             parameters.geometry_stage && context.shaders.device().physical().has(Feature::GeometryShader);
-        let (stages, vertices_a_triangle) = if has_geometry_stage {
+        let vertices_a_triangle = if has_geometry_stage { 1 } else { 6 };
+        let mut passes: Vec<(Pass, u32, u32)> = Vec::with_capacity(scene.pieces.len());
+        for piece in &scene.pieces {
+            let pass = match passes.first() {
+                None => Self::pass(context, has_geometry_stage, scene, piece, lists)?,
+                Some((first, ..)) => first
+                    .rebind()
+                    .with("Vertices", &piece.vertices)
+                    .with("Triangles", &piece.triangles)
+                    .build(context.shaders)?,
+            };
+            passes.push((pass, piece.first_triangle, piece.triangle_count.saturating_mul(vertices_a_triangle)));
+        }
+        Ok(Fragments { passes })
+    }
+
+    fn pass(
+        context: &Context<'_>,
+        has_geometry_stage: bool,
+        scene: &SceneBuffers,
+        piece: &Piece,
+        lists: &ABuffer,
+    ) -> Result<Pass, Error> {
+        let parameters = context.parameters;
+        let stages = if has_geometry_stage {
             let pass = Pass::graphics("fragments", "A-buffer", "gas/fragments.vert", "gas/fragments.frag");
-            (pass.geometry("gas/fragments.geom").topology(Topology::Points), 1)
+            pass.geometry("gas/fragments.geom").topology(Topology::Points)
         } else {
-            (Pass::graphics("fragments", "A-buffer", "gas/fragments-pulled.vert", "gas/fragments.frag"), 6)
+            Pass::graphics("fragments", "A-buffer", "gas/fragments-pulled.vert", "gas/fragments.frag")
         };
-        let pass = stages
+        stages
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Offsets", &scene.offsets)
-            .with("Vertices", &scene.vertices)
-            .with("Triangles", &scene.triangles)
+            .with("Vertices", &piece.vertices)
+            .with("Triangles", &piece.triangles)
             .with("Objects", &scene.objects)
             .with("Heads", &lists.heads)
             .with("Links", &lists.links)
@@ -40,13 +65,14 @@ impl Fragments {
             .with("Counters", &lists.counters)
             .constants::<BandConstants>()
             .extent(parameters.width, parameters.height)
-            .build(context.shaders)?;
-        Ok(Fragments { pass, vertex_count: scene.triangle_count.saturating_mul(vertices_a_triangle) })
+            .build(context.shaders)
     }
 
     pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        frame.graphics(&self.pass, |draw| {
-            draw.constants(&band.constants()).vertices(self.vertex_count);
+        self.passes.iter().try_for_each(|(pass, first_triangle, vertices)| {
+            frame.graphics(pass, |draw| {
+                draw.constants(&band.constants_of_piece(*first_triangle)).vertices(*vertices);
+            })
         })
     }
 }

@@ -25,6 +25,7 @@ mod layouts;
 mod light_attenuation;
 pub mod model;
 pub mod parameters;
+mod pieces;
 mod progress;
 pub mod reference;
 mod resolve;

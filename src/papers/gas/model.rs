@@ -167,6 +167,14 @@ pub struct Object {
 }
 
 impl Object {
+    /// The same without its triangles.
+    pub fn without_mesh(&self) -> Self {
+        let Object { mesh: _, color, opacity, checker, highlight, is_two_sided, gas, fade_m, ends_m, per_frame_m } =
+            *self;
+        let mesh = Mesh::default();
+        Object { mesh, color, opacity, checker, highlight, is_two_sided, gas, fade_m, ends_m, per_frame_m }
+    }
+
     /// A dull opaque object, seen from both sides.
     pub fn new(mesh: Mesh, color: Vec3) -> Self {
         Object {

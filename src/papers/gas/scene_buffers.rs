@@ -1,17 +1,16 @@
-//! The scene on the device: all meshes in one, volumes, lights, and what changes from frame to frame.
+//! The scene on the device: all meshes together, volumes, lights, and what changes from frame to frame.
 
 use std::sync::Arc;
 
 use ash::vk;
 
-use super::blocks::{
-    CountsBlock, FrameBlock, GasUse, LightBlock, ObjectBlock, TriangleBlock, VertexBlock, VolumeBlock, offsets,
-};
+use super::blocks::{CountsBlock, FrameBlock, GasUse, LightBlock, ObjectBlock, VolumeBlock, offsets};
 use super::blue_noise;
 use super::capacity::Capacity;
 use super::context::Context;
 use super::model::Object;
 use super::parameters::{Jitter, Parameters};
+use super::pieces::{Piece, pieces};
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, BufferDesc, Error, Location};
 
@@ -31,14 +30,10 @@ pub struct SceneBuffers {
     pub offsets: Arc<Buffer>,
     /// The mask of blue noise, if it is used: ranks.
     pub jitter: Arc<Buffer>,
-    /// Vertices of all objects, [`VertexBlock`]s.
-    pub vertices: Arc<Buffer>,
-    /// Triangles of all objects, [`TriangleBlock`]s.
-    pub triangles: Arc<Buffer>,
+    /// Triangles of all objects with their vertices, at least one.
+    pub pieces: Vec<Piece>,
     /// [`ObjectBlock`]s.
     pub objects: Arc<Buffer>,
-    /// Triangles of all objects.
-    pub triangle_count: u32,
     /// The objects without their meshes.
     objects_without_meshes: Vec<Object>,
 }
@@ -63,18 +58,6 @@ impl SceneBuffers {
             Jitter::Random => vec![0],
             Jitter::BlueNoise => blue_noise::mask(parameters.seed),
         };
-        let mut vertices = Vec::new();
-        let mut triangles = Vec::new();
-        for (number, object) in objects.iter().enumerate() {
-            let first = vertices.len() as u32;
-            let mesh = &object.mesh;
-            vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(|(p, n)| VertexBlock::new(*p, *n)));
-            triangles.extend(mesh.indices.chunks_exact(3).map(|t| TriangleBlock {
-                vertices: [first + t[0], first + t[1], first + t[2]],
-                object: number as u32,
-            }));
-        }
-        let triangle_count = triangles.len() as u32;
         let mapped = |what: &str, bytes: usize, usage| {
             Buffer::new(
                 device,
@@ -88,11 +71,9 @@ impl SceneBuffers {
             lights: storage("lights", bytemuck::cast_slice(&lights))?,
             offsets: storage("offsets", bytemuck::cast_slice(&offsets(parameters.seed)))?,
             jitter: storage("jitter", bytemuck::cast_slice(&mask))?,
-            vertices: storage("vertices", bytemuck::cast_slice(&vertices))?,
-            triangles: storage("triangles", bytemuck::cast_slice(&triangles))?,
+            pieces: pieces(context, objects)?,
             objects: mapped("objects", size_of::<ObjectBlock>() * objects.len().max(1), STORAGE)?,
-            triangle_count,
-            objects_without_meshes: objects.iter().map(|o| Object { mesh: Default::default(), ..o.clone() }).collect(),
+            objects_without_meshes: objects.iter().map(Object::without_mesh).collect(),
         })
     }
 

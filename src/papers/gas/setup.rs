@@ -26,7 +26,8 @@ use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
 use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
-use crate::scene::Light;
+use crate::scene::loading::CREASE_DEG;
+use crate::scene::{Light, promised_triangles};
 
 /// A user's choice of everything.
 #[derive(Debug, Clone)]
@@ -41,6 +42,8 @@ pub struct Setup {
     pub surface_triangles: Option<u64>,
     /// Layers behind the scene that each fill the picture.
     pub layers: u32,
+    /// Crease angle of meshes without normals, degrees.
+    pub crease_deg: f32,
     /// The preset, as the record names it.
     pub preset: Option<String>,
     /// Volumes beside the scene's.
@@ -66,6 +69,7 @@ impl Setup {
             objects: Vec::new(),
             surface_triangles: None,
             layers: 0,
+            crease_deg: CREASE_DEG,
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
             gases: volumes::templates(),
@@ -159,7 +163,7 @@ impl Study for Setup {
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
-            objects.push(source.load()?);
+            objects.push(source.load(self.crease_deg)?);
         }
         self.divide_surfaces(&mut objects);
         objects.extend(self.layers());
@@ -182,6 +186,14 @@ impl Study for Setup {
 
     fn estimate(&self, device: &Device, scene: &Scene, variant: Variant) -> Estimate {
         self.parameters.estimate(variant, &scene.objects, BufferLimit::new(device, &self.parameters))
+    }
+
+    fn promised_triangles(&self) -> Result<u64, Error> {
+        Ok(promised_triangles(self.objects.iter().map(|object| &object.source))?)
+    }
+
+    fn foresee(&self, triangles: u64, _: Variant) -> Estimate {
+        Estimate { bytes: vec![("object", 32.0 * triangles as f64)], ..Estimate::default() }
     }
 
     fn identity(&self) -> Identity {
@@ -273,6 +285,7 @@ impl Study for Setup {
                 )
                 .cost(Cost::Buffers)
                 .everyday(),
+            parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("volume", field!(Setup.placements))
                 .group("Gases")
                 .help(

@@ -35,6 +35,7 @@ impl Parameters {
                 ("rock", size_of_val(&rock.texels[..]) as f64),
                 ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
             ],
+            buffers: Vec::new(),
             passes: Some(("density", 3 * u64::from(self.clusters()) + 16)),
             draws: None,
             invocations: vec![

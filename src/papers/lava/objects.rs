@@ -8,6 +8,7 @@ use super::parameters::Parameters;
 use super::splats::Splats;
 use super::targets::{Context, DEPTH, FAR};
 use super::visibility::Visibility;
+use crate::gpu::transfer::upload_each;
 use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, Load, Pass};
 use crate::host_block;
 use crate::scene::Mesh;
@@ -53,11 +54,13 @@ impl Objects {
         for mesh in meshes {
             let buffer =
                 |what: &str, usage, bytes: &[u8]| context.upload(&format!("{}/{what}", mesh.name), usage, bytes);
-            let pairs = mesh.positions.iter().zip(&mesh.normals);
-            let vertices: Vec<ObjectVertex> =
-                pairs.map(|(p, n)| ObjectVertex { position: p.to_array(), normal: n.to_array() }).collect();
-            let vertex_usage = vk::BufferUsageFlags::VERTEX_BUFFER;
-            let vertices = buffer("vertices", vertex_usage, bytemuck::cast_slice(&vertices))?;
+            let vertex = |at: usize| ObjectVertex {
+                position: mesh.positions[at].to_array(),
+                normal: mesh.normals[at].to_array(),
+            };
+            let name = context.name(&format!("{}/vertices", mesh.name));
+            let (usage, count) = (vk::BufferUsageFlags::VERTEX_BUFFER, mesh.positions.len());
+            let vertices = upload_each(context.device(), &name, usage, count, vertex)?;
             let index_usage = vk::BufferUsageFlags::INDEX_BUFFER;
             let indices = buffer("indices", index_usage, bytemuck::cast_slice(&mesh.indices))?;
             let pass = match passes.first() {

@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, one, with_place};
-use crate::scene::{Bounds, Camera, Mesh, MeshSource};
+use crate::scene::{Bounds, Camera, Mesh, MeshOptions, MeshSource};
 
 /// Place of an object in the simulation space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +43,8 @@ impl Object {
     ///
     /// # Errors
     /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates that leave the range of floats.
-    pub fn load(&self, space_m: Vec3) -> Result<Mesh, Error> {
-        let mesh = self.source.load()?;
+    pub fn load(&self, space_m: Vec3, crease_deg: f32) -> Result<Mesh, Error> {
+        let mesh = self.source.load_with(&MeshOptions::to_draw(crease_deg))?;
         let bounds = mesh.bounds();
         let (low, size) = (bounds.min.as_dvec3(), bounds.max.as_dvec3() - bounds.min.as_dvec3());
         let foot = low + size * glam::DVec3::new(0.5, 0.0, 0.5);
@@ -59,7 +59,7 @@ impl Object {
             * Mat4::from_rotation_y(turn_deg.to_radians())
             * Mat4::from_scale(Vec3::splat(scale))
             * Mat4::from_translation(-foot.as_vec3());
-        let placed = mesh.transformed(&place);
+        let placed = mesh.placed(&place);
         if placed.positions.iter().all(|p| p.is_finite()) {
             return Ok(placed);
         }
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn places_are_what_they_say() {
         let space = Vec3::new(4.0, 1.0, 2.0);
-        let bounds = |text: &str| parse(text).unwrap().load(space).unwrap().bounds();
+        let bounds = |text: &str| parse(text).unwrap().load(space, 30.0).unwrap().bounds();
         let is_near = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5;
         let fitted = bounds("teapot");
         let longest = fitted.diagonal().max_element();
@@ -267,8 +267,8 @@ mod tests {
         let placed = bounds("box@0.5,0.25,1,90,0.5");
         assert!(is_near(placed.diagonal(), 0.5 * Vec3::new(side.z, side.y, side.x)), "{placed:?}");
         assert!(is_near(placed.min + 0.25 * Vec3::new(side.z, 0.0, side.x), Vec3::new(0.5, 0.25, 1.0)), "{placed:?}");
-        assert!(parse("box@0,0,0,0,1e38").unwrap().load(space).is_ok());
-        assert!(parse("box@0,0,0,0,3e38").unwrap().load(space).is_err());
+        assert!(parse("box@0,0,0,0,1e38").unwrap().load(space, 30.0).is_ok());
+        assert!(parse("box@0,0,0,0,3e38").unwrap().load(space, 30.0).is_err());
     }
 
     #[test]
@@ -279,7 +279,7 @@ mod tests {
         let away = Camera { eye: Vec3::new(2.0, 3000.0, 4000.0), ..near };
         let camera = reaching(&away, space, &[], 1.5);
         assert!(camera.near_m > 3500.0 && camera.near_m < 4999.0 && camera.far_m > 5000.0, "{camera:?}");
-        let beside = parse("sphere@-0.7,3.0,2.2").unwrap().load(space).unwrap();
+        let beside = parse("sphere@-0.7,3.0,2.2").unwrap().load(space, 30.0).unwrap();
         let camera = reaching(&away, space, &[beside], 1.5);
         assert!(camera.near_m < 4990.0 && camera.far_m < 5100.0);
     }
@@ -301,7 +301,7 @@ mod tests {
         let space = Vec3::new(4.0, 1.0, 1.0);
         // A slope from 0 at x = 0 to 0.9 m.
         let surface: Vec<[f32; 4]> = (0..2).flat_map(|_| (0..4).map(|x| [0.0, 1.0, 0.0, 0.3 * x as f32])).collect();
-        let said = |text: &str| buried(&[parse(text).unwrap().load(space).unwrap()], &surface, 4, 2, space);
+        let said = |text: &str| buried(&[parse(text).unwrap().load(space, 30.0).unwrap()], &surface, 4, 2, space);
         assert!(said("sphere@3,0,0.5,0,0.1")[0].contains("under the lava"));
         for text in ["sphere@1,0,0.5,0,0.2", "sphere@3,0.9,0.5,0,0.1", "sphere@5,-3,0.5,0,0.1"] {
             assert!(said(text).is_empty(), "{text}");
@@ -311,7 +311,8 @@ mod tests {
     #[test]
     fn what_the_camera_cannot_show_is_named() {
         let camera = crate::papers::lava::CAMERAS[0].1;
-        let said = |text: &str| warnings(&[parse(text).unwrap().load(Vec3::new(4.0, 1.0, 1.0)).unwrap()], &camera, 1.5);
+        let said =
+            |text: &str| warnings(&[parse(text).unwrap().load(Vec3::new(4.0, 1.0, 1.0), 30.0).unwrap()], &camera, 1.5);
         assert_eq!(said("bunny"), Vec::<String>::new());
         for (text, part) in
             [("box@0,50,0,0,1", "outside the picture"), ("sphere@-0.7,-4,2.4,0,10", "surrounds the camera")]

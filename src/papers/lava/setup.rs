@@ -14,7 +14,7 @@ use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
 use crate::measure::config::entries;
-use crate::measure::estimate::Estimate;
+use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -24,10 +24,11 @@ use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::papers::lava::{DRAWN, Lava, NEEDS, Object, Parameters, Particles, Rock, Shading, Variant};
-use crate::scene::Mesh;
+use crate::scene::loading::CREASE_DEG;
+use crate::scene::{Mesh, promised_triangles};
 
 /// A user's choice of everything.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Setup {
     /// The numbers.
     pub parameters: Parameters,
@@ -35,8 +36,22 @@ pub struct Setup {
     pub rock: Option<PathBuf>,
     /// Polygon meshes in the simulation space.
     pub objects: Vec<Object>,
+    /// Crease angle of meshes without normals, degrees.
+    pub crease_deg: f32,
     /// Name of the preset or experiment that they come from.
     pub preset: Option<String>,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Setup {
+            parameters: Parameters::default(),
+            rock: None,
+            objects: Vec::new(),
+            crease_deg: CREASE_DEG,
+            preset: None,
+        }
+    }
 }
 
 impl Setup {
@@ -89,7 +104,8 @@ impl Study for Setup {
             }
         };
         let space_m = self.parameters.space_m;
-        let objects = self.objects.iter().map(|object| object.load(space_m)).collect::<Result<_, _>>()?;
+        let objects =
+            self.objects.iter().map(|object| object.load(space_m, self.crease_deg)).collect::<Result<_, _>>()?;
         Ok(Scene { particles: Particles::seeded(&self.parameters), rock, objects })
     }
 
@@ -108,6 +124,14 @@ impl Study for Setup {
 
     fn estimate(&self, _: &Device, scene: &Scene, _: Variant) -> Estimate {
         self.parameters.estimate(&scene.rock, &scene.objects)
+    }
+
+    fn promised_triangles(&self) -> Result<u64, Error> {
+        Ok(promised_triangles(self.objects.iter().map(|object| &object.source))?)
+    }
+
+    fn foresee(&self, triangles: u64, _: Variant) -> Estimate {
+        Estimate { bytes: vec![("object", DRAWN_BYTES * triangles as f64)], ..Estimate::default() }
     }
 
     fn identity(&self) -> Identity {
@@ -170,6 +194,7 @@ impl Study for Setup {
                 )
                 .cost(Cost::Buffers)
                 .everyday(),
+            parameter::crease_angle(field!(Setup.crease_deg)),
         ];
         numbers.map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters)).chain(scene).collect()
     }

@@ -68,6 +68,7 @@ impl Parameters {
         let surface = if self.interpolation == Interpolation::Bicubic { 8.0 } else { 1.0 };
         let rays = pixels * if self.shadows { 2.0 } else { 1.0 };
         Estimate {
+            buffers: Vec::new(),
             bytes: vec![
                 (map, if on_device { levels } else { 0.0 } + indices),
                 ("drape", NUMBER * if on_device { drape } else { 0.0 }),

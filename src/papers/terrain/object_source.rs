@@ -10,7 +10,7 @@ use serde_json::{Value as Json, json};
 use super::collision::Collider;
 use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, one, parse_numbers};
-use crate::scene::{Mesh, MeshSource};
+use crate::scene::{Mesh, MeshOptions, MeshSource};
 
 /// A mesh, where it is or in a place on the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +37,8 @@ pub struct Stand {
 impl ObjectSource {
     /// # Errors
     /// [`Error::Scene`].
-    pub fn load(&self) -> Result<Mesh, Error> {
-        Ok(self.mesh.load()?)
+    pub fn load(&self, crease_deg: f32) -> Result<Mesh, Error> {
+        Ok(self.mesh.load_with(&MeshOptions::to_draw(crease_deg))?)
     }
 }
 
@@ -50,7 +50,7 @@ impl Stand {
         let turned =
             mesh.transformed(&(Mat4::from_rotation_y(turn_deg.to_radians()) * Mat4::from_scale(Vec3::splat(scale))));
         let lowest_m = turned.positions.iter().map(|position| position.y).fold(f32::INFINITY, f32::min);
-        turned.transformed(&Mat4::from_translation(Vec3::new(east_m, ground_m - lowest_m, south_m)))
+        turned.placed(&Mat4::from_translation(Vec3::new(east_m, ground_m - lowest_m, south_m)))
     }
 }
 

@@ -9,7 +9,7 @@ use super::geometric_transformation::SceneView;
 use super::object_depth::ObjectDepth;
 use super::stage::Build;
 use crate::gpu::pass::PassBuilder;
-use crate::gpu::transfer::upload;
+use crate::gpu::transfer::{upload, upload_each};
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 use crate::scene::Mesh;
@@ -74,16 +74,14 @@ impl ObjectMesh {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(build: &Build<'_>, mesh: &Mesh) -> Result<Self, Error> {
-        let buffer = |what: &str, usage, bytes: &[u8]| {
-            upload(build.shaders.device(), &format!("{}/{}/{what}", build.label, mesh.name), usage, bytes)
-        };
-        let pairs = mesh.positions.iter().zip(&mesh.normals);
-        let vertices: Vec<ObjectVertex> =
-            pairs.map(|(p, n)| ObjectVertex { position: p.to_array(), normal: n.to_array() }).collect();
-        let (vertex_usage, index_usage) = (vk::BufferUsageFlags::VERTEX_BUFFER, vk::BufferUsageFlags::INDEX_BUFFER);
+        let vertex =
+            |at: usize| ObjectVertex { position: mesh.positions[at].to_array(), normal: mesh.normals[at].to_array() };
+        let name = |what: &str| format!("{}/{}/{what}", build.label, mesh.name);
+        let (device, vertex_usage) = (build.shaders.device(), vk::BufferUsageFlags::VERTEX_BUFFER);
+        let indices = bytemuck::cast_slice(&mesh.indices);
         Ok(ObjectMesh {
-            vertices: buffer("vertices", vertex_usage, bytemuck::cast_slice(&vertices))?,
-            indices: buffer("indices", index_usage, bytemuck::cast_slice(&mesh.indices))?,
+            vertices: upload_each(device, &name("vertices"), vertex_usage, mesh.positions.len(), vertex)?,
+            indices: upload(device, &name("indices"), vk::BufferUsageFlags::INDEX_BUFFER, indices)?,
             index_count: mesh.indices.len() as u32,
         })
     }

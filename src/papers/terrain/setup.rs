@@ -14,7 +14,7 @@ use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::image::read_png;
 use crate::measure::bench::Built;
 use crate::measure::config::entries;
-use crate::measure::estimate::Estimate;
+use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
@@ -27,7 +27,8 @@ use crate::papers::terrain::{
     Collider, Drape, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement, Terrain, Variant,
     View, WRITTEN,
 };
-use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, volcano};
+use crate::scene::loading::CREASE_DEG;
+use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};
 
 /// A user's configuration.
 #[derive(Debug, Clone)]
@@ -40,6 +41,8 @@ pub struct Setup {
     pub places: Vec<[f32; 3]>,
     /// Polygon objects in the maps' frame, metres: x east, y up from the base, z south.
     pub objects: Vec<ObjectSource>,
+    /// Crease angle of meshes without normals, degrees.
+    pub crease_deg: f32,
     /// PNG over the first map, in place of the colour ramp.
     pub drape: Option<PathBuf>,
     /// Heights for the samples that maps leave void.
@@ -64,6 +67,7 @@ impl Default for Setup {
             maps: vec![HeightMapSource::Volcano],
             places: Vec::new(),
             objects: Vec::new(),
+            crease_deg: CREASE_DEG,
             drape: None,
             voids: Voids::Fill,
             resolution: HeightMapSource::VOLCANO_SIDE,
@@ -149,7 +153,7 @@ impl Setup {
 
     /// The objects in their places; those that stand on the ground look for it there.
     fn stand(&self, maps: &[MapInput]) -> Result<Vec<Mesh>, Error> {
-        let meshes = self.objects.iter().map(ObjectSource::load).collect::<Result<Vec<_>, _>>()?;
+        let meshes = self.objects.iter().map(|object| object.load(self.crease_deg)).collect::<Result<Vec<_>, _>>()?;
         if self.objects.iter().all(|object| object.place.is_none()) {
             return Ok(meshes);
         }
@@ -239,6 +243,14 @@ impl Study for Setup {
 
     fn refusal(&self, variant: Variant) -> Option<&'static str> {
         variant.refusal(self.parameters.base)
+    }
+
+    fn promised_triangles(&self) -> Result<u64, Error> {
+        Ok(promised_triangles(self.objects.iter().map(|object| &object.mesh))?)
+    }
+
+    fn foresee(&self, triangles: u64, _: Variant) -> Estimate {
+        Estimate { bytes: vec![("object", DRAWN_BYTES * triangles as f64)], ..Estimate::default() }
     }
 
     fn identity(&self) -> Identity {
@@ -363,6 +375,7 @@ impl Study for Setup {
                 .section("1")
                 .cost(Cost::Buffers)
                 .everyday(),
+            parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("drape", field!(Setup.drape))
                 .placeholder("FILE.png")
                 .help("Picture over the first map in place of the colour ramp, PNG, north up")

@@ -1,12 +1,15 @@
 use super::gltf_accessor;
 use super::gltf_buffer::Buffers;
-use crate::scene::Mesh;
+use super::stream::{Stop, Stream};
 use crate::scene::error::{Fault, Place};
+use crate::scene::mesh::{Parts, Placement};
 use crate::scene::normals::double_area_vector;
+use ::gltf::Glb;
 use ::gltf::accessor::{DataType, Dimensions};
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Gltf, Primitive, Semantic};
 use glam::{DVec3, Mat4, Vec2, Vec3};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Most vertices and most triangle corners of any scene.
@@ -31,11 +34,17 @@ const INDEX_TYPES: [(Dimensions, DataType); 3] =
 /// The first scene serves where none is the default. Buffers may be embedded or lie in files
 /// below `directory`. Texture coordinates are the first set. Skins, morph targets, points,
 /// lines and materials are left out.
-pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
+pub(super) fn read(stream: &mut Stream<'_>, directory: &Path) -> Result<Parts, Stop> {
+    let bytes = stream.rest()?;
+    let parts = parse(&bytes, directory)?;
+    Ok(parts)
+}
+
+fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     check_container(bytes)?;
     check_objects(bytes)?;
-    let (document, blob) = read_document(bytes)?;
-    let buffers = Buffers::read(&document, blob, directory)?;
+    let (document, chunk) = read_document(bytes)?;
+    let buffers = Buffers::read(&document, chunk, directory)?;
     let meshes = placed_meshes(&document)?;
     let is_drawn = |part: &Primitive| matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
     let placed = || {
@@ -44,7 +53,7 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
         });
         parts.filter(|placed| is_drawn(&placed.part))
     };
-    check_total(placed(), bytes.len() + buffers.total_bytes())?;
+    let (vertices, corners) = check_total(placed(), bytes.len() + buffers.total_bytes())?;
     // Nothing is kept before all of it is seen to be good: a small file can make a large mesh.
     let mut has_area = None;
     for part in placed() {
@@ -55,11 +64,13 @@ pub(super) fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
         return Err(Fault::new(Place::Whole, "none of its triangles has a positive area; a mesh needs at least one"));
     }
     let mut merged = Merged::default();
+    merged.parts.positions.reserve_exact(vertices);
+    merged.parts.normals.reserve_exact(vertices);
+    merged.parts.indices.reserve_exact(corners);
     for part in placed() {
-        let mesh = read_primitive(&part.part, &buffers).map_err(|reason| part.fault(reason))?;
-        merged.append(mesh.transformed(&part.transform));
+        merged.append(&part, &buffers).map_err(|reason| part.fault(reason))?;
     }
-    merged.into_mesh()
+    merged.finish()
 }
 
 /// A primitive that makes triangles.
@@ -110,8 +121,9 @@ fn check_objects(bytes: &[u8]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses a scene that is far larger than the file and its buffers, of so many bytes together.
-fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) -> Result<(), Fault> {
+/// Vertices and corners of a scene, at most; refuses one that is far larger than the file and its buffers, of so many
+/// bytes together.
+fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) -> Result<(usize, usize), Fault> {
     let most = size_bytes.clamp(MAX_SHARED_CORNERS, MAX_CORNERS);
     let (mut vertices, mut corners, mut parts) = (0_usize, 0_usize, 0_usize);
     for Placed { part, .. } in placed {
@@ -130,7 +142,7 @@ fn check_total<'a>(placed: impl Iterator<Item = Placed<'a>>, size_bytes: usize) 
             return Err(Fault::new(Place::Whole, reason));
         }
     }
-    Ok(())
+    Ok((vertices, corners))
 }
 
 /// True for a text that says that it is of version 1.
@@ -146,11 +158,18 @@ fn is_version_1(bytes: &[u8]) -> bool {
     serde_json::from_slice(bytes).is_ok_and(|root: Root| root.asset.version.starts_with("1."))
 }
 
-fn read_document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
+/// The document, and the binary chunk beside it.
+fn read_document(bytes: &[u8]) -> Result<(Document, Option<Cow<'_, [u8]>>), Fault> {
     let foreign = |error: ::gltf::Error| Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"));
-    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|error| {
+    let (text, chunk) = if bytes.starts_with(b"glTF") {
+        let file = Glb::from_slice(bytes).map_err(foreign)?;
+        (file.json, file.bin)
+    } else {
+        (Cow::Borrowed(bytes), None)
+    };
+    let Gltf { document, .. } = Gltf::from_slice_without_validation(&text).map_err(|error| {
         let reason = "it is glTF 1.0, whose meshes are written otherwise; convert it to 2.0";
-        if is_version_1(bytes) { Fault::new(Place::Whole, reason) } else { foreign(error) }
+        if is_version_1(&text) { Fault::new(Place::Whole, reason) } else { foreign(error) }
     })?;
     let json = document.into_json();
     // The validation that follows looks at the accessor of the positions before it looks whether
@@ -163,7 +182,7 @@ fn read_document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Fault> {
             return Err(Fault::new(Place::Part(format!("mesh {number}")), reason));
         }
     }
-    Ok((Document::from_json(json).map_err(foreign)?, blob))
+    Ok((Document::from_json(json).map_err(foreign)?, chunk))
 }
 
 /// The meshes of the scene's nodes with their transforms to the world.
@@ -190,11 +209,11 @@ fn placed_meshes(document: &Document) -> Result<Vec<(::gltf::Mesh<'_>, Mat4)>, F
     Ok(placed)
 }
 
-/// Checks all that [`read_primitive`] reads and all that becomes of it. True for a triangle of positive area, which is
+/// Checks all that [`Merged::append`] reads and all that becomes of it. True for a triangle of positive area, which is
 /// looked for unless there `has_area` already.
 ///
 /// No message shows a value: a buffer may be any file beside the document.
-fn check_primitive(placed: &Placed<'_>, buffers: &Buffers, has_area: bool) -> Result<bool, String> {
+fn check_primitive(placed: &Placed<'_>, buffers: &Buffers<'_>, has_area: bool) -> Result<bool, String> {
     let Placed { part, transform, .. } = placed;
     let check = |semantic: Semantic, types: &[_]| match part.get(&semantic) {
         Some(accessor) => {
@@ -233,27 +252,6 @@ fn check_primitive(placed: &Placed<'_>, buffers: &Buffers, has_area: bool) -> Re
     })
 }
 
-/// The triangles of a primitive that was checked, in its own space, with zero normals where it has none.
-fn read_primitive(part: &Primitive<'_>, buffers: &Buffers) -> Result<Mesh, String> {
-    let reader = part.reader(|buffer| buffers.get(buffer.index()));
-    let positions: Vec<Vec3> = reader.read_positions().ok_or("it has no positions")?.map(Vec3::from).collect();
-    let mut normals: Vec<Vec3> = reader.read_normals().map_or(vec![], |normals| normals.map(Vec3::from).collect());
-    normals.resize(positions.len(), Vec3::ZERO);
-    let mut texture_coordinates: Vec<Vec2> = reader.read_tex_coords(0).map_or(vec![], |coordinates| {
-        // glTF counts from the upper edge of the picture.
-        let from_below = |[u, v]: [f32; 2]| Vec2::new(u, 1.0 - v);
-        coordinates.into_f32().map(from_below).collect()
-    });
-    if !texture_coordinates.is_empty() {
-        texture_coordinates.resize(positions.len(), Vec2::ZERO);
-    }
-    let indices = match reader.read_indices() {
-        Some(indices) => triangles(part.mode(), indices.into_u32()).flatten().collect(),
-        None => triangles(part.mode(), 0..positions.len() as u32).flatten().collect(),
-    };
-    Ok(Mesh { name: String::new(), positions, normals, texture_coordinates, indices })
-}
-
 /// The triangles of a list, strip or fan in the same orientation; loose corners at the end are left out.
 fn triangles(mode: Mode, corners: impl Iterator<Item = u32>) -> impl Iterator<Item = [u32; 3]> {
     // The fan's centre or the corner before the last, and the last.
@@ -280,31 +278,50 @@ fn triangles(mode: Mode, corners: impl Iterator<Item = u32>) -> impl Iterator<It
 /// All primitives seen so far as one mesh.
 #[derive(Default)]
 struct Merged {
-    mesh: Mesh,
+    parts: Parts,
     has_texture_coordinates: bool,
 }
 
 impl Merged {
-    fn append(&mut self, part: Mesh) {
-        let mesh = &mut self.mesh;
-        let first = mesh.positions.len() as u32;
-        self.has_texture_coordinates |= !part.texture_coordinates.is_empty();
-        mesh.positions.extend(part.positions);
-        mesh.normals.extend(part.normals);
-        mesh.texture_coordinates.extend(part.texture_coordinates);
-        mesh.texture_coordinates.resize(mesh.positions.len(), Vec2::ZERO);
-        mesh.indices.extend(part.indices.iter().map(|index| first + index));
+    /// Adds a primitive that was checked, with zero normals where it has none.
+    fn append(&mut self, placed: &Placed<'_>, buffers: &Buffers<'_>) -> Result<(), String> {
+        let Placed { part, transform, .. } = placed;
+        let reader = part.reader(|buffer| buffers.get(buffer.index()));
+        let placement = Placement::new(transform);
+        let Parts { positions, normals, texture_coordinates, indices } = &mut self.parts;
+        let first = positions.len() as u32;
+        let read = reader.read_positions().ok_or("it has no positions")?;
+        positions.extend(read.map(|position| transform.transform_point3(Vec3::from(position))));
+        if let Some(read) = reader.read_normals() {
+            normals.extend(read.map(|normal| placement.normal(Vec3::from(normal))));
+        }
+        normals.resize(positions.len(), Vec3::ZERO);
+        if let Some(read) = reader.read_tex_coords(0) {
+            self.has_texture_coordinates = true;
+            texture_coordinates.resize(first as usize, Vec2::ZERO);
+            // glTF counts from the upper edge of the picture.
+            texture_coordinates.extend(read.into_f32().map(|[u, v]| Vec2::new(u, 1.0 - v)));
+        }
+        if self.has_texture_coordinates {
+            texture_coordinates.resize(positions.len(), Vec2::ZERO);
+        }
+        let turned = |[a, b, c]: [u32; 3]| {
+            let [b, c] = if placement.reflects { [c, b] } else { [b, c] };
+            [a, b, c].map(|index| first + index)
+        };
+        let count = positions.len() as u32 - first;
+        match reader.read_indices() {
+            Some(read) => indices.extend(triangles(part.mode(), read.into_u32()).flat_map(turned)),
+            None => indices.extend(triangles(part.mode(), 0..count).flat_map(turned)),
+        }
+        Ok(())
     }
 
-    fn into_mesh(self) -> Result<Mesh, Fault> {
-        let Mesh { positions, normals, mut texture_coordinates, indices, .. } = self.mesh;
-        if !self.has_texture_coordinates {
-            texture_coordinates.clear();
-        }
-        if indices.is_empty() {
+    fn finish(self) -> Result<Parts, Fault> {
+        if self.parts.indices.is_empty() {
             return Err(Fault::new(Place::Whole, "its scene has no triangles"));
         }
-        Mesh::from_file(positions, normals, texture_coordinates, indices)
+        Ok(self.parts)
     }
 }
 

@@ -10,7 +10,7 @@ use ::gltf::accessor::{DataType, Dimensions};
 pub(super) fn check(
     accessor: &Accessor<'_>,
     types: &[(Dimensions, DataType)],
-    buffers: &Buffers,
+    buffers: &Buffers<'_>,
 ) -> Result<(), String> {
     let data = (accessor.dimensions(), accessor.data_type());
     if !types.contains(&data) {

@@ -5,6 +5,7 @@ use ::gltf::buffer::Source;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -17,21 +18,21 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 
 /// The buffers of a document, which may share a file.
 #[derive(Default)]
-pub(super) struct Buffers {
+pub(super) struct Buffers<'a> {
     /// Bytes and the length that the document claims, which they have.
-    buffers: Vec<(Rc<Vec<u8>>, usize)>,
-    files: HashMap<PathBuf, Rc<Vec<u8>>>,
+    buffers: Vec<(Rc<Cow<'a, [u8]>>, usize)>,
+    files: HashMap<PathBuf, Rc<Cow<'a, [u8]>>>,
 }
 
-impl Buffers {
+impl<'a> Buffers<'a> {
     /// Reads all buffers: the binary chunk, data in the document, and files below `directory`, each once.
-    pub fn read(document: &Document, mut blob: Option<Vec<u8>>, directory: &Path) -> Result<Self, Fault> {
+    pub fn read(document: &Document, mut chunk: Option<Cow<'a, [u8]>>, directory: &Path) -> Result<Self, Fault> {
         let mut read = Buffers::default();
         for buffer in document.buffers() {
             let fault = |reason| Fault::new(Place::Part(format!("buffer {}", buffer.index())), reason);
             let bytes = match buffer.source() {
                 Source::Bin => {
-                    Rc::new(blob.take().ok_or_else(|| fault("the file has no binary chunk for it".to_owned()))?)
+                    Rc::new(chunk.take().ok_or_else(|| fault("the file has no binary chunk for it".to_owned()))?)
                 }
                 Source::Uri(uri) => read.resolve(uri, directory).map_err(fault)?,
             };
@@ -55,12 +56,14 @@ impl Buffers {
         shared + own.map(|(bytes, _)| bytes.len()).sum::<usize>()
     }
 
-    fn resolve(&mut self, uri: &str, directory: &Path) -> Result<Rc<Vec<u8>>, String> {
+    fn resolve(&mut self, uri: &str, directory: &Path) -> Result<Rc<Cow<'a, [u8]>>, String> {
         let shown = |error: std::io::Error| Fault::foreign(Place::Whole, &error).reason;
         if let Some(data) = uri.strip_prefix("data:") {
             let (_, encoded) = data.split_once(";base64,").ok_or("its data URI is not encoded as base64")?;
             let bytes = BASE64.decode(encoded);
-            return bytes.map(Rc::new).map_err(|_| "its data URI is damaged: it is no base64".to_owned());
+            return bytes
+                .map(|bytes| Rc::new(bytes.into()))
+                .map_err(|_| "its data URI is damaged: it is no base64".to_owned());
         }
         if uri.contains(':') {
             return Err("only data URIs and relative paths are supported".to_owned());
@@ -70,7 +73,7 @@ impl Buffers {
         if let Some(known) = self.files.get(&path) {
             return Ok(known.clone());
         }
-        let bytes = Rc::new(file::read(&path, super::MAX_FILE_BYTES).map_err(shown)?);
+        let bytes: Rc<Cow<'a, [u8]>> = Rc::new(file::read(&path, super::MAX_FILE_BYTES).map_err(shown)?.into());
         self.files.insert(path, bytes.clone());
         Ok(bytes)
     }

@@ -1,78 +1,167 @@
-use crate::scene::Mesh;
-use crate::scene::error::{Fault, Place};
-use crate::scene::normals::Weld;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
+use std::time::Instant;
+
 use glam::Vec3;
-use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use rayon::prelude::*;
+
+use super::stream::{Stop, Stream};
+use crate::scene::error::{Fault, Place};
+use crate::scene::loading::LoadParts;
+use crate::scene::mesh::Parts;
+use crate::scene::numbering::Numbering;
 
 /// Header and triangle count of a binary file.
 const PREFIX_BYTES: usize = 84;
-const TRIANGLE_BYTES: u64 = 50;
+const TRIANGLE_BYTES: usize = 50;
+/// Triangles that are read, and then welded, at once.
+const BLOCK_TRIANGLES: usize = 1 << 17;
 
 /// Reads an STL file, binary or text. Vertices at the same position become one; normals are
 /// computed anew, since an STL file has only those of its facets.
 ///
 /// The size tells the kinds apart, because many binary files start with `solid` as well.
-pub(super) fn parse(mut bytes: Vec<u8>) -> Result<Mesh, Fault> {
-    let claimed_bytes = claimed_bytes(&bytes);
-    let size_bytes = bytes.len() as u64;
-    if starts_with_keyword(bytes.trim_ascii_start(), b"solid") && claimed_bytes != Some(size_bytes) {
-        let mut text = Text::new(&bytes);
-        let triangles = read(&mut text);
-        return triangles.map_err(|error| Fault::foreign(Place::Line(text.line), &error))?;
+pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
+    let mut start = Vec::new();
+    stream.append(&mut start, PREFIX_BYTES)?;
+    let claimed_bytes = claimed_bytes(&start);
+    let size_bytes = stream.size_bytes();
+    if is_text(&start) && claimed_bytes != Some(size_bytes) {
+        return read_text(start, stream);
     }
     match claimed_bytes {
         None => {
-            Err(Fault::new(Place::Whole, "it neither starts with \"solid\" nor is long enough for a binary STL file"))
+            let reason = "it neither starts with \"solid\" nor is long enough for a binary STL file";
+            Err(Fault::new(Place::Whole, reason).into())
         }
         Some(claimed_bytes) if claimed_bytes > size_bytes => {
             let reason = format!(
                 "its header claims triangles up to byte {claimed_bytes}, but the file has {size_bytes} bytes; it is \
                  cut off or not an STL file"
             );
-            Err(Fault::new(Place::Byte(PREFIX_BYTES - 4), reason))
+            Err(Fault::new(Place::Byte(PREFIX_BYTES - 4), reason).into())
         }
-        Some(_) => {
-            // stl_io takes a file that starts with "solid" for text.
-            bytes[..5].fill(0);
-            read(&mut Cursor::new(bytes)).map_err(|error| Fault::foreign(Place::Whole, &error))?
-        }
+        Some(claimed_bytes) => read_binary((claimed_bytes as usize - PREFIX_BYTES) / TRIANGLE_BYTES, stream),
     }
+}
+
+/// Triangles that a file of `size_bytes` with this start has, where the start tells.
+pub(super) fn triangles(start: &[u8], size_bytes: u64) -> Option<u64> {
+    let claimed = claimed_bytes(start).filter(|&claimed| claimed <= size_bytes);
+    let claimed = claimed.filter(|&claimed| claimed == size_bytes || !is_text(start))?;
+    Some((claimed - PREFIX_BYTES as u64) / TRIANGLE_BYTES as u64)
 }
 
 /// The size of the binary file that the triangle count stands for; absent in a file too short to
 /// have one.
-fn claimed_bytes(bytes: &[u8]) -> Option<u64> {
-    let count = bytes.get(PREFIX_BYTES - 4..PREFIX_BYTES)?;
+fn claimed_bytes(start: &[u8]) -> Option<u64> {
+    let count = start.get(PREFIX_BYTES - 4..PREFIX_BYTES)?;
     let count = u32::from_le_bytes(count.try_into().ok()?);
-    Some(PREFIX_BYTES as u64 + u64::from(count) * TRIANGLE_BYTES)
+    Some(PREFIX_BYTES as u64 + u64::from(count) * TRIANGLE_BYTES as u64)
+}
+
+fn is_text(start: &[u8]) -> bool {
+    starts_with_keyword(start.trim_ascii_start(), b"solid")
 }
 
 fn starts_with_keyword(text: &[u8], keyword: &[u8]) -> bool {
     text.get(..keyword.len()).is_some_and(|start| start.eq_ignore_ascii_case(keyword))
 }
 
-/// The mesh, or its fault; the outer error is one of syntax.
-fn read(source: &mut (impl Read + Seek)) -> io::Result<Result<Mesh, Fault>> {
-    let mut weld = Weld::default();
-    let mut positions = Vec::new();
-    let mut indices = Vec::new();
-    for triangle in stl_io::create_stl_reader(source)? {
-        for vertex in triangle?.vertices {
-            let position = Vec3::from(vertex.0);
-            let (number, is_new) = weld.number(position);
-            if is_new {
-                positions.push(position);
+/// Corners are joined as they come.
+#[derive(Default)]
+struct Welding {
+    numbering: Numbering,
+    indices: Vec<u32>,
+}
+
+impl Welding {
+    fn add(&mut self, corner: Vec3) {
+        self.indices.push(self.numbering.number(Numbering::key_of(corner)));
+    }
+
+    fn into_parts(self) -> Parts {
+        Parts { positions: self.numbering.into_positions(), indices: self.indices, ..Parts::default() }
+    }
+}
+
+/// Reads so many triangles, which the file has.
+fn read_binary(count: usize, stream: &mut Stream<'_>) -> Result<Parts, Stop> {
+    let mut welding = Welding { indices: Vec::with_capacity(3 * count), ..Welding::default() };
+    let (mut bytes, mut corners) = (Vec::new(), Vec::new());
+    let mut left = count;
+    while left > 0 {
+        let triangles = left.min(BLOCK_TRIANGLES);
+        left -= triangles;
+        bytes.clear();
+        if stream.append(&mut bytes, triangles * TRIANGLE_BYTES)? < triangles * TRIANGLE_BYTES {
+            let reason = "it was cut off while it was read";
+            return Err(Fault::new(Place::Byte(stream.done_bytes() as usize), reason).into());
+        }
+        let corner = |bytes: &[u8]| Vec3::from_array([0, 4, 8].map(|at| float(&bytes[at..])));
+        let facet = |bytes: &[u8]| [12, 24, 36].map(|at| corner(&bytes[at..]));
+        bytes.par_chunks_exact(TRIANGLE_BYTES).with_min_len(1 << 13).map(facet).collect_into_vec(&mut corners);
+        let started = Instant::now();
+        corners.as_flattened().iter().for_each(|&corner| welding.add(corner));
+        LoadParts::welded_since(started);
+    }
+    Ok(welding.into_parts())
+}
+
+/// The first four bytes as a float; there are as many.
+fn float(bytes: &[u8]) -> f32 {
+    f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+}
+
+fn read_text(start: Vec<u8>, stream: &mut Stream<'_>) -> Result<Parts, Stop> {
+    let mut stop = None;
+    let rest = Rest { stream, stop: &mut stop };
+    let mut text = Text::new(BufReader::with_capacity(1 << 20, Cursor::new(start).chain(rest)));
+    let mut welding = Welding::default();
+    let mut read = || -> io::Result<()> {
+        for triangle in stl_io::create_stl_reader(&mut text)? {
+            triangle?.vertices.iter().for_each(|vertex| welding.add(Vec3::from(vertex.0)));
+        }
+        Ok(())
+    };
+    let result = read();
+    let line = text.line;
+    drop(text);
+    match (result, stop) {
+        (_, Some(stop)) => Err(stop),
+        (Err(error), None) => Err(Fault::foreign(Place::Line(line), &error).into()),
+        (Ok(()), None) => Ok(welding.into_parts()),
+    }
+}
+
+/// What is left of a stream, as a reader.
+struct Rest<'s, 'a> {
+    stream: &'s mut Stream<'a>,
+    /// Why it stopped.
+    stop: &'s mut Option<Stop>,
+}
+
+impl Read for Rest<'_, '_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let mut bytes = Vec::new();
+        match self.stream.append(&mut bytes, buffer.len()) {
+            Ok(count) => {
+                buffer[..count].copy_from_slice(&bytes);
+                Ok(count)
             }
-            indices.push(number);
+            Err(stop) => {
+                *self.stop = Some(stop);
+                Err(io::Error::other("it is not read on"))
+            }
         }
     }
-    Ok(Mesh::from_file(positions, vec![], vec![], indices))
 }
 
 /// The facets of a text file as one lower-case solid, which is what `stl_io` reads; the format
 /// allows several solids and any case. One line at a time, so that `line` is where a fault lies.
-struct Text<'a> {
-    rest: &'a [u8],
+struct Text<R> {
+    rest: R,
+    /// That line as it stands in the file.
+    raw: Vec<u8>,
     /// Number of the last line given, from 1.
     line: usize,
     /// The rest of that line, not read yet.
@@ -81,19 +170,21 @@ struct Text<'a> {
     is_complete: bool,
 }
 
-impl<'a> Text<'a> {
-    fn new(bytes: &'a [u8]) -> Self {
-        Self { rest: bytes, line: 0, pending: Cursor::new(b"solid all\n".to_vec()), is_complete: false }
+impl<R: BufRead> Text<R> {
+    fn new(rest: R) -> Self {
+        let pending = Cursor::new(b"solid all\n".to_vec());
+        Self { rest, raw: Vec::new(), line: 0, pending, is_complete: false }
     }
 
     /// The next line that belongs to a facet, or the end of the solid.
-    fn next_line(&mut self) -> Option<Vec<u8>> {
-        while !self.rest.is_empty() {
-            let end = self.rest.iter().position(|byte| *byte == b'\n');
-            let (line, rest) = self.rest.split_at(end.map_or(self.rest.len(), |end| end + 1));
-            self.rest = rest;
+    fn next_line(&mut self) -> io::Result<Option<Vec<u8>>> {
+        loop {
+            self.raw.clear();
+            if self.rest.read_until(b'\n', &mut self.raw)? == 0 {
+                return Ok(std::mem::take(&mut self.is_complete).then(|| b"endsolid\n".to_vec()));
+            }
             self.line += 1;
-            let line = line.trim_ascii();
+            let line = self.raw.trim_ascii();
             if starts_with_keyword(line, b"endsolid") {
                 self.is_complete = true;
             } else if starts_with_keyword(line, b"solid") {
@@ -102,20 +193,19 @@ impl<'a> Text<'a> {
                 self.is_complete = false;
                 let mut line = line.to_ascii_lowercase();
                 line.push(b'\n');
-                return Some(line);
+                return Ok(Some(line));
             }
         }
-        std::mem::take(&mut self.is_complete).then(|| b"endsolid\n".to_vec())
     }
 }
 
-impl Read for Text<'_> {
+impl<R: BufRead> Read for Text<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.pending.read(buffer)?;
         if count > 0 || buffer.is_empty() {
             return Ok(count);
         }
-        match self.next_line() {
+        match self.next_line()? {
             Some(line) => {
                 self.pending = Cursor::new(line);
                 self.pending.read(buffer)
@@ -125,7 +215,7 @@ impl Read for Text<'_> {
     }
 }
 
-impl Seek for Text<'_> {
+impl<R: BufRead> Seek for Text<R> {
     /// `stl_io` looks at the first line, which is pending then, and goes back to the start.
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         self.pending.seek(position)
@@ -135,6 +225,12 @@ impl Seek for Text<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Mesh;
+    use crate::scene::formats::tests::read_with;
+
+    fn parse(bytes: Vec<u8>) -> Result<Mesh, Fault> {
+        read_with(read, &bytes)
+    }
 
     const FACETS: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 1 1 0\n \
                           endloop\nendfacet\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 -0.0\n  \

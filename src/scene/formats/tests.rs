@@ -8,8 +8,22 @@ fn asset(name: &str) -> PathBuf {
 }
 
 fn parse(ending: &str, bytes: Vec<u8>) -> Result<Mesh, Fault> {
-    let (_, parse) = FORMATS.iter().find(|(known, _)| *known == ending).unwrap();
-    parse(bytes, Path::new("nowhere"))
+    let (_, read) = FORMATS.iter().find(|(known, _)| *known == ending).unwrap();
+    read_with(|stream| read(stream, Path::new("nowhere")), &bytes)
+}
+
+/// The mesh that a reader makes of bytes, smooth everywhere.
+pub fn read_with(read: impl FnOnce(&mut Stream<'_>) -> Result<Parts, Stop>, bytes: &[u8]) -> Result<Mesh, Fault> {
+    let watch = Watch::default();
+    match read(&mut Stream::new(bytes, bytes.len() as u64, &watch)) {
+        Ok(parts) => parts.into_mesh(180.0),
+        Err(Stop::Fault(fault)) => Err(fault),
+        Err(stop) => panic!("{stop:?}"),
+    }
+}
+
+fn load_plain(path: &Path) -> Result<Mesh, Error> {
+    load(path, &MeshOptions { crease_deg: 180.0, is_optimised: false }, &Conditions::plain())
 }
 
 /// A small valid file of every kind, with its ending.
@@ -166,7 +180,7 @@ fn files_that_cannot_be_read_are_named() {
     for name in ["empty.obj", "empty.PLY", "empty.stl", "empty.gltf", "empty.glb", "bare", "mesh.xyz"] {
         std::fs::write(path(name), "").unwrap();
     }
-    let error = |name: &str| load(&path(name)).expect_err(name);
+    let error = |name: &str| load_plain(&path(name)).expect_err(name);
     assert!(matches!(error("missing.obj"), Error::Read { .. }));
     assert!(matches!(error("folder.obj"), Error::NotAFile { .. }));
     for name in ["empty.obj", "empty.PLY", "empty.stl", "empty.gltf", "empty.glb"] {
@@ -187,11 +201,11 @@ fn files_that_cannot_be_read_are_named() {
 fn files_beyond_the_limit_are_refused_unread() {
     let file = tempfile::Builder::new().suffix(".stl").tempfile().unwrap();
     file.as_file().set_len(MAX_FILE_BYTES + 1).unwrap();
-    assert!(load(file.path()).unwrap_err().to_string().contains("exceed the limit"));
-    assert!(matches!(load(Path::new("/dev/zero.obj")), Err(Error::Read { .. })));
+    assert!(load_plain(file.path()).unwrap_err().to_string().contains("exceed the limit"));
+    assert!(matches!(load_plain(Path::new("/dev/zero.obj")), Err(Error::Read { .. })));
     let link = tempfile::tempdir().unwrap().keep().join("endless.obj");
     std::os::unix::fs::symlink("/dev/zero", &link).unwrap();
-    assert!(matches!(load(&link), Err(Error::NotAFile { .. })));
+    assert!(matches!(load_plain(&link), Err(Error::NotAFile { .. })));
     std::fs::remove_dir_all(link.parent().unwrap()).unwrap();
 }
 
@@ -207,7 +221,7 @@ fn shipped_meshes_have_their_documented_counts() {
         ("meshes/Mesh_PrimitiveMode_05.gltf", 4, 2),
         ("meshes/Mesh_PrimitiveMode_11.gltf", 4, 2),
     ] {
-        let mesh = load(&asset(name)).unwrap();
+        let mesh = load_plain(&asset(name)).unwrap();
         mesh.validate().unwrap();
         assert_eq!((mesh.positions.len(), mesh.triangle_count()), (vertices, triangles), "{name}");
         assert_eq!(Path::new(name).file_stem().unwrap().to_str(), Some(mesh.name.as_str()));
@@ -218,7 +232,7 @@ fn shipped_meshes_have_their_documented_counts() {
 #[test]
 fn shipped_strips_and_fans_cover_their_square() {
     for mode in ["05", "11"] {
-        let mesh = load(&asset(&format!("meshes/Mesh_PrimitiveMode_{mode}.gltf"))).unwrap();
+        let mesh = load_plain(&asset(&format!("meshes/Mesh_PrimitiveMode_{mode}.gltf"))).unwrap();
         for corners in mesh.indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|i| mesh.positions[corners[i] as usize]);
             assert_eq!(double_area_vector(a, b, c), glam::DVec3::Z, "{mode}");
@@ -231,7 +245,7 @@ fn shipped_strips_and_fans_cover_their_square() {
 #[test]
 fn a_concave_polygon_keeps_its_area() {
     let path = asset("meshes/concave_polygon.obj");
-    let mesh = load(&path).unwrap();
+    let mesh = load_plain(&path).unwrap();
     let text = std::fs::read_to_string(path).unwrap();
     let statement = |keyword: &str| {
         let keyword = format!("{keyword} ");
@@ -292,7 +306,7 @@ fn fetched_dragons_have_their_documented_counts() {
         if !path.exists() {
             continue;
         }
-        let mesh = load(&path).unwrap();
+        let mesh = load_plain(&path).unwrap();
         mesh.validate().unwrap();
         assert_eq!((mesh.positions.len(), mesh.triangle_count()), (vertices, triangles), "{name}");
         assert!(mesh.bounds().diagonal().length() < 0.3);

@@ -89,13 +89,14 @@ fn grid(name: &str, cells: UVec2, surface: impl Fn(f32, f32) -> (Vec3, Vec3)) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::normals::{Weld, double_area_vector};
+    use crate::scene::normals::double_area_vector;
+    use crate::scene::numbering::Numbering;
     use std::collections::HashMap;
 
     /// True when every edge between positions is used once in each direction.
     fn is_closed(mesh: &Mesh) -> bool {
-        let mut weld = Weld::default();
-        let points: Vec<u32> = mesh.positions.iter().map(|p| weld.number(*p).0).collect();
+        let mut weld = Numbering::default();
+        let points: Vec<u32> = mesh.positions.iter().map(|&p| weld.number(Numbering::key_of(p))).collect();
         let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
         for corners in mesh.indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|i| points[corners[i] as usize]);

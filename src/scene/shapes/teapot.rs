@@ -1,6 +1,6 @@
 use super::teapot_patches::{CONTROL_POINTS, PATCHES};
 use crate::scene::Mesh;
-use crate::scene::normals::Weld;
+use crate::scene::numbering::Numbering;
 use glam::{DVec3, Vec3};
 
 /// Cells along each side of a patch.
@@ -31,7 +31,7 @@ fn patches(part: usize) -> impl Iterator<Item = &'static [u16; 16]> {
 pub fn teapot() -> Mesh {
     let mut mesh = Mesh { name: "teapot".to_owned(), ..Mesh::default() };
     for part in 0..PARTS {
-        let mut weld = Weld::default();
+        let mut weld = Numbering::default();
         let first = mesh.positions.len() as u32;
         for patch in patches(part) {
             tessellate(patch, first, &mut weld, &mut mesh);
@@ -47,15 +47,15 @@ pub fn teapot() -> Mesh {
 }
 
 /// Appends one patch; points already in `weld` are shared, the first of which is vertex `first`.
-fn tessellate(patch: &[u16; 16], first: u32, weld: &mut Weld, mesh: &mut Mesh) {
+fn tessellate(patch: &[u16; 16], first: u32, weld: &mut Numbering, mesh: &mut Mesh) {
     let control = patch.map(|point| y_up(DVec3::from(CONTROL_POINTS[usize::from(point)])));
     let mut vertices = [[0; CELLS + 1]; CELLS + 1];
     for (i, row) in vertices.iter_mut().enumerate() {
         for (j, vertex) in row.iter_mut().enumerate() {
             let (position, normal) = evaluate(&control, i, j);
-            let (number, is_new) = weld.number(position);
-            *vertex = first + number;
-            if is_new {
+            let known = weld.len();
+            *vertex = first + weld.number(Numbering::key_of(position));
+            if weld.len() > known {
                 mesh.positions.push(position);
                 mesh.normals.push(Vec3::ZERO);
             }
@@ -162,7 +162,7 @@ mod tests {
     fn normals_are_smooth_across_seams() {
         // A seam whose patches disagree would leave an average far from both.
         for part in 0..PARTS {
-            let mut weld = Weld::default();
+            let mut weld = Numbering::default();
             let mut sums = Mesh::default();
             for patch in patches(part) {
                 tessellate(patch, 0, &mut weld, &mut sums);
@@ -171,7 +171,7 @@ mod tests {
                 let control = patch.map(|p| y_up(DVec3::from(CONTROL_POINTS[usize::from(p)])));
                 for (i, j) in (0..=CELLS).flat_map(|i| (0..=CELLS).map(move |j| (i, j))) {
                     let (position, normal) = evaluate(&control, i, j);
-                    let average = sums.normals[weld.number(position).0 as usize].normalize_or_zero();
+                    let average = sums.normals[weld.number(Numbering::key_of(position)) as usize].normalize_or_zero();
                     assert!(normal == Vec3::ZERO || normal.dot(average) > 0.999, "part {part} at {position}");
                 }
             }

@@ -1,11 +1,13 @@
 //! Meshes that cannot be used: exit code 2 and one line that names the file and the place.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::Path;
+use std::time::Instant;
 
 use fumarole::scene::random::Random;
 
-use super::program::{ONCE, caustics, entries, file, folder};
+use super::program::{ONCE, burning, caustics, entries, file, folder, gas};
 
 fn refuse(path: &Path, parts: &[&str]) {
     let name = path.file_name().unwrap().to_str().unwrap();
@@ -102,4 +104,60 @@ fn rays_that_do_not_end_fail_the_picture() {
     drawn("--samples 4").refused(1, &["view", "rays of", "--samples", "--mesh"]);
     assert_eq!(entries(out.path()), ["needles.obj"]);
     drawn("--samples 1").succeeded();
+}
+
+/// Nothing but the start of a file and its size: what the device cannot hold is refused by the file's own count, unread.
+#[test]
+fn files_beyond_the_device_are_refused_unread() {
+    let out = folder();
+    let sparse = |count: u32| {
+        let path = out.path().join(format!("{count}.stl"));
+        let mut file = File::create(&path).unwrap();
+        file.write_all(&[0; 80]).unwrap();
+        file.write_all(&count.to_le_bytes()).unwrap();
+        file.set_len(84 + 50 * u64::from(count)).unwrap();
+        path
+    };
+    let started = Instant::now();
+    let program = burning("bench --variant shell --mesh").arg(sparse(12_000_000)).on_test_device();
+    program.run().refused(2, &["--triangles", "144000000", "limit of 134217728"]);
+    let program = burning("render --variant low-poly --mesh").arg(sparse(1_100_000)).on_test_device();
+    program.run().refused(2, &["--levels", "limit of"]);
+    let program = gas("bench --object").arg(sparse(85_000_000)).on_test_device();
+    program.run().refused(2, &["--object", "2720000000", "limit of"]);
+    // Reading them would take many times as long.
+    assert!(started.elapsed().as_secs_f64() < 10.0, "{:?}", started.elapsed());
+}
+
+/// `--no-cache` leaves the folder alone; without it the second load is the first one's mesh, and the record says so.
+#[test]
+fn large_meshes_are_kept_for_the_next_run() {
+    let out = folder();
+    let mesh = fumarole::scene::shapes::sphere(120, 120);
+    let mut bytes = vec![0; 80];
+    bytes.extend((mesh.triangle_count() as u32).to_le_bytes());
+    for triangle in mesh.indices.chunks_exact(3) {
+        let corners = triangle.iter().flat_map(|&corner| mesh.positions[corner as usize].to_array());
+        bytes.extend([0.0; 3].into_iter().chain(corners).flat_map(f32::to_le_bytes));
+        bytes.extend([0; 2]);
+    }
+    let path = file(&out, "ball.stl", bytes);
+    let loading = |options: &str| {
+        let program =
+            caustics("bench --quiet --json --variant level-map --mesh").arg(&path).tiny().args(ONCE).args(options);
+        let record = program.env("XDG_CACHE_HOME", out.path()).run().succeeded().json();
+        (record["runs"][0]["loading"].clone(), record["runs"][0]["load_ms"].as_f64().unwrap())
+    };
+    let kept = || fs::read_dir(out.path().join("fumarole/meshes")).map_or(0, |entries| entries.count());
+    let (first, _) = loading("--no-cache");
+    assert_eq!((first["from_cache"].as_u64(), kept()), (Some(0), 0));
+    let (first, load_ms) = loading("");
+    assert_eq!((first["from_cache"].as_u64(), kept()), (Some(0), 1));
+    let parts = ["read_ms", "weld_ms", "normals_ms", "optimise_ms", "cache_ms"];
+    let sum: f64 = parts.iter().map(|part| first[part].as_f64().unwrap()).sum();
+    assert!(parts.iter().all(|part| first[part].as_f64().unwrap() > 0.0) && sum <= load_ms, "{first} {load_ms}");
+    let (second, _) = loading("");
+    assert_eq!((second["from_cache"].as_u64(), second["bytes"].as_u64(), kept()), (Some(1), Some(0), 1));
+    let (other, _) = loading("--crease-angle 5");
+    assert_eq!((other["from_cache"].as_u64(), kept()), (Some(0), 2));
 }

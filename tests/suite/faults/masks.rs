@@ -4,6 +4,7 @@
 use serde_json::Value;
 
 use super::{Layer, PAPERS, Paper};
+use crate::cli::program;
 use crate::cli::program::{Ended, ONCE, fumarole};
 
 /// A run of every variant on the lesser device, under validation of it.
@@ -155,5 +156,53 @@ fn a_device_without_the_queue_is_named() {
     for paper in &PAPERS {
         let ended = run_all(paper, &layer, "FUMAROLE_LAYER_LACKS", "compute-queue");
         ended.refused(3, &["a queue with graphics and compute"]);
+    }
+}
+
+/// A ball of triangles as a binary STL file.
+fn ball(side: u32) -> Vec<u8> {
+    let mesh = fumarole::scene::shapes::sphere(side, side);
+    let mut bytes = vec![0; 80];
+    bytes.extend((mesh.triangle_count() as u32).to_le_bytes());
+    for triangle in mesh.indices.chunks_exact(3) {
+        let corners = triangle.iter().flat_map(|&corner| mesh.positions[corner as usize].to_array());
+        bytes.extend([0.0; 3].into_iter().chain(corners).flat_map(f32::to_le_bytes));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// Bound storage buffers of 64 KiB at most: meshes and lists are cut, and nothing of the picture changes.
+#[test]
+fn pictures_in_pieces_are_those_in_one() {
+    let layer = Layer::new();
+    let folder = program::folder();
+    let object = program::file(&folder, "ball.stl", ball(100));
+    let object = object.to_str().unwrap();
+    let scenes = [
+        ("lava", format!("--object {object}"), None),
+        ("gas", format!("--object {object} --variant table"), Some("triangles-1")),
+        ("gas", format!("--object {object} --no-geometry-stage --variant no-volume"), Some("vertices-4")),
+        ("caustics", "--mesh bunny --variant level-map".to_owned(), None),
+        ("burning", "--mesh bunny --variant shell".to_owned(), None),
+        ("terrain", format!("--object {object}"), None),
+    ];
+    for (number, (name, scene, cut)) in scenes.iter().enumerate() {
+        let paper = PAPERS.iter().find(|paper| paper.name == *name).unwrap();
+        let picture = |limits: Option<&str>| {
+            let path = folder.path().join(format!("{number}.png"));
+            let kept = paper.scene.replace("--mesh box", "").replace("--mesh sphere --triangles 100", "");
+            let program = (paper.program)("bench --quiet --json").args(&kept).args(scene).args(ONCE).on_test_device();
+            let program = layer.before(program.arg("--image").arg(&path), false);
+            let program = limits.into_iter().fold(program, |program, l| program.env("FUMAROLE_LAYER_LIMITS", l));
+            let record = program.run().succeeded().json();
+            (std::fs::read(path).unwrap(), record["runs"][0]["memory"]["by_resource"].to_string())
+        };
+        let (whole, all) = picture(None);
+        let (pieced, resources) = picture(Some("max-storage-buffer-range=65536"));
+        if let Some(cut) = cut {
+            assert!(resources.contains(cut) && !all.contains(cut), "{name} {scene}: {resources}");
+        }
+        assert!(whole == pieced, "{name} {scene}");
     }
 }

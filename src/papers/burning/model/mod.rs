@@ -80,20 +80,23 @@ impl Model {
     /// # Errors
     /// [`Error::Limit`] for more triangles than that holds; [`Error::Pass`] for too many around one vertex.
     pub fn new(mesh: &Mesh, variant: Variant, parameters: &Parameters, largest_bytes: u64) -> Result<Self, Error> {
+        // Three 32-bit indices a triangle are the longest list; an incidence holds a triangle's number times 4.
+        let limit = (largest_bytes / 12).min(1 << 30);
+        // Before the work, and again once the levels are known.
+        let check = |count: usize, levels: u32| {
+            let wanted = (count as u64) << (2 * levels);
+            let object = match levels {
+                0 => format!("the mesh of {count} triangles, which `triangles` simplifies"),
+                levels => format!("`levels` {levels} of {count} triangles"),
+            };
+            let error = Error::Limit { object, what: "number of triangles", wanted, limit };
+            if wanted > limit { Err(error) } else { Ok(()) }
+        };
+        check(mesh.triangle_count(), parameters.levels.or(variant.own_levels()).unwrap_or(0))?;
         let welded = Welded::new(mesh);
         let (degenerate, is_closed) = (welded.degenerate, welded.is_closed());
         let levels = parameters.levels.unwrap_or_else(|| own_levels(&welded, variant, parameters.edge));
-        let count = (welded.triangles.len() as u64) << (2 * levels);
-        // Three 32-bit indices a triangle are the longest list; an incidence holds a triangle's number times 4.
-        let limit = (largest_bytes / 12).min(1 << 30);
-        if count > limit {
-            return Err(Error::Limit {
-                object: format!("`levels` {levels} of {} triangles", welded.triangles.len()),
-                what: "number of triangles",
-                wanted: count,
-                limit,
-            });
-        }
+        check(welded.triangles.len(), levels)?;
         let lattice = Lattice::new(welded, levels);
         let triangles: Vec<[u32; 3]> =
             lattice.finest().iter().map(|t| t.map(|corner| lattice.welds[corner as usize])).collect();
@@ -169,19 +172,25 @@ impl Model {
     }
 }
 
-/// Low-poly models divide to five levels (4.4), shells are dense enough, and solids and melting objects divide until no
-/// edge at rest is longer than `edge`.
-pub fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
-    match variant {
-        Variant::Shell => 0,
-        Variant::LowPoly | Variant::FullySubdivided => 5,
-        Variant::Solid | Variant::Melting => {
-            let position = |corner: u32| welded.positions[corner as usize];
-            let lengths = welded.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-            let longest = lengths.map(|(a, b)| position(a).distance(position(b))).fold(0.0, f32::max);
-            (0..5).find(|&level| longest / (1 << level) as f32 <= edge).unwrap_or(5)
+impl Variant {
+    /// Low-poly models divide to five levels (4.4), and shells are dense enough; others follow the mesh.
+    pub fn own_levels(self) -> Option<u32> {
+        match self {
+            Variant::Shell => Some(0),
+            Variant::LowPoly | Variant::FullySubdivided => Some(5),
+            Variant::Solid | Variant::Melting => None,
         }
     }
+}
+
+/// Solids and melting objects divide until no edge at rest is longer than `edge`.
+pub fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
+    variant.own_levels().unwrap_or_else(|| {
+        let position = |corner: u32| welded.positions[corner as usize];
+        let lengths = welded.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+        let longest = lengths.map(|(a, b)| position(a).distance(position(b))).fold(0.0, f32::max);
+        (0..5).find(|&level| longest / (1 << level) as f32 <= edge).unwrap_or(5)
+    })
 }
 
 /// The lowest vertex, and the highest of what melts: it is to run down. Of several the first.

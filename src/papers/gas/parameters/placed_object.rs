@@ -10,7 +10,7 @@ use crate::measure::Error;
 use crate::measure::components;
 use crate::measure::parameter::{Shape, Value, one, with_place};
 use crate::papers::gas::model::Object;
-use crate::scene::MeshSource;
+use crate::scene::{MeshOptions, MeshSource};
 
 /// The grey of an object that names no colour.
 const GREY: Vec3 = Vec3::splat(0.6);
@@ -44,8 +44,8 @@ impl PlacedObject {
     ///
     /// # Errors
     /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates that leave the range of floats.
-    pub fn load(&self) -> Result<Object, Error> {
-        let mesh = self.source.load()?;
+    pub fn load(&self, crease_deg: f32) -> Result<Object, Error> {
+        let mesh = self.source.load_with(&MeshOptions::to_draw(crease_deg))?;
         let Some(Stand { base_m, turn_deg, scale, color, opacity }) = self.stand else {
             return Ok(Object::new(mesh, GREY));
         };
@@ -55,7 +55,7 @@ impl PlacedObject {
             * Mat4::from_rotation_y(turn_deg.to_radians())
             * Mat4::from_scale(Vec3::splat(scale))
             * Mat4::from_translation(-foot);
-        let placed = mesh.transformed(&place);
+        let placed = mesh.placed(&place);
         if placed.positions.iter().all(|p| p.is_finite()) {
             return Ok(Object { opacity, ..Object::new(placed, color) });
         }
@@ -149,13 +149,13 @@ mod tests {
     #[test]
     fn it_stands_where_it_is_told() {
         let side = MeshSource::Box.load().unwrap().bounds().diagonal();
-        let object = parse("box@0.5,0.25,1,90,0.5,1,0,0,0.25").unwrap().load().unwrap();
+        let object = parse("box@0.5,0.25,1,90,0.5,1,0,0,0.25").unwrap().load(30.0).unwrap();
         let bounds = object.mesh.bounds();
         let corner = Vec3::new(0.5, 0.25, 1.0) - 0.25 * Vec3::new(side.z, 0.0, side.x);
         assert!((bounds.min - corner).abs().max_element() < 1e-5, "{bounds:?}");
         assert_eq!((object.color, object.opacity), (Vec3::X, 0.25));
-        let own = parse("teapot").unwrap().load().unwrap();
+        let own = parse("teapot").unwrap().load(30.0).unwrap();
         assert_eq!(own.mesh.bounds(), MeshSource::Teapot.load().unwrap().bounds());
-        assert!(parse("box@0,0,0,0,3e38").unwrap().load().is_err());
+        assert!(parse("box@0,0,0,0,3e38").unwrap().load(30.0).is_err());
     }
 }

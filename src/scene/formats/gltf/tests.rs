@@ -1,4 +1,9 @@
 use super::*;
+use crate::scene::Mesh;
+
+fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
+    super::parse(bytes, directory)?.into_mesh(180.0)
+}
 
 /// A square in the plane z = 0: four positions, then the indices 0 1 2 3 0 2 as bytes.
 const SQUARE: [[f32; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];

@@ -1,0 +1,246 @@
+//! The statements of a piece of an OBJ file that make polygons.
+
+use glam::{Vec2, Vec3};
+
+use crate::scene::polygon::Arities;
+
+/// Things that an index can count: positions, texture coordinates and normals, in the order in which a
+/// corner names them.
+pub const KINDS: [&str; 3] = ["positions", "texture coordinates", "normals"];
+
+/// No index of its kind.
+pub const ABSENT: u32 = u32::MAX;
+
+/// What one thread has read.
+#[derive(Default)]
+pub struct Piece {
+    pub positions: Vec<Vec3>,
+    pub texture_coordinates: Vec<Vec2>,
+    pub normals: Vec<Vec3>,
+    /// Of faces of three corners and more.
+    pub corners: Vec<[Named; 3]>,
+    pub arities: Arities,
+    /// Lines of the file.
+    pub lines: usize,
+    /// The largest index of each kind, from 1, and its line.
+    pub largest: [(u64, usize); 3],
+    /// The farthest that an index of each kind counts back beyond the piece.
+    pub lowest: [Lowest; 3],
+    /// Where and why it was not read on.
+    pub fault: Option<(usize, Reason)>,
+}
+
+/// What a corner names of one kind: nothing, or a place from the start of the file or of the piece.
+#[derive(Clone, Copy)]
+pub struct Named(i64);
+
+impl Named {
+    /// What places in the piece are moved down by, to tell them from those in the file: no file has so many.
+    const IN_PIECE: i64 = i64::MIN / 2;
+    /// Farthest that an index may count back.
+    const FARTHEST: i64 = 1 << 60;
+    const NOTHING: Self = Named(i64::MIN);
+
+    /// From the start of the file, from 0, where so many are before the piece.
+    pub fn resolved(self, before: usize) -> Option<u64> {
+        match self.0 {
+            i64::MIN => None,
+            place @ 0.. => Some(place as u64),
+            moved => u64::try_from(moved - Self::IN_PIECE + before as i64).ok(),
+        }
+    }
+}
+
+/// An index that counts back from the last.
+#[derive(Default, Clone, Copy)]
+pub struct Lowest {
+    /// From the start of the piece; 0 for none that lies before it.
+    pub place: i64,
+    pub line: usize,
+    pub index: i64,
+    /// How many of its kind precede it in the piece.
+    pub count: usize,
+}
+
+/// What is wrong in a line.
+pub enum Reason {
+    Text(String),
+    /// An index that nothing has.
+    Index {
+        index: i64,
+        kind: usize,
+        /// How many of its kind precede it in the piece.
+        count: usize,
+    },
+}
+
+impl From<String> for Reason {
+    fn from(text: String) -> Self {
+        Reason::Text(text)
+    }
+}
+
+/// True for a line that does not go on in the next.
+pub fn is_whole(line: &[u8]) -> bool {
+    let line = line.strip_suffix(b"\r").unwrap_or(line);
+    !line.ends_with(b"\\")
+}
+
+impl Piece {
+    /// Parses whole lines.
+    ///
+    /// Faces that would be beyond the file's end are kept: what they name may follow.
+    pub fn parse(bytes: &[u8]) -> Self {
+        let mut piece = Piece::default();
+        let text = match std::str::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => {
+                let line = 1 + memchr::memchr_iter(b'\n', &bytes[..error.valid_up_to()]).count();
+                let reason = "it is not UTF-8 text; convert the file to UTF-8".to_owned();
+                piece.fault = Some((line, Reason::Text(reason)));
+                return piece;
+            }
+        };
+        let mut lines = text.lines();
+        while let Some(line) = lines.next() {
+            piece.lines += 1;
+            let number = piece.lines;
+            let added = match line.strip_suffix('\\') {
+                None => piece.add(number, line),
+                Some(start) => {
+                    let mut joined = start.to_owned();
+                    for line in lines.by_ref() {
+                        piece.lines += 1;
+                        joined.push(' ');
+                        match line.strip_suffix('\\') {
+                            Some(start) => joined.push_str(start),
+                            None => {
+                                joined.push_str(line);
+                                break;
+                            }
+                        }
+                    }
+                    piece.add(number, &joined)
+                }
+            };
+            if let Err(reason) = added {
+                piece.fault = Some((number, reason));
+                break;
+            }
+        }
+        piece
+    }
+
+    fn count(&self, kind: usize) -> usize {
+        [self.positions.len(), self.texture_coordinates.len(), self.normals.len()][kind]
+    }
+
+    fn add(&mut self, line: usize, statement: &str) -> Result<(), Reason> {
+        let mut tokens = statement.split_ascii_whitespace();
+        let keyword = tokens.next().unwrap_or_default();
+        let tokens = tokens.take_while(|token| !token.starts_with('#'));
+        match keyword {
+            // A fourth coordinate divides a position; six numbers are a position and a colour.
+            "v" => {
+                let ([x, y, z, w], count) = numbers(keyword, tokens)?;
+                let position = Vec3::new(x, y, z);
+                self.positions.push(if count == 4 { position / w } else { position });
+            }
+            "vt" => {
+                let ([u, v, ..], count) = numbers(keyword, tokens)?;
+                self.texture_coordinates.push(Vec2::new(u, if count == 1 { 0.0 } else { v }));
+            }
+            "vn" => {
+                let ([x, y, z, _], _) = numbers(keyword, tokens)?;
+                self.normals.push(Vec3::new(x, y, z));
+            }
+            "f" => return self.add_face(line, tokens),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn add_face<'t>(&mut self, line: usize, corners: impl Iterator<Item = &'t str>) -> Result<(), Reason> {
+        let first = self.corners.len();
+        for corner in corners {
+            let mut parts = corner.split('/');
+            let mut named = [Named::NOTHING; 3];
+            for (kind, named) in named.iter_mut().enumerate() {
+                match parts.next() {
+                    Some("") | None if kind == 0 => {
+                        return Err(format!("corner {:?} names no position", shortened(corner)).into());
+                    }
+                    Some("") | None => {}
+                    Some(part) => *named = self.named(kind, part, line)?,
+                }
+            }
+            if parts.next().is_some() {
+                return Err(format!("corner {:?} has too many parts", shortened(corner)).into());
+            }
+            self.corners.push(named);
+        }
+        let count = self.corners.len() - first;
+        if count < 3 {
+            // A point or a line.
+            self.corners.truncate(first);
+        } else {
+            self.arities.push(count as u32, first);
+        }
+        Ok(())
+    }
+
+    fn named(&mut self, kind: usize, part: &str, line: usize) -> Result<Named, Reason> {
+        let index: i64 = part.parse().map_err(|_| format!("{:?} is not an index", shortened(part)))?;
+        let count = self.count(kind);
+        if index > 0 {
+            let largest = &mut self.largest[kind];
+            if index as u64 > largest.0 {
+                *largest = (index as u64, line);
+            }
+            return Ok(Named(index - 1));
+        }
+        if index == 0 || index < -Named::FARTHEST {
+            return Err(Reason::Index { index, kind, count });
+        }
+        let place = count as i64 + index;
+        if place < self.lowest[kind].place {
+            self.lowest[kind] = Lowest { place, line, index, count };
+        }
+        Ok(Named(Named::IN_PIECE + place))
+    }
+}
+
+/// The first numbers of a statement, up to four, and how many count: what follows them is a
+/// colour or nothing that is known.
+fn numbers<'t>(keyword: &str, tokens: impl Iterator<Item = &'t str>) -> Result<([f32; 4], usize), Reason> {
+    let mut texts = [""; 4];
+    let mut found = 0;
+    for token in tokens {
+        if let Some(text) = texts.get_mut(found) {
+            *text = token;
+        }
+        found += 1;
+    }
+    let kept = match (keyword, found) {
+        ("v", 4) => 4,
+        ("vt", 1) => 1,
+        ("vt", _) => 2,
+        _ => 3,
+    };
+    if found < kept {
+        return Err(format!("{keyword} needs {kept} numbers, but there are {found}").into());
+    }
+    let mut numbers = [0.0_f32; 4];
+    for (place, (number, token)) in numbers.iter_mut().zip(&texts[..kept]).enumerate() {
+        *number = token.parse().map_err(|_| format!("{:?} is not a number", shortened(token)))?;
+        if !number.is_finite() || (place == 3 && *number == 0.0) {
+            return Err(format!("{keyword} must not contain {number}").into());
+        }
+    }
+    Ok((numbers, kept))
+}
+
+/// A token of the file for a message.
+fn shortened(token: &str) -> String {
+    token.chars().take(40).collect()
+}
