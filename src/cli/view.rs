@@ -105,7 +105,7 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
     };
     let ended = window::run(options, |quit| {
         // Without a handler Ctrl-C ends the program, and the worker ends when its window is gone.
-        let _ = ctrlc::set_handler(move || quit());
+        let _ = ctrlc::set_handler(quit);
     });
     ended.map_err(Failure::from)
 }

@@ -161,18 +161,18 @@ impl PhysicalDevice {
         handles.into_iter().enumerate().map(|(i, raw)| Self::describe(instance, i, raw)).collect()
     }
 
-    /// Whether the device has an extension.
-    pub(super) fn has_extension(&self, instance: &Instance, name: &std::ffi::CStr) -> bool {
+    /// True when the driver offers the extension of that name.
+    pub(super) fn offers(&self, instance: &Instance, name: &std::ffi::CStr) -> bool {
         // SAFETY: `raw` comes from this instance: see `read_again`, which every user of a device goes through.
         let offered = unsafe { instance.raw.enumerate_device_extension_properties(self.raw) }.unwrap_or_default();
         offered.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name))
     }
 
-    /// Whether a present can signal a fence when it has let go of its semaphore.
+    /// True when a present can signal a fence when it has let go of its semaphore.
     pub(super) fn has_present_fences(&self, instance: &Instance) -> bool {
         let needed = ash::ext::surface_maintenance1::NAME.to_string_lossy();
         if !instance.extensions().iter().any(|enabled| *enabled == needed)
-            || !self.has_extension(instance, ash::ext::swapchain_maintenance1::NAME)
+            || !self.offers(instance, ash::ext::swapchain_maintenance1::NAME)
         {
             return false;
         }

@@ -105,7 +105,7 @@ impl Surface {
         let mut able = Vec::new();
         for physical in PhysicalDevice::enumerate(&self.instance)? {
             let Some((family, _)) = physical.queue else { continue };
-            if !physical.has_extension(&self.instance, khr::swapchain::NAME) {
+            if !physical.offers(&self.instance, khr::swapchain::NAME) {
                 continue;
             }
             // SAFETY: surface and device belong to the same living instance, and the family is one of the device's.

@@ -46,7 +46,7 @@ impl<'a> Children<'a> {
     pub fn environment(&self) -> Result<Environment, Failure> {
         let returned = self.run(&[], None)?;
         match returned.report {
-            Some(Report::Machine(environment)) => Ok(environment),
+            Some(Report::Machine(environment)) => Ok(*environment),
             _ => Err(failure("the process that looks for the device", &returned.ended)),
         }
     }

@@ -55,7 +55,7 @@ pub fn run<S: Study>(
     host_memory::be_killed_first();
     let options = machine.resolve(0);
     let report = match step.step_value {
-        None => Report::Machine(Machine::open(&options, S::NEEDS)?.environment()),
+        None => Report::Machine(Box::new(Machine::open(&options, S::NEEDS)?.environment())),
         Some(value) => {
             let is_named = |variant: &&S::Variant| step.step_variant.as_deref() == Some(variant.as_str());
             let Some(&variant) = variants.iter().find(is_named) else { return Ok(()) };

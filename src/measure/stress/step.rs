@@ -21,7 +21,7 @@ use crate::report::stress::StopKind;
 #[serde(rename_all = "snake_case")]
 pub enum Report {
     /// Where it would be measured.
-    Machine(Environment),
+    Machine(Box<Environment>),
     /// What was measured.
     Measured(Box<Measured>),
     /// The limit that it met.

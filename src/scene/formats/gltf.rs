@@ -158,8 +158,10 @@ fn is_version_1(bytes: &[u8]) -> bool {
     serde_json::from_slice(bytes).is_ok_and(|root: Root| root.asset.version.starts_with("1."))
 }
 
-/// The document, and the binary chunk beside it.
-fn read_document(bytes: &[u8]) -> Result<(Document, Option<Cow<'_, [u8]>>), Fault> {
+/// A document and the binary chunk beside it.
+type WithChunk<'a> = (Document, Option<Cow<'a, [u8]>>);
+
+fn read_document(bytes: &[u8]) -> Result<WithChunk<'_>, Fault> {
     let foreign = |error: ::gltf::Error| Fault::foreign(Place::Whole, &format!("it is no valid glTF: {error}"));
     let (text, chunk) = if bytes.starts_with(b"glTF") {
         let file = Glb::from_slice(bytes).map_err(foreign)?;

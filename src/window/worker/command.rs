@@ -58,11 +58,10 @@ fn parameters<S: Study>(choice: &Choice, side: &Resolved<S>) -> Vec<String> {
         let name = parameter.name;
         let text = parameter.text(&side.study);
         match typed(name) {
+            Some(_) if parameter.shape().is_flag && text == parameter.text(&base) => {}
             Some(typed) if parameter.shape().is_flag => {
-                if text != parameter.text(&base) {
-                    let is_on = typed.values.iter().any(|value| value == "true");
-                    line.push(if is_on { format!("--{name}") } else { format!("--no-{name}") });
-                }
+                let is_on = typed.values.iter().any(|value| value == "true");
+                line.push(if is_on { format!("--{name}") } else { format!("--no-{name}") });
             }
             Some(typed) if text != parameter.text(&base) || is_required(name) => {
                 line.extend(typed.values.iter().map(|value| option(name, &value.to_string_lossy())));
