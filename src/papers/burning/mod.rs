@@ -13,6 +13,7 @@
 //! The simulation advances in ticks alone, so its state depends on the simulated time and not on the frame rate; the
 //! state lives on the device, and a frame sends it constants at most (3.7.4).
 
+mod appearance;
 mod axes;
 mod block_rotation;
 mod block_weights;

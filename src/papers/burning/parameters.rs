@@ -473,49 +473,6 @@ impl Parameters {
         self.camera.as_ref().map_or(Ok(()), ParameterError::check_camera)
     }
 
-    /// The material of the surface; a texture has none.
-    pub fn material(&self, variant: Variant) -> Option<Material> {
-        let own = if variant == Variant::Melting { Material::Wax } else { Material::Wood };
-        self.texture.is_none().then(|| self.material.unwrap_or(own))
-    }
-
-    /// Linear RGB of the surface, or the factor of its texture.
-    pub fn albedo(&self, variant: Variant) -> Vec3 {
-        self.albedo.unwrap_or(match self.material(variant) {
-            None => Vec3::ONE,
-            Some(Material::Plain | Material::Wood) => Vec3::new(0.36, 0.17, 0.07),
-            Some(Material::Wax) => Vec3::new(0.8, 0.66, 0.4),
-        })
-    }
-
-    /// True for a surface that chars and glows: not wax, nor a texture on what melts.
-    pub fn chars(&self, variant: Variant) -> bool {
-        match self.material(variant) {
-            None => variant != Variant::Melting,
-            Some(material) => material != Material::Wax,
-        }
-    }
-
-    /// True where parts that nothing holds fall.
-    pub fn collapses(&self, variant: Variant) -> bool {
-        self.look == Look::Natural && self.collapse && variant.removes()
-    }
-
-    /// True where what melts gathers in a puddle.
-    pub fn has_puddle(&self, variant: Variant) -> bool {
-        self.look == Look::Natural && variant == Variant::Melting
-    }
-
-    /// True where ash comes down.
-    pub fn has_ash(&self, variant: Variant) -> bool {
-        self.has_ground() || self.collapses(variant)
-    }
-
-    /// True where the ground is drawn.
-    pub fn has_ground(&self) -> bool {
-        self.look == Look::Natural && self.ground && self.shading == Shading::Lit
-    }
-
     /// Slices of ticks that are due after frame `number`, counted from the start of the simulation: one a tick without
     /// [`Parameters::time_division`], which makes each frame's part of a tick that much smaller.
     pub fn slices_due(&self, number: u32) -> u64 {

@@ -15,8 +15,8 @@ fn refused(program: fn() -> Program, name: &str, bytes: &[u8], parts: &[&str]) {
     fs::write(&path, bytes).unwrap();
     let program = program().arg(&path);
     let program = if name.ends_with("json") { program.arg(&path) } else { program };
-    // The program itself, its libraries and their threads, as it takes for a file of nothing.
-    const OWN_KIB: usize = 192 << 10;
+    // Address space of the program itself: its libraries, threads, and what their allocators reserve without using it.
+    const OWN_KIB: usize = 384 << 10;
     let limit_kib = OWN_KIB + (64 << 10) + 16 * bytes.len() / 1024;
     let script = format!("ulimit -v {limit_kib}; {}; code=$?; times; exit $code", program.for_shell());
     let run = || std::process::Command::new("sh").arg("-c").arg(&script).output().unwrap();

@@ -67,7 +67,7 @@ fn a_failed_run_leaves_older_files_and_no_new_ones() {
         ("--mesh bad.obj", "bad.obj"),
         ("--device no-such", "no-such"),
         ("--planes 0", "--planes 0"),
-        ("--map-size 100000", "100000"),
+        ("--map-size 100000", "limit"),
         ("--shader-dir bad.obj", "bad.obj"),
     ] {
         let program = caustics("bench --quiet").inside(out.path()).tiny_but(fault).args(ONCE).args(files);

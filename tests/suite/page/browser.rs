@@ -149,11 +149,9 @@ impl Browser {
 
     fn next(&mut self) -> Value {
         let message = self.messages.recv_timeout(PATIENCE).expect("Chromium answers");
-        match message["method"].as_str() {
-            Some("Runtime.consoleAPICalled" | "Runtime.exceptionThrown" | "Log.entryAdded") => {
-                self.console.push(message["params"].to_string());
-            }
-            _ => {}
+        let told = ["Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"];
+        if message["method"].as_str().is_some_and(|method| told.contains(&method)) {
+            self.console.push(message["params"].to_string());
         }
         message
     }

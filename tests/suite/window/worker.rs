@@ -148,7 +148,7 @@ fn passes_are_listed_and_a_frame_ends_after_each_of_them() {
         assert!(built.passes.iter().all(|pass| pass.calls > 0));
         let written_by = |name: &str| {
             let is_one = |index: &usize| built.targets[*index].name == name;
-            built.passes.iter().position(|pass| pass.written_targets.iter().any(|target| is_one(target)))
+            built.passes.iter().position(|pass| pass.written_targets.iter().any(is_one))
         };
         assert!(written_by("picture").is_some(), "{paper}: {:?}", built.passes);
 
