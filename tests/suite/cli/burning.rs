@@ -436,7 +436,7 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--speed 0", &["--speed 0"]),
         ("--area-width 0", &["--area-width 0"]),
         ("--levels 6", &["--levels 6"]),
-        ("--levels 5 --triangles 20000", &["--levels 5", "limit"]),
+        ("--levels 5 --triangles 20000", &["(--levels)", "limit"]),
         ("--triangles 3", &["--triangles 3"]),
         ("--stretch 1,0,1", &["--stretch 1,0,1"]),
         ("--stretch 1,1,1001", &["--stretch 1,1,1001"]),
