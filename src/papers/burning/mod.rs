@@ -42,6 +42,7 @@ pub mod reference;
 mod refinement;
 pub mod setup;
 mod surface_removal;
+mod targets;
 mod texture;
 mod vertex_mapping;
 
@@ -457,48 +458,6 @@ impl Paper for Burning {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let (state, rotations) = self.state();
-        let buffers = &self.buffers;
-        let mut targets = vec![
-            Target::table("rest", &buffers.rest, 4),
-            Target::words("triangles", &buffers.triangles, 3),
-            Target::words("corners", &buffers.corners, 3),
-            Target::words("welds", &buffers.welds, 1),
-            Target::table("state", state, 4),
-            Target::words("labels", &buffers.labels, 1),
-            Target::words("triangle-labels", &buffers.triangle_labels, 1),
-            Target::words("alive", &buffers.alive, 1),
-            Target::words("removed", &buffers.removed, 1),
-            Target::words("cells", &buffers.cells, 1),
-            Target::integers("blocks", &buffers.blocks, 8),
-            Target::table("rotations", rotations, 4),
-            Target::words("clock", &buffers.clock, 11),
-            Target::words("stream", &buffers.stream, 3),
-            Target::table("mapped", &buffers.mapped, 4),
-            Target::table("normals", &buffers.normals, 4),
-            Target::table("colors", &buffers.colors, 4),
-            Target::image("depth", &self.draw.depth),
-            Target::image("picture", &self.draw.picture),
-        ];
-        if let Some(refinement) = &self.refinement {
-            targets.push(Target::integers("statuses", &refinement.statuses, 1));
-        }
-        if let Some(puddle) = &self.puddle {
-            targets.push(Target::words("puddle", &puddle.heights[self.newest()], PUDDLE_CELLS));
-            targets.push(Target::words("film", &puddle.film, 8));
-        }
-        if let Some(parts) = &self.parts {
-            targets.push(Target::words("part-of", &parts.part_of, 1));
-            targets.push(Target::words("vertex-weights", &parts.weights, 1));
-            targets.push(Target::table("parts", &parts.parts, 24));
-        }
-        if let Some(surface) = &self.draw.surface {
-            targets.push(Target::table("texture-coordinates", &surface.coordinates, 2));
-        }
-        if let Some(flames) = &self.flames {
-            targets.push(Target::words("flame-groups", &flames.groups, 4));
-            targets.push(Target::table("particles", &flames.particles, 8));
-        }
-        targets
+        targets::targets(self)
     }
 }
