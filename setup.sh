@@ -72,6 +72,14 @@ has_chromium_library() {
     return 1
 }
 
+# Whether all these programs are there; daemons are not on every user's path.
+has_programs() (
+    PATH=$PATH:/usr/sbin:/sbin
+    for program; do
+        command -v "$program" >/dev/null || exit 1
+    done
+)
+
 # Whether a Chromium is there that the tests of the report's page can drive: tests/suite/page/browser.rs has the same list.
 has_browser() {
     [ -x "${FUMAROLE_TEST_BROWSER:-}" ] && return
@@ -104,6 +112,10 @@ find_missing() {
         need xdotool 'xdotool for the same tests'
     [ -z "$tests" ] || command -v weston >/dev/null ||
         need weston 'weston, a Wayland compositor, for the same tests'
+    [ -z "$tests" ] || has_programs sbatch slurmctld slurmd ||
+        need slurm-wlm 'Slurm, for the tests of films on many machines'
+    [ -z "$tests" ] || has_programs munged mungekey ||
+        need munge "munge, Slurm's authentication"
     # The window loads these when it opens.
     for library in libX11-xcb.so.1:libx11-xcb1 libXcursor.so.1:libxcursor1 libXi.so.6:libxi6 \
         libxkbcommon-x11.so.0:libxkbcommon-x11-0; do
@@ -159,6 +171,9 @@ package_here() {
     arch:libx11-xcb1) echo libx11 ;;
     suse:libx11-xcb1) echo libX11-xcb1 ;;
     fedora:chromium-* | arch:chromium-* | suse:chromium-*) echo chromium ;;
+    fedora:slurm-wlm) echo slurm slurm-slurmctld slurm-slurmd ;;
+    arch:slurm-wlm) echo slurm-llnl ;;
+    suse:slurm-wlm) echo slurm ;;
     *) echo "$1" ;;
     esac
 }

@@ -2,15 +2,18 @@
 
 mod ab;
 mod all;
+mod assemble;
 mod bench;
 mod compare;
 mod declared;
 mod devices;
 mod failure;
+mod film;
 mod loading;
 mod options;
 mod outcome;
 mod page;
+mod part;
 mod passes;
 mod processes;
 mod render;
@@ -52,6 +55,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Records, pictures and plots as one page that opens without a network
     Report(report::ReportArgs),
+    /// Put the parts of a film together that several processes drew
+    Assemble(assemble::AssembleArgs),
     /// Grow every paper's first axis until a limit stops it
     Stress(stress::StressAllArgs),
     /// Open a window on a paper: `fumarole view [PAPER] [OPTIONS]`, as `fumarole PAPER view`
@@ -122,6 +127,7 @@ pub fn umbrella() -> ExitCode {
         Some(Command::Devices(arguments)) => devices::run(arguments),
         Some(Command::Compare(arguments)) => compare::run(arguments),
         Some(Command::Ab(arguments)) => ab::run(arguments),
+        Some(Command::Assemble(arguments)) => assemble::run(arguments),
         Some(Command::Stress(arguments)) => stress::run_all(arguments),
         // Reordered before it was parsed.
         #[cfg(feature = "window")]

@@ -1,22 +1,24 @@
 //! `render`: the picture of a frame or of a range of frames, and intermediate targets at full precision.
 
 use std::ffi::OsStr;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::failure::Failure;
+use super::film;
 use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
+use super::part::{self, Part, parse_rows};
 use super::watch::{interrupted, patiently, progress_bar};
-use crate::file::{self, OutputError};
 use crate::image::{self, Rgba8, y4m};
 use crate::measure::bench::{Loaded, build, load_for};
 use crate::measure::machine::Machine;
 use crate::measure::picture;
+use crate::measure::shard::Shard;
 use crate::measure::study::Study;
 use crate::measure::{Paper, Variant};
 
@@ -26,6 +28,12 @@ pub struct PictureArgs {
     /// Frame N, or the frames A..B from A up to but not including B
     #[arg(long, value_name = "N|A..B", default_value = "0", value_parser = parse_frames)]
     frame: Frames,
+    /// Of the frames, or of one frame's rows, the part I of N, from 0 to N - 1; what is finished is not drawn again
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["rows", "film", "dump"])]
+    shard: Option<Shard>,
+    /// Keep the rows A..B alone, from A up to but not including B, the first being 0; what is finished is not drawn again
+    #[arg(long, value_name = "A..B", value_parser = parse_rows, conflicts_with_all = ["film", "dump"])]
+    rows: Option<Range<u32>>,
     /// Write a target of the frame, by the file's ending: .exr, .npy or .png; `passes` lists the targets; repeatable
     #[arg(long, value_name = "TARGET=FILE", value_parser = OsStringValueParser::new().try_map(|text| parse_dump(&text)))]
     dump: Vec<Dump>,
@@ -117,18 +125,42 @@ pub fn draw<S: Study>(
         outcome::check_file(&picture_path(frames.first))?;
     }
     if let Some(film) = &arguments.film {
-        if film.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("y4m")) {
-            let message = format!("--film {}: films are YUV4MPEG2; end the name in .y4m", film.display());
-            return Err(Failure::Input(message));
-        }
-        outcome::check_file(film)?;
+        film::check(film)?;
     }
 
     let study = resolve()?;
+    let (whole, height) = (frames.first..frames.end, study.identity().height);
+    let (numbers, rows) = arguments.share(height)?;
+    if numbers.is_empty() || rows.is_empty() {
+        // More processes than there is work for.
+        if !arguments.quiet {
+            outcome::say("nothing to draw: there are more shards than frames or rows");
+        }
+        return Ok(());
+    }
+    let is_cut = rows != (0..height);
+    let picture_path = |number: u32| match is_cut {
+        true => part::of_rows(&picture_path(number), [rows.start, rows.end]),
+        false => picture_path(number),
+    };
     let open = || Machine::open(&arguments.machine.resolve(0), S::NEEDS);
     let loaded = patiently(arguments.quiet, "loading the scene", || load_for(&study, &[variant], open))?;
     let (Loaded { scene, .. }, mut machine) = loaded;
     outcome::say_device(&output, &machine);
+    let mut part = match arguments.shard.is_some() || arguments.rows.is_some() {
+        true => Some(Part::of(&study, variant, &arguments.machine, &machine, whole)?),
+        false => None,
+    };
+    let numbers: Vec<u32> = match &mut part {
+        Some(part) => numbers.filter(|number| !part.at(*number, &rows).is_finished(&picture_path(*number))).collect(),
+        None => numbers.collect(),
+    };
+    if numbers.is_empty() {
+        if !arguments.quiet {
+            outcome::say("nothing to draw: every part is finished");
+        }
+        return Ok(());
+    }
     outcome::foretell(&output, &study.estimate(&machine.device, &scene, variant), &machine);
     let mut built = patiently(arguments.quiet, "making the first frame", || build(&machine, &study, &scene, variant))?;
     let targets = built.paper.targets();
@@ -140,7 +172,7 @@ pub fn draw<S: Study>(
         }
     }
     let bar = progress_bar(arguments.quiet, S::PAPER);
-    bar.set_length(u64::from(frames.end - frames.first));
+    bar.set_length(numbers.len() as u64);
     let mut written = Vec::new();
     let mut next = |number: u32| -> Result<Option<Rgba8>, Failure> {
         let is_wanted = |left: u32| {
@@ -156,15 +188,19 @@ pub fn draw<S: Study>(
         let rendered = picture::render(&mut machine, &mut built.paper, number)?;
         if has_pictures {
             let path = picture_path(number);
-            image::write_png(&path, &rendered)?;
+            let kept = if is_cut { &rendered.rows(rows.clone())? } else { &rendered };
+            image::write_png(&path, kept)?;
+            if let Some(part) = &mut part {
+                part.at(number, &rows).write(&path, kept)?;
+            }
             written.push(path);
         }
         bar.inc(1);
         Ok(Some(rendered))
     };
-    let numbers = frames.first..frames.end;
+    let numbers = numbers.into_iter();
     let filmed = match &arguments.film {
-        Some(path) => shoot(path, arguments.film_rate, numbers.map(&mut next).map_while(Result::transpose))?,
+        Some(path) => film::shoot(path, arguments.film_rate, numbers.map(&mut next).map_while(Result::transpose))?,
         None => {
             numbers.map(&mut next).map_while(Result::transpose).try_fold(0, |count, drawn| drawn.map(|_| count + 1))?
         }
@@ -190,26 +226,21 @@ pub fn draw<S: Study>(
     Ok(())
 }
 
-/// Writes a film, and gives the number of its frames; without one there is no file.
-fn shoot(path: &Path, rate: u32, mut frames: impl Iterator<Item = Result<Rgba8, Failure>>) -> Result<u32, Failure> {
-    // Before the first frame is there, nothing is written: an older film stays.
-    let Some(first) = frames.next().transpose()? else { return Ok(0) };
-    let (mut count, mut failure) = (0, None);
-    let written = file::write_with(path, |output| {
-        let mut film = y4m::Film::new(output, (first.width(), first.height()), rate)?;
-        for frame in [Ok(first)].into_iter().chain(frames) {
-            match frame {
-                Ok(frame) => film.push(&frame)?,
-                Err(error) => {
-                    failure = Some(error);
-                    return Err(io::Error::other("a frame could not be drawn"));
-                }
+impl PictureArgs {
+    /// The frames and rows that this process draws of a picture so high.
+    fn share(&self, height: u32) -> Result<(Range<u32>, Range<u32>), Failure> {
+        let frames = self.frame.first..self.frame.end;
+        match (self.shard, &self.rows) {
+            (_, Some(rows)) if rows.end > height => {
+                let message = format!("--rows {}..{}: the picture has the rows 0..{height}", rows.start, rows.end);
+                Err(Failure::Input(message))
             }
-            count += 1;
+            (_, Some(rows)) => Ok((frames, rows.clone())),
+            (Some(shard), None) if frames.len() > 1 => Ok((shard.of(frames), 0..height)),
+            (Some(shard), None) => Ok((frames, shard.of(0..height))),
+            (None, None) => Ok((frames, 0..height)),
         }
-        Ok(())
-    });
-    failure.map_or_else(|| written.map(|()| count).map_err(|error: OutputError| error.into()), Err)
+    }
 }
 
 #[cfg(test)]

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use crate::content;
 
 use super::{Error, srgb};
@@ -53,6 +55,16 @@ impl Rgba8 {
     /// R, G, B, A of each pixel, row by row from the top.
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
+    }
+
+    /// The rows of a range within the height.
+    ///
+    /// # Errors
+    /// [`Error::Length`] for rows that it does not have.
+    pub fn rows(&self, rows: Range<u32>) -> Result<Self, Error> {
+        let bytes = 4 * self.width as usize;
+        let taken = self.pixels.get(rows.start as usize * bytes..rows.end as usize * bytes).unwrap_or_default();
+        Self::new(self.width, rows.end.saturating_sub(rows.start), taken.to_vec())
     }
 
     /// SHA-256 of [`pixels`](Self::pixels) in lower-case hexadecimal: the picture's identity whatever the file's

@@ -17,6 +17,7 @@ pub mod parameter;
 pub mod picture;
 pub mod profile;
 pub mod result_table;
+pub mod shard;
 pub mod statistics;
 pub mod stress;
 pub mod study;

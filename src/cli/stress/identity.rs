@@ -1,7 +1,6 @@
 //! Everything that fixes the work of a step, as far as it is known before one is taken.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::json;
 
@@ -21,7 +20,11 @@ impl<S: Study> Ascent<'_, S> {
     pub(super) fn template(&self, children: &Children<'_>) -> Result<StressRecord, Failure> {
         let environment = children.environment()?;
         let options = self.machine.resolve(0);
-        let shaders = options.shader_dir.as_deref().map(folder_sha256).transpose()?;
+        let folder_sha256 = |folder: &PathBuf| {
+            content::folder_sha256(folder)
+                .map_err(|e| Error::Input(format!("reading the shaders under {}: {e}", folder.display())))
+        };
+        let shaders = options.shader_dir.as_ref().map(folder_sha256).transpose()?;
         let parameters = S::parameters();
         let settings = Settings {
             parameters: parameters.iter().map(|p| (p.name.to_owned(), p.text(&self.setup))).collect(),
@@ -70,29 +73,4 @@ fn name<S: Study>(axis: &Axis<S>) -> AxisName {
         unit: axis.unit.to_owned(),
         amount_unit: axis.amount_unit().to_owned(),
     }
-}
-
-/// SHA-256 of the names and contents of all files below a folder.
-fn folder_sha256(folder: &Path) -> Result<String, Error> {
-    let failed = |e: std::io::Error| Error::Input(format!("reading the shaders under {}: {e}", folder.display()));
-    let mut files = files_below(folder).map_err(failed)?;
-    files.sort();
-    let digests = files.iter().map(|path| {
-        let name = path.strip_prefix(folder).unwrap_or(path).display().to_string();
-        Ok(format!("{name}\0{}\n", content::file_sha256(path).map_err(failed)?))
-    });
-    Ok(content::sha256(digests.collect::<Result<String, Error>>()?.as_bytes()))
-}
-
-fn files_below(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder)? {
-        let entry = entry?;
-        if entry.file_type()?.is_dir() {
-            files.extend(files_below(&entry.path())?);
-        } else {
-            files.push(entry.path());
-        }
-    }
-    Ok(files)
 }

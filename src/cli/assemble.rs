@@ -1,0 +1,214 @@
+//! `assemble`: parts of films, and records of shards, put together.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use super::film;
+use super::outcome;
+use super::part::{Part, in_folder, rows_suffix};
+use crate::file;
+use crate::image::{Rgba8, read_png, write_png, y4m};
+use crate::measure::shard::{self, Shard};
+
+#[derive(Debug, Clone, Args)]
+pub struct AssembleArgs {
+    /// Folders with the parts that `render --shard` and `render --rows` leave
+    #[arg(value_name = "DIR", required = true)]
+    sources: Vec<PathBuf>,
+    /// Folder of the film's pictures
+    #[arg(long, value_name = "DIR", default_value = "fumarole-out/film")]
+    out: PathBuf,
+    /// Write the frames as one film, YUV4MPEG2, in place of pictures
+    #[arg(long, value_name = "FILE.y4m", conflicts_with = "out")]
+    film: Option<PathBuf>,
+    /// Frames of the film a second, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = y4m::RATE, requires = "film",
+        value_parser = clap::value_parser!(u32).range(1..=1000))]
+    film_rate: u32,
+    /// Of N shards, print the numbers of those that lack a part, comma-separated, and assemble nothing
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(shard::MOST)))]
+    missing: Option<u32>,
+    /// Print nothing but errors and what was asked for
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Parts of one film, frame by frame, each frame's by their first row.
+struct Film {
+    frames: [u32; 2],
+    size: [u32; 2],
+    parts: BTreeMap<u32, Vec<(PathBuf, Part)>>,
+}
+
+pub fn run(arguments: &AssembleArgs) -> Result<(), Failure> {
+    let mut parts = Vec::new();
+    for source in &arguments.sources {
+        parts.extend(in_folder(source)?);
+    }
+    if let Some(count) = arguments.missing {
+        parts.retain(|(path, part)| part.has_picture(&path.with_file_name(&part.picture)));
+        return outcome::print(&missing(parts, count)?);
+    }
+    let film = Film::of(parts)?;
+    film.check_whole()?;
+    let frames = film.parts.values();
+    let wrote = match &arguments.film {
+        Some(path) => {
+            film::check(path)?;
+            let count = film::shoot(path, arguments.film_rate, frames.map(|parts| film.frame(parts)))?;
+            format!("wrote {count} frames to {}", path.display())
+        }
+        None => {
+            let count = frames.len();
+            for parts in frames {
+                film.write(parts, &arguments.out)?;
+            }
+            format!("wrote {count} pictures to {}", arguments.out.display())
+        }
+    };
+    if !arguments.quiet {
+        outcome::say(&wrote);
+    }
+    Ok(())
+}
+
+/// Numbers of the shards that lack a part; all of them where there is none.
+fn missing(parts: Vec<(PathBuf, Part)>, count: u32) -> Result<String, Failure> {
+    let list = |numbers: Vec<String>| if numbers.is_empty() { String::new() } else { numbers.join(",") + "\n" };
+    if parts.is_empty() {
+        return Ok(list((0..count).map(|number| number.to_string()).collect()));
+    }
+    let film = Film::of(parts)?;
+    let lacks = |number: &u32| {
+        let shard = Shard { number: *number, count };
+        if film.is_range() {
+            shard.of(film.frames[0]..film.frames[1]).any(|frame| !film.gaps(frame).is_empty())
+        } else {
+            let rows = shard.of(0..film.size[1]);
+            film.gaps(film.frames[0]).iter().any(|gap| gap[0] < rows.end && rows.start < gap[1])
+        }
+    };
+    Ok(list((0..count).filter(lacks).map(|number| number.to_string()).collect()))
+}
+
+impl Film {
+    /// The film that all parts are of.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for none, for parts of other settings, and for rows that several parts have.
+    fn of(parts: Vec<(PathBuf, Part)>) -> Result<Self, Failure> {
+        let Some((first_path, first)) = parts.first().cloned() else {
+            let message = "assemble: no part was found; render --shard and render --rows leave them";
+            return Err(Failure::Input(message.to_owned()));
+        };
+        let mut film = Film { frames: first.frames, size: first.size, parts: BTreeMap::new() };
+        for (path, part) in parts {
+            if part.identity != first.identity {
+                let (a, b, what) = (first_path.display(), path.display(), difference(&first, &part));
+                return Err(Failure::Input(format!(
+                    "assembling {a} and {b}: their {what} differ; they are of two films"
+                )));
+            }
+            film.parts.entry(part.frame).or_default().push((path, part));
+        }
+        for frame in film.parts.values_mut() {
+            frame.sort_by_key(|(_, part)| part.rows);
+            let overlap = frame.windows(2).find(|pair| pair[1].1.rows[0] < pair[0].1.rows[1]);
+            if let Some([(a, _), (b, part)]) = overlap {
+                let (a, b, row, frame) = (a.display(), b.display(), part.rows[0], part.frame);
+                return Err(Failure::Input(format!("assembling {a} and {b}: both have row {row} of frame {frame}")));
+            }
+        }
+        Ok(film)
+    }
+
+    fn is_range(&self) -> bool {
+        self.frames[1] - self.frames[0] > 1
+    }
+
+    /// Rows of a frame that no part has.
+    fn gaps(&self, frame: u32) -> Vec<[u32; 2]> {
+        let mut next = 0;
+        let mut gaps = Vec::new();
+        for (_, part) in self.parts.get(&frame).into_iter().flatten() {
+            gaps.extend((next < part.rows[0]).then_some([next, part.rows[0]]));
+            next = part.rows[1];
+        }
+        gaps.extend((next < self.size[1]).then_some([next, self.size[1]]));
+        gaps
+    }
+
+    fn check_whole(&self) -> Result<(), Failure> {
+        let Some(frame) = (self.frames[0]..self.frames[1]).find(|&frame| !self.gaps(frame).is_empty()) else {
+            return Ok(());
+        };
+        let count = self.frames[1] - self.frames[0];
+        let whole = self.parts.keys().filter(|frame| self.gaps(**frame).is_empty()).count();
+        let rows: Vec<String> = self.gaps(frame).iter().map(|[first, end]| format!("{first}..{end}")).collect();
+        Err(Failure::Input(format!(
+            "assembling {count} frames: {} lack rows, the first is frame {frame} with rows {}; render what is missing",
+            count as usize - whole,
+            rows.join(", ")
+        )))
+    }
+
+    /// A frame of its parts, which it has all.
+    fn frame(&self, parts: &[(PathBuf, Part)]) -> Result<Rgba8, Failure> {
+        let mut pixels = Vec::new();
+        for (path, part) in parts {
+            let picture = path.with_file_name(&part.picture);
+            let rows = read_png(&picture)?;
+            if rows.sha256() != part.sha256
+                || [rows.width(), rows.height()] != [self.size[0], part.rows[1] - part.rows[0]]
+            {
+                let message =
+                    format!("assembling {}: it is not the picture that was drawn; render it again", picture.display());
+                return Err(Failure::Input(message));
+            }
+            pixels.extend_from_slice(rows.pixels());
+        }
+        Ok(Rgba8::new(self.size[0], self.size[1], pixels)?)
+    }
+
+    /// Writes a frame under the name that the whole film would have given it.
+    fn write(&self, parts: &[(PathBuf, Part)], out: &Path) -> Result<(), Failure> {
+        let name = parts.first().map(|(_, part)| whole_name(part)).unwrap_or_default();
+        let path = out.join(name);
+        file::check_writable(&path)?;
+        Ok(write_png(&path, &self.frame(parts)?)?)
+    }
+}
+
+/// `pool-0007.rows-0-9.png` is of `pool-0007.png`.
+fn whole_name(part: &Part) -> String {
+    let suffix = rows_suffix(part.rows);
+    let mut name = part.picture.clone();
+    if part.rows != [0, part.size[1]]
+        && let Some(at) = name.rfind(&suffix)
+    {
+        name.replace_range(at..at + suffix.len(), "");
+    }
+    name
+}
+
+/// What of two parts' settings differs.
+fn difference(a: &Part, b: &Part) -> String {
+    let parameters =
+        a.settings.parameters.iter().filter(|(name, value)| b.settings.parameters.get(*name) != Some(*value));
+    let mut names: Vec<String> = parameters.map(|(name, _)| format!("--{name}")).collect();
+    let mut add = |differs: bool, name: &str| names.extend(differs.then(|| name.to_owned()));
+    add((&a.settings.paper, &a.settings.variant) != (&b.settings.paper, &b.settings.variant), "variants");
+    add(a.settings.preset != b.settings.preset, "presets");
+    add(a.settings.inputs.iter().map(|i| &i.sha256).ne(b.settings.inputs.iter().map(|i| &i.sha256)), "input files");
+    add(
+        (&a.settings.shader_compiler, &a.settings.shaders) != (&b.settings.shader_compiler, &b.settings.shaders),
+        "shaders",
+    );
+    add(a.settings.program != b.settings.program, "programs");
+    add(a.device != b.device, "devices");
+    add((a.frames, a.size) != (b.frames, b.size), "frames or sizes");
+    if names.is_empty() { "settings".to_owned() } else { names.join(", ") }
+}
