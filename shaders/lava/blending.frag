@@ -28,7 +28,7 @@ void main() {
     if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest) {
         discard;
     }
-    vec3 color = color_at(center_m);
+    vec3 color = color_of(center_m.y, rock_at(center_m.xz));
     if (shading.mode == NORMALS) {
         ivec2 column = ivec2(clamp(center_m.xz / scene.space_m.xz * scene.columns, vec2(0.0), scene.columns - 1.0));
         color = 0.5 + 0.5 * texelFetch(normal_height, column, 0).xyz;

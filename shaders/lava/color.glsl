@@ -1,4 +1,4 @@
-// The colour c_i of section 7.2 at a place of the surface, for splats and rays. The includer's constants `shading` hold
+// The colour c_i of section 7.2 by height and rock, for splats and rays. The includer's constants `shading` hold
 // drift_m, the distance that the rock has moved with the lava, and mode.
 
 layout(set = 0, binding = 3) uniform texture2D rock;
@@ -17,14 +17,14 @@ vec3 rock_at(vec2 place_m) {
 }
 
 // Normals are the caller's to show.
-vec3 color_at(vec3 place_m) {
-    vec3 color = scene.glow * (scene.space_m.y - place_m.y);
+vec3 color_of(float height_m, vec3 rock) {
+    vec3 color = scene.glow * (scene.space_m.y - height_m);
     if (shading.mode == LAVA) {
-        color *= rock_at(place_m.xz);
+        color *= rock;
     } else if (shading.mode == ROCK) {
-        color = rock_at(place_m.xz);
+        color = rock;
     } else if (shading.mode == HEIGHTS) {
-        color = vec3(place_m.y / scene.space_m.y);
+        color = vec3(height_m / scene.space_m.y);
     }
     return color;
 }

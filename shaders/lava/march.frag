@@ -1,6 +1,7 @@
 #version 450
 
-// A ray for each pixel against the height field, in place of splats. It goes from cell to cell, and in a cell to the exact
+// A ray for each pixel against the height field, in place of splats. It begins where it comes below the highest place, goes
+// from cell to cell, and in a cell to the exact
 // crossing with the bilinear patch, whose height above a ray is a quadratic. The sheet is seen from both sides, as splats
 // are; at the sides of the space a wall closes it down to the floor. Ours: the thesis has splats alone.
 
@@ -19,6 +20,10 @@ layout(push_constant, std430) uniform Rays {
     vec3 down; // to the next row
 } shading;
 
+layout(set = 0, binding = 2, std430) readonly buffer Highest {
+    float all; // place of the height field, metres
+} highest;
+
 #include "lava/height.glsl"
 #include "lava/color.glsl"
 
@@ -26,8 +31,9 @@ layout(location = 0) out vec4 accumulated;
 
 // lavapipe ends all loops of a shader after 65,535 iterations. A ray crosses at most columns + rows + 1 cells.
 const int MOST_CELLS = 65534;
-// Taps of the rock along each side of a pixel, so that it does not shimmer from afar.
-const int TAPS = 3;
+// Most taps of the rock along each side of a pixel, and the texels between two: the sampler's own filter is two wide.
+const float MOST_TAPS = 3.0;
+const float TEXELS_A_TAP = 1.5;
 const float FAR_AWAY = 1.0e30;
 
 struct Hit {
@@ -54,10 +60,10 @@ float first_root(float c0, float c1, float c2, float last) {
 }
 
 Hit march(vec3 direction) {
-    // The box, a little higher and deeper than any surface.
+    // The box, a little deeper than any surface, and as high as the surface.
     float slack_m = 1.0e-3 * scene.space_m.y;
     vec3 low = vec3(0.0, -slack_m, 0.0) - shading.eye_m;
-    vec3 high = scene.space_m + vec3(0.0, slack_m, 0.0) - shading.eye_m;
+    vec3 high = vec3(scene.space_m.x, highest.all + slack_m, scene.space_m.z) - shading.eye_m;
     vec3 safe = mix(direction, vec3(1.0e-12), lessThan(abs(direction), vec3(1.0e-12)));
     vec3 enter = min(low / safe, high / safe);
     vec3 leave = max(low / safe, high / safe);
@@ -137,14 +143,17 @@ void main() {
     facing = abs(facing) < 0.05 ? (facing < 0.0 ? -0.05 : 0.05) : facing;
     vec3 right_m = hit.t * (shading.across - direction * (dot(shading.across, normal) / facing));
     vec3 down_m = hit.t * (shading.down - direction * (dot(shading.down, normal) / facing));
-    vec3 color = vec3(0.0);
-    for (int i = 0; i < TAPS * TAPS; i++) {
-        vec2 offset = (vec2(float(i % TAPS), float(i / TAPS)) + 0.5) / float(TAPS) - 0.5;
-        vec3 tap_m = place_m + offset.x * right_m + offset.y * down_m;
-        // The rock of a wall goes on from its edge, as if it were folded down.
-        vec2 spread_m = tap_m.xz + hit.side.xz * (surface.w - tap_m.y);
-        color += color_at(vec3(spread_m.x, place_m.y, spread_m.y));
+    vec2 texels = vec2(length(right_m), length(down_m)) / scene.rock_tile_m * scene.rock_texels;
+    vec2 taps = clamp(ceil(texels / TEXELS_A_TAP), 1.0, MOST_TAPS);
+    vec3 rock = vec3(0.0);
+    for (float y = 0.5; y < taps.y; y++) {
+        for (float x = 0.5; x < taps.x; x++) {
+            vec3 tap_m = place_m + (x / taps.x - 0.5) * right_m + (y / taps.y - 0.5) * down_m;
+            // The rock of a wall goes on from its edge, as if it were folded down.
+            rock += rock_at(tap_m.xz + hit.side.xz * (surface.w - tap_m.y));
+        }
     }
-    accumulated = vec4(shading.mode == NORMALS ? 0.5 + 0.5 * normal : color / float(TAPS * TAPS), 1.0);
+    vec3 color = color_of(place_m.y, rock / (taps.x * taps.y));
+    accumulated = vec4(shading.mode == NORMALS ? 0.5 + 0.5 * normal : color, 1.0);
     gl_FragDepth = (hit.t + scene.epsilon_m) * scene.depth_per_m;
 }

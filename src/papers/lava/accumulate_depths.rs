@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::FLOORS;
 use super::cluster::Point;
-use super::parameters::SurfaceKind;
+use super::parameters::{Parameters, SurfaceKind};
 use super::targets::{Context, EMPTY, ZERO};
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Blend, Buffer, Error, Frame, ImageView, Load, Pass, Topology};
@@ -41,14 +41,7 @@ impl AccumulateDepths {
         let constants = DepthConstants {
             space_m: [parameters.space_m.x, parameters.space_m.z],
             columns: [sums.width() as f32, sums.height() as f32],
-            // A crossing is the height of its own column: its splat reaches no neighbour.
-            radius_m: match parameters.surface {
-                SurfaceKind::Mean | SurfaceKind::Top => parameters.radius_m,
-                SurfaceKind::Crossing => {
-                    let [x, _, z] = parameters.density;
-                    0.25 * (parameters.space_m.x / x as f32).min(parameters.space_m.z / z as f32)
-                }
-            },
+            radius_m: radius_m(parameters),
         };
         Ok(AccumulateDepths { pass, instanced, constants, sums })
     }
@@ -78,6 +71,18 @@ impl AccumulateDepths {
                 draw.vertices(points)
             };
         })
+    }
+}
+
+/// R_i of eq. 6.3, metres.
+pub fn radius_m(parameters: &Parameters) -> f32 {
+    match parameters.surface {
+        SurfaceKind::Mean | SurfaceKind::Top => parameters.radius_m,
+        // A crossing is the height of its own column: its splat reaches no neighbour.
+        SurfaceKind::Crossing => {
+            let [x, _, z] = parameters.density;
+            0.25 * (parameters.space_m.x / x as f32).min(parameters.space_m.z / z as f32)
+        }
     }
 }
 

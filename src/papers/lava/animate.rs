@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::parameters::Parameters;
 use super::start::Particles;
 use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::upload_rows;
@@ -37,10 +38,17 @@ pub struct Animate {
 }
 
 impl Animate {
+    /// `label` goes before the names of the textures.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer; [`Error::Limit`] for more particles than a texture holds.
-    pub fn new(context: Context<'_>, particles: &Particles) -> Result<Self, Error> {
-        let Context { shaders, parameters, .. } = context;
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        particles: &Particles,
+    ) -> Result<Self, Error> {
+        let context = Context { shaders, label, parameters };
         let (width, height) = Particles::texture_size(particles.positions.len() as u32);
         let state = |suffix: &str| -> Result<State, Error> {
             let target = |name: &str| context.target(&format!("{name}{suffix}"), FLOATS, width, height);

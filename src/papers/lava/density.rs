@@ -75,8 +75,7 @@ impl Density {
             radius_m: parameters.radius_m,
             columns: [x as f32, z as f32],
             point_size_px: parameters.point_size_px(),
-            // Eq. 6.2 at r = 0, with h to the first power as it is printed.
-            peak: 405.0 / (748.0 * PI * parameters.radius_m),
+            peak: peak(parameters.radius_m),
         };
         Ok(Density { passes, constants, density: image.view()?, layers })
     }
@@ -128,6 +127,11 @@ fn each(
     let first = first.build(context.shaders)?;
     let each = cluster_vertices.iter().zip(layers);
     each.map(|(v, layer)| first.rebind().vertices(v).color(0, layer, load).build(context.shaders)).collect()
+}
+
+/// Eq. 6.2 at r = 0, with h to the first power as it is printed.
+pub fn peak(radius_m: f32) -> f32 {
+    405.0 / (748.0 * PI * radius_m)
 }
 
 /// A point beyond the device's size would be clamped in silence.

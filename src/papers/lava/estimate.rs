@@ -1,24 +1,50 @@
 //! Sizes that follow from the parameters.
 
 use super::cluster::Point;
-use super::parameters::Parameters;
+use super::gpu_driven;
+use super::parameters::{Parameters, SurfaceDraw, Variant};
 use super::rock::Rock;
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
 /// Bytes of a texel of four floats.
-const TEXEL: f64 = 16.0;
+pub const TEXEL: f64 = 16.0;
 
 impl Parameters {
     /// Device memory, passes and fragments of a frame.
-    pub fn estimate(&self, rock: &Rock, objects: &[Mesh]) -> Estimate {
-        let [columns, planes, rows] = self.density.map(f64::from);
-        let particles = f64::from(self.particles);
-        let clusters = f64::from(self.clusters());
+    pub fn estimate(&self, variant: Variant, rock: &Rock, objects: &[Mesh]) -> Estimate {
+        let first_stages = match variant {
+            Variant::Paper => self.read_back_estimate(),
+            Variant::GpuDriven => gpu_driven::estimate(self),
+        };
         let splats = f64::from(self.splats[0]) * f64::from(self.splats[1]);
         let pixels = f64::from(self.width) * f64::from(self.height);
         let vertices: usize = objects.iter().map(|mesh| mesh.positions.len()).sum();
         let indices: usize = objects.iter().map(|mesh| mesh.indices.len()).sum();
+        let bytes = [
+            ("splats", 8.0 * splats),
+            ("size", (TEXEL + 8.0) * pixels),
+            ("rock", size_of_val(&rock.texels[..]) as f64),
+            ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
+        ];
+        let invocations = match self.surface_draw(variant) {
+            SurfaceDraw::Splats => {
+                vec![("splat-radius", 2.0 * splats * (1.0 + self.splat_pixels().min(pixels))), ("splats", 8.0 * splats)]
+            }
+            SurfaceDraw::March => vec![("size", pixels)],
+        };
+        Estimate {
+            bytes: first_stages.bytes.into_iter().chain(bytes).collect(),
+            invocations: first_stages.invocations.into_iter().chain(invocations).collect(),
+            ..first_stages
+        }
+    }
+
+    /// The thesis's stages one and two.
+    fn read_back_estimate(&self) -> Estimate {
+        let [columns, planes, rows] = self.density.map(f64::from);
+        let particles = f64::from(self.particles);
+        let clusters = f64::from(self.clusters());
         let point = size_of::<Point>() as f64;
         // A particle is drawn into every cluster that its radius reaches, as a square of eq. 6.1.
         let reached = (2.0 * f64::from(self.radius_m / self.space_m.y) * clusters + 1.0).min(clusters);
@@ -30,20 +56,13 @@ impl Parameters {
                 ("particles", 7.0 * TEXEL * particles),
                 ("density", clusters * (point * particles + TEXEL * columns * rows)),
                 ("density", point * columns * planes * rows + 3.0 * TEXEL * columns * rows),
-                ("splats", 8.0 * splats),
-                ("size", (TEXEL + 8.0) * pixels),
-                ("rock", size_of_val(&rock.texels[..]) as f64),
-                ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
             ],
-            buffers: Vec::new(),
             passes: Some(("density", 3 * u64::from(self.clusters()) + 16)),
-            draws: None,
             invocations: vec![
                 ("radius", particles * reached * point_pixels),
                 ("density", columns * rows * planes.sqrt() * disc),
-                ("splat-radius", 2.0 * splats * (1.0 + self.splat_pixels().min(pixels))),
-                ("splats", 8.0 * splats),
             ],
+            ..Estimate::default()
         }
     }
 
@@ -65,12 +84,18 @@ mod tests {
 
     #[test]
     fn what_is_set_higher_is_estimated_higher() {
-        let default = Parameters::default().estimate(Rock::built_in(), &[]);
+        let of = |parameters: &Parameters| parameters.estimate(Variant::Paper, Rock::built_in(), &[]);
+        let default = of(&Parameters::default());
         // 40,000 particles in six clusters, 600 x 150 splats and 800 x 600 pixels are some tens of megabytes.
         assert!((20e6..100e6).contains(&total(&default.bytes)), "{default:?}");
-        let vast = Parameters { density: [1, 67_108_864, 1], ..Parameters::default() }.estimate(Rock::built_in(), &[]);
+        let vast = of(&Parameters { density: [1, 67_108_864, 1], ..Parameters::default() });
         assert!(total(&vast.bytes) > 8e12 && vast.passes.is_some_and(|(_, count)| count > 50_000_000), "{vast:?}");
-        let wide = Parameters { splat_radius_m: 1.0, ..Parameters::default() }.estimate(Rock::built_in(), &[]);
+        let wide = of(&Parameters { splat_radius_m: 1.0, ..Parameters::default() });
         assert!(total(&wide.invocations) > 100.0 * total(&default.invocations), "{wide:?}");
+        let driven = |parameters: Parameters| parameters.estimate(Variant::GpuDriven, Rock::built_in(), &[]);
+        let most = driven(Parameters { particles: 16_777_216, ..Parameters::default() });
+        assert!(total(&most.bytes) > 2e9 && most.buffers[0].1 == f64::from(128 << 20), "{most:?}");
+        let wide = driven(Parameters { radius_m: 1.0, ..Parameters::default() });
+        assert!(total(&wide.invocations) > 30.0 * total(&driven(Parameters::default()).invocations), "{wide:?}");
     }
 }

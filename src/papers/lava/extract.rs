@@ -25,6 +25,20 @@ pub struct Extract {
     pub density_range: [f32; 2],
 }
 
+/// What a frame accepted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accepted {
+    /// Grid points.
+    pub count: usize,
+    /// Lowest and highest density at a grid point.
+    pub density_range: [f32; 2],
+}
+
+impl Accepted {
+    /// Before any grid point.
+    pub const NONE: Self = Accepted { count: 0, density_range: [f32::INFINITY, f32::NEG_INFINITY] };
+}
+
 /// The highest place of every column so far, from the lowest plane up.
 struct Columns {
     kind: SurfaceKind,
@@ -104,7 +118,7 @@ impl Extract {
         self.accepted.clear();
         self.columns.iter_mut().for_each(Columns::clear);
         self.clusters_done = 0;
-        self.density_range = [f32::INFINITY, f32::NEG_INFINITY];
+        self.density_range = Accepted::NONE.density_range;
     }
 
     /// The points of the surface, as the vertex buffer holds them after the last cluster.

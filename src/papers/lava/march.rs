@@ -1,11 +1,14 @@
-//! Pass `march`: a ray for each pixel against the height field, in place of the splats of sections 7.1 and 7.2. Ours.
+//! Passes `highest-rows`, `highest` and `march`: a ray for each pixel against the height field, from its highest place on, in
+//! place of the splats of sections 7.1 and 7.2. Ours.
+
+use ash::vk;
 
 use super::blending::Blending;
 use super::parameters::{Parameters, Shading};
 use super::splats::Splats;
 use super::targets::{Context, FAR, ZERO};
 use super::visibility::Visibility;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Pass};
+use crate::gpu::{Blend, Buffer, BufferDesc, DepthTest, Error, Frame, Pass};
 use crate::host_block;
 
 host_block! {
@@ -23,9 +26,19 @@ host_block! {
     }
 }
 
-/// The pass.
+host_block! {
+    struct FieldConstants {
+        columns: u32,
+        rows: u32,
+    }
+}
+
+/// The passes.
 pub struct March {
-    pass: Pass,
+    highest_rows: Pass,
+    highest: Pass,
+    field: FieldConstants,
+    march: Pass,
     shading: Shading,
     rays: RayConstants,
 }
@@ -41,16 +54,32 @@ impl March {
         visibility: &Visibility,
         blending: &Blending,
     ) -> Result<Self, Error> {
-        let pass = Pass::graphics("march", "", "common/fullscreen.vert", "lava/march.frag")
+        let (columns, rows) = (splats.normal_height.width(), splats.normal_height.height());
+        let desc = BufferDesc::new(context.name("highest"), 4 * (1 + u64::from(rows)));
+        let found = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
+        let highest_rows = Pass::compute("highest-rows", "", "lava/highest-rows.comp")
+            .constants::<FieldConstants>()
+            .with("normal_height", &splats.normal_height)
+            .with("highest", &found)
+            .whole(&["normal_height"])
+            .build(context.shaders)?;
+        let highest = Pass::compute("highest", "", "lava/highest.comp")
+            .constants::<FieldConstants>()
+            .with("highest", &found)
+            .build(context.shaders)?;
+        let march = Pass::graphics("march", "", "common/fullscreen.vert", "lava/march.frag")
             .constants::<RayConstants>()
             .with("scene", &splats.scene)
+            .with("highest", &found)
             .with("normal_height", &splats.normal_height)
             .with("rock", &blending.rock)
             .with("linear", &blending.linear)
             .color(&blending.sums, ZERO, Blend::Replace)
             .depth(&visibility.depth, FAR, DepthTest::LessWrite)
             .build(context.shaders)?;
-        Ok(March { pass, shading: context.parameters.shading, rays: rays(context.parameters) })
+        let shading = context.parameters.shading;
+        let field = FieldConstants { columns, rows };
+        Ok(March { highest_rows, highest, field, march, shading, rays: rays(context.parameters) })
     }
 
     /// Sets the rays to those of the parameters' camera.
@@ -63,8 +92,14 @@ impl March {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
+        frame.compute(&self.highest_rows, |dispatch| {
+            dispatch.constants(&self.field).threads(self.field.rows, 1, 1);
+        })?;
+        frame.compute(&self.highest, |dispatch| {
+            dispatch.constants(&self.field).threads(1, 1, 1);
+        })?;
         let constants = RayConstants { drift_m: [drift_m, 0.0], mode: self.shading.mode(), ..self.rays };
-        frame.graphics(&self.pass, |draw| {
+        frame.graphics(&self.march, |draw| {
             draw.constants(&constants).vertices(3);
         })
     }

@@ -10,7 +10,8 @@
 //!   └─► visibility ─► blending ─► normalisation                                   (stage three, chapter 7)
 //! ```
 //!
-//! Polygon objects, if there are any, are drawn by `objects` into the picture after the thesis's last pass.
+//! Polygon objects, if there are any, are drawn by `objects` into the picture after the thesis's last pass. The variant
+//! `gpu-driven` takes another way from `animate` to `normal-height`, its own page.
 
 mod accumulate_depths;
 mod animate;
@@ -21,9 +22,11 @@ mod density;
 mod estimate;
 pub mod experiments;
 mod extract;
+mod gpu_driven;
 #[cfg(test)]
 mod layouts;
 mod march;
+mod method;
 mod normal_height;
 mod normalisation;
 mod objects;
@@ -31,6 +34,7 @@ pub mod parameters;
 mod particles;
 mod pattern;
 mod placement;
+mod read_back;
 mod read_density;
 mod read_positions;
 pub mod reference;
@@ -43,31 +47,28 @@ mod visibility;
 
 use std::sync::Arc;
 
-use self::accumulate_depths::AccumulateDepths;
-use self::animate::Animate;
 use self::blending::Blending;
-use self::cluster::Cluster;
-use self::density::{Density, GridPlanes};
-use self::extract::Extract;
 use self::march::March;
 use self::normal_height::NormalHeight;
 use self::normalisation::Normalisation;
 use self::objects::Objects;
 use self::particles::ParticlePoints;
-use self::read_density::ReadDensity;
-use self::read_positions::ReadPositions;
 use self::splats::Splats;
 use self::targets::{Context, EMPTY};
 use self::visibility::Visibility;
 use crate::gpu::transfer::read_image;
-use crate::gpu::{Blend, Buffer, Error, Feature, Frame, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, Error, Feature, Frame, ImageView, Load, Pass, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
-pub use self::animate::State;
+pub use self::animate::{Animate, State};
 pub use self::cluster::{Clusters, Point};
+pub use self::extract::Accepted;
+pub use self::gpu_driven::{Cells, GpuDriven};
+pub use self::method::Method;
 pub use self::parameters::{CAMERAS, Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, Variant};
 pub use self::placement::{Object, Place};
+pub use self::read_back::ReadBack;
 pub use self::rock::Rock;
 pub use self::splats::depth_range_m;
 pub use self::start::Particles;
@@ -91,10 +92,13 @@ pub const DRAWN: [&str; 7] = ["camera", "color", "epsilon", "exposure", "rock-ti
 /// The paper with its resources.
 pub struct Lava {
     parameters: Parameters,
-    /// Stage one.
-    pub animation: Animation,
-    /// Stage two.
-    pub isosurface: Isosurface,
+    variant: Variant,
+    /// The particles' textures.
+    pub animate: Animate,
+    /// From the particles to the sums of eq. 6.3.
+    pub method: Method,
+    /// The surface.
+    pub normal_height: NormalHeight,
     /// Stage three.
     pub splatting: Splatting,
     /// `None` without polygon objects.
@@ -103,6 +107,8 @@ pub struct Lava {
     view_warnings: Vec<String>,
     /// The objects' meshes, to be held against the surface once it is drawn.
     meshes: Vec<Mesh>,
+    /// What the last frame accepted, as far as the host knows.
+    accepted: Option<Accepted>,
     /// On objects under the surface of the last frame.
     buried: Vec<String>,
     /// `None` but for a picture of particles instead of the surface.
@@ -110,33 +116,6 @@ pub struct Lava {
     lacks_geometry_stage: bool,
     /// The next frame draws the particles of the last one.
     repeats: bool,
-}
-
-/// Stage one (chapter 5): the particles move on the device, are read back and sorted into clusters on the host.
-pub struct Animation {
-    /// The particles' textures.
-    pub animate: Animate,
-    read_positions: ReadPositions,
-    /// The particles of each cluster.
-    pub cluster: Cluster,
-}
-
-/// Stage two (chapter 6): the density of every cluster's four grid planes, the accepted grid points, and from them the
-/// texture of normals and heights.
-pub struct Isosurface {
-    /// Of each cluster.
-    planes: Vec<GridPlanes>,
-    /// Densities at the grid points.
-    pub density: Density,
-    density_floor: Density,
-    read_density: ReadDensity,
-    /// The accepted grid points.
-    pub extract: Extract,
-    /// Sums of eq. 6.3.
-    pub accumulate_depths: AccumulateDepths,
-    accumulate_depths_floor: AccumulateDepths,
-    /// The surface.
-    pub normal_height: NormalHeight,
 }
 
 /// Stage three (chapter 7): the surface as splats, blended and normalised.
@@ -151,37 +130,6 @@ pub struct Splatting {
     /// The picture.
     pub normalisation: Normalisation,
     splats_floor: Pass,
-}
-
-impl Animation {
-    /// Moves the particles one step, reads them back and clusters them.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.animate.record(frame)?;
-        let positions = self.read_positions.record(frame, self.animate.current())?;
-        self.cluster.record(frame, positions)
-    }
-}
-
-impl Isosurface {
-    /// Densities and accepted points cluster by cluster, then heights and normals. `clusters` are the particles in the
-    /// vertex buffers.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record(&mut self, frame: &mut Frame<'_>, clusters: &[Vec<Point>]) -> Result<(), Error> {
-        self.extract.clear();
-        for (k, (particles, planes)) in clusters.iter().zip(&self.planes).enumerate() {
-            self.density.record(frame, k, planes, particles)?;
-            let densities = self.read_density.record(frame, k)?;
-            self.extract.record(frame, densities, planes)?;
-        }
-        let isosurface = self.extract.points();
-        self.accumulate_depths.record(frame, isosurface)?;
-        self.normal_height.record(frame)
-    }
 }
 
 impl Splatting {
@@ -203,7 +151,7 @@ impl Splatting {
 impl Paper for Lava {
     fn restart(&mut self) -> Result<(), Error> {
         self.repeats = false;
-        self.animation.animate.restart();
+        self.animate.restart();
         Ok(())
     }
 
@@ -213,7 +161,7 @@ impl Paper for Lava {
     /// # Errors
     /// Errors of the Vulkan layer; [`Error::Pass`] for a frame before the last without a restart between them.
     fn record(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
-        let steps = self.animation.animate.steps();
+        let steps = self.animate.steps();
         let is_repeated = std::mem::take(&mut self.repeats) && number + 1 == steps;
         if number < steps && !is_repeated {
             let problem = format!("frame {number} comes before frame {steps}, the next; restart the paper first");
@@ -221,9 +169,11 @@ impl Paper for Lava {
         }
         if !is_repeated {
             self.advance(frame, number, u32::MAX)?;
-            self.animation.record(frame)?;
+            self.animate.record(frame)?;
+            self.method.cluster(frame, self.animate.current())?;
         }
-        self.isosurface.record(frame, &self.animation.cluster.clusters.particles)?;
+        self.method.accumulate(frame)?;
+        self.normal_height.record(frame)?;
         self.splatting.record(frame, self.drift_m(number))?;
         self.objects.as_ref().map_or(Ok(()), |objects| objects.record(frame))
     }
@@ -235,7 +185,7 @@ impl Paper for Lava {
     }
 
     fn advance(&mut self, frame: &mut Frame<'_>, number: u32, most: u32) -> Result<u32, Error> {
-        let animate = &mut self.animation.animate;
+        let animate = &mut self.animate;
         for _ in 0..number.saturating_sub(animate.steps()).min(most) {
             animate.record(frame)?;
         }
@@ -246,15 +196,16 @@ impl Paper for Lava {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         match &self.points {
-            Some(points) => points.record(frame, self.animation.animate.current()),
+            Some(points) => points.record(frame, self.animate.current()),
             None => Ok(()),
         }
     }
 
-    /// Looks for objects under the surface.
+    /// Looks at what was accepted, and for objects under the surface.
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        self.accepted = Some(self.method.accepted(shaders.device())?);
         if !self.meshes.is_empty() {
-            let surface = &self.isosurface.normal_height.surface;
+            let surface = &self.normal_height.surface;
             let bytes = read_image(shaders.device(), surface)?;
             let texels = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
             let (columns, rows) = (surface.width(), surface.height());
@@ -272,8 +223,7 @@ impl Paper for Lava {
                     .to_owned(),
             );
         }
-        if self.animation.animate.steps() > 0 && self.isosurface.extract.accepted.is_empty() {
-            let [lowest, highest] = self.isosurface.extract.density_range;
+        if let Some(Accepted { count: 0, density_range: [lowest, highest] }) = self.accepted() {
             warnings.push(format!(
                 "no grid point was accepted, so the surface is flat: `rho` is {} and the densities are {lowest} to \
                  {highest}",
@@ -292,13 +242,13 @@ impl Paper for Lava {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let State { positions, velocities } = self.animation.animate.state();
+        let State { positions, velocities } = self.animate.state();
         vec![
             Target::image("positions", positions),
             Target::image("velocities", velocities),
-            Target::image("density", &self.isosurface.density.density),
-            Target::image("accumulated-depths", &self.isosurface.accumulate_depths.sums),
-            Target::image("normal-height", &self.isosurface.normal_height.surface),
+            Target::image("density", self.method.density()),
+            Target::image("accumulated-depths", self.method.sums()),
+            Target::image("normal-height", &self.normal_height.surface),
             Target::image("visibility", &self.splatting.visibility.depth),
             Target::image("accumulated-colors", &self.splatting.blending.sums),
             Target::image("picture", &self.splatting.normalisation.picture),
@@ -315,6 +265,7 @@ impl Lava {
     pub fn new(
         shaders: &ShaderLibrary,
         label: &str,
+        variant: Variant,
         parameters: &Parameters,
         particles: &Particles,
         rock: &Rock,
@@ -324,9 +275,12 @@ impl Lava {
         let context = Context { shaders, label, parameters };
         let has_geometry_stage = shaders.device().physical().has(Feature::GeometryShader);
         let instanced = !(parameters.geometry_stage && has_geometry_stage);
-        let animation = Animation::new(shaders, label, parameters, particles)?;
-        let isosurface = Isosurface::new(context, &animation.cluster.vertices, instanced)?;
-        let splatting = Splatting::new(shaders, label, parameters, &isosurface.normal_height.surface, rock, instanced)?;
+        let count = particles.positions.len() as u32;
+        let animate = Animate::new(shaders, label, parameters, particles)?;
+        let method = Method::new(context, variant, &animate, count, instanced)?;
+        let normal_height = NormalHeight::new(context, method.sums())?;
+        let draw = parameters.surface_draw(variant);
+        let splatting = Splatting::new(shaders, label, parameters, &normal_height.surface, rock, instanced, draw)?;
         let Splatting { splats, visibility, normalisation, .. } = &splatting;
         let view_warnings = view_warnings(parameters, objects);
         let meshes = objects.to_vec();
@@ -334,20 +288,23 @@ impl Lava {
             [] => None,
             meshes => Some(Objects::new(context, meshes, splats, visibility, normalisation)?),
         };
-        let count = particles.positions.len() as u32;
         let points = (parameters.shading == Shading::Particles)
-            .then(|| ParticlePoints::new(context, &animation.animate, count, splats, normalisation))
+            .then(|| ParticlePoints::new(context, &animate, count, splats, normalisation))
             .transpose()?;
-        let lacks_geometry_stage = parameters.geometry_stage && !has_geometry_stage;
+        let is_splatted = variant == Variant::Paper || draw == SurfaceDraw::Splats;
+        let lacks_geometry_stage = is_splatted && parameters.geometry_stage && !has_geometry_stage;
         let parameters = parameters.clone();
         Ok(Lava {
             parameters,
-            animation,
-            isosurface,
+            variant,
+            animate,
+            method,
+            normal_height,
             splatting,
             objects,
             view_warnings,
             meshes,
+            accepted: None,
             buried: Vec::new(),
             points,
             lacks_geometry_stage,
@@ -381,16 +338,27 @@ impl Lava {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record_floors(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let Isosurface { planes, density_floor, extract, accumulate_depths_floor, .. } = &self.isosurface;
-        for (k, (particles, planes)) in self.animation.cluster.clusters.particles.iter().zip(planes).enumerate() {
-            density_floor.record(frame, k, planes, particles)?;
+        if let Method::Paper(read_back) = &self.method {
+            read_back.record_floors(frame)?;
         }
-        accumulate_depths_floor.record(frame, extract.points())?;
         let Splatting { splats, march, splats_floor, .. } = &self.splatting;
         if march.is_some() {
             return Ok(());
         }
         frame.graphics(splats_floor, |draw| splats.draw(draw))
+    }
+
+    /// The variant.
+    pub fn variant(&self) -> Variant {
+        self.variant
+    }
+
+    /// What the last frame accepted: nothing known before any, and of `gpu-driven` before it has settled.
+    pub fn accepted(&self) -> Option<Accepted> {
+        match &self.method {
+            Method::Paper(read_back) => (self.animate.steps() > 0).then(|| read_back.accepted()),
+            Method::GpuDriven(_) => self.accepted,
+        }
     }
 
     /// Distance that the rock has drifted in frame `number`, metres: as far as the mean particle.
@@ -415,46 +383,6 @@ fn view_warnings(parameters: &Parameters, objects: &[Mesh]) -> Vec<String> {
     of_space.into_iter().chain(placement::warnings(objects, camera, parameters.aspect())).collect()
 }
 
-impl Animation {
-    /// # Errors
-    /// Errors of the Vulkan layer; [`Error::Limit`] for more particles than a texture holds.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        particles: &Particles,
-    ) -> Result<Self, Error> {
-        let context = Context { shaders, label, parameters };
-        let animate = Animate::new(context, particles)?;
-        let read_positions = ReadPositions::new(context, &animate.states)?;
-        let cluster = Cluster::new(context, &read_positions.readback, particles.positions.len())?;
-        Ok(Animation { animate, read_positions, cluster })
-    }
-}
-
-impl Isosurface {
-    fn new(context: Context<'_>, cluster_vertices: &[Arc<Buffer>], instanced: bool) -> Result<Self, Error> {
-        let density = Density::new(context, cluster_vertices)?;
-        let density_floor = density.floor(context, cluster_vertices)?;
-        let read_density = ReadDensity::new(context, &density.layers)?;
-        let extract = Extract::new(context, &read_density.readback)?;
-        let accumulate_depths = AccumulateDepths::new(context, &extract.vertices, instanced)?;
-        let accumulate_depths_floor = accumulate_depths.floor(context, &extract.vertices)?;
-        let normal_height = NormalHeight::new(context, &accumulate_depths.sums)?;
-        let planes = GridPlanes::all(context.parameters);
-        Ok(Isosurface {
-            planes,
-            density,
-            density_floor,
-            read_density,
-            extract,
-            accumulate_depths,
-            accumulate_depths_floor,
-            normal_height,
-        })
-    }
-}
-
 impl Splatting {
     /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats
     /// are quads without a geometry stage.
@@ -468,12 +396,13 @@ impl Splatting {
         normal_height: &Arc<ImageView>,
         rock: &Rock,
         instanced: bool,
+        draw: SurfaceDraw,
     ) -> Result<Self, Error> {
         let context = Context { shaders, label, parameters };
         let splats = Splats::new(context, normal_height, rock, instanced)?;
         let visibility = Visibility::new(context, &splats)?;
         let blending = Blending::new(context, &splats, &visibility, rock)?;
-        let march = match parameters.surface_draw {
+        let march = match draw {
             SurfaceDraw::Splats => None,
             SurfaceDraw::March => Some(March::new(context, &splats, &visibility, &blending)?),
         };

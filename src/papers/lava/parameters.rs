@@ -12,18 +12,23 @@ use crate::measure::parameter::{
 use crate::measure::{ParameterError, config};
 use crate::scene::Camera;
 
-/// The methods that are compared: the thesis has one.
+/// The methods that are compared: the thesis's, and ours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Variant {
     /// Chapters 4 to 8.
     Paper,
+    /// Clusters, densities, accepted points and their sums on the device, without readbacks; ours.
+    GpuDriven,
 }
 
 impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] = &[Variant::Paper];
+    const ALL: &'static [Variant] = &[Variant::Paper, Variant::GpuDriven];
 
     fn as_str(self) -> &'static str {
-        "paper"
+        match self {
+            Variant::Paper => "paper",
+            Variant::GpuDriven => "gpu-driven",
+        }
     }
 }
 
@@ -143,8 +148,8 @@ pub struct Parameters {
     pub rho: Option<f32>,
     /// Height of the surface over a column of grid points.
     pub surface: SurfaceKind,
-    /// Drawing of the surface.
-    pub surface_draw: SurfaceDraw,
+    /// Drawing of the surface; without one, the variant's own.
+    pub surface_draw: Option<SurfaceDraw>,
     /// Splats along x and z, each at least 1, 16,777,216 in all at most.
     pub splats: [u32; 2],
     /// Radius of a splat in metres, above 0, at most the shortest side of the space.
@@ -188,7 +193,7 @@ impl Default for Parameters {
             density: [100, 24, 24],
             rho: None,
             surface: SurfaceKind::Mean,
-            surface_draw: SurfaceDraw::Splats,
+            surface_draw: None,
             splats: [600, 150],
             splat_radius_m: 0.020625,
             epsilon_m: 0.05,
@@ -312,8 +317,10 @@ impl Parameters {
             Parameter::new("surface-draw", field!(Parameters.surface_draw))
                 .help("Drawing of the surface")
                 .section("7")
+                .default_text("splats; in `gpu-driven` march")
                 .cost(Cost::Pipelines)
-                .everyday(),
+                .everyday()
+                .unrecorded(),
             Parameter::new("splats", SPLATS)
                 .placeholder("XxZ")
                 .range(Range::from(1.0))
@@ -416,6 +423,14 @@ impl Parameters {
             "must be at most 16777216 in all",
         )?;
         ParameterError::check_camera(&self.camera)
+    }
+
+    /// Drawing of the surface in a variant.
+    pub fn surface_draw(&self, variant: Variant) -> SurfaceDraw {
+        self.surface_draw.unwrap_or(match variant {
+            Variant::Paper => SurfaceDraw::Splats,
+            Variant::GpuDriven => SurfaceDraw::March,
+        })
     }
 
     /// The accepted density: the one given, or the mean of eq. 6.2 summed over particles that fill the space evenly,

@@ -18,8 +18,8 @@ use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::Value as _;
 use crate::measure::parameter::{self, Cost, Given, Parameter};
+use crate::measure::parameter::{Choice as _, Value as _};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
@@ -109,8 +109,8 @@ impl Study for Setup {
         Ok(Scene { particles: Particles::seeded(&self.parameters), rock, objects })
     }
 
-    fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, _: Variant) -> Result<Lava, gpu::Error> {
-        Lava::new(shaders, label, &self.parameters, &scene.particles, &scene.rock, &scene.objects)
+    fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Lava, gpu::Error> {
+        Lava::new(shaders, label, variant, &self.parameters, &scene.particles, &scene.rock, &scene.objects)
     }
 
     fn reconfigure(&self, scene: &Scene, paper: &mut Lava, changed: &Given) -> Result<bool, Error> {
@@ -122,8 +122,8 @@ impl Study for Setup {
         Ok(true)
     }
 
-    fn estimate(&self, _: &Device, scene: &Scene, _: Variant) -> Estimate {
-        self.parameters.estimate(&scene.rock, &scene.objects)
+    fn estimate(&self, _: &Device, scene: &Scene, variant: Variant) -> Estimate {
+        self.parameters.estimate(variant, &scene.rock, &scene.objects)
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
@@ -143,8 +143,9 @@ impl Study for Setup {
         }
     }
 
-    fn config(&self, scene: &Scene, _: &Lava) -> Map<String, Value> {
+    fn config(&self, scene: &Scene, paper: &Lava) -> Map<String, Value> {
         let mut config = parameter::config(&Self::parameters(), self);
+        config.insert("surface_draw".to_owned(), json!(self.parameters.surface_draw(paper.variant()).name()));
         config.insert("rho".to_owned(), json!(self.parameters.rho()));
         if !scene.objects.is_empty() {
             let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();
@@ -260,12 +261,18 @@ fn results(parameters: &Parameters, paper: &Lava, measurement: &Measurement) -> 
     let particles = f64::from(parameters.particles);
     let grid_points = parameters.density.iter().map(|&n| f64::from(n)).product::<f64>();
     let splats = parameters.splats.iter().map(|&n| f64::from(n)).product::<f64>();
+    let on_particles = match paper.variant() {
+        Variant::Paper => &["animate", "cluster", "density"][..],
+        Variant::GpuDriven => {
+            &["animate", "cell-keys", "sort-count", "sort-sum", "sort-scatter", "arrange", "cell-starts", "density"]
+        }
+    };
     let frame_ms = median(&measurement.frame_ms);
     entries([
         ("frames_per_s", json!(frame_ms.map(|ms| 1e3 / ms))),
-        ("accepted_grid_points", json!(paper.isosurface.extract.accepted.len())),
-        ("density_range", json!(paper.isosurface.extract.density_range)),
-        ("particles_per_s", rate(particles, &["animate", "cluster", "density"])),
+        ("accepted_grid_points", json!(paper.accepted().map(|accepted| accepted.count))),
+        ("density_range", json!(paper.accepted().map(|accepted| accepted.density_range))),
+        ("particles_per_s", rate(particles, on_particles)),
         ("grid_points_per_s", rate(grid_points, &["density", "extract"])),
         ("splats_per_s", rate(splats, &["visibility", "blending"])),
     ])

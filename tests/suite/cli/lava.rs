@@ -194,7 +194,7 @@ fn a_march_stands_for_the_splats() {
         small("bench --json --quiet --validate --surface-draw march --object box").args(ONCE).run().succeeded().json();
     assert_schema(&record);
     let passes = &record["runs"][0]["passes"];
-    assert_eq!(names(passes)[8..], ["march", "normalisation", "objects"], "{passes}");
+    assert_eq!(names(passes)[8..], ["highest-rows", "highest", "march", "normalisation", "objects"], "{passes}");
     lava("experiment fig-8.5 --surface-draw march").run().refused(2, &["--surface-draw"]);
 }
 

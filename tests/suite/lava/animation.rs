@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use fumarole::gpu::{Mode, Recorder};
 use fumarole::papers::lava::reference::step;
-use fumarole::papers::lava::{Animation, Parameters, Particles, State};
+use fumarole::papers::lava::{Animate, Parameters, Particles, State};
 use glam::{DVec3, Vec3};
 
 use super::scene::{parameters, shaders, texels};
@@ -20,13 +20,13 @@ fn particles_stay_in_the_space_for_10_000_frames() {
     gpu_test(|device| {
         let parameters = fast();
         let particles = Particles::seeded(&parameters);
-        let mut animation = Animation::new(&shaders(device), "test", &parameters, &particles).unwrap();
+        let mut animation = Animate::new(&shaders(device), "test", &parameters, &particles).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let size = parameters.space_m;
         let mut crossings = BTreeSet::new();
         for _ in 0..100 {
-            recorder.run(Mode::Plain, |frame| (0..100).try_for_each(|_| animation.animate.record(frame))).unwrap();
-            let State { positions, velocities } = animation.animate.state();
+            recorder.run(Mode::Plain, |frame| (0..100).try_for_each(|_| animation.record(frame))).unwrap();
+            let State { positions, velocities } = animation.state();
             let positions: Vec<[f32; 4]> = texels(device, positions);
             let velocities: Vec<[f32; 4]> = texels(device, velocities);
             let mut turned = BTreeSet::new();
@@ -43,7 +43,7 @@ fn particles_stay_in_the_space_for_10_000_frames() {
             }
             crossings.extend(turned);
         }
-        assert_eq!(animation.animate.steps(), 10_000);
+        assert_eq!(animation.steps(), 10_000);
         assert!(crossings.len() > 450, "{} particles have turned", crossings.len());
     });
 }
@@ -53,7 +53,7 @@ fn particles_follow_listing_5_1() {
     gpu_test(|device| {
         let parameters = fast();
         let particles = Particles::seeded(&parameters);
-        let mut animation = Animation::new(&shaders(device), "test", &parameters, &particles).unwrap();
+        let mut animation = Animate::new(&shaders(device), "test", &parameters, &particles).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
         let mut expected: Vec<(DVec3, DVec3)> =
             particles.positions.iter().zip(&particles.velocities).map(|(p, v)| (p.as_dvec3(), v.as_dvec3())).collect();
@@ -61,8 +61,8 @@ fn particles_follow_listing_5_1() {
         let time_s = f64::from(parameters.time_step_s);
         let mut off = 0;
         for number in 1..=60 {
-            recorder.run(Mode::Plain, |frame| animation.animate.record(frame)).unwrap();
-            let State { positions, velocities } = animation.animate.state();
+            recorder.run(Mode::Plain, |frame| animation.record(frame)).unwrap();
+            let State { positions, velocities } = animation.state();
             let positions: Vec<[f32; 4]> = texels(device, positions);
             let velocities: Vec<[f32; 4]> = texels(device, velocities);
             for (i, (p, v)) in expected.iter_mut().enumerate() {
@@ -85,17 +85,17 @@ fn a_restart_returns_to_the_start() {
     gpu_test(|device| {
         let parameters = fast();
         let mut animation =
-            Animation::new(&shaders(device), "test", &parameters, &Particles::seeded(&parameters)).unwrap();
+            Animate::new(&shaders(device), "test", &parameters, &Particles::seeded(&parameters)).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
-        let mut after = |animation: &mut Animation, steps: u32| -> Vec<f32> {
-            recorder.run(Mode::Plain, |frame| (0..steps).try_for_each(|_| animation.animate.record(frame))).unwrap();
-            texels(device, &animation.animate.state().positions)
+        let mut after = |animation: &mut Animate, steps: u32| -> Vec<f32> {
+            recorder.run(Mode::Plain, |frame| (0..steps).try_for_each(|_| animation.record(frame))).unwrap();
+            texels(device, &animation.state().positions)
         };
         let first = after(&mut animation, 7);
         let further = after(&mut animation, 2);
         assert_ne!(first, further);
-        animation.animate.restart();
-        assert_eq!(animation.animate.steps(), 0);
+        animation.restart();
+        assert_eq!(animation.steps(), 0);
         assert_eq!(after(&mut animation, 7), first);
     });
 }

@@ -3,11 +3,18 @@
 use std::collections::BTreeSet;
 
 use fumarole::papers::lava::reference::{clusters, density};
-use fumarole::papers::lava::{Parameters, Particles};
+use fumarole::papers::lava::{Parameters, Particles, Variant};
 use glam::{DVec3, Vec3};
 
-use super::scene::{clamped, densities, draw, grid, lava, lava_of, parameters};
+use super::scene::{clamped, densities, draw, grid, lava, parameters, read_back, variant_of};
 use crate::common::gpu_test;
+
+/// Each of the cases in each variant.
+fn all_variants<T: Clone>(cases: &[T]) -> impl Iterator<Item = (Variant, T)> {
+    [Variant::Paper, Variant::GpuDriven]
+        .into_iter()
+        .flat_map(|variant| cases.iter().map(move |case| (variant, case.clone())))
+}
 
 /// Grids of whole and broken clusters, points smaller and larger than a cell.
 fn configurations() -> [Parameters; 3] {
@@ -27,7 +34,7 @@ fn every_cluster_holds_the_particles_that_reach_its_planes() {
             let particles = clamped(device, &lava, &parameters);
             let heights: Vec<f64> = particles.iter().map(|p| p.y).collect();
             let expected = clusters(&heights, &grid(&parameters).planes(), f64::from(parameters.radius_m));
-            let found = &lava.animation.cluster.clusters.particles;
+            let found = &read_back(&lava).cluster.clusters.particles;
             assert_eq!(found.len(), expected.len());
             let mut members = 0;
             for (found, expected) in found.iter().zip(&expected) {
@@ -45,8 +52,8 @@ fn every_cluster_holds_the_particles_that_reach_its_planes() {
 #[test]
 fn densities_are_the_sum_over_all_particles() {
     gpu_test(|device| {
-        for parameters in configurations() {
-            let mut lava = lava(device, &parameters);
+        for (variant, parameters) in all_variants(&configurations()) {
+            let mut lava = variant_of(device, variant, &parameters, &Particles::seeded(&parameters));
             draw(device, &mut lava, 0);
             let radius = f64::from(parameters.radius_m);
             let expected = grid(&parameters).densities(&clamped(device, &lava, &parameters), radius);
@@ -58,7 +65,7 @@ fn densities_are_the_sum_over_all_particles() {
             assert!(worst < 1e-4, "{worst:e}");
             let highest = expected.iter().copied().fold(0.0, f64::max);
             assert!(highest > 2.0 * peak, "particles overlap: {highest}");
-            let range = lava.isosurface.extract.density_range.map(f64::from);
+            let range = lava.method.accepted(device).unwrap().density_range.map(f64::from);
             assert!((range[1] - highest).abs() < 1e-4 * highest, "{range:?}");
         }
     });
@@ -78,7 +85,7 @@ fn the_accepted_points_are_those_that_reach_rho() {
                 assert!((index - index.round()).abs().max_element() < 1e-4, "{p} is no grid point");
                 index.round().as_ivec3().to_array()
             };
-            let accepted = &lava.isosurface.extract.accepted;
+            let accepted = &read_back(&lava).extract.accepted;
             let found: BTreeSet<_> = accepted.iter().map(|p| key(Vec3::from_array(p.position).as_dvec3())).collect();
             assert_eq!(found.len(), accepted.len(), "no point twice");
             let mut close_calls = 0;
@@ -104,9 +111,10 @@ fn a_particle_alone_is_a_metaball() {
         let parameters = Parameters { particles: 1, time_step_s: 0.1, rho: Some(1e-3), ..parameters() };
         // The last two leave the space by one step, so they count on its corners: a point there must not be clipped.
         let far = parameters.space_m - 0.01;
-        for (place, velocity) in [(Vec3::splat(0.4), Vec3::X), (Vec3::splat(0.01), Vec3::NEG_ONE), (far, Vec3::ONE)] {
+        let cases = [(Vec3::splat(0.4), Vec3::X), (Vec3::splat(0.01), Vec3::NEG_ONE), (far, Vec3::ONE)];
+        for (variant, (place, velocity)) in all_variants(&cases) {
             let particles = Particles { positions: vec![place], velocities: vec![velocity] };
-            let mut lava = lava_of(device, &parameters, &particles);
+            let mut lava = variant_of(device, variant, &parameters, &particles);
             draw(device, &mut lava, 0);
             let place = clamped(device, &lava, &parameters)[0];
             let is_corner = place == DVec3::ZERO || place == parameters.space_m.as_dvec3();

@@ -3,7 +3,7 @@
 use fumarole::gpu::bindings::Resource;
 use fumarole::gpu::{Compiler, Device, Feature, Instance, Mode, PassKind, PhysicalDevice, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
-use fumarole::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock};
+use fumarole::papers::lava::{Lava, NEEDS, Parameters, Particles, Rock, Variant};
 use fumarole::scene::Camera;
 use glam::Vec3;
 
@@ -135,7 +135,8 @@ fn both_compilers_draw_one_picture() {
             let parameters = Parameters { geometry_stage: false, ..parameters() };
             let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
             let particles = Particles::seeded(&parameters);
-            let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in(), &[]).unwrap();
+            let mut lava =
+                Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[]).unwrap();
             let sample = draw(device, &mut lava, 1);
             let ran = sample.passes.iter().filter_map(|p| p.info.compiler);
             assert!(ran.clone().count() == 7 && ran.into_iter().all(|c| c == compiler));
@@ -148,7 +149,8 @@ fn both_compilers_draw_one_picture() {
         let parameters = parameters();
         let shaders = ShaderLibrary::new(device, Compiler::Naga, None).unwrap();
         let particles = Particles::seeded(&parameters);
-        let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in(), &[]).unwrap();
+        let mut lava =
+            Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[]).unwrap();
         let sample = draw(device, &mut lava, 0);
         for pass in sample.passes.iter().filter(|p| p.info.compiler.is_some()) {
             let has_geometry = pass.info.shaders.iter().any(|s| s.ends_with(".geom"));

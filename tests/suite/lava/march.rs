@@ -2,7 +2,7 @@
 
 use fumarole::gpu::{Compiler, ShaderLibrary};
 use fumarole::measure::Paper;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SurfaceDraw, depth_range_m};
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Shading, SurfaceDraw, Variant, depth_range_m};
 use fumarole::scene::{Camera, shapes};
 use glam::{DVec3, Mat4, Vec3};
 
@@ -42,7 +42,7 @@ fn rays_meet_the_height_field_where_the_oracle_s_do() {
         for (name, camera) in cameras {
             let parameters = Parameters {
                 shading: Shading::Heights,
-                surface_draw: SurfaceDraw::March,
+                surface_draw: Some(SurfaceDraw::March),
                 camera,
                 width: 96,
                 height: 72,
@@ -88,8 +88,12 @@ fn rays_meet_the_height_field_where_the_oracle_s_do() {
 fn objects_mix_with_a_marched_surface() {
     gpu_test(|device| {
         for compiler in [Compiler::Glslang, Compiler::Naga] {
-            let parameters =
-                Parameters { surface_draw: SurfaceDraw::March, border_m: 0.0, geometry_stage: false, ..parameters() };
+            let parameters = Parameters {
+                surface_draw: Some(SurfaceDraw::March),
+                border_m: 0.0,
+                geometry_stage: false,
+                ..parameters()
+            };
             let (center, radius) = (Vec3::new(0.8, 0.45, 0.6), 0.3);
             let sphere = shapes::sphere(96, 96);
             let scale = 2.0 * radius / sphere.bounds().diagonal().max_element();
@@ -97,7 +101,9 @@ fn objects_mix_with_a_marched_surface() {
             let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
             let picture = |objects: &[_]| {
                 let particles = Particles::seeded(&parameters);
-                let mut lava = Lava::new(&shaders, "test", &parameters, &particles, Rock::built_in(), objects).unwrap();
+                let mut lava =
+                    Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), objects)
+                        .unwrap();
                 draw(device, &mut lava, 0);
                 let depths: Vec<f32> = texels(device, &lava.splatting.visibility.depth);
                 (texels::<[u8; 4]>(device, lava.picture()), depths)

@@ -3,6 +3,7 @@
 mod animation;
 mod density;
 mod frames;
+mod gpu_driven;
 mod march;
 mod objects;
 mod pictures;

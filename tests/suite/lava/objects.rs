@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use fumarole::gpu::Device;
 use fumarole::measure::Paper;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Variant};
 use fumarole::scene::{Camera, Mesh, shapes};
 use glam::{DMat4, DVec3, Mat4, Vec3};
 
-use super::scene::{draw, parameters, shaders, texels};
+use super::scene::{draw, parameters, read_back, shaders, texels};
 use crate::common::gpu_test;
 
 /// A round object: its middle and its radius in metres.
@@ -57,9 +57,10 @@ fn level() -> Parameters {
 
 fn picture(device: &Arc<Device>, parameters: &Parameters, objects: &[Mesh]) -> (Vec<[u8; 4]>, Vec<&'static str>) {
     let particles = Particles::seeded(parameters);
-    let mut lava = Lava::new(&shaders(device), "test", parameters, &particles, Rock::built_in(), objects).unwrap();
+    let mut lava =
+        Lava::new(&shaders(device), "test", Variant::Paper, parameters, &particles, Rock::built_in(), objects).unwrap();
     let passes = draw(device, &mut lava, 0).passes;
-    assert_eq!(lava.isosurface.extract.accepted.len(), 40 * 24);
+    assert_eq!(read_back(&lava).extract.accepted.len(), 40 * 24);
     (texels(device, lava.picture()), passes.iter().map(|p| p.info.name).collect())
 }
 

@@ -15,7 +15,7 @@ use super::scene::{clamped, draw, lava, texels};
 use crate::common::gpu_test;
 
 /// The preset `results` with a ninth of its splats, each three times as large, and fewer particles.
-fn reduced() -> Parameters {
+pub(super) fn reduced() -> Parameters {
     Parameters {
         particles: 10_000,
         splats: [200, 50],
@@ -36,7 +36,7 @@ struct HeightField<'a> {
 
 impl<'a> HeightField<'a> {
     fn new(device: &Arc<Device>, lava: &Lava, parameters: &'a Parameters) -> Self {
-        let texture: Vec<[f32; 4]> = texels(device, &lava.isosurface.normal_height.surface);
+        let texture: Vec<[f32; 4]> = texels(device, &lava.normal_height.surface);
         let camera = &parameters.camera;
         let to_world = (camera.projection(parameters.aspect()) * camera.view()).inverse();
         HeightField { parameters, heights: texture.iter().map(|t| t[3]).collect(), to_world }
@@ -109,7 +109,7 @@ fn picture(device: &Arc<Device>, parameters: &Parameters) -> Rgba8 {
 }
 
 /// Tight: the same Mesa draws the same picture, another one rounds differently here and there.
-const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
+pub(super) const TOLERANCE: Tolerance = Tolerance { mean: 0.1, p99: 1.0 };
 
 #[test]
 fn the_pictures_are_the_golden_ones() {

@@ -2,7 +2,7 @@
 
 use fumarole::gpu::Error;
 use fumarole::measure::study::Study;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, setup::Setup};
+use fumarole::papers::lava::{Lava, Parameters, Particles, Rock, Variant, setup::Setup};
 use fumarole::scene::Camera;
 use glam::Vec3;
 
@@ -67,7 +67,9 @@ fn points_larger_than_the_devices_are_refused_with_both_figures() {
             Parameters { space_m: Vec3::ONE, radius_m: 0.25, density: [columns, 4, 8], particles: 4, ..parameters() };
         parameters.validate().unwrap();
         let particles = Particles::seeded(&parameters);
-        let error = Lava::new(&shaders(device), "test", &parameters, &particles, Rock::built_in(), &[]).err().unwrap();
+        let error = Lava::new(&shaders(device), "test", Variant::Paper, &parameters, &particles, Rock::built_in(), &[])
+            .err()
+            .unwrap();
         assert!(matches!(error, Error::Limit { .. }));
         let message = error.to_string();
         let size = parameters.point_size_px().ceil().to_string();

@@ -7,7 +7,7 @@ use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, FrameSample, ImageView, Mode, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
 use fumarole::papers::lava::reference::Grid;
-use fumarole::papers::lava::{Lava, Parameters, Particles, Rock};
+use fumarole::papers::lava::{Lava, Method, Parameters, Particles, ReadBack, Rock, Variant};
 use glam::{DVec3, Vec3};
 
 /// 1,000 particles in a space whose sides differ, grid cells that are no squares, planes that are no multiple of four.
@@ -35,8 +35,25 @@ pub fn lava(device: &Arc<Device>, parameters: &Parameters) -> Lava {
 }
 
 pub fn lava_of(device: &Arc<Device>, parameters: &Parameters, particles: &Particles) -> Lava {
+    variant_of(device, Variant::Paper, parameters, particles)
+}
+
+/// The variant `gpu-driven`, as [`lava`].
+pub fn driven(device: &Arc<Device>, parameters: &Parameters) -> Lava {
+    variant_of(device, Variant::GpuDriven, parameters, &Particles::seeded(parameters))
+}
+
+pub fn variant_of(device: &Arc<Device>, variant: Variant, parameters: &Parameters, particles: &Particles) -> Lava {
     parameters.validate().unwrap();
-    Lava::new(&shaders(device), "test", parameters, particles, Rock::built_in(), &[]).unwrap()
+    Lava::new(&shaders(device), "test", variant, parameters, particles, Rock::built_in(), &[]).unwrap()
+}
+
+/// Stages one and two of the thesis.
+pub fn read_back(lava: &Lava) -> &ReadBack {
+    match &lava.method {
+        Method::Paper(read_back) => read_back,
+        Method::GpuDriven(_) => panic!("nothing is read back"),
+    }
 }
 
 /// Draws frame `number`.
@@ -51,7 +68,7 @@ pub fn texels<T: Pod>(device: &Arc<Device>, view: &Arc<ImageView>) -> Vec<T> {
 
 /// Particles in the last frame's clusters, from the position texture: inside the space, as `cluster` takes them.
 pub fn clamped(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<DVec3> {
-    let positions: Vec<[f32; 4]> = texels(device, &lava.animation.animate.state().positions);
+    let positions: Vec<[f32; 4]> = texels(device, &lava.animate.state().positions);
     let places = positions.iter().take(parameters.particles as usize);
     places.map(|&[x, y, z, _]| Vec3::new(x, y, z).clamp(Vec3::ZERO, parameters.space_m).as_dvec3()).collect()
 }
@@ -62,7 +79,7 @@ pub fn grid(parameters: &Parameters) -> Grid {
 
 /// The texture of densities in the order of [`Grid::indices`].
 pub fn densities(device: &Arc<Device>, lava: &Lava, parameters: &Parameters) -> Vec<f64> {
-    let layers: Vec<[f32; 4]> = texels(device, &lava.isosurface.density.density);
+    let layers: Vec<[f32; 4]> = texels(device, lava.method.density());
     let [columns, _, rows] = parameters.density.map(|n| n as usize);
     let at = |[i, j, k]: [usize; 3]| layers[(j / 4) * columns * rows + k * columns + i][j % 4];
     grid(parameters).indices().map(|index| f64::from(at(index))).collect()

@@ -2,12 +2,14 @@
 
 pub mod figures;
 pub mod floors;
+mod readback;
 mod results;
 mod scaling;
 mod surface;
 
 use self::figures::{Drawing, Drawn, FIGURES};
 use self::scaling::Axis;
+use super::parameters::Variant;
 use super::setup::Setup;
 use crate::field;
 use crate::measure::experiment::{self, Experiment};
@@ -51,6 +53,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
     };
     let others = [
         measured("results", "Chapter 8: frames a second, beside the thesis's 20", results as fn(&mut Context<'_>) -> _),
+        measured("readback", "Both variants in turn: what readbacks and waits cost, stage by stage", readbacks),
         measured("scaling", "Particles, splats and grid points against each pass's time, host work included", scaling),
     ];
     let surface = Experiment {
@@ -95,7 +98,7 @@ fn draw(context: &mut Context<'_>) -> Result<(), Error> {
 }
 
 fn results(context: &mut Context<'_>) -> Result<(), Error> {
-    let points = [Point::single(context.name, context.setup.clone())];
+    let points = [Point { variants: vec![Variant::Paper], ..Point::single(context.name, context.setup.clone()) }];
     check(&points)?;
     let mut machine = context.open()?;
     let mut swept = context.sweep(&mut machine, &points)?;
@@ -108,6 +111,23 @@ fn results(context: &mut Context<'_>) -> Result<(), Error> {
     let plot = |run| results::plot(run).map(|svg| (".svg".to_owned(), svg));
     let plots = runs.iter().map(plot).collect::<Result<Vec<_>, _>>()?;
     context.publish_runs(&machine, runs, table, &plots)?;
+    machine.check_validation()?;
+    swept.stopped.map_or(Ok(()), Err)
+}
+
+fn readbacks(context: &mut Context<'_>) -> Result<(), Error> {
+    let points = readback::points(&context.setup);
+    check(&points)?;
+    let mut machine = context.open()?;
+    let mut swept = context.sweep(&mut machine, &points)?;
+    for row in &mut swept.rows {
+        results::beside_the_thesis(&mut row.run);
+    }
+    let table = readback::table(&swept.rows);
+    let plot = table.bars("ms", &["gpu ms", "host ms"]).map_err(Error::from)?;
+    let runs = swept.rows.into_iter().map(|row| row.run).collect();
+    context.save(&context.file("-stages.csv"), table.csv().as_bytes())?;
+    context.publish_runs(&machine, runs, table.render(context.console.style()), &[(".svg".to_owned(), plot)])?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }

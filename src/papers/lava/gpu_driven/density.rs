@@ -1,0 +1,86 @@
+//! Pass `density` (section 6.1), gathered: each column of four grid planes sums eq. 6.2 over the sorted particles around it.
+
+use std::sync::Arc;
+
+use super::super::density::peak;
+use super::super::targets::Context;
+use super::cells::Cells;
+use super::sort::Sort;
+use crate::gpu::{Error, Frame, Image, ImageView, Pass};
+use crate::host_block;
+
+host_block! {
+    struct GatherConstants {
+        space_m: [f32; 3],
+        per_radius: f32,
+        grid: [u32; 3],
+        piece: u32,
+        cells: [u32; 3],
+        radius_m: f32,
+        peak: f32,
+    }
+}
+
+/// Particles of a stretch in one dispatch: as in `lava/density.comp`.
+const PIECE: u32 = 28_672;
+
+/// Dispatches that hold every particle, were they all in one stretch of cells.
+pub fn pieces(particles: u32) -> u32 {
+    particles.div_ceil(PIECE)
+}
+
+/// The pass.
+pub struct GatheredDensity {
+    pass: Pass,
+    constants: GatherConstants,
+    clusters: u32,
+    pieces: u32,
+    /// A layer for each four grid planes, a component for each of them.
+    pub density: Arc<ImageView>,
+}
+
+impl GatheredDensity {
+    /// # Errors
+    /// Errors of the Vulkan layer; [`Error::Limit`] for a grid beyond the device's.
+    pub fn new(context: Context<'_>, cells: &Cells, sort: &Sort) -> Result<Self, Error> {
+        let parameters = context.parameters;
+        let clusters = parameters.clusters();
+        let density = Image::new(context.device(), context.stored_desc("density").layers(clusters))?.view()?;
+        let [xs, ys, zs] = &sort.places;
+        let pass = Pass::compute("density", "6.1", "lava/density.comp")
+            .constants::<GatherConstants>()
+            .with("starts", &sort.starts)
+            .with("xs", xs)
+            .with("ys", ys)
+            .with("zs", zs)
+            .with("reached", &sort.reached)
+            .with("density", &density)
+            .build(context.shaders)?;
+        let constants = GatherConstants {
+            space_m: parameters.space_m.to_array(),
+            // Finite: no place is so near that more would tell them apart.
+            per_radius: (1.0 / parameters.radius_m).min(1e18),
+            grid: parameters.density,
+            piece: 0,
+            cells: cells.counts,
+            radius_m: parameters.radius_m,
+            peak: peak(parameters.radius_m),
+        };
+        Ok(GatheredDensity { pass, constants, clusters, pieces: pieces(cells.particles), density })
+    }
+
+    /// Gathers the densities of the sorted particles.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        let [columns, _, rows] = self.constants.grid;
+        for piece in 0..self.pieces {
+            frame.compute(&self.pass, |dispatch| {
+                let constants = GatherConstants { piece, ..self.constants };
+                dispatch.constants(&constants).threads(columns, rows, self.clusters);
+            })?;
+        }
+        Ok(())
+    }
+}

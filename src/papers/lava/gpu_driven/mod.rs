@@ -1,0 +1,106 @@
+//! The variant `gpu-driven`: stages one and two without a readback and without a wait. Ours.
+//!
+//! ```text
+//! animate ─► cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─┐  (for section 5.2)
+//!   ┌───────────────────────────────────────────────────────────────────────────────────────┘
+//!   └─► density ─► extract ─► accumulate-depths ─► normal-height                               (sections 6.1 to 6.4)
+//! ```
+//!
+//! Particles are sorted into cells no shorter than their radius. A grid point gathers its density from the cells around it,
+//! where the thesis draws the particles over the grid planes; a column of grid points is summed up by itself, and eq. 6.3
+//! gathers those sums, where the thesis draws a splat for each accepted point.
+
+mod cells;
+mod columns;
+mod density;
+mod estimate;
+pub mod sort;
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use self::columns::Columns;
+use self::density::GatheredDensity;
+use self::sort::Sort;
+use super::animate::Animate;
+use super::extract::Accepted;
+use super::targets::{Context, FLOATS};
+use crate::gpu::transfer::read_image;
+use crate::gpu::{Device, Error, Frame, Image, ImageDesc, ImageView};
+
+pub use self::cells::Cells;
+pub use self::estimate::estimate;
+
+/// Invocations along the first axis of a list that is dispatched in rows.
+const ROW: u32 = 1 << 20;
+
+/// Stages one and two behind `animate`.
+pub struct GpuDriven {
+    /// Particles by cells.
+    pub sort: Sort,
+    /// Densities at the grid points.
+    pub density: GatheredDensity,
+    columns: Columns,
+}
+
+impl GpuDriven {
+    /// # Errors
+    /// Errors of the Vulkan layer; [`Error::Limit`] for a grid beyond the device's.
+    pub fn new(context: Context<'_>, animate: &Animate, particle_count: u32) -> Result<Self, Error> {
+        let cells = Cells::new(context.parameters, particle_count);
+        let sort = Sort::new(context, &cells, animate)?;
+        let density = GatheredDensity::new(context, &cells, &sort)?;
+        let columns = Columns::new(context, &density.density)?;
+        Ok(GpuDriven { sort, density, columns })
+    }
+
+    /// Sorts the particles of the state with this index.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn cluster(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
+        self.sort.record(frame, state)
+    }
+
+    /// Densities, and from them the sums of eq. 6.3.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn accumulate(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        self.density.record(frame)?;
+        self.columns.record(frame)
+    }
+
+    /// Sum of weighted heights in red, metres; sum of weights in alpha.
+    pub fn sums(&self) -> &Arc<ImageView> {
+        &self.columns.sums
+    }
+
+    /// Reads back what the last frame accepted.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn accepted(&self, device: &Arc<Device>) -> Result<Accepted, Error> {
+        let bytes = read_image(device, &self.columns.columns)?;
+        let columns = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
+        Ok(columns.iter().fold(Accepted::NONE, |sum, &[count, _, lowest, highest]| Accepted {
+            count: sum.count + count as usize,
+            density_range: [sum.density_range[0].min(lowest), sum.density_range[1].max(highest)],
+        }))
+    }
+}
+
+impl Context<'_> {
+    /// Description of an image of floats that kernels write, a texel for each grid point of a plane.
+    fn stored_desc(&self, name: &str) -> ImageDesc {
+        let [columns, _, rows] = self.parameters.density;
+        let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+        ImageDesc::new_2d(self.name(name), FLOATS, columns, rows).usage(usage)
+    }
+
+    /// Such an image.
+    fn stored(&self, name: &str) -> Result<Arc<ImageView>, Error> {
+        Image::new(self.device(), self.stored_desc(name))?.view()
+    }
+}

@@ -1,0 +1,239 @@
+//! Passes `cell-keys` to `cell-starts`: the particles in the order of their cells, in place of the thesis's clusters (section
+//! 5.2). The sort is stable and takes no atomics, so that sums over its order are the same to the bit in every run.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::super::animate::Animate;
+use super::super::targets::Context;
+use super::cells::Cells;
+use super::{ROW, density};
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass};
+use crate::host_block;
+
+host_block! {
+    struct CellConstants {
+        space_m: [f32; 3],
+        particles: u32,
+        counts: [u32; 3],
+        width: u32,
+        pieces: u32,
+    }
+}
+
+host_block! {
+    struct SortConstants {
+        items: u32,
+        blocks: u32,
+        shift: u32,
+        first_sum: u32,
+        second_sum: u32,
+    }
+}
+
+host_block! {
+    struct SumConstants {
+        first: u32,
+        count: u32,
+        to: u32,
+    }
+}
+
+/// Values of a digit, bits of it, items of a block and counts of a run: those of `lava/sort.glsl`.
+const DIGITS: u32 = 1 << BITS;
+const BITS: u32 = 7;
+const BLOCK: u32 = 256;
+const RUN: u32 = 256;
+
+/// The passes, and what they leave.
+pub struct Sort {
+    /// One for each state of the animation.
+    cell_keys: [Pass; 2],
+    /// Of each digit, the lowest first.
+    digits: Vec<Digit>,
+    sort_sum: Pass,
+    sums: Vec<SumConstants>,
+    /// One for each state of the animation.
+    arrange: [Pass; 2],
+    cell_starts: Pass,
+    constants: CellConstants,
+    cell_count: u32,
+    /// Places along x, y and z by cells, metres.
+    pub places: [Arc<Buffer>; 3],
+    /// The first particle of each cell, and the end of the last.
+    pub starts: Arc<Buffer>,
+    /// A word for each piece of `density`.
+    pub reached: Arc<Buffer>,
+}
+
+struct Digit {
+    sort_count: Pass,
+    sort_scatter: Pass,
+    constants: SortConstants,
+}
+
+/// Words of the buffer of counts: those of all digits and blocks, the sums of their runs, and of the runs of those.
+struct Counts {
+    blocks: u32,
+    first_sum: u32,
+    second_sum: u32,
+    third_sum: u32,
+}
+
+impl Counts {
+    fn of(items: u32) -> Self {
+        let blocks = items.div_ceil(BLOCK);
+        let first_sum = blocks * DIGITS;
+        let second_sum = first_sum + first_sum.div_ceil(RUN);
+        let third_sum = second_sum + (second_sum - first_sum).div_ceil(RUN);
+        Counts { blocks, first_sum, second_sum, third_sum }
+    }
+}
+
+/// Bytes of all buffers of the sort.
+pub fn bytes(cells: &Cells) -> f64 {
+    let words = f64::from(Counts::of(cells.particles).third_sum) + 1.0;
+    28.0 * f64::from(cells.particles) + 4.0 * words + 4.0 * (f64::from(cells.count()) + 1.0)
+}
+
+impl Sort {
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn new(context: Context<'_>, cells: &Cells, animate: &Animate) -> Result<Self, Error> {
+        let Context { shaders, parameters, .. } = context;
+        let particles = cells.particles;
+        let buffer = |name: &str, words: u32| {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            let desc = BufferDesc::new(context.name(name), 4 * u64::from(words)).usage(usage);
+            Buffer::new(context.device(), desc).map_err(|error| error.set_by("particles"))
+        };
+        let items = [buffer("items-a", 2 * particles)?, buffer("items-b", 2 * particles)?];
+        let layout = Counts::of(particles);
+        let counts = buffer("sort-counts", layout.third_sum + 1)?;
+        let places = [buffer("sorted-x", particles)?, buffer("sorted-y", particles)?, buffer("sorted-z", particles)?];
+        let starts = buffer("cell-starts", cells.count() + 1)?;
+        let pieces = density::pieces(particles);
+        let reached = buffer("reached-pieces", pieces)?;
+
+        let positions = animate.states.each_ref().map(|state| &state.positions);
+        let first = Pass::compute("cell-keys", "5.2", "lava/cell-keys.comp")
+            .constants::<CellConstants>()
+            .with("positions", positions[0])
+            .with("items", &items[0])
+            .build(shaders)?;
+        let second = first.rebind().with("positions", positions[1]).build(shaders)?;
+        let cell_keys = [first, second];
+        let digit = |n: u32| -> Result<Digit, Error> {
+            let from = &items[n as usize % 2];
+            let kernel = |name, shader: &str| {
+                let pass = Pass::compute(name, "5.2", shader).constants::<SortConstants>();
+                pass.with("from", from).with("counts", &counts)
+            };
+            Ok(Digit {
+                sort_count: kernel("sort-count", "lava/sort-count.comp").build(shaders)?,
+                sort_scatter: kernel("sort-scatter", "lava/sort-scatter.comp")
+                    .with("to", &items[(n as usize + 1) % 2])
+                    .build(shaders)?,
+                constants: SortConstants {
+                    items: particles,
+                    blocks: layout.blocks,
+                    shift: BITS * n,
+                    first_sum: layout.first_sum,
+                    second_sum: layout.second_sum,
+                },
+            })
+        };
+        let digits = (0..cells.bits().div_ceil(BITS)).map(digit).collect::<Result<Vec<_>, _>>()?;
+        let sort_sum = Pass::compute("sort-sum", "5.2", "lava/sort-sum.comp")
+            .constants::<SumConstants>()
+            .with("counts", &counts)
+            .build(shaders)?;
+        let ends = [0, layout.first_sum, layout.second_sum, layout.third_sum];
+        let sums = ends.windows(2).map(|ends| SumConstants { first: ends[0], count: ends[1] - ends[0], to: ends[1] });
+        let sorted = &items[digits.len() % 2];
+        let first = Pass::compute("arrange", "5.2", "lava/arrange.comp")
+            .constants::<CellConstants>()
+            .with("positions", positions[0])
+            .with("items", sorted)
+            .with("xs", &places[0])
+            .with("ys", &places[1])
+            .with("zs", &places[2])
+            .with("reached", &reached)
+            .build(shaders)?;
+        let second = first.rebind().with("positions", positions[1]).build(shaders)?;
+        let cell_starts = Pass::compute("cell-starts", "5.2", "lava/cell-starts.comp")
+            .constants::<CellConstants>()
+            .with("items", sorted)
+            .with("starts", &starts)
+            .build(shaders)?;
+        let constants = CellConstants {
+            space_m: parameters.space_m.to_array(),
+            particles,
+            counts: cells.counts,
+            width: positions[0].width(),
+            pieces,
+        };
+        Ok(Sort {
+            cell_keys,
+            digits,
+            sort_sum,
+            sums: sums.collect(),
+            arrange: [first, second],
+            cell_starts,
+            constants,
+            cell_count: cells.count(),
+            places,
+            starts,
+            reached,
+        })
+    }
+
+    /// Sorts the particles of the state with this index.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
+        let listed = |frame: &mut Frame<'_>, pass: &Pass, count: u32| {
+            frame.compute(pass, |dispatch| {
+                dispatch.constants(&self.constants).threads(count.min(ROW), count.div_ceil(ROW), 1);
+            })
+        };
+        listed(frame, &self.cell_keys[state], self.constants.particles)?;
+        for Digit { sort_count, sort_scatter, constants } in &self.digits {
+            frame.compute(sort_count, |dispatch| {
+                dispatch.constants(constants).threads(constants.blocks, 1, 1);
+            })?;
+            for sum in &self.sums {
+                frame.compute(&self.sort_sum, |dispatch| {
+                    dispatch.constants(sum).threads(sum.count.div_ceil(RUN), 1, 1);
+                })?;
+            }
+            frame.compute(sort_scatter, |dispatch| {
+                dispatch.constants(constants).threads(constants.blocks, 1, 1);
+            })?;
+        }
+        listed(frame, &self.arrange[state], self.constants.particles)?;
+        listed(frame, &self.cell_starts, self.cell_count + 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_levels_sum_the_counts_of_the_most_particles() {
+        for items in [1, 255, 256, 257, 40_000, 1_000_000, 16_777_216] {
+            let Counts { blocks, first_sum, second_sum, third_sum } = Counts::of(items);
+            assert!(u64::from(blocks) * u64::from(BLOCK) >= u64::from(items));
+            assert_eq!(first_sum, blocks * DIGITS);
+            assert!((second_sum - first_sum) * RUN >= first_sum, "{items}");
+            // The last run is one alone.
+            assert!(
+                third_sum - second_sum <= RUN && (third_sum - second_sum) * RUN >= second_sum - first_sum,
+                "{items}"
+            );
+        }
+    }
+}
