@@ -148,7 +148,7 @@ fn capture_frame<S: Study>(
         .map_err(|e| Failure::Input(format!("making the folder {} for captures: {e}", folder.display())))?;
     let name = folder.join(format!("{}-{}", S::PAPER, variant.as_str()));
     let file =
-        capture.capture(&name, || recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0)).map(|_| ()))?;
+        capture.capture(Some(&name), || recorder.run(Mode::Plain, |frame| built.paper.record(frame, 0)).map(|_| ()))?;
     machine.check_validation()?;
     Ok(file)
 }

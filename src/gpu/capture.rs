@@ -48,11 +48,16 @@ impl RenderDoc {
         Ok(RenderDoc { api: api.cast_const().cast(), _library: library })
     }
 
-    /// Captures what `work` submits and returns the file that it lies in, whose name begins with `path`.
+    /// Captures what `work` submits and returns the file that it lies in, whose name begins with `path`, or is of
+    /// RenderDoc's own making without one.
     ///
     /// # Errors
     /// The error of `work`; [`Error::Capture`] where RenderDoc captured nothing.
-    pub fn capture<E: From<Error>>(&self, path: &Path, work: impl FnOnce() -> Result<(), E>) -> Result<PathBuf, E> {
+    pub fn capture<E: From<Error>>(
+        &self,
+        path: Option<&Path>,
+        work: impl FnOnce() -> Result<(), E>,
+    ) -> Result<PathBuf, E> {
         let failed = |reason: &str| Error::Capture { reason: reason.to_owned() };
         // SAFETY: RenderDoc keeps the table for the life of the process; functions of 1.1.2 alone are taken, and the union's
         // members are two names of one function.
@@ -63,10 +68,12 @@ impl RenderDoc {
         let (Some(template), Some(start), Some(end)) = (template, start, end) else {
             return Err(failed("its table of functions has gaps").into());
         };
-        let text = c_text(&path.to_string_lossy());
+        let text = path.map(|path| c_text(&path.to_string_lossy()));
         // SAFETY: the text ends in a zero and is copied; no device and no window are named, which means the one that is there.
         unsafe {
-            template(text.as_ptr());
+            if let Some(text) = &text {
+                template(text.as_ptr());
+            }
             start(ptr::null_mut(), ptr::null_mut());
         }
         let result = work();

@@ -33,7 +33,12 @@ unsafe extern "C" fn end(_: RENDERDOC_DevicePointer, _: RENDERDOC_WindowHandle) 
         return 0;
     }
     state.is_capturing = false;
-    let file = format!("{}_frame{}.rdc", state.template, state.files.len());
+    // As RenderDoc: without a template into the folder of temporary files.
+    let template = match state.template.as_str() {
+        "" => std::env::temp_dir().join("capture").display().to_string(),
+        given => given.to_owned(),
+    };
+    let file = format!("{template}_frame{}.rdc", state.files.len());
     std::fs::write(&file, "captured").unwrap();
     state.files.push(CString::new(file).unwrap());
     1

@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use super::renderdoc::RenderDoc;
 use super::state::State;
 use super::{command, keep, process};
-use crate::gpu::Mode;
 use crate::gpu::live::MemoryUse;
+use crate::gpu::{Mode, RenderDoc};
 use crate::measure::study::Study;
 use crate::measure::{Error, limits};
 use crate::window::protocol::{DeviceLimits, Event, Keep, Memory, Progress, Request, ResourceMemory, Work};
@@ -39,16 +38,13 @@ impl<S: Study> State<S> {
             }
             Request::Keep(keep) => Event::Kept(self.keep(keep)?),
             Request::Capture => {
-                let Some(renderdoc) = RenderDoc::find() else {
-                    let problem = "capturing a frame: RenderDoc is not in the process; start the window from it";
-                    return Err(Error::Input(problem.to_owned()));
-                };
+                let renderdoc = RenderDoc::attach()?;
                 let (number, count) = (self.clock.number(), self.sides.len());
-                let file = renderdoc.capture(|| {
+                let file = renderdoc.capture(None, || {
                     let draw = |index| self.draw(index, number, None, (Mode::Plain, true)).map(drop);
                     (0..count).try_for_each(draw)
                 })?;
-                Event::Kept(vec![file])
+                Event::Kept(vec![file.display().to_string()])
             }
             _ => return Ok(()),
         };

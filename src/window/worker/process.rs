@@ -5,7 +5,7 @@ pub fn end_now() -> ! {
     // SAFETY: `_exit` takes any number, touches no memory of the program and does not return.
     #[cfg(unix)]
     unsafe {
-        libc::_exit(0)
+        nix::libc::_exit(0)
     }
     #[cfg(not(unix))]
     std::process::abort()

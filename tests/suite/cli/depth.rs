@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::program::{ONCE, assert_schema, caustics, entries, folder, gas, read_json};
 
 /// The library that stands for RenderDoc, which `cargo test` builds beside the programs, under RenderDoc's name in `folder`.
-fn renderdoc(folder: &Path) {
+pub fn renderdoc(folder: &Path) {
     let programs = Path::new(env!("CARGO_BIN_EXE_fumarole")).parent().unwrap();
     let library = programs.join("examples/libtest_renderdoc.so");
     fs::copy(&library, folder.join("librenderdoc.so")).unwrap_or_else(|e| {

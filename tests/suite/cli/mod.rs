@@ -7,7 +7,7 @@ mod arguments;
 mod bench;
 mod burning;
 mod compare;
-mod depth;
+pub mod depth;
 mod devices;
 mod dumps;
 mod experiment;

@@ -1,6 +1,6 @@
 //! A worker of the tests, and the small scenes that it draws.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
 use std::sync::mpsc;
@@ -51,11 +51,11 @@ impl Worker {
         Self::spawn(program(), Vec::new(), paper, options)
     }
 
-    /// With a library in its process before all others.
-    pub fn preloaded(paper: &str, library: &Path) -> Self {
-        let mut preload = OsString::from("LD_PRELOAD=");
-        preload.push(library);
-        Self::spawn(Path::new("env"), vec![preload, program().into()], paper, small(paper))
+    /// With what stands for RenderDoc in its process, which writes its files to `folder`.
+    pub fn under_renderdoc(paper: &str, folder: &Path) -> Self {
+        let variable = |name: &str| [OsStr::new(name), folder.as_os_str()].into_iter().collect::<OsString>();
+        let set = [variable("LD_LIBRARY_PATH="), variable("TMPDIR="), "LD_PRELOAD=librenderdoc.so".into()];
+        Self::spawn(Path::new("env"), [&set[..], &[program().into()]].concat(), paper, small(paper))
     }
 
     fn spawn(program: &Path, before: Vec<OsString>, paper: &str, options: &str) -> Self {

@@ -1,11 +1,9 @@
 //! RenderDoc, where it is in the worker's process, and where it is not.
 
-use std::path::Path;
-use std::process::Command;
-
 use fumarole::window::protocol::{Event, Request};
 
 use super::scene::Worker;
+use crate::cli::depth::renderdoc;
 use crate::common::beside_others;
 
 #[test]
@@ -18,13 +16,8 @@ fn a_frame_is_captured_where_renderdoc_is_loaded() {
         worker.quit();
 
         let folder = tempfile::tempdir().unwrap();
-        let library = folder.path().join("librenderdoc.so");
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/suite/window/renderdoc.c");
-        let mut compiler = Command::new("cc");
-        compiler.args(["-shared", "-fPIC", "-Wl,-soname,librenderdoc.so", "-o"]).arg(&library).arg(source);
-        let compiled = compiler.status().unwrap();
-        assert!(compiled.success(), "the tests need a C compiler, as the build does");
-        let mut worker = Worker::preloaded("gas", &library);
+        renderdoc(folder.path());
+        let mut worker = Worker::under_renderdoc("gas", folder.path());
         let frame = worker.frame_after(0);
         assert!(worker.events.iter().any(|event| matches!(event, Event::Ready(ready) if ready.can_capture)));
         for number in 0..2 {
@@ -33,7 +26,8 @@ fn a_frame_is_captured_where_renderdoc_is_loaded() {
                 Event::Kept(files) => Some(files.clone()),
                 _ => None,
             });
-            assert_eq!(files, [format!("frame{number}.rdc")]);
+            let file = folder.path().join(format!("capture_frame{number}.rdc"));
+            assert!(file.is_file() && files == [file.display().to_string()], "{files:?}");
         }
         let again = worker.frame_of(Request::After(None));
         assert_eq!(
