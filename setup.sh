@@ -108,8 +108,6 @@ find_missing() {
         need xvfb 'Xvfb, a display without a screen, for the tests of the window'
     [ -z "$tests" ] || command -v openbox >/dev/null ||
         need openbox 'a small window manager for the same tests'
-    [ -z "$tests" ] || command -v xdotool >/dev/null ||
-        need xdotool 'xdotool for the same tests'
     [ -z "$tests" ] || command -v weston >/dev/null ||
         need weston 'weston, a Wayland compositor, for the same tests'
     [ -z "$tests" ] || has_programs sbatch slurmctld slurmd ||

@@ -8,6 +8,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 
 use super::failure::Failure;
 use super::options::MachineArgs;
+use super::watch::on_interruption;
 use crate::gpu::swapchain::PresentMode;
 use crate::measure::study::{Study, Visitor};
 use crate::papers;
@@ -103,11 +104,7 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
         validate: machine.validate,
         controls: window.controls,
     };
-    let ended = window::run(options, |quit| {
-        // Without a handler Ctrl-C ends the program, and the worker ends when its window is gone.
-        let _ = ctrlc::set_handler(quit);
-    });
-    ended.map_err(Failure::from)
+    window::run(options, on_interruption).map_err(Failure::from)
 }
 
 /// The options that were typed, of those that are wanted, as one would type them.

@@ -4,6 +4,7 @@
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,19 +14,33 @@ use super::outcome::say;
 use crate::measure::measure::Watch;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// What an interruption does instead of setting the flag.
+static QUIT: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
 
 /// The flag that Ctrl-C sets, as do the signals TERM and HUP; a second one ends the program at once.
 pub fn interrupted() -> &'static AtomicBool {
+    handle_interruptions();
+    &INTERRUPTED
+}
+
+/// From now on an interruption calls `quit` and does nothing else: the program that has a window ends by it.
+#[cfg(feature = "window")]
+pub fn on_interruption(quit: Box<dyn Fn() + Send>) {
+    *QUIT.lock().unwrap_or_else(PoisonError::into_inner) = Some(quit);
+    handle_interruptions();
+}
+
+fn handle_interruptions() {
+    // A process has one handler.
     static HANDLER: std::sync::Once = std::sync::Once::new();
     HANDLER.call_once(|| {
         // Without a handler Ctrl-C ends the program, which is the default anyway.
-        let _ = ctrlc::set_handler(|| {
-            if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
+        let _ = ctrlc::set_handler(|| match &*QUIT.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some(quit) => quit(),
+            None if INTERRUPTED.swap(true, Ordering::Relaxed) => std::process::exit(130),
+            None => {}
         });
     });
-    &INTERRUPTED
 }
 
 /// A bar on standard error; nothing when it is piped or `quiet`.

@@ -1,11 +1,15 @@
 //! The surface of a window, and what an instance and a device need to present to it. Nothing of this is asked for
 //! without a window.
 
-use std::ffi::CStr;
+use std::ffi::{CStr, c_void};
+use std::num::NonZeroU32;
+use std::ptr::NonNull;
 use std::sync::Arc;
 
 use ash::{ext, khr, vk};
-use raw_window_handle::{HasDisplayHandle, HasWindowHandle, RawDisplayHandle};
+use raw_window_handle::{
+    HasDisplayHandle, HasWindowHandle, RawDisplayHandle, RawWindowHandle, XcbDisplayHandle, XcbWindowHandle,
+};
 
 use super::error::{Context, Error};
 use super::instance::Instance;
@@ -38,9 +42,38 @@ impl Display {
     }
 }
 
+/// The display as every driver knows it: one of Xlib by its connection of XCB, since some have surfaces of XCB alone.
 fn display_handle(display: &impl HasDisplayHandle) -> Result<RawDisplayHandle, Error> {
-    let handle = display.display_handle();
-    Ok(handle.map_err(|error| Error::NoInstance { reason: format!("asking for the display: {error}") })?.as_raw())
+    let gone = |error| Error::NoInstance { reason: format!("asking for the display: {error}") };
+    let handle = display.display_handle().map_err(gone)?.as_raw();
+    let RawDisplayHandle::Xlib(xlib) = handle else { return Ok(handle) };
+    // SAFETY: the display is open: the handle was asked for just now.
+    let connection = xlib.display.and_then(|display| unsafe { xcb_connection(display) });
+    Ok(connection.map_or(handle, |connection| XcbDisplayHandle::new(Some(connection), xlib.screen).into()))
+}
+
+/// The connection behind a display of Xlib; `None` without the library that tells.
+///
+/// # Safety
+/// `display` is an open `Display` of Xlib.
+unsafe fn xcb_connection(display: NonNull<c_void>) -> Option<NonNull<c_void>> {
+    // SAFETY: a system library without initialisers of its own. What it returns belongs to the libraries of the display,
+    // which are loaded as long as it is open.
+    let library = unsafe { libloading::Library::new("libX11-xcb.so.1") }.ok()?;
+    type ConnectionOf = unsafe extern "C" fn(*mut c_void) -> *mut c_void;
+    // SAFETY: its type in X11/Xlib-xcb.h.
+    let connection_of = unsafe { library.get::<ConnectionOf>(b"XGetXCBConnection\0") }.ok()?;
+    // SAFETY: the display is open, as the caller promises.
+    NonNull::new(unsafe { connection_of(display.as_ptr()) })
+}
+
+/// The window beside a display of [`display_handle`].
+fn window_handle(window: &impl HasWindowHandle, display: RawDisplayHandle) -> Result<RawWindowHandle, Error> {
+    let gone = |error| Error::NoInstance { reason: format!("asking for the window: {error}") };
+    let handle = window.window_handle().map_err(gone)?.as_raw();
+    let (RawWindowHandle::Xlib(xlib), RawDisplayHandle::Xcb(_)) = (handle, display) else { return Ok(handle) };
+    let id = u32::try_from(xlib.window).ok().and_then(NonZeroU32::new);
+    Ok(id.map_or(handle, |id| XcbWindowHandle::new(id).into()))
 }
 
 /// The calls of swapchains on an open device.
@@ -75,8 +108,7 @@ impl Surface {
         W: HasDisplayHandle + HasWindowHandle + Send + Sync + 'static,
     {
         let display = display_handle(window)?;
-        let gone = |error| Error::NoInstance { reason: format!("asking for the window: {error}") };
-        let handle = window.window_handle().map_err(gone)?.as_raw();
+        let handle = window_handle(window.as_ref(), display)?;
         let required = ash_window::enumerate_required_extensions(display).unwrap_or_default();
         // SAFETY: the names are those of `ash`, which are static and end with a zero.
         let mut required = required.iter().map(|&name| unsafe { CStr::from_ptr(name) }.to_string_lossy());

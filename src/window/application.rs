@@ -228,7 +228,8 @@ impl Application {
                     if let Some(open) = &mut self.open
                         && let Some(client) = &mut open.client
                     {
-                        client.send(request);
+                        let id = client.send(request);
+                        open.interface.has_sent(id);
                     }
                 }
                 Wish::Paper(paper) => self.start(&paper, &[])?,

@@ -23,8 +23,6 @@ pub struct View {
 #[derive(Debug, Clone, Default)]
 pub struct Flight {
     view: Option<View>,
-    /// Pictures asked for and not heard of yet.
-    moved_at: Option<std::time::Instant>,
     /// The text of the field, while it is typed in.
     pub text: Option<String>,
 }
@@ -33,6 +31,12 @@ impl View {
     fn from_numbers(numbers: [f64; 6]) -> Self {
         let [a, b, c, d, e, f] = numbers;
         View { eye: DVec3::new(a, b, c), target: DVec3::new(d, e, f) }
+    }
+
+    /// What the text says, where it is six numbers.
+    fn parse(text: &str) -> Option<Self> {
+        let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+        numbers?.try_into().ok().map(Self::from_numbers)
     }
 
     /// As the parameter takes it.
@@ -85,18 +89,15 @@ impl View {
     }
 }
 
-impl Flight {
-    /// The camera as the user has it.
-    pub fn view(&self, face_camera: Option<[f64; 6]>) -> Option<View> {
-        let is_moving = self.moved_at.is_some_and(|at| at.elapsed().as_secs_f32() < 1.0);
-        self.view.filter(|_| is_moving).or(face_camera.map(View::from_numbers))
-    }
+/// The camera as the user has it.
+fn view(face: &Interface) -> Option<View> {
+    let moved = face.flight.view.filter(|_| face.sent.parameter(CAMERA).is_some());
+    moved.or_else(|| face.session.side(0)?.camera.map(View::from_numbers))
 }
 
 /// Moves the camera; nothing happens for a paper without one.
 pub fn change(face: &mut Interface, change: impl FnOnce(View) -> View) {
-    let known = face.session.side(0).and_then(|side| side.camera);
-    let Some(view) = face.flight.view(known) else { return };
+    let Some(view) = view(face) else { return };
     if face.session.parameter(CAMERA).is_none() {
         return;
     }
@@ -104,7 +105,6 @@ pub fn change(face: &mut Interface, change: impl FnOnce(View) -> View) {
     let is_finite = moved.eye.is_finite() && moved.target.is_finite() && moved.distance() > 1e-9;
     if is_finite && moved != view {
         face.flight.view = Some(moved);
-        face.flight.moved_at = Some(std::time::Instant::now());
         face.set(CAMERA, vec![moved.text()]);
     }
 }
@@ -162,8 +162,7 @@ pub fn steer_by_keys(ui: &egui::Context, face: &mut Interface) {
 
 /// The camera as fields: typed in, or set back.
 pub fn show_field(ui: &mut Ui, face: &mut Interface) {
-    let known = face.session.side(0).and_then(|side| side.camera);
-    let Some(view) = face.flight.view(known) else { return };
+    let Some(view) = view(face) else { return };
     ui.horizontal(|ui| {
         ui.label("Camera").on_hover_text("Eye x,y,z and target x,y,z. Drag the picture to orbit, right button to pan, wheel to dolly; W A S D Q E fly.");
         if ui.small_button("Reset").on_hover_text("The figure's own camera (R)").clicked() {
@@ -178,7 +177,7 @@ pub fn show_field(ui: &mut Ui, face: &mut Interface) {
         face.flight.text = Some(text.clone());
     }
     if field.lost_focus() && face.flight.text.take().is_some() {
-        face.flight.view = None;
+        face.flight.view = View::parse(&text);
         face.set(CAMERA, vec![text.trim().to_owned()]);
     }
 }
@@ -224,5 +223,7 @@ mod tests {
     fn the_text_is_what_the_parameter_takes() {
         let view = View { eye: DVec3::new(1.0, -2.5, 0.000_000_1), target: DVec3::new(0.0, 100.0, 3.25) };
         assert_eq!(view.text(), "1,-2.5,0,0,100,3.25");
+        assert_eq!(View::parse(&view.text()), Some(View { eye: DVec3::new(1.0, -2.5, 0.0), ..view }));
+        assert_eq!(View::parse("1,2,3"), None);
     }
 }

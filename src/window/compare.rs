@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
             navigate(&mut face.picture_view, ui, &response, size, true);
             camera::steer(ui, face, &response);
             let rect = face.picture_view.place(area, size, pixels_per_point);
+            face.pictures.is_small = face.picture_view.scale(area.size() * pixels_per_point, size) < 1.0;
             paint(&painter, &texture, rect);
             point(face, 0, &response, rect, size);
         }

@@ -15,6 +15,8 @@ struct Control<'a> {
     label: Option<&'a str>,
     value: Option<&'a str>,
     is_on: Option<bool>,
+    /// It has the keyboard.
+    is_focused: bool,
     /// Left, top, right and bottom in pixels of the window.
     rectangle_px: [f64; 4],
 }
@@ -28,7 +30,7 @@ pub fn write(path: &Path, update: &TreeUpdate, pixels_per_point: f32) -> Result<
     let controls: Vec<Control<'_>> = update
         .nodes
         .iter()
-        .filter_map(|(_, node)| {
+        .filter_map(|(id, node)| {
             let bounds = node.bounds()?;
             let (label, value) = (node.label(), node.value());
             (label.is_some() || value.is_some()).then(|| Control {
@@ -36,6 +38,7 @@ pub fn write(path: &Path, update: &TreeUpdate, pixels_per_point: f32) -> Result<
                 label,
                 value,
                 is_on: node.toggled().map(|toggled| toggled == egui::accesskit::Toggled::True),
+                is_focused: *id == update.focus,
                 rectangle_px: [bounds.x0 * scale, bounds.y0 * scale, bounds.x1 * scale, bounds.y1 * scale],
             })
         })

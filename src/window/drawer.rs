@@ -9,6 +9,8 @@ use super::{bench_tab, keep_tab, times_tab};
 
 /// The drawer with its tabs.
 pub fn show(ui: &mut Ui, face: &mut Interface) {
+    // A drawer is as high as its user has made it, whatever it holds.
+    ui.set_min_height(ui.available_height());
     ui.horizontal(|ui| {
         let messages = face.session.validation.len() + face.session.warnings.len();
         let messages = if messages > 0 { format!("Messages ({messages})") } else { "Messages".to_owned() };

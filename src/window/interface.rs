@@ -11,6 +11,7 @@ use super::keep_tab::Saving;
 use super::layout::{Layout, Theme};
 use super::pictures::Pictures;
 use super::protocol::{Assignment, Event, MeasureChoice, Request, TargetChoice, ThumbnailChoice, Verb};
+use super::sent::Sent;
 use super::session::Session;
 use super::{camera, compare, drawer, keys, parameters_panel, passes_panel, picture_view, target_view, top_bar};
 
@@ -48,6 +49,7 @@ pub struct Interface {
     pub(super) papers: Vec<&'static str>,
     pub(super) paper: String,
     pub(super) session: Session,
+    pub(super) sent: Sent,
     pub(super) layout: Layout,
     pub(super) pictures: Pictures,
     pub(super) shown: Shown,
@@ -90,6 +92,7 @@ impl Interface {
             papers,
             paper: paper.to_owned(),
             session: Session::default(),
+            sent: Sent::default(),
             measure: MeasureChoice { times: 0, counters: false },
             layout,
             pictures: Pictures::default(),
@@ -140,6 +143,7 @@ impl Interface {
         }
         let is_built = matches!(event, Event::Built(_));
         let has_picture = matches!(event, Event::Frame(_));
+        self.sent.hear(&event);
         let answer = self.session.take(event);
         if has_picture {
             self.pictures.is_new = true;
@@ -196,6 +200,11 @@ impl Interface {
         std::mem::take(&mut self.wishes)
     }
 
+    /// The requests that were wished for have been sent, the last as number `id`.
+    pub fn has_sent(&mut self, id: u64) {
+        self.sent.number(id);
+    }
+
     /// Remembers the layout.
     pub fn remember(&mut self, window_size: (f32, f32)) {
         if window_size.0 >= 1.0 && window_size.1 >= 1.0 {
@@ -209,7 +218,13 @@ impl Interface {
     }
 
     pub(super) fn ask(&mut self, request: Request) {
+        self.sent.ask(&request);
         self.wishes.push(Wish::Ask(request));
+    }
+
+    /// The clock plays, or is about to.
+    pub(super) fn is_playing(&self) -> bool {
+        self.sent.is_playing().unwrap_or_else(|| self.session.is_playing())
     }
 
     pub(super) fn set(&mut self, name: &str, values: Vec<String>) {
@@ -259,7 +274,7 @@ impl Interface {
 
     pub(super) fn change_paper(&mut self, paper: &str) {
         self.paper = paper.to_owned();
-        self.session = Session::default();
+        (self.session, self.sent) = (Session::default(), Sent::default());
         self.pictures = Pictures::default();
         (self.pass, self.after, self.target, self.shown) = (None, None, None, Shown::Picture);
         self.fields = Default::default();
@@ -271,12 +286,14 @@ impl Interface {
     pub(super) fn restart(&mut self) {
         let paper = self.paper.clone();
         self.session = Session { validation: std::mem::take(&mut self.session.validation), ..Session::default() };
+        self.sent = Sent::default();
         self.wish(Wish::Restart(paper));
     }
 
     /// Lays all panels out.
     pub fn show(&mut self, context: &Context) {
         keys::handle(context, self);
+        parameters_panel::take_dropped(context, self);
         self.pictures.update(context, &self.session);
         if let Some(line) = self.pictures.to_copy.take() {
             context.copy_text(line);

@@ -51,8 +51,9 @@ pub fn handle(context: &Context, face: &mut Interface) {
     if context.wants_keyboard_input() {
         return;
     }
-    let pressed = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    let shifted = |key| context.input_mut(|input| input.consume_key(Modifiers::SHIFT, key));
+    // Of a window that is drawn late, a frame has several.
+    let presses = |modifiers, key| context.input_mut(|input| input.count_and_consume_key(modifiers, key)) as i32;
+    let pressed = |key| presses(Modifiers::NONE, key) > 0;
     let asks_for_list =
         context.input(|input| input.events.iter().any(|event| matches!(event, egui::Event::Text(text) if text == "?")));
     if asks_for_list {
@@ -60,12 +61,14 @@ pub fn handle(context: &Context, face: &mut Interface) {
     }
     // Space presses the control that has the focus.
     let has_focus = context.memory(|memory| memory.focused().is_some());
-    clock(face, &pressed, has_focus);
-    if shifted(Key::OpenBracket) {
-        stop_at(face, -1);
+    clock(face, &|key| presses(Modifiers::NONE, key), has_focus);
+    let by = presses(Modifiers::SHIFT, Key::CloseBracket) - presses(Modifiers::SHIFT, Key::OpenBracket);
+    if by != 0 {
+        stop_at(face, by);
     }
-    if shifted(Key::CloseBracket) {
-        stop_at(face, 1);
+    let by = presses(Modifiers::NONE, Key::CloseBracket) - presses(Modifiers::NONE, Key::OpenBracket);
+    if by != 0 {
+        step_pass(face, by);
     }
     look(context, face, &pressed);
     if !has_focus {
@@ -118,19 +121,17 @@ fn global(context: &Context, face: &mut Interface) {
     }
 }
 
-fn clock(face: &mut Interface, pressed: &impl Fn(Key) -> bool, has_focus: bool) {
-    if !has_focus && pressed(Key::Space) {
-        let request = if face.session.is_playing() { Request::Pause } else { Request::Play };
+fn clock(face: &mut Interface, presses: &impl Fn(Key) -> i32, has_focus: bool) {
+    if !has_focus && presses(Key::Space) % 2 == 1 {
+        let request = if face.is_playing() { Request::Pause } else { Request::Play };
         face.ask(request);
     }
-    if pressed(Key::Period) {
-        face.ask(Request::Step(1));
-    }
-    if pressed(Key::Comma) {
-        face.ask(Request::Step(-1));
-    }
-    if pressed(Key::Home) {
+    if presses(Key::Home) > 0 {
         face.ask(Request::GoTo(0));
+    }
+    let by = presses(Key::Period) - presses(Key::Comma);
+    if by != 0 {
+        face.ask(Request::Step(by));
     }
 }
 
@@ -152,12 +153,6 @@ fn look(context: &Context, face: &mut Interface, pressed: &impl Fn(Key) -> bool)
     }
     if pressed(Key::Num0) {
         view.reset();
-    }
-    if pressed(Key::OpenBracket) {
-        step_pass(face, -1);
-    }
-    if pressed(Key::CloseBracket) {
-        step_pass(face, 1);
     }
     if pressed(Key::T) {
         match face.shown {
@@ -187,7 +182,7 @@ fn look(context: &Context, face: &mut Interface, pressed: &impl Fn(Key) -> bool)
 }
 
 /// The pass before or after the one that is looked at.
-fn step_pass(face: &mut Interface, by: isize) {
+fn step_pass(face: &mut Interface, by: i32) {
     let count = face.session.side_built(0).map_or(0, |side| side.passes.len());
     if count == 0 {
         return;
@@ -195,15 +190,15 @@ fn step_pass(face: &mut Interface, by: isize) {
     let next = match face.pass {
         None if by > 0 => 0,
         None => count - 1,
-        Some(pass) => pass.saturating_add_signed(by).min(count - 1),
+        Some(pass) => pass.saturating_add_signed(by as isize).min(count - 1),
     };
     face.select_pass(Some(next));
 }
 
 /// The frame stops a pass earlier or later.
-fn stop_at(face: &mut Interface, by: i64) {
+fn stop_at(face: &mut Interface, by: i32) {
     let count = face.session.side_built(0).map_or(0, |side| side.passes.len()) as i64;
-    let after = face.after.map_or(count, i64::from) + by;
+    let after = face.after.map_or(count, i64::from) + i64::from(by);
     let after = after.clamp(0, count);
     face.set_after((after < count).then_some(after as u32));
 }

@@ -34,6 +34,7 @@ mod pictures;
 mod program;
 pub mod protocol;
 mod screen;
+mod sent;
 pub mod session;
 mod table_view;
 mod target_view;

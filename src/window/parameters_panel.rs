@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use egui::{CollapsingHeader, ComboBox, DragValue, RichText, ScrollArea, Slider, TextEdit, Ui};
+use egui::{
+    CollapsingHeader, ComboBox, Context, DragValue, RichText, ScrollArea, Slider, SliderClamping, TextEdit, Ui,
+};
 
 use super::camera;
 use super::interface::Interface;
@@ -29,10 +31,6 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
         let search = TextEdit::singleline(&mut face.fields.search).hint_text("search").desired_width(f32::INFINITY);
         ui.add(search).widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search parameters"));
     });
-    let dropped = ui.input(|input| input.raw.dropped_files.iter().find_map(|file| file.path.clone()));
-    if let Some(path) = dropped {
-        drop_file(face, path);
-    }
     show_dropped(ui, face);
     camera::show_field(ui, face);
     ui.separator();
@@ -65,6 +63,8 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
             let open = (!search.is_empty()).then_some(true);
             CollapsingHeader::new(group).default_open(everyday).open(open).show(ui, |ui| {
                 for (parameter, value) in rows() {
+                    let asked = face.sent.parameter(&parameter.name).map(str::to_owned);
+                    let value = asked.as_ref().unwrap_or(value);
                     show_parameter(ui, face, parameter, value, set.contains(&parameter.name));
                 }
             });
@@ -97,7 +97,7 @@ fn show_parameter(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, 
     if !parameter.choices.is_empty() && !parameter.is_list {
         show_choices(ui, face, parameter, value);
     } else if let Some(number) = number.filter(|_| is_number) {
-        show_number(ui, face, parameter, number);
+        show_number(ui, face, parameter, value, number);
     } else {
         show_text(ui, face, parameter, value);
     }
@@ -152,33 +152,39 @@ fn show_choices(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, va
 }
 
 /// A change that costs constants is drawn while the slider moves, any other when it is let go.
-fn show_number(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, number: f64) {
+fn show_number(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, value: &str, number: f64) {
     let mut moved = face.fields.numbers.get(&parameter.name).copied().unwrap_or(number);
     let low = parameter.low.unwrap_or(f64::NEG_INFINITY);
     let high = parameter.high.unwrap_or(f64::INFINITY);
     let is_narrow = low.is_finite() && high.is_finite() && high > low && high <= 1e6;
+    // To look at a number, or to leave its field, does not round it.
+    let text = |shown: f64, _| if shown == number { value.trim().to_owned() } else { typed(parameter, shown) };
     let response = if is_narrow {
-        ui.spacing_mut().slider_width = (ui.available_width() - 70.0).max(40.0);
+        // The number stands beside it.
+        let digits = value.trim().len().max(8);
+        ui.spacing_mut().slider_width = (ui.available_width() - 22.0 - 8.0 * digits as f32).max(40.0);
         let slider = Slider::new(&mut moved, low..=high).logarithmic(high - low > 1e3).max_decimals(6);
+        let slider = slider.clamping(SliderClamping::Edits).update_while_editing(false).custom_formatter(text);
         ui.add(if parameter.is_whole { slider.integer() } else { slider })
     } else {
         let speed = if parameter.is_whole { 1.0 } else { (number.abs() * 0.01).max(1e-3) };
-        let field = DragValue::new(&mut moved).range(low..=high).speed(speed).max_decimals(9);
+        let field = DragValue::new(&mut moved).range(low..=high).clamp_existing_to_range(false).speed(speed);
+        let field = field.max_decimals(9).update_while_editing(false).custom_formatter(text);
         ui.add(if parameter.is_whole { field.max_decimals(0) } else { field })
     };
     response.widget_info(|| egui::WidgetInfo::slider(true, moved, &parameter.name));
     if response.changed() {
         face.fields.numbers.insert(parameter.name.clone(), moved);
     }
-    let is_held = response.dragged();
-    let is_due = if parameter.cost == Cost::Constants { response.changed() } else { !is_held && !response.has_focus() };
-    if is_due && face.fields.numbers.contains_key(&parameter.name) {
-        if !is_held {
-            face.fields.numbers.remove(&parameter.name);
-        }
-        if moved != number {
-            face.set(&parameter.name, vec![typed(parameter, moved)]);
-        }
+    // Arrows move a slider that has the focus.
+    let is_held = response.dragged() || response.has_focus();
+    let is_kept = face.fields.numbers.contains_key(&parameter.name);
+    let is_due = if parameter.cost == Cost::Constants { response.changed() } else { is_kept && !is_held };
+    if is_due && moved != number {
+        face.set(&parameter.name, vec![typed(parameter, moved)]);
+    }
+    if !is_held {
+        face.fields.numbers.remove(&parameter.name);
     }
 }
 
@@ -208,8 +214,10 @@ fn values_of(parameter: &ParameterInfo, text: &str) -> Vec<String> {
     vec![text.trim().to_owned()].into_iter().filter(|text| !text.is_empty()).collect()
 }
 
-/// A file was dropped on the window: the one parameter that takes such files gets it.
-pub fn drop_file(face: &mut Interface, path: PathBuf) {
+/// Takes a file that was dropped on the window: the one parameter that takes such files gets it.
+pub fn take_dropped(context: &Context, face: &mut Interface) {
+    let dropped = context.input(|input| input.raw.dropped_files.iter().find_map(|file| file.path.clone()));
+    let Some(path) = dropped else { return };
     let takers = takers(face.session.parameters(), &path);
     match takers.as_slice() {
         [] => face.session.problem = Some(format!("{}: no parameter of {} takes a file", path.display(), face.paper)),
@@ -217,7 +225,8 @@ pub fn drop_file(face: &mut Interface, path: PathBuf) {
             let name = one.clone();
             face.set(&name, vec![path.display().to_string()]);
         }
-        _ => face.fields.dropped = Some(path),
+        // The panel asks.
+        _ => (face.fields.dropped, face.layout.has_parameters) = (Some(path), true),
     }
 }
 

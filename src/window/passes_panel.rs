@@ -82,6 +82,9 @@ fn show_after(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
 fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
     let times: Vec<Vec<PassTimes>> = face.session.times.iter().map(|side| side.passes.clone()).collect();
     let is_compared = face.session.side_count() > 1;
+    let of_second = |name: &str| whole(times.get(1)?.iter().find(|times| times.name == name)?);
+    let number = |ui: &mut Ui, value: Option<f64>| drop(ui.monospace(milliseconds(value)));
+    let second = face.session.side_built(1).map(|side| side.passes.clone()).unwrap_or_default();
     let mut chosen = None;
     Grid::new("pass grid").striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
         let head = |ui: &mut Ui, text: &str, help: &str| drop(ui.strong(text).on_hover_text(help));
@@ -106,15 +109,9 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             if ui.selectable_label(face.pass == Some(index), name).on_hover_text(help(pass)).clicked() {
                 chosen = Some(index);
             }
-            let number = |ui: &mut Ui, value: Option<f64>| drop(ui.monospace(milliseconds(value)));
-            let whole = |times: &PassTimes| match (times.gpu_ms, times.host_ms) {
-                (None, None) => None,
-                (gpu, host) => Some(gpu.unwrap_or(0.0) + host.unwrap_or(0.0)),
-            };
             if is_compared {
-                let other = times.get(1).and_then(|side| side.iter().find(|times| times.name == pass.name));
                 number(ui, own.and_then(whole));
-                number(ui, other.and_then(whole));
+                number(ui, of_second(&pass.name));
             } else {
                 number(ui, own.and_then(|times| times.gpu_ms));
                 number(ui, own.and_then(|times| times.host_ms));
@@ -130,9 +127,26 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             ui.weak(&pass.section);
             ui.end_row();
         }
+        for pass in second.iter().filter(|pass| passes.iter().all(|own| own.name != pass.name)) {
+            ui.label(RichText::new(&pass.name).italics()).on_hover_text(format!("B alone: {}", help(pass)));
+            number(ui, None);
+            number(ui, of_second(&pass.name));
+            ui.label("");
+            ui.monospace(pass.calls.to_string());
+            ui.weak(&pass.section);
+            ui.end_row();
+        }
     });
     if let Some(index) = chosen {
         face.select_pass((face.pass != Some(index)).then_some(index));
+    }
+}
+
+/// GPU and host time together.
+fn whole(times: &PassTimes) -> Option<f64> {
+    match (times.gpu_ms, times.host_ms) {
+        (None, None) => None,
+        (gpu, host) => Some(gpu.unwrap_or(0.0) + host.unwrap_or(0.0)),
     }
 }
 

@@ -159,7 +159,7 @@ fn show_presets(ui: &mut Ui, face: &mut Interface) {
 }
 
 fn show_clock(ui: &mut Ui, face: &mut Interface) {
-    let (number, is_playing) = (face.session.number(), face.session.is_playing());
+    let (number, is_playing) = (face.session.number(), face.is_playing());
     if ui.button("|<").on_hover_text("Frame 0 (Home)").clicked() {
         face.ask(Request::GoTo(0));
     }
@@ -186,7 +186,8 @@ fn show_clock(ui: &mut Ui, face: &mut Interface) {
             Err(_) => face.session.problem = Some(format!("frame {text:?}: give a whole number, 0 or more")),
         }
     }
-    let mut speed = face.session.frame.as_ref().map_or(1.0, |frame| frame.speed);
+    let known = face.session.frame.as_ref().map_or(1.0, |frame| frame.speed);
+    let mut speed = face.sent.speed().unwrap_or(known);
     let drag = egui::DragValue::new(&mut speed).range(0.01..=1000.0).speed(0.05).prefix("x ").max_decimals(2);
     let drag = ui.add(drag).on_hover_text("Frames that the clock goes on by from picture to picture");
     drag.widget_info(|| egui::WidgetInfo::slider(true, speed, "speed"));

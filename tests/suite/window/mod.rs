@@ -1,8 +1,13 @@
 //! The window and its worker.
 
 mod client;
+mod desktop;
+mod display;
+mod drop;
 mod headless;
+mod interface;
 mod scene;
+mod wayland;
 mod worker;
 mod worker_answers;
 mod worker_capture;

@@ -1,0 +1,95 @@
+//! What was asked of the worker and is shown as if it were there already, until the worker says what is: a worker that draws
+//! a frame of seconds answers late.
+
+use std::collections::HashMap;
+
+use super::protocol::{Event, Request};
+
+/// Values on their way.
+#[derive(Debug, Default)]
+pub struct Sent {
+    parameters: HashMap<String, Underway<String>>,
+    is_playing: Option<Underway<bool>>,
+    speed: Option<Underway<f64>>,
+}
+
+#[derive(Debug)]
+struct Underway<T> {
+    value: T,
+    /// Number of the request, once it has one.
+    id: Option<u64>,
+}
+
+impl<T> Underway<T> {
+    fn new(value: T) -> Self {
+        Underway { value, id: None }
+    }
+
+    /// The worker has heard of it when it had heard of request `heeds`.
+    fn is_heard(&self, heeds: u64) -> bool {
+        self.id.is_some_and(|id| id <= heeds)
+    }
+
+    fn number(&mut self, id: u64) {
+        self.id.get_or_insert(id);
+    }
+}
+
+impl Sent {
+    /// Takes over what a request sets.
+    pub fn ask(&mut self, request: &Request) {
+        match request {
+            Request::Set(assignments) => {
+                for assignment in assignments {
+                    let (name, text) = (assignment.name.clone(), assignment.values.join(" "));
+                    // What a value goes back to is the worker's to say.
+                    if text.is_empty() {
+                        self.parameters.remove(&name);
+                    } else {
+                        self.parameters.insert(name, Underway::new(text));
+                    }
+                }
+            }
+            Request::Play | Request::Pause => self.is_playing = Some(Underway::new(*request == Request::Play)),
+            Request::Speed(speed) => self.speed = Some(Underway::new(*speed)),
+            _ => {}
+        }
+    }
+
+    /// What was asked for so far has gone to the worker as request `id`, or before it.
+    pub fn number(&mut self, id: u64) {
+        self.parameters.values_mut().for_each(|one| one.number(id));
+        self.is_playing.iter_mut().for_each(|one| one.number(id));
+        self.speed.iter_mut().for_each(|one| one.number(id));
+    }
+
+    /// Forgets what the worker says itself by now.
+    pub fn hear(&mut self, event: &Event) {
+        match event {
+            Event::Setup(setup) => self.parameters.retain(|_, one| !one.is_heard(setup.heeds)),
+            Event::Frame(frame) => self.forget_clock(frame.heeds),
+            Event::Failed { id, .. } => self.forget_clock(*id),
+            _ => {}
+        }
+    }
+
+    fn forget_clock(&mut self, heeds: u64) {
+        self.is_playing.take_if(|one| one.is_heard(heeds));
+        self.speed.take_if(|one| one.is_heard(heeds));
+    }
+
+    /// Text of a parameter.
+    pub fn parameter(&self, name: &str) -> Option<&str> {
+        self.parameters.get(name).map(|one| one.value.as_str())
+    }
+
+    /// Whether the clock plays.
+    pub fn is_playing(&self) -> Option<bool> {
+        self.is_playing.as_ref().map(|one| one.value)
+    }
+
+    /// Frames that the clock goes on by.
+    pub fn speed(&self) -> Option<f64> {
+        self.speed.as_ref().map(|one| one.value)
+    }
+}

@@ -1,0 +1,205 @@
+//! The real window on a display: every paper opens, real events do what they say, the picture on the screen is `render`'s.
+//! All runs are under validation with synchronization validation in both processes; a window that leaves a Vulkan object
+//! alive, or hears a message, does not end with 0.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use fumarole::image::{Rgba8, read_png};
+
+use super::display::{Display, Window, wait};
+use super::scene::{PAPERS, small};
+use crate::cli::program::{device, fumarole};
+use crate::common::beside_others;
+
+/// X key symbols.
+const SPACE: u32 = 0x20;
+const RETURN: u32 = 0xff0d;
+const CONTROL: u32 = 0xffe3;
+const F4: u32 = 0xffc1;
+/// The button that the wheel is.
+const WHEEL_UP: u8 = 4;
+
+fn pixel(picture: &Rgba8, x: u32, y: u32) -> [u8; 3] {
+    let at = (y as usize * picture.width() as usize + x as usize) * 4;
+    *picture.pixels()[at..].first_chunk().unwrap()
+}
+
+/// Largest distance of two bytes of the picture at an offset of the screen.
+fn distance(screen: &Rgba8, picture: &Rgba8, (left, top): (u32, u32)) -> u8 {
+    let mut largest = 0;
+    for y in 0..picture.height() {
+        for x in 0..picture.width() {
+            let (a, b) = (pixel(screen, left + x, top + y), pixel(picture, x, y));
+            let apart = (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap();
+            largest = largest.max(apart);
+            if largest > 1 {
+                return largest;
+            }
+        }
+    }
+    largest
+}
+
+/// Whether the picture lies somewhere in the rectangle of the screen, to 1 of 255.
+fn shows(screen: &Rgba8, picture: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
+    let clamp = |side: i16| u32::try_from(side).unwrap_or(0);
+    let lefts = clamp(left)..=(clamp(right).min(screen.width()) - picture.width());
+    let tops = || clamp(top)..=(clamp(bottom).min(screen.height()) - picture.height());
+    lefts.into_iter().any(|x| tops().any(|y| distance(screen, picture, (x, y)) <= 1))
+}
+
+/// Whether anything is drawn in the rectangle.
+fn is_drawn(screen: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
+    let corner = pixel(screen, left as u32, top as u32);
+    (top..bottom).any(|y| (left..right).any(|x| pixel(screen, x as u32, y as u32) != corner))
+}
+
+#[test]
+fn every_paper_opens_and_its_picture_is_that_of_render() {
+    beside_others(|| {
+        let display = Display::start();
+        for (paper, scene) in PAPERS {
+            let mut window = Window::open(&display, &format!("{paper} {scene}"));
+            window.wait_for_frame(0);
+            let passes = fumarole(&format!("{paper} passes --json {scene}")).on_test_device().run().succeeded().json();
+            let names = passes[0]["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap());
+            let screen = display.screenshot();
+            for name in names {
+                assert!(is_drawn(&screen, window.rectangle(name)), "{paper}: {name} is not on the screen");
+            }
+            let file = window.folder.path().join("rendered.png");
+            let render = fumarole(&format!("{paper} render {scene}")).arg("--device").arg(device());
+            render.arg("--image").arg(&file).run().succeeded();
+            let rendered = read_png(&file).unwrap();
+            let area = window.rectangle("picture");
+            wait(&format!("{paper}: the picture on the screen"), || {
+                shows(&display.screenshot(), &rendered, area).then_some(())
+            });
+            window.close().succeeded();
+        }
+    });
+}
+
+#[test]
+fn events_of_a_user_do_what_they_say() {
+    beside_others(|| {
+        let display = Display::start();
+        let mut window = Window::open(&display, &format!("caustics {}", small("caustics")));
+        window.wait_for_frame(0);
+        // A button, a key, a field.
+        window.click(">");
+        window.wait_for_frame(1);
+        display.key('.' as u32);
+        window.wait_for_frame(2);
+        window.enter("frame");
+        display.keys(&[CONTROL, 'a' as u32]);
+        display.write("5");
+        display.key(RETURN);
+        window.wait_for_frame(5);
+        // A pass and its target, with room for them.
+        display.key(F4);
+        window.wait("no drawer", |window| (!window.has("Hold")).then_some(()));
+        window.click("caustics-map");
+        window.click("thumbnail caustics-map");
+        window.wait("the target", |window| window.shows("caustics-map").then_some(()));
+        display.key('t' as u32);
+        window.wait("the picture", |window| window.shows("picture").then_some(()));
+        // The camera.
+        let before = window.wait("the camera", |window| camera(window));
+        let middle = window.middle("picture");
+        window.drag(1, middle, (middle.0 + 60, middle.1 + 10));
+        let orbited = window.wait("another camera", |window| camera(window).filter(|camera| *camera != before));
+        display.button(WHEEL_UP);
+        window.wait("a nearer camera", |window| camera(window).filter(|camera| *camera != orbited));
+        window.enter("camera");
+        display.keys(&[CONTROL, 'a' as u32]);
+        display.write("0,3,6,0,0,0");
+        display.key(RETURN);
+        window.wait("the camera that was typed", |window| camera(window).filter(|camera| camera == "0,3,6,0,0,0"));
+        window.close().succeeded();
+    });
+}
+
+fn camera(window: &Window<'_>) -> Option<String> {
+    let controls = window.controls();
+    let field = controls.iter().find(|control| control["label"] == "camera")?;
+    field["value"].as_str().map(str::to_owned)
+}
+
+#[test]
+fn a_window_is_resized_to_one_pixel_and_back() {
+    beside_others(|| {
+        let display = Display::start();
+        let mut window = Window::open(&display, &format!("terrain {}", small("terrain")));
+        window.wait_for_frame(0);
+        for step in 0..200_u32 {
+            let side = |phase: u32, most: u32| 1 + (step * 37 + phase) % most;
+            match step % 10 {
+                0 => window.resize(1, 1),
+                _ => window.resize(side(0, 900), side(11, 700)),
+            }
+            // The window draws some of them, and is overtaken by others.
+            thread::sleep(Duration::from_millis(5));
+        }
+        window.resize(1280, 800);
+        display.key('.' as u32);
+        window.wait_for_frame(1);
+        window.close().succeeded();
+    });
+}
+
+#[test]
+fn a_window_is_minimised_and_comes_back() {
+    beside_others(|| {
+        let display = Display::managed();
+        let mut window = Window::open(&display, &format!("gas {}", small("gas")));
+        window.wait_for_frame(0);
+        window.minimise();
+        window.restore();
+        window.focus();
+        display.key('.' as u32);
+        window.wait_for_frame(1);
+        window.close().succeeded();
+    });
+}
+
+#[test]
+fn quitting_does_not_wait_for_a_long_frame() {
+    beside_others(|| {
+        let display = Display::start();
+        let scene = "caustics --size 1024x768 --water-triangles 400000 --map-size 1024 --planes 101";
+        let mut window = Window::open(&display, scene);
+        display.key(SPACE);
+        window.wait("the paper", |window| window.has("paper").then_some(()));
+        let asked = Instant::now();
+        window.close().succeeded();
+        assert!(asked.elapsed().as_secs() < 20, "it took {:?}", asked.elapsed());
+    });
+}
+
+#[test]
+fn a_window_ends_after_the_frames_that_were_asked_for() {
+    beside_others(|| {
+        let display = Display::start();
+        let program = fumarole(&format!("view lava {} --validate --exit-after 3", small("lava")));
+        let program = program.env("DISPLAY", display.name()).without("WAYLAND_DISPLAY");
+        program.arg("--device").arg(device()).run().succeeded();
+    });
+}
+
+#[test]
+fn the_window_is_drawn_by_a_second_driver() {
+    beside_others(|| {
+        let display = Display::start();
+        let folder = tempfile::tempdir().unwrap();
+        let manifest = crate::drivers::driver_manifest(&folder);
+        let scene = format!("terrain {}", small("terrain"));
+        let mut window = Window::open_with(&display, &scene, |program| program.env("VK_DRIVER_FILES", &manifest));
+        window.wait_for_frame(0);
+        window.resize(700, 500);
+        display.key('.' as u32);
+        window.wait_for_frame(1);
+        window.close().succeeded();
+    });
+}

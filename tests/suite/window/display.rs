@@ -1,0 +1,353 @@
+//! A display of the tests' own, Xvfb, and real events on it; the window says itself where its controls are.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use fumarole::image::Rgba8;
+use serde_json::Value;
+use tempfile::TempDir;
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, EventMask, ImageFormat, InputFocus,
+    Window as WindowId,
+};
+use x11rb::protocol::xtest::ConnectionExt as XtestExt;
+use x11rb::rust_connection::RustConnection;
+
+use crate::cli::program::{Ended, Running, device, fumarole};
+
+/// Far above what anything here takes on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(120);
+const LOOK: Duration = Duration::from_millis(20);
+
+/// X events of the test extension.
+const KEY_PRESS: u8 = 2;
+const BUTTON_PRESS: u8 = 4;
+const MOTION: u8 = 6;
+/// States of a window to its manager.
+const NORMAL: u8 = 1;
+const ICONIC: u8 = 3;
+
+/// Waits until `look` finds something.
+///
+/// # Panics
+/// When it takes too long.
+pub fn wait<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(Instant::now() < deadline, "{what}: not after {PATIENCE:?}");
+        thread::sleep(LOOK);
+    }
+}
+
+/// The controls that a window has written into a file.
+pub fn controls(path: &Path) -> Vec<Value> {
+    let text = fs::read(path).unwrap_or_default();
+    serde_json::from_slice(&text).unwrap_or_default()
+}
+
+/// An X server without a screen of the host's.
+pub struct Display {
+    name: String,
+    server: Child,
+    manager: Option<Child>,
+    pub connection: RustConnection,
+    pub root: WindowId,
+}
+
+impl Display {
+    /// # Panics
+    /// Where Xvfb is not installed: a test never passes for want of it.
+    pub fn start() -> Self {
+        let mut command = Command::new("Xvfb");
+        // It ends with its last client, so with this process, however that ends.
+        command.args(["-displayfd", "1", "-terminate", "-screen", "0", "1600x1000x24", "-nolisten", "tcp"]);
+        let server = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
+        let mut server = server.expect("Xvfb is missing: run ./setup.sh --tests");
+        let mut number = String::new();
+        BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
+        let name = format!(":{}", number.trim());
+        let (connection, screen) = RustConnection::connect(Some(&name)).unwrap();
+        let root = connection.setup().roots[screen].root;
+        Display { name, server, manager: None, connection, root }
+    }
+
+    /// With a window manager.
+    pub fn managed() -> Self {
+        let mut display = Self::start();
+        let mut command = Command::new("openbox");
+        command.env("DISPLAY", &display.name).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        display.manager = Some(command.spawn().expect("openbox is missing: run ./setup.sh --tests"));
+        let supported = display.atom("_NET_SUPPORTING_WM_CHECK");
+        wait("the window manager", || {
+            let value = display.property(display.root, supported);
+            (!value.is_empty()).then_some(())
+        });
+        display
+    }
+
+    /// As DISPLAY has it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    pub fn atom(&self, name: &str) -> u32 {
+        self.connection.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap().atom
+    }
+
+    fn property(&self, window: WindowId, name: u32) -> Vec<u8> {
+        let reply = self.connection.get_property(false, window, name, AtomEnum::ANY, 0, 64).unwrap().reply();
+        reply.map(|reply| reply.value).unwrap_or_default()
+    }
+
+    /// The window that has this title, wherever the window manager has put it.
+    fn find(&self, parent: WindowId, title: &str) -> Option<WindowId> {
+        let children = self.connection.query_tree(parent).ok()?.reply().ok()?.children;
+        children.into_iter().find_map(|child| {
+            let name = self.property(child, AtomEnum::WM_NAME.into());
+            if name == title.as_bytes() { Some(child) } else { self.find(child, title) }
+        })
+    }
+
+    /// What is on the screen.
+    pub fn screenshot(&self) -> Rgba8 {
+        let geometry = self.connection.get_geometry(self.root).unwrap().reply().unwrap();
+        let (width, height) = (geometry.width, geometry.height);
+        let reply = self.connection.get_image(ImageFormat::Z_PIXMAP, self.root, 0, 0, width, height, u32::MAX);
+        let bytes = reply.unwrap().reply().unwrap().data;
+        let pixels = bytes.chunks_exact(4).flat_map(|bgra| [bgra[2], bgra[1], bgra[0], 255]).collect();
+        Rgba8::new(u32::from(width), u32::from(height), pixels).unwrap()
+    }
+
+    fn input(&self, kind: u8, detail: u8, (x, y): (i16, i16)) {
+        self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap().check().unwrap();
+    }
+
+    /// Moves the pointer.
+    pub fn point(&self, (x, y): (i16, i16)) {
+        self.input(MOTION, 0, (x, y));
+    }
+
+    /// Presses and lets go a button: 1 left, 3 right, 4 and 5 the wheel.
+    pub fn button(&self, button: u8) {
+        self.input(BUTTON_PRESS, button, (0, 0));
+        self.input(BUTTON_PRESS + 1, button, (0, 0));
+    }
+
+    /// Presses and lets go a key, by its symbol.
+    pub fn key(&self, symbol: u32) {
+        self.keys(&[symbol]);
+    }
+
+    /// Presses keys one after the other, and lets them go.
+    pub fn keys(&self, symbols: &[u32]) {
+        let codes: Vec<u8> = symbols.iter().map(|symbol| self.code(*symbol)).collect();
+        codes.iter().for_each(|code| self.input(KEY_PRESS, *code, (0, 0)));
+        codes.iter().rev().for_each(|code| self.input(KEY_PRESS + 1, *code, (0, 0)));
+    }
+
+    /// Types what no key needs Shift for.
+    pub fn write(&self, text: &str) {
+        text.chars().for_each(|letter| self.key(letter as u32));
+    }
+
+    fn code(&self, symbol: u32) -> u8 {
+        let setup = self.connection.setup();
+        let (first, count) = (setup.min_keycode, setup.max_keycode - setup.min_keycode + 1);
+        let mapping = self.connection.get_keyboard_mapping(first, count).unwrap().reply().unwrap();
+        let per_code = usize::from(mapping.keysyms_per_keycode);
+        let at = mapping.keysyms.chunks(per_code).position(|symbols| symbols[0] == symbol);
+        first + at.unwrap_or_else(|| panic!("no key has the symbol {symbol:#x}")) as u8
+    }
+}
+
+impl Drop for Display {
+    fn drop(&mut self) {
+        for child in self.manager.iter_mut().chain([&mut self.server]) {
+            let _ended = child.kill().and_then(|()| child.wait());
+        }
+    }
+}
+
+/// A running window.
+pub struct Window<'a> {
+    pub display: &'a Display,
+    program: Option<Running>,
+    pub id: WindowId,
+    controls: PathBuf,
+    pub folder: TempDir,
+}
+
+impl<'a> Window<'a> {
+    /// Opens a window under validation with synchronization validation, and waits until it has a picture.
+    pub fn open(display: &'a Display, arguments: &str) -> Self {
+        Self::open_with(display, arguments, |program| program.arg("--device").arg(device()))
+    }
+
+    /// As [`Window::open`], of a program that is changed.
+    pub fn open_with(
+        display: &'a Display,
+        arguments: &str,
+        change: impl FnOnce(crate::cli::program::Program) -> crate::cli::program::Program,
+    ) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let controls = folder.path().join("controls.json");
+        let program = fumarole(&format!("view {arguments} --validate")).arg("--controls").arg(&controls);
+        let program = program.env("DISPLAY", &display.name).without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
+        let program = program.env("XDG_STATE_HOME", folder.path()).inside(folder.path());
+        let program = change(program).start();
+        let mut window = Window { display, program: Some(program), id: 0, controls, folder };
+        window.id =
+            window.wait("the window", |window| display.find(display.root, "fumarole").filter(|_| window.has("paper")));
+        window.focus();
+        window
+    }
+
+    /// Gives it the keyboard, which a window that is not yet seen does not take.
+    pub fn focus(&mut self) {
+        let (display, id) = (self.display, self.id);
+        self.wait("the keyboard", |_| {
+            let focus = display.connection.set_input_focus(InputFocus::PARENT, id, x11rb::CURRENT_TIME);
+            focus.unwrap().check().ok()
+        });
+    }
+
+    /// Waits for something to be seen; the window goes on meanwhile.
+    pub fn wait<T>(&mut self, what: &str, mut look: impl FnMut(&Self) -> Option<T>) -> T {
+        wait(what, || {
+            if self.program.as_mut().is_none_or(Running::has_ended) {
+                let ended = self.program.take().map(Running::end).unwrap();
+                panic!("{what}: the window has ended, {}: {}", ended.status, ended.stderr);
+            }
+            look(self)
+        })
+    }
+
+    /// The controls that it shows now.
+    pub fn controls(&self) -> Vec<Value> {
+        controls(&self.controls)
+    }
+
+    fn find(&self, label: &str) -> Option<Value> {
+        self.controls().into_iter().find(|control| control["label"] == label)
+    }
+
+    /// True when there is a control of that label.
+    pub fn has(&self, label: &str) -> bool {
+        self.find(label).is_some()
+    }
+
+    /// True when a control's words hold the text.
+    pub fn says(&self, text: &str) -> bool {
+        let holds = |value: &Value| value.as_str().is_some_and(|words| words.contains(text));
+        self.controls().iter().any(|control| holds(&control["label"]) || holds(&control["value"]))
+    }
+
+    /// Middle of a control on the screen.
+    pub fn middle(&mut self, label: &str) -> (i16, i16) {
+        let [left, top, right, bottom] = self.rectangle(label);
+        ((left + right) / 2, (top + bottom) / 2)
+    }
+
+    /// Left, top, right and bottom of a control on the screen.
+    pub fn rectangle(&mut self, label: &str) -> [i16; 4] {
+        let control = self.wait(label, |window| window.find(label));
+        let origin = self.display.connection.translate_coordinates(self.id, self.display.root, 0, 0).unwrap();
+        let origin = origin.reply().unwrap();
+        let side = |index: usize| control["rectangle_px"][index].as_f64().unwrap() as i16;
+        [side(0) + origin.dst_x, side(1) + origin.dst_y, side(2) + origin.dst_x, side(3) + origin.dst_y]
+    }
+
+    pub fn click(&mut self, label: &str) {
+        let middle = self.middle(label);
+        self.display.point(middle);
+        self.display.button(1);
+    }
+
+    /// Waits until it has drawn a frame, and so has seen what was done before.
+    fn wait_for_drawing(&mut self) {
+        // The file is made anew with each frame.
+        let drawn = |window: &Self| fs::metadata(&window.controls).map(|file| (file.ino(), file.mtime_nsec())).ok();
+        let before = drawn(self);
+        self.wait("a frame of the window", |window| (drawn(window) != before).then_some(()));
+    }
+
+    /// Drags with a button held, step by step as a hand does.
+    pub fn drag(&mut self, button: u8, from: (i16, i16), to: (i16, i16)) {
+        self.display.point(from);
+        self.display.input(BUTTON_PRESS, button, (0, 0));
+        self.wait_for_drawing();
+        for step in 1..=4 {
+            let part = |a: i16, b: i16| a + (b - a) * step / 4;
+            self.display.point((part(from.0, to.0), part(from.1, to.1)));
+            self.wait_for_drawing();
+        }
+        self.display.input(BUTTON_PRESS + 1, button, (0, 0));
+    }
+
+    /// True when the middle of the window shows the picture or the target of that name.
+    pub fn shows(&self, name: &str) -> bool {
+        self.controls().iter().any(|control| control["role"] == "Image" && control["label"] == name)
+    }
+
+    /// Clicks a field, and waits until it has the keyboard.
+    pub fn enter(&mut self, label: &str) {
+        self.click(label);
+        self.wait(label, |window| window.find(label).filter(|field| field["is_focused"] == true));
+    }
+
+    /// Waits until the frame is drawn and shown.
+    pub fn wait_for_frame(&mut self, number: u32) {
+        let words = format!("frame {number} in ");
+        self.wait(&words, |window| window.says(&words).then_some(()));
+    }
+
+    pub fn resize(&self, width: u32, height: u32) {
+        let size = ConfigureWindowAux::new().width(width).height(height);
+        self.display.connection.configure_window(self.id, &size).unwrap().check().unwrap();
+    }
+
+    /// Asks the window manager for something of it.
+    fn ask_manager(&self, what: &str, data: [u32; 5]) {
+        let event = ClientMessageEvent::new(32, self.id, self.display.atom(what), data);
+        let mask = EventMask::SUBSTRUCTURE_REDIRECT | EventMask::SUBSTRUCTURE_NOTIFY;
+        self.display.connection.send_event(false, self.display.root, mask, event).unwrap().check().unwrap();
+    }
+
+    /// Waits until the window manager says so.
+    fn wait_for_state(&mut self, state: u8) {
+        let name = self.display.atom("WM_STATE");
+        self.wait("the window manager", |window| {
+            (window.display.property(window.id, name).first() == Some(&state)).then_some(())
+        });
+    }
+
+    /// Has it taken away from the screen.
+    pub fn minimise(&mut self) {
+        self.ask_manager("WM_CHANGE_STATE", [ICONIC.into(), 0, 0, 0, 0]);
+        self.wait_for_state(ICONIC);
+    }
+
+    /// Has it shown again.
+    pub fn restore(&mut self) {
+        self.ask_manager("_NET_ACTIVE_WINDOW", [2, 0, 0, 0, 0]);
+        self.wait_for_state(NORMAL);
+    }
+
+    /// Closes it as a user does, and waits for its end.
+    pub fn close(mut self) -> Ended {
+        let protocols = self.display.atom("WM_PROTOCOLS");
+        let delete = self.display.atom("WM_DELETE_WINDOW");
+        let event = ClientMessageEvent::new(32, self.id, protocols, [delete, 0, 0, 0, 0]);
+        self.display.connection.send_event(false, self.id, EventMask::NO_EVENT, event).unwrap().check().unwrap();
+        self.program.take().unwrap().end()
+    }
+}

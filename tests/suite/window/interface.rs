@@ -1,0 +1,381 @@
+//! The interface without a window or a worker: what it shows of what it was told, and what it asks for when it is used.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use fumarole::window::interface::{Interface, Wish};
+use fumarole::window::layout::Layout;
+use fumarole::window::protocol::{
+    Assignment, Block, Built, ChoiceInfo, Cost, Event, Frame, MeasureChoice, ParameterInfo, PassInfo, PassTimes,
+    Picture, PresetInfo, Ready, Request, Setup, SideBuilt, SideChoice, SideFrame, SideSetup, SideTimes, TargetChoice,
+    TargetInfo, TargetShape, ThumbnailChoice, ValueKind, Verb,
+};
+
+fn parameter(name: &str, low: f64, high: f64) -> ParameterInfo {
+    ParameterInfo {
+        name: name.into(),
+        group: "Water".into(),
+        help: format!("Help of {name}"),
+        section: "eq. 4-17".into(),
+        unit: "metres".into(),
+        low: Some(low),
+        high: Some(high),
+        range: format!("{low} to {high}"),
+        placeholder: "X".into(),
+        default: "1".into(),
+        cost: Cost::Constants,
+        is_flag: false,
+        is_list: false,
+        is_several: false,
+        is_whole: false,
+        is_file: false,
+        is_everyday: true,
+        choices: Vec::new(),
+        excludes: Vec::new(),
+        requires: None,
+    }
+}
+
+fn parameters() -> Vec<ParameterInfo> {
+    let choice = |name: &str| ChoiceInfo { name: name.into(), help: String::new() };
+    vec![
+        parameter("depth", 0.0, 10.0),
+        ParameterInfo { is_flag: true, ..parameter("floor", 0.0, 1.0) },
+        ParameterInfo { choices: vec![choice("calm"), choice("storm")], ..parameter("waves", 0.0, 1.0) },
+        ParameterInfo { is_file: true, is_everyday: true, ..parameter("mesh", 0.0, 1.0) },
+        ParameterInfo { is_several: true, ..parameter("camera", 0.0, 1.0) },
+    ]
+}
+
+fn ready() -> Event {
+    let preset = PresetInfo { name: "figure-1".into(), help: "The first figure".into(), variant: None };
+    Event::Ready(Ready {
+        paper: "caustics".into(),
+        about: "Light under water".into(),
+        device: "llvmpipe (cpu, Mesa)".into(),
+        is_cpu: true,
+        validates: false,
+        can_capture: false,
+        shader_dir: None,
+        variants: vec!["level-map".into(), "volumetric".into()],
+        presets: vec![preset],
+        parameters: parameters(),
+        warnings: Vec::new(),
+    })
+}
+
+fn side_setup(variant: &str) -> SideSetup {
+    let values = ["1.5", "off", "calm", "teapot", "0,1,5,0,0,0"];
+    SideSetup {
+        choice: SideChoice { variant: Some(variant.into()), compiler: Some("glslang".into()), preset: None },
+        values: values.map(String::from).to_vec(),
+        set: vec!["depth".into()],
+        refused: Vec::new(),
+        camera: Some([0.0, 1.0, 5.0, 0.0, 0.0, 0.0]),
+        lens: None,
+    }
+}
+
+fn setup(variants: &[&str]) -> Event {
+    let sides = variants.iter().map(|variant| side_setup(variant)).collect();
+    Event::Setup(Setup { heeds: 0, preset: None, sides })
+}
+
+fn pass(name: &str, writes: usize) -> PassInfo {
+    PassInfo {
+        name: name.into(),
+        section: "4.2".into(),
+        kind: "graphics".into(),
+        calls: 3,
+        shaders: vec![format!("{name}.frag")],
+        compiler: Some("glslang".into()),
+        reads: Vec::new(),
+        writes: vec![format!("target-{writes}")],
+        read_targets: Vec::new(),
+        written_targets: vec![writes],
+        blend: vec!["replace".into()],
+        depth: None,
+    }
+}
+
+fn built(sides: usize) -> Event {
+    let target = |index: usize| TargetInfo {
+        name: format!("target-{index}"),
+        resource: format!("target-{index}"),
+        kind: ValueKind::F32,
+        shape: TargetShape::Image { width: 8, height: 4, channels: 1, layers: 1 },
+        format: "R32_SFLOAT".into(),
+        is_depth: false,
+        is_srgb: false,
+    };
+    let side = SideBuilt {
+        size: [8, 4],
+        build_ms: Some(2.0),
+        load_ms: Some(1.0),
+        passes: vec![pass("water-surface", 0), pass("caustics-map", 1), pass("combine", 2)],
+        targets: (0..3).map(target).collect(),
+    };
+    Event::Built(Built { heeds: 0, sides: vec![side; sides] })
+}
+
+fn frame(number: u32, sides: usize) -> Event {
+    let bytes: Vec<u8> = (0..8 * 4 * 4).map(|byte| byte as u8).collect();
+    let block = Block { offset: 0, len: bytes.len() as u64, bytes };
+    let picture = Picture { width: 8, height: 4, block };
+    let side = SideFrame { picture: Some(picture), frame_ms: 12.5, written: Vec::new() };
+    Event::Frame(Box::new(Frame {
+        serial: u64::from(number) + 1,
+        heeds: 0,
+        number,
+        is_playing: false,
+        speed: 1.0,
+        after: None,
+        sides: vec![side; sides],
+        difference: None,
+        target: None,
+        thumbnails: Vec::new(),
+    }))
+}
+
+/// The interface of a paper with one side that shows frame 7.
+fn harness() -> Harness<'static, Interface> {
+    let layout = Layout { passes_width: 480.0, ..Layout::default() };
+    let mut face = Interface::new(&egui::Context::default(), vec!["lava", "caustics"], "caustics", layout);
+    for event in [ready(), setup(&["level-map"]), built(1), frame(7, 1)] {
+        face.take(event);
+    }
+    let mut harness = Harness::builder()
+        .with_size(egui::vec2(1600.0, 1000.0))
+        .build_state(|context, face: &mut Interface| face.show(context), face);
+    harness.run();
+    harness.state_mut().wishes();
+    harness
+}
+
+/// What the interface asked for since.
+fn asked(harness: &mut Harness<'_, Interface>) -> Vec<Request> {
+    harness.run();
+    let wishes = harness.state_mut().wishes();
+    let of = |wish| if let Wish::Ask(request) = wish { Some(request) } else { None };
+    wishes.into_iter().filter_map(of).collect()
+}
+
+fn press(harness: &mut Harness<'_, Interface>, key: egui::Key) -> Vec<Request> {
+    harness.key_press(key);
+    asked(harness)
+}
+
+#[test]
+fn passes_and_parameters_are_those_that_were_told() {
+    let harness = harness();
+    for label in ["water-surface", "caustics-map", "combine", "depth", "floor", "waves", "mesh"] {
+        assert!(harness.query_all_by_label(label).next().is_some(), "{label} is not shown");
+    }
+}
+
+#[test]
+fn buttons_and_keys_ask_for_the_same() {
+    let mut harness = harness();
+    harness.get_by_label("Play").click();
+    assert_eq!(asked(&mut harness), [Request::Play]);
+    harness.get_by_label(">").click();
+    assert_eq!(asked(&mut harness), [Request::Step(1)]);
+    assert_eq!(press(&mut harness, egui::Key::Space), [Request::Pause]);
+    assert_eq!(press(&mut harness, egui::Key::Period), [Request::Step(1)]);
+    assert_eq!(press(&mut harness, egui::Key::Comma), [Request::Step(-1)]);
+    assert_eq!(press(&mut harness, egui::Key::Home), [Request::GoTo(0)]);
+    // Several in one frame of a window that is drawn late.
+    let input = harness.input_mut();
+    for key in [egui::Key::Period, egui::Key::Space, egui::Key::Period, egui::Key::Space, egui::Key::Period] {
+        let (modifiers, physical_key) = (egui::Modifiers::NONE, None);
+        input.events.push(egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers });
+    }
+    assert_eq!(asked(&mut harness), [Request::Step(3)]);
+}
+
+#[test]
+fn a_pass_that_is_clicked_brings_its_targets() {
+    let mut harness = harness();
+    harness.get_by_label("caustics-map").click();
+    let names = vec!["target-1".to_owned()];
+    let choice = ThumbnailChoice { side: 0, names, longest_px: 160 };
+    assert_eq!(asked(&mut harness), [Request::Thumbnails(Some(choice))]);
+    harness.query_all_by_label("target-1").last().unwrap().click();
+    let target = TargetChoice { side: 0, name: "target-1".into(), layer: 0, first_row: 0 };
+    assert_eq!(asked(&mut harness), [Request::Target(Some(target))]);
+    assert_eq!(press(&mut harness, egui::Key::T), [Request::Target(None)]);
+}
+
+#[test]
+fn the_frame_stops_after_a_pass() {
+    let mut harness = harness();
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::OpenBracket);
+    assert_eq!(asked(&mut harness), [Request::After(Some(2))]);
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::CloseBracket);
+    assert_eq!(asked(&mut harness), [Request::After(None)]);
+}
+
+#[test]
+fn times_are_asked_for_and_shown_with_their_share() {
+    let mut harness = harness();
+    let times = Layout::default().samples;
+    assert_eq!(press(&mut harness, egui::Key::M), [Request::Measure(MeasureChoice { times, counters: false })]);
+    let of = |name: &str, ms: f64, share: f64| PassTimes {
+        name: name.into(),
+        gpu_ms: Some(ms),
+        share: Some(share),
+        ..PassTimes::default()
+    };
+    let passes = vec![of("water-surface", 1.25, 0.25), of("caustics-map", 3.75, 0.75)];
+    harness.state_mut().take(Event::Times(vec![SideTimes { samples: 9, frame_ms: Some(4.0), passes }]));
+    harness.run();
+    for text in ["   1.250", "   3.750"] {
+        assert!(harness.query_all_by_label(text).next().is_some(), "{text} is not shown");
+    }
+}
+
+#[test]
+fn a_flag_and_a_choice_set_what_a_user_would_type() {
+    let mut harness = harness();
+    let set =
+        |name: &str, value: &str| Request::Set(vec![Assignment { name: name.into(), values: vec![value.into()] }]);
+    harness.get_by_label("floor").click();
+    assert_eq!(asked(&mut harness), [set("floor", "true")]);
+    // What was set by hand can be taken back.
+    harness.get_by_label("reset").click();
+    assert_eq!(asked(&mut harness), [Request::Set(vec![Assignment { name: "depth".into(), values: vec![] }])]);
+}
+
+#[test]
+fn a_number_that_is_only_looked_at_stays_as_it_is() {
+    let mut harness = harness();
+    let Event::Setup(mut third) = setup(&["level-map"]) else { unreachable!() };
+    third.sides[0].values[0] = "0.3333333333333333".into();
+    harness.state_mut().take(Event::Setup(third));
+    assert_eq!(asked(&mut harness), []);
+    let number = || harness.query_all_by_role(egui::accesskit::Role::SpinButton).last().unwrap();
+    number().focus();
+    harness.run();
+    assert_eq!(press(&mut harness, egui::Key::Tab), []);
+}
+
+/// A worker that draws a long frame answers late: what was asked for is seen at once, until the worker says what is.
+#[test]
+fn what_is_asked_for_is_shown_before_it_is_there() {
+    let mut harness = harness();
+    let is_on = |harness: &Harness<'_, Interface>| {
+        let floor = harness.get_by_label("floor");
+        floor.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+    };
+    harness.get_by_label("floor").click();
+    harness.get_by_label("Play").click();
+    assert_eq!(asked(&mut harness).len(), 2);
+    harness.state_mut().has_sent(5);
+    for heeds in [4, 5] {
+        let Event::Setup(earlier) = setup(&["level-map"]) else { unreachable!() };
+        harness.state_mut().take(Event::Setup(Setup { heeds, ..earlier }));
+        let Event::Frame(shown) = frame(7, 1) else { unreachable!() };
+        harness.state_mut().take(Event::Frame(Box::new(Frame { heeds, ..*shown })));
+        harness.run();
+        assert_eq!(is_on(&harness), heeds < 5, "the flag when request {heeds} was heeded");
+        let button = if heeds < 5 { "Pause" } else { "Play" };
+        assert!(harness.query_by_label(button).is_some(), "no {button} when request {heeds} was heeded");
+    }
+}
+
+#[test]
+fn the_camera_turns_by_keys_and_goes_back() {
+    let mut harness = harness();
+    harness.key_down(egui::Key::ArrowRight);
+    harness.step();
+    harness.step();
+    harness.key_up(egui::Key::ArrowRight);
+    let requests = asked(&mut harness);
+    let Some(Request::Set(set)) = requests.first() else { panic!("no move: {requests:?}") };
+    assert_eq!(set[0].name, "camera");
+    let numbers: Vec<f64> = set[0].values[0].split(',').map(|number| number.parse().unwrap()).collect();
+    assert_eq!(numbers.len(), 6);
+    assert!(numbers[0].abs() > 1e-6 && (numbers[1] - 1.0).abs() < 1e-5, "it turned about the upright: {numbers:?}");
+    let camera = Assignment { name: "camera".into(), values: vec![] };
+    assert_eq!(press(&mut harness, egui::Key::R), [Request::Set(vec![camera])]);
+}
+
+#[test]
+fn two_sides_are_compared_in_three_ways() {
+    let mut harness = harness();
+    let requests = press(&mut harness, egui::Key::C);
+    let Some(Request::Sides(sides)) = requests.first() else { panic!("no second side: {requests:?}") };
+    assert_eq!(
+        sides.iter().map(|side| side.variant.as_deref()).collect::<Vec<_>>(),
+        [Some("level-map"), Some("volumetric")]
+    );
+    let Event::Built(mut both) = built(2) else { unreachable!() };
+    both.sides[1].passes[2].name = "accumulate".into();
+    for event in [setup(&["level-map", "volumetric"]), Event::Built(both), frame(7, 2)] {
+        harness.state_mut().take(event);
+    }
+    asked(&mut harness);
+    assert!(harness.query_by_label("accumulate").is_some(), "the pass that B alone has");
+    assert_eq!(press(&mut harness, egui::Key::B), [Request::Difference(false)]);
+    assert!(harness.query_by_label("divider").is_some(), "no divider");
+    assert_eq!(press(&mut harness, egui::Key::B), [Request::Difference(true)]);
+    let one = press(&mut harness, egui::Key::C);
+    assert!(matches!(&one[0], Request::Sides(sides) if sides.len() == 1), "{one:?}");
+}
+
+#[test]
+fn a_problem_stands_over_the_picture_until_it_is_read_or_mended() {
+    let mut harness = harness();
+    let problem = "shaders/caustics/combine.frag:12: 'colour' : undeclared identifier";
+    harness.state_mut().take(Event::Failed { id: 0, problem: problem.into() });
+    harness.run();
+    assert!(harness.query_by_label(problem).is_some(), "the problem is not shown");
+    harness.state_mut().take(built(1));
+    harness.run();
+    assert!(harness.query_by_label(problem).is_none(), "the problem was mended");
+}
+
+#[test]
+fn commands_are_copied_and_papers_changed() {
+    let mut harness = harness();
+    harness.get_by_label("Copy as command").click();
+    assert_eq!(asked(&mut harness), [Request::Command(Verb::Render)]);
+    let words = ["caustics", "render", "--mesh", "my pot.obj"].map(String::from).to_vec();
+    harness.state_mut().take(Event::Command(words));
+    harness.step();
+    let commands = harness.output().platform_output.commands.clone();
+    let copied = commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    assert_eq!(copied.as_deref(), Some("fumarole caustics render --mesh 'my pot.obj'"));
+    harness.run();
+}
+
+#[test]
+fn a_question_mark_lists_the_keys() {
+    let mut harness = harness();
+    harness.event(egui::Event::Text("?".into()));
+    harness.run();
+    assert!(harness.query_by_label("play, pause").is_some(), "no list");
+    harness.key_press(egui::Key::Escape);
+    harness.run();
+    assert!(harness.query_by_label("play, pause").is_none(), "the list stayed");
+}
+
+#[test]
+fn a_dropped_file_goes_to_the_parameter_that_takes_it() {
+    let mut harness = harness();
+    let file = egui::DroppedFile { path: Some("/tmp/bunny.obj".into()), ..Default::default() };
+    harness.input_mut().dropped_files.push(file);
+    let requests = asked(&mut harness);
+    let mesh = Assignment { name: "mesh".into(), values: vec!["/tmp/bunny.obj".into()] };
+    assert_eq!(requests, [Request::Set(vec![mesh])]);
+}
+
+#[test]
+fn nothing_is_drawn_again_while_nothing_changes() {
+    let mut harness = harness();
+    harness.run();
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(delay > std::time::Duration::from_secs(3600), "the interface asks for a frame in {delay:?}");
+}
