@@ -7,7 +7,7 @@ use std::time::Instant;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use self::statements::{ABSENT, KINDS, Piece, Reason, is_whole};
+use self::statements::{ABSENT, KINDS, Named, Piece, Reason, is_whole};
 use super::stream::{Lines, Stop, Stream};
 use crate::scene::error::{Fault, Place};
 use crate::scene::loading::{LoadParts, timed};
@@ -117,11 +117,13 @@ impl Joined {
         self.positions.extend(piece.positions);
         self.texture_coordinates.extend(piece.texture_coordinates);
         self.normals.extend(piece.normals);
-        self.has_faces |= !piece.corners.is_empty();
-        self.arities.append(piece.arities, piece.corners.len(), self.corners.len());
-        for corner in piece.corners {
+        let count = piece.corners[0].len();
+        self.has_faces |= count > 0;
+        self.arities.append(piece.arities, count, self.corners.len());
+        for corner in 0..count {
             let mut key = [ABSENT; 3];
-            for ((key, place), before) in key.iter_mut().zip(corner).zip(before) {
+            for ((key, named), before) in key.iter_mut().zip(&piece.corners).zip(before) {
+                let place = named.get(corner).copied().unwrap_or(Named::NOTHING);
                 // Out of range where it is beyond: the check at the end tells so, and no number is too large meanwhile.
                 *key = place.resolved(before).map_or(ABSENT, |place| place.min(self.beyond) as u32);
             }

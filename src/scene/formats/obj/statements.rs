@@ -17,8 +17,9 @@ pub struct Piece {
     pub positions: Vec<Vec3>,
     pub texture_coordinates: Vec<Vec2>,
     pub normals: Vec<Vec3>,
-    /// Of faces of three corners and more.
-    pub corners: Vec<[Named; 3]>,
+    /// What corners of faces of three corners and more name of each kind; of texture coordinates and normals only up to the
+    /// last corner that names one.
+    pub corners: [Vec<Named>; 3],
     pub arities: Arities,
     /// Lines of the file.
     pub lines: usize,
@@ -39,7 +40,7 @@ impl Named {
     const IN_PIECE: i64 = i64::MIN / 2;
     /// Farthest that an index may count back.
     const FARTHEST: i64 = 1 << 60;
-    const NOTHING: Self = Named(i64::MIN);
+    pub const NOTHING: Self = Named(i64::MIN);
 
     /// From the start of the file, from 0, where so many are before the piece.
     pub fn resolved(self, before: usize) -> Option<u64> {
@@ -161,28 +162,31 @@ impl Piece {
     }
 
     fn add_face<'t>(&mut self, line: usize, corners: impl Iterator<Item = &'t str>) -> Result<(), Reason> {
-        let first = self.corners.len();
+        let first = self.corners[0].len();
         for corner in corners {
             let mut parts = corner.split('/');
-            let mut named = [Named::NOTHING; 3];
-            for (kind, named) in named.iter_mut().enumerate() {
+            let place = self.corners[0].len();
+            for kind in 0..KINDS.len() {
                 match parts.next() {
                     Some("") | None if kind == 0 => {
                         return Err(format!("corner {:?} names no position", shortened(corner)).into());
                     }
                     Some("") | None => {}
-                    Some(part) => *named = self.named(kind, part, line)?,
+                    Some(part) => {
+                        let named = self.named(kind, part, line)?;
+                        self.corners[kind].resize(place, Named::NOTHING);
+                        self.corners[kind].push(named);
+                    }
                 }
             }
             if parts.next().is_some() {
                 return Err(format!("corner {:?} has too many parts", shortened(corner)).into());
             }
-            self.corners.push(named);
         }
-        let count = self.corners.len() - first;
+        let count = self.corners[0].len() - first;
         if count < 3 {
             // A point or a line.
-            self.corners.truncate(first);
+            self.corners.iter_mut().for_each(|named| named.truncate(first));
         } else {
             self.arities.push(count as u32, first);
         }
