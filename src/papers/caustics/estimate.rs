@@ -34,6 +34,11 @@ impl Parameters {
 
         // Position, depth and caustics, diffuse and combined light.
         let maps = (3.0 * NUMBER + 2.0 * LIGHT) * texels;
+        // What lies on every plane follows the planes and its own size: a refusal names both.
+        let by_planes = match variant {
+            Variant::Volumetric => "map-size` or `planes",
+            _ => "water-triangles` or `planes",
+        };
         let (of_map, of_planes, of_pixel) = match variant {
             Variant::LevelMap => (maps, 0.0, NUMBER + LIGHT + NUMBER),
             Variant::LevelMapSmart => (maps + NUMBER * texels, 0.0, NUMBER + LIGHT + NUMBER),
@@ -70,8 +75,8 @@ impl Parameters {
                 ("water-triangles", 32.0 * water_vertices + 12.0 * water_triangles + 48.0 * water_vertices * lights),
                 ("water-map", water_map),
                 ("map-size", lit * of_map + shadow_maps),
-                ("coverage", lit * drawn),
-                ("planes", lit * of_planes),
+                ("map-size` or `coverage", lit * drawn),
+                (by_planes, lit * of_planes),
                 ("size", of_pixel * pixels),
             ],
             passes: Some(("planes", PASSES + (passes + 8.0 * lit.max(1.0)) as u64)),

@@ -43,6 +43,7 @@ fn what_the_device_cannot_hold_is_refused_with_its_limit() {
     for (options, parts) in [
         ("--variant level-map --size 70000x70000", &["limit", "(--size)"][..]),
         ("--variant level-map --map-size 100000", &["limit", "(--map-size)"]),
+        ("--variant all --map-size 100000", &["limit", "(--map-size or --planes)"]),
         ("--variant level-map --map-size 64 --water-triangles 20000000", &["water", "limit", "(--water-triangles)"]),
     ] {
         bench(options).arg("--quiet").run().refused(2, parts);
