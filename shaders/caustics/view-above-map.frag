@@ -1,4 +1,5 @@
 #version 450
+#pragma variants TREE=whole,pieces
 
 // The scene as seen from above the water (chapter 1, section 2.4) under a height map.
 

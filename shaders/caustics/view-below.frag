@@ -1,4 +1,5 @@
 #version 450
+#pragma variants TREE=whole,pieces
 
 // The plain underwater view: the cast as it is, but for pixels at an edge, which take each of their samples from its own surface.
 

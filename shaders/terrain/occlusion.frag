@@ -1,4 +1,5 @@
 #version 450
+#pragma variants TREE=whole,pieces
 
 #extension GL_EXT_samplerless_texture_functions : require
 

@@ -25,7 +25,7 @@ float lit_at(ivec2 pixel) {
     // As far before the surface as rounding may have put it behind.
     float away_m = ROUNDING * (distance_m + length(light.eye));
     vec3 from = light.eye + (distance_m - away_m) * normalize(ray);
-    Hit met = first_hit(from, light.to_sun, nodes.list[0].skip, MOST_STEPS);
+    Hit met = first_hit(from, light.to_sun, tree_node_count(), MOST_STEPS);
     float lit = met.distance_m < 0.0 ? before : 0.0;
     return met.is_certain ? lit : UNKNOWN_LIGHT;
 }

@@ -27,34 +27,87 @@ host_block! {
     }
 }
 
+/// Pieces of one tree at most, by the names that the shaders give them.
+const PIECES: [&str; 8] = ["tree_0", "tree_1", "tree_2", "tree_3", "tree_4", "tree_5", "tree_6", "tree_7"];
+
 /// The tree on the device.
 pub struct DeviceTree {
-    /// A [`Node`] each, parents before children.
-    pub nodes: Arc<Buffer>,
     /// Length of the nodes.
     pub node_count: u32,
-    /// x, y and z of every vertex of every mesh, metres.
-    pub corners: Arc<Buffer>,
-    /// Three indices of corners a triangle, leaf by leaf.
-    pub triangles: Arc<Buffer>,
+    /// One list of words in pieces, since a buffer of the device holds too little.
+    is_in_pieces: bool,
+    /// By the names that the shaders give them: nodes with parents before children, x, y and z of every vertex of every
+    /// mesh in metres, and three indices of those a triangle, leaf by leaf; or the pieces of all that.
+    buffers: Vec<(&'static str, Arc<Buffer>)>,
 }
 
 impl DeviceTree {
     /// `label` goes before the names of the buffers.
     ///
     /// # Errors
-    /// Errors of the Vulkan layer; [`Error::Limit`] for more triangles than a storage buffer holds.
+    /// Errors of the Vulkan layer; [`Error::Limit`] for more triangles than eight storage buffers hold.
     pub fn new(device: &Arc<Device>, label: &str, tree: &TriangleTree) -> Result<Self, Error> {
         let storage = |name: &str, bytes: &[u8]| {
             upload(device, &format!("{label}/{name}"), vk::BufferUsageFlags::STORAGE_BUFFER, bytes)
         };
-        Ok(DeviceTree {
-            nodes: storage("tree-nodes", bytemuck::cast_slice(&tree.nodes))?,
-            node_count: tree.nodes.len() as u32,
-            corners: storage("tree-corners", bytemuck::cast_slice(&tree.corners))?,
-            triangles: storage("tree-triangles", bytemuck::cast_slice(&tree.triangles))?,
-        })
+        let node_count = tree.nodes.len() as u32;
+        let parts: [&[u8]; 3] = [
+            bytemuck::cast_slice(&tree.nodes),
+            bytemuck::cast_slice(&tree.triangles),
+            bytemuck::cast_slice(&tree.corners),
+        ];
+        let physical = device.physical();
+        let limit_bytes = u64::from(physical.limits.max_storage_buffer_range).min(physical.max_buffer_bytes());
+        if parts.iter().all(|bytes| bytes.len() as u64 <= limit_bytes) {
+            let mut buffers = Vec::with_capacity(parts.len());
+            for (name, bytes) in ["nodes", "triangles", "corners"].into_iter().zip(parts) {
+                buffers.push((name, storage(&format!("tree-{name}"), bytes)?));
+            }
+            return Ok(DeviceTree { node_count, is_in_pieces: false, buffers });
+        }
+        let words_bits = (limit_bytes / 4).max(1).ilog2();
+        let header = [node_count, tree.triangles.len() as u32, words_bits];
+        let all: Vec<&[u32]> =
+            std::iter::once(&header[..]).chain(parts.iter().map(|&bytes| bytemuck::cast_slice(bytes))).collect();
+        let total: usize = all.iter().map(|words| words.len()).sum();
+        let count = total.div_ceil(1 << words_bits);
+        if count > PIECES.len() {
+            let (wanted, limit) = (4 * total as u64, (PIECES.len() as u64) << (words_bits + 2));
+            let object = format!("{label}/tree");
+            return Err(Error::Limit { object, what: "size in bytes of a tree of triangles", wanted, limit });
+        }
+        let mut pieces = Vec::with_capacity(count);
+        for number in 0..count {
+            let words = window(&all, number << words_bits, 1 << words_bits);
+            pieces.push(storage(&format!("tree-{number}"), bytemuck::cast_slice(&words))?);
+        }
+        // Every binding has a buffer, whether there is so much or not.
+        let piece = |(number, name): (usize, &'static str)| (name, pieces[number.min(count - 1)].clone());
+        let buffers = PIECES.into_iter().enumerate().map(piece).collect();
+        Ok(DeviceTree { node_count, is_in_pieces: true, buffers })
     }
+
+    /// The buffers by the names that the shaders give them.
+    pub fn buffers(&self) -> impl Iterator<Item = (&'static str, &Arc<Buffer>)> {
+        self.buffers.iter().map(|(name, buffer)| (*name, buffer))
+    }
+
+    /// The variant of a shader that takes the tree as it is.
+    pub fn variant(&self, shader: &str) -> String {
+        format!("{shader}-{}", if self.is_in_pieces { "pieces" } else { "whole" })
+    }
+}
+
+/// Words of several lists, one after the other, from one on, and so many at most.
+fn window(lists: &[&[u32]], first: usize, most: usize) -> Vec<u32> {
+    let mut words = Vec::new();
+    let mut before = 0;
+    for list in lists {
+        let [from, end] = [first, first + most].map(|at| at.saturating_sub(before).min(list.len()));
+        words.extend_from_slice(&list[from..end]);
+        before += list.len();
+    }
+    words
 }
 
 /// The tree in host memory.

@@ -12,7 +12,7 @@ use crate::papers::triangle_tree::Node;
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
-    for shader in ["caustics/water-surface.comp", "caustics/view-above.frag"] {
+    for shader in ["caustics/water-surface.comp", "caustics/view-above-whole.frag"] {
         check_list::<WaveBlock>(shader, "waves");
     }
     check_list::<Ray>("caustics/illumination-volumes.comp", "rays");
@@ -29,14 +29,16 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["caustics/cast.vert", "caustics/stencil-receivers.vert"] {
         check_block::<CameraBlock>(shader, "camera");
     }
-    for shader in ["caustics/view-above.frag", "caustics/view-above-map.frag", "caustics/view-below.frag"] {
-        check_block::<ViewBlock>(shader, "view");
-        check_list::<Node>(shader, "nodes");
+    for shader in ["view-above", "view-above-map", "view-below"] {
+        for tree in ["whole", "pieces"] {
+            check_block::<ViewBlock>(&format!("caustics/{shader}-{tree}.frag"), "view");
+        }
+        check_list::<Node>(&format!("caustics/{shader}-whole.frag"), "nodes");
     }
     for shader in ["caustics/receiver-map.vert", "caustics/diffuse-map.frag", "caustics/cast.frag"] {
         check_constants_member::<BoxBlock>(shader, "bounds");
     }
-    for shader in ["caustics/water-surface-map.comp", "caustics/view-above-map.frag"] {
+    for shader in ["caustics/water-surface-map.comp", "caustics/view-above-map-whole.frag"] {
         check_constants_member::<MapBlock>(shader, "map");
     }
     let water =

@@ -96,19 +96,19 @@ impl View {
         let tree = DeviceTree::new(context.device(), context.label, &tree)?;
         let block = block(parameters, underwater, tree.node_count);
         let view = context.upload("view", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?;
-        let pass = |shader| {
-            Pass::graphics("view", "1", "common/fullscreen.vert", shader)
+        let pass = |shader: &str| {
+            let shader = format!("caustics/{}.frag", tree.variant(shader));
+            let pass = Pass::graphics("view", "1", "common/fullscreen.vert", &shader);
+            tree.buffers()
+                .fold(pass, |pass, (name, buffer)| pass.with(name, buffer))
                 .with("underwater_color", &underwater.color)
                 .with("underwater_depth", &underwater.fetched_depth)
                 .with("nearest", nearest)
                 .with("view", &view)
-                .with("nodes", &tree.nodes)
-                .with("corners", &tree.corners)
-                .with("triangles", &tree.triangles)
                 .color(&picture, Load::Discard, Blend::Replace)
         };
         if !parameters.is_seen_from_above() {
-            let pass = pass("caustics/view-below.frag").build(shaders)?;
+            let pass = pass("view-below").build(shaders)?;
             let constants = Constants::Below;
             let (node_count, most_steps) = (tree.node_count, block.most_steps);
             return Ok(View { picture, pass, constants, view, node_count, most_steps });
@@ -117,11 +117,11 @@ impl View {
         let absorption_per_m = parameters.absorption_per_m;
         let (pass, constants) = match &water.shape {
             Shape::Waves { list, count } => (
-                pass("caustics/view-above.frag").with("waves", list).constants::<WavesConstants>(),
+                pass("view-above").with("waves", list).constants::<WavesConstants>(),
                 Constants::AboveWaves(WavesConstants { time_s: 0.0, wave_count: *count, eta, absorption_per_m }),
             ),
             Shape::Map { coefficients, place } => (
-                pass("caustics/view-above-map.frag").with("coefficients", coefficients).constants::<MapConstants>(),
+                pass("view-above-map").with("coefficients", coefficients).constants::<MapConstants>(),
                 Constants::AboveMap(MapConstants { map: *place, eta, absorption_per_m }),
             ),
         };

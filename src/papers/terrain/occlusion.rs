@@ -29,15 +29,9 @@ pub fn occlusion(
     [depth, prior]: [&Arc<ImageView>; 2],
 ) -> Result<PixelPass, Error> {
     let target = build.image(name, shadow::FORMAT)?;
-    let resources = [
-        ("light", light.into()),
-        ("depth", depth.into()),
-        ("prior", prior.into()),
-        ("nodes", (&tree.nodes).into()),
-        ("corners", (&tree.corners).into()),
-        ("triangles", (&tree.triangles).into()),
-    ];
-    let pass = build.pass((name, ""), "occlusion", (&target, Load::Discard), &resources)?;
+    let mut resources = vec![("light", light.into()), ("depth", depth.into()), ("prior", prior.into())];
+    resources.extend(tree.buffers().map(|(name, buffer)| (name, buffer.into())));
+    let pass = build.pass((name, ""), &tree.variant("occlusion"), (&target, Load::Discard), &resources)?;
     Ok(PixelPass { stage: build.stage, passes: vec![pass], target })
 }
 

@@ -183,8 +183,10 @@ fn pictures_in_pieces_are_those_in_one() {
         ("lava", format!("--object {object}"), None),
         ("gas", format!("--object {object} --variant table"), Some("triangles-1")),
         ("gas", format!("--object {object} --no-geometry-stage --variant no-volume"), Some("vertices-1")),
-        ("caustics", "--mesh bunny --variant level-map".to_owned(), None),
-        ("terrain", format!("--object {object}"), None),
+        ("caustics", format!("--mesh {object} --variant level-map"), Some("tree-1")),
+        ("caustics", format!("--mesh {object} --variant level-map --camera below"), Some("tree-1")),
+        ("terrain", format!("--object {object}@0,0,0,500 --shadows --variant gpu-compute"), Some("tree-1")),
+        ("terrain", format!("--object {object}@0,0,0,500 --shadows --variant gpu-fragment"), Some("tree-1")),
     ];
     for (number, (name, scene, cut)) in scenes.iter().enumerate() {
         let paper = PAPERS.iter().find(|paper| paper.name == *name).unwrap();
