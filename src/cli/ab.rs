@@ -1,21 +1,26 @@
 //! `ab`: two sides measured in turn, in fresh processes, until the verdicts are certain.
 
 use std::ffi::OsString;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use serde_json::json;
 
 use super::compare::VerdictArgs;
 use super::failure::Failure;
 use super::outcome;
 use super::processes::{failure, finish};
 use super::watch::{interrupted, progress_bar};
+use crate::content;
 use crate::file;
 use crate::measure::compare::{Comparison, Design, Input, LOOKS, Verdict, compare};
-use crate::report::{Record, environment, json};
+use crate::measure::shard::Shard;
+use crate::report::record::Share;
+use crate::report::{Record, environment, json as reader};
 
 #[derive(Debug, Clone, Args)]
 pub struct AbArgs {
@@ -37,6 +42,9 @@ pub struct AbArgs {
     /// Blocks A B B A at most, 2 to 40
     #[arg(long, value_name = "N", default_value_t = LAST_LOOK, value_parser = clap::value_parser!(u32).range(2..=i64::from(LAST_LOOK)))]
     blocks: u32,
+    /// Of the blocks, measure the part I of N and compare nothing; assemble joins the records for compare --blocks
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// Folder for the records of both sides, ab-a.json and ab-b.json
     #[arg(long, value_name = "DIR", default_value = "fumarole-out")]
     out: PathBuf,
@@ -96,12 +104,13 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     let files = [Side::A, Side::B].map(|side| arguments.record_file(side));
     files.iter().try_for_each(|path| file::check_writable(path))?;
     let interrupted = interrupted();
+    let own = arguments.own_blocks()?;
     let bar = progress_bar(arguments.quiet, "blocks A B B A");
-    bar.set_length(u64::from(arguments.blocks));
+    bar.set_length(own.len() as u64);
     let deadline = Instant::now() + Duration::from_secs(arguments.budget);
     let mut records: [Vec<Record>; 2] = [vec![], vec![]];
     let mut comparison = None;
-    for block in 1..=arguments.blocks as usize {
+    for block in own.start as usize + 1..=own.end as usize {
         let mut measured = vec![];
         for (place, side) in BLOCK.into_iter().enumerate() {
             let process = 2 * (block - 1) + usize::from(place > 1);
@@ -118,9 +127,13 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
             }
             bar.inc(1);
         }
-        let is_last =
-            block == arguments.blocks as usize || Instant::now() >= deadline || interrupted.load(Ordering::Relaxed);
-        if is_last || LOOKS.contains(&block) {
+        let is_last = block == own.end as usize || Instant::now() >= deadline || interrupted.load(Ordering::Relaxed);
+        if arguments.shard.is_some() {
+            // How many blocks there will be is decided beforehand: no look.
+            if is_last {
+                break;
+            }
+        } else if is_last || LOOKS.contains(&block) {
             comparison = arguments.look(&records)?;
             if is_last || comparison.as_ref().is_some_and(is_decided) {
                 break;
@@ -128,6 +141,9 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
         }
     }
     bar.finish_and_clear();
+    if let Some(shard) = arguments.shard {
+        return arguments.leave(shard, own.start, &records);
+    }
     let Some(mut comparison) = comparison else {
         return Err(Failure::Running("interrupted before two blocks were measured; nothing can be said".to_owned()));
     };
@@ -159,7 +175,54 @@ fn joined(records: &[Record]) -> Option<Record> {
 
 impl AbArgs {
     fn record_file(&self, side: Side) -> PathBuf {
-        self.out.join(if side == Side::A { "ab-a.json" } else { "ab-b.json" })
+        let shard = self.shard.map_or_else(String::new, |shard| format!("-{shard}"));
+        self.out.join(format!("ab-{}{shard}.json", if side == Side::A { "a" } else { "b" }))
+    }
+
+    /// Blocks that this process measures.
+    fn own_blocks(&self) -> Result<Range<u32>, Failure> {
+        match self.shard {
+            Some(shard) if shard.count > self.blocks => {
+                let message = format!("--shard: there are {} --blocks for {} shards", self.blocks, shard.count);
+                Err(Failure::Input(message))
+            }
+            shard => Ok(shard.unwrap_or(Shard::ALONE).of(0..self.blocks)),
+        }
+    }
+
+    /// Writes the records of a shard, whose first block has a number.
+    fn leave(&self, shard: Shard, first: u32, records: &[Vec<Record>; 2]) -> Result<(), Failure> {
+        for side in [Side::A, Side::B] {
+            let measured = &records[side as usize];
+            let Some(mut record) = joined(measured) else {
+                return Err(Failure::Running("interrupted before a block was measured; nothing is left".to_owned()));
+            };
+            let blocks = (0..).zip(measured).map(|(process, record)| (first + process / 2, record.runs.len()));
+            let items = blocks.flat_map(|(block, runs)| std::iter::repeat_n(block, runs)).collect();
+            record.share =
+                Some(Share { identity: self.identity(side)?, shard: Some([shard.number, shard.count]), items });
+            let file = self.record_file(side);
+            file::write(&file, outcome::text(&record)?.as_bytes())?;
+            if !self.quiet {
+                outcome::say(&format!("wrote {}", file.display()));
+            }
+        }
+        Ok(())
+    }
+
+    /// SHA-256 of what fixes the blocks of a side.
+    fn identity(&self, side: Side) -> Result<String, Failure> {
+        let text =
+            |words: &[OsString]| words.iter().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>();
+        let mut programs = Vec::new();
+        for (of, path) in &self.binary {
+            let failed = |e| Failure::Input(format!("side {of:?}: reading {}: {e}", path.display()));
+            programs.push((format!("{of:?}"), content::file_sha256(path).map_err(failed)?));
+        }
+        let variables: Vec<_> = self.env.iter().map(|(of, variable)| (format!("{of:?}"), variable)).collect();
+        let fixed =
+            json!([format!("{side:?}"), self.a.0, self.b.0, variables, programs, self.blocks, text(&self.common)]);
+        Ok(content::sha256(fixed.to_string().as_bytes()))
     }
 
     /// Compares the blocks so far, at this look's part of the error; absent with fewer than two.
@@ -204,7 +267,7 @@ impl AbArgs {
         if !ended.status.success() {
             return Err(failure(&format!("side {side:?}"), &ended));
         }
-        Ok(json::read(file.path())?)
+        Ok(reader::read(file.path())?)
     }
 }
 

@@ -23,6 +23,9 @@ pub struct CompareArgs {
     /// Records of side B, comma-separated
     #[arg(value_name = "B.json[,..]", value_parser = OsStringValueParser::new().try_map(|text| parse_side(&text)))]
     b: Side,
+    /// The sides are records that ab has left, or assemble of its shards: compare their blocks A B B A
+    #[arg(long)]
+    blocks: bool,
     #[command(flatten)]
     verdict: VerdictArgs,
 }
@@ -121,6 +124,22 @@ impl VerdictArgs {
 }
 
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
-    let options = arguments.verdict.options(Design::Processes);
-    arguments.verdict.publish(&compare(&arguments.a.read()?, &arguments.b.read()?, &options)?)
+    let (a, b) = (arguments.a.read()?, arguments.b.read()?);
+    if !arguments.blocks {
+        return arguments.verdict.publish(&compare(&a, &b, &arguments.verdict.options(Design::Processes))?);
+    }
+    let [of_a, of_b] = [processes(&a), processes(&b)];
+    if of_a != of_b || of_a.len() % 2 != 0 {
+        let message =
+            "compare --blocks: the sides are not of the same blocks; name ab-a.json and ab-b.json of one folder";
+        return Err(Failure::Input(message.to_owned()));
+    }
+    arguments.verdict.publish(&compare(&a, &b, &arguments.verdict.options(Design::Blocks))?)
+}
+
+/// Numbers of the processes of a side, in their order.
+fn processes(side: &[Input]) -> Vec<u32> {
+    let mut processes: Vec<u32> = side.iter().flat_map(|input| &input.record.runs).map(|run| run.process).collect();
+    processes.dedup();
+    processes
 }

@@ -15,6 +15,7 @@ use super::stress::{self, StressArgs};
 use super::{bench, loading, passes, render, spelling};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
+use crate::measure::shard::Shard;
 use crate::measure::study::{Preset, Study};
 use crate::measure::{Error, Variant};
 
@@ -94,9 +95,23 @@ fn experiment_command<S: Study>() -> Command {
     let command = Command::new("experiment")
         .arg(name.value_parser(PossibleValuesParser::new(names)))
         .arg(Arg::new("list").long("list").action(ArgAction::SetTrue).help("List the experiments"))
+        .arg(shard_argument("Of the points of a sweep, the part I of N; assemble joins the records"))
+        .arg(assembled_argument())
         .args(options(&own, &S::Options::default()));
     let command = CommonArgs::augment_args(with_scene::<S>(command));
     finish(command, "Reproduce one table or figure, ours beside the paper's")
+}
+
+fn shard_argument(help: &'static str) -> Arg {
+    let parser = |text: &str| text.parse::<Shard>();
+    Arg::new("shard").long("shard").value_name("I/N").value_parser(parser).help(help)
+}
+
+fn assembled_argument() -> Arg {
+    let parser = clap::value_parser!(PathBuf);
+    let help = "Publish what the shards have measured and assemble has joined, and measure nothing";
+    let argument = Arg::new("assembled").long("assembled").value_name("FILE.json");
+    argument.value_parser(parser).conflicts_with("shard").help(help)
 }
 
 fn render_command<S: Study>() -> Command {
@@ -396,6 +411,8 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
         machine: common.machine.resolve(common.measure.process),
         measure: common.measure.options(),
         destinations: common.output.destinations(),
+        shard: matches.get_one("shard").copied(),
+        assembled: matches.get_one("assembled").cloned(),
         console: &Terminal { is_quiet: common.output.quiet },
     };
     *context.setup.preset_mut() = Some(experiment.name.to_owned());
@@ -418,6 +435,8 @@ fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) ->
         machine: defaults.machine.resolve(0),
         measure: defaults.measure.options(),
         destinations,
+        shard: None,
+        assembled: None,
         console: &Terminal { is_quiet: false },
     };
     Ok((verb.run)(&mut context)?)

@@ -55,7 +55,7 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Records, pictures and plots as one page that opens without a network
     Report(report::ReportArgs),
-    /// Put the parts of a film together that several processes drew
+    /// Put together what several processes drew or measured
     Assemble(assemble::AssembleArgs),
     /// Grow every paper's first axis until a limit stops it
     Stress(stress::StressAllArgs),

@@ -13,10 +13,10 @@ use super::outcome;
 use crate::content;
 use crate::file;
 use crate::image::{Rgba8, read_png};
+use crate::measure::Variant;
 use crate::measure::bench::inputs;
 use crate::measure::machine::Machine;
 use crate::measure::study::Study;
-use crate::measure::{Error, Variant};
 use crate::report::environment;
 use crate::report::record::InputFile;
 
@@ -86,10 +86,6 @@ impl Part {
         frames: Range<u32>,
     ) -> Result<Self, Failure> {
         let options = arguments.resolve(0);
-        let folder_sha256 = |folder: &PathBuf| {
-            content::folder_sha256(folder)
-                .map_err(|e| Error::Input(format!("reading the shaders under {}: {e}", folder.display())))
-        };
         let identity = study.identity();
         let build = environment::build();
         let settings = Settings {
@@ -99,7 +95,7 @@ impl Part {
             parameters: S::parameters().iter().map(|p| (p.name.to_owned(), p.text(study))).collect(),
             inputs: inputs(study)?,
             shader_compiler: options.compiler.to_string(),
-            shaders: options.shader_dir.as_ref().map(folder_sha256).transpose()?,
+            shaders: options.shaders_sha256()?,
             program: [
                 Some(build.version),
                 build.git_commit,

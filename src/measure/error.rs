@@ -23,4 +23,7 @@ pub enum Error {
     Input(String),
     #[error("interrupted before anything was measured")]
     Interrupted,
+    /// Not a failure: the process has done what was its of a sweep.
+    #[error("the part of the sweep is written")]
+    Shared,
 }

@@ -10,6 +10,7 @@ use super::machine::{Machine, MachineOptions};
 use super::measure::{Schedule, Watch};
 use super::parameter::Given;
 use super::result_table::ResultTable;
+use super::shard::Shard;
 use super::study::{Preset, Study};
 use super::sweep::{Plan, Point, Row, Swept};
 use crate::file::{check_writable, write};
@@ -112,6 +113,10 @@ pub struct Context<'a, S: Study> {
     pub measure: MeasureOptions,
     /// Files that were asked for.
     pub destinations: Destinations,
+    /// The part of a sweep that this process measures, of several.
+    pub shard: Option<Shard>,
+    /// A record of all parts of the sweep, in place of measuring.
+    pub assembled: Option<PathBuf>,
     /// Output to the user.
     pub console: &'a dyn Console,
 }
@@ -128,7 +133,10 @@ impl<S: Study> Context<'_, S> {
         check_writable(&self.csv_file())?;
         // One file of the experiment's own stands for all: they go to one folder.
         check_writable(&self.file(".json"))?;
-        (experiment.run)(self)
+        match (experiment.run)(self) {
+            Err(Error::Shared) => Ok(()),
+            result => result,
+        }
     }
 
     fn refuse(&self, experiment: &Experiment<S>) -> Result<(), Error> {
@@ -140,6 +148,11 @@ impl<S: Study> Context<'_, S> {
         let refused = never.iter().chain(experiment.refuses).find(|(name, _)| self.given.has(name));
         if let Some((name, reason)) = refused {
             return Err(Error::Input(format!("`{name}`: {reason}")));
+        }
+        if (self.shard.is_some() || self.assembled.is_some()) && !S::SHARED.contains(&experiment.name) {
+            let known = S::SHARED.join(", ");
+            let message = format!("`shard`: {} is not shared out; of {} these are: {known}", experiment.name, S::PAPER);
+            return Err(Error::Input(message));
         }
         let options = S::options();
         let unheeded = options.iter().find(|o| self.given.has(o.name) && !experiment.options.contains(&o.name));
@@ -173,11 +186,24 @@ impl<S: Study> Context<'_, S> {
         self.measure.schedule(S::EXPERIMENT_FRAMES)
     }
 
+    /// Measures the points under a progress bar, or takes them from what several processes have measured.
+    ///
+    /// # Errors
+    /// As [`Plan::measure`]; [`Error::Shared`] where this process has measured its part of them.
+    pub fn sweep(&self, machine: &mut Machine, points: &[Point<S>]) -> Result<Swept, Error> {
+        let all: Vec<&Point<S>> = points.iter().collect();
+        match (self.shard, &self.assembled) {
+            (Some(shard), _) => Err(self.part(machine, &all, shard)?),
+            (None, Some(path)) => self.of_parts(machine, &all, path),
+            (None, None) => self.measure(machine, &all),
+        }
+    }
+
     /// Measures the points under a progress bar.
     ///
     /// # Errors
     /// As [`Plan::measure`].
-    pub fn sweep(&self, machine: &mut Machine, points: &[Point<S>]) -> Result<Swept, Error> {
+    pub(super) fn measure(&self, machine: &mut Machine, points: &[&Point<S>]) -> Result<Swept, Error> {
         let limits = if self.measure.has_limits { Some(limits::measure(machine)?) } else { None };
         let plan = Plan { schedule: self.schedule(), limits: limits.as_ref() };
         let mut swept = Err(Error::Interrupted);
@@ -292,12 +318,18 @@ impl<S: Study> Context<'_, S> {
         self.destinations.json.as_deref().is_some_and(|path| path.as_os_str() == "-")
     }
 
-    fn json_file(&self) -> PathBuf {
-        self.destinations.json.clone().filter(|_| !self.is_json_printed()).unwrap_or_else(|| self.file(".json"))
+    pub(super) fn json_file(&self) -> PathBuf {
+        self.destinations.json.clone().filter(|_| !self.is_json_printed()).unwrap_or_else(|| self.own_file(".json"))
     }
 
     fn csv_file(&self) -> PathBuf {
-        self.destinations.csv.clone().unwrap_or_else(|| self.file(".csv"))
+        self.destinations.csv.clone().unwrap_or_else(|| self.own_file(".csv"))
+    }
+
+    /// The file of this process, which may share the folder with those of other shards.
+    fn own_file(&self, ending: &str) -> PathBuf {
+        let shard = self.shard.map_or_else(String::new, |shard| format!("-{shard}"));
+        self.file(&format!("{shard}{ending}"))
     }
 
     /// Prints after the files: they are kept even when nothing can be printed.

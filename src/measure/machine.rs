@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::error::Error as InputError;
+use crate::content;
 use crate::gpu::physical::{DeviceType, choose};
 use crate::gpu::{Compiler, Device, Error, Feature, Instance, PhysicalDevice, Recorder, ShaderLibrary};
 use crate::report::environment;
@@ -23,6 +25,20 @@ pub struct MachineOptions {
     pub process: u32,
     /// Keep what the driver's compiler tells of pipelines.
     pub is_profiled: bool,
+}
+
+impl MachineOptions {
+    /// SHA-256 of the shaders that stand in for the built-in ones; none without any.
+    ///
+    /// # Errors
+    /// [`InputError::Input`] for shaders that cannot be read.
+    pub fn shaders_sha256(&self) -> Result<Option<String>, InputError> {
+        let sha256 = |folder: &PathBuf| {
+            content::folder_sha256(folder)
+                .map_err(|e| InputError::Input(format!("reading the shaders under {}: {e}", folder.display())))
+        };
+        self.shader_dir.as_ref().map(sha256).transpose()
+    }
 }
 
 /// An open machine.

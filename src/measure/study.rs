@@ -26,6 +26,8 @@ pub trait Study: Clone + Default + 'static {
     const RENDERED: Self::Variant = Self::Variant::ALL[0];
     /// Frames and repetitions at each point of an experiment that names none.
     const EXPERIMENT_FRAMES: (u32, u32) = (3, 3);
+    /// Names of the experiments that measure all of their points in one sweep, which several processes can share.
+    const SHARED: &'static [&'static str] = &[];
     /// Features that a device must have, beyond the baseline of the Vulkan layer.
     const NEEDS: &'static [Feature] = &[];
 

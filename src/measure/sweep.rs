@@ -65,7 +65,7 @@ impl Plan<'_> {
     /// The error of the first point, and those of `keep`.
     pub fn measure<S: Study>(
         &self,
-        points: &[Point<S>],
+        points: &[&Point<S>],
         machine: &mut Machine,
         watch: &mut Watch<'_>,
         mut keep: impl FnMut(&Machine, &[Row]) -> Result<(), Error>,

@@ -26,14 +26,28 @@ pub struct Record {
     pub environment: Environment,
     /// The command line, program name first.
     pub command: Vec<String>,
+    /// The measurement by several processes or machines that the runs are of; absent where one process did it all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub share: Option<Share>,
     /// In the order of measurement.
     pub runs: Vec<Run>,
+}
+
+/// A measurement that several processes or machines share.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Share {
+    /// SHA-256 of everything that fixes the work of all.
+    pub identity: String,
+    /// Number, from 0, and count of the processes, of which the runs are one's; absent of all together.
+    pub shard: Option<[u32; 2]>,
+    /// Of each run, the number of what was shared out: a point of a sweep, or a block of `ab`.
+    pub items: Vec<u32>,
 }
 
 impl Record {
     /// A record of the current [`SCHEMA`].
     pub fn new(environment: Environment, command: Vec<String>, runs: Vec<Run>) -> Self {
-        Self { schema: SCHEMA.to_owned(), environment, command, runs }
+        Self { schema: SCHEMA.to_owned(), environment, command, share: None, runs }
     }
 }
 

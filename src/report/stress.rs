@@ -33,6 +33,9 @@ pub struct StressRecord {
     pub settings: Settings,
     /// SHA-256 of settings, environment and axes: steps of one identity are parts of one record.
     pub identity: String,
+    /// Number, from 0, and count of the processes that share the series, of which these are one's; absent of the whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<[u32; 2]>,
     /// Of every variant, and of every value of the second axis.
     pub series: Vec<Series>,
 }

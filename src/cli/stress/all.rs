@@ -10,11 +10,15 @@ use crate::cli::failure::Failure;
 use crate::cli::options::MachineArgs;
 use crate::cli::watch::interrupted;
 use crate::measure::measure::Schedule;
+use crate::measure::shard::Shard;
 use crate::measure::study::{Study, Visitor};
 use crate::papers;
 
 #[derive(Debug, Clone, Args)]
 pub struct StressAllArgs {
+    /// Of the papers, the part I of N
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     #[command(flatten)]
     limits: LimitArgs,
     #[command(flatten)]
@@ -29,36 +33,45 @@ const BUDGET_S: f64 = 600.0;
 struct Papers<'a> {
     arguments: &'a StressAllArgs,
     started: Instant,
+    /// Papers before this one.
+    number: usize,
     /// Papers that are still to come.
     left: u32,
 }
 
-struct Count(u32);
+struct Count {
+    shard: Shard,
+    number: usize,
+    papers: u32,
+}
 
 impl Visitor for Count {
     type Error = Failure;
 
     fn visit<S: Study>(&mut self) -> Result<(), Failure> {
-        self.0 += u32::from(!S::axes().is_empty());
+        self.papers += u32::from(!S::axes().is_empty() && self.shard.has(self.number));
+        self.number += 1;
         Ok(())
     }
 }
 
 /// Grows every paper's first axis, each for its part of the budget that is left.
 pub fn run(arguments: &StressAllArgs) -> Result<(), Failure> {
-    let mut count = Count(0);
+    let mut count = Count { shard: arguments.shard.unwrap_or(Shard::ALONE), number: 0, papers: 0 };
     papers::each(&mut count)?;
-    papers::each(&mut Papers { arguments, started: Instant::now(), left: count.0 })
+    papers::each(&mut Papers { arguments, started: Instant::now(), number: 0, left: count.papers })
 }
 
 impl Visitor for Papers<'_> {
     type Error = Failure;
 
     fn visit<S: Study>(&mut self) -> Result<(), Failure> {
-        if S::axes().is_empty() || interrupted().load(std::sync::atomic::Ordering::Relaxed) {
+        let is_own = self.arguments.shard.is_none_or(|shard| shard.has(self.number));
+        self.number += 1;
+        if !is_own || S::axes().is_empty() || interrupted().load(std::sync::atomic::Ordering::Relaxed) {
             return Ok(());
         }
-        let StressAllArgs { limits, machine, output } = self.arguments;
+        let StressAllArgs { limits, machine, output, .. } = self.arguments;
         let usual = Schedule { warmup: 1, frames: 1, repeat: 3, min_time_s: 0.0 };
         let mut words: Vec<OsString> = vec![S::PAPER.into(), "stress".into()];
         words.extend(machine.words());
@@ -71,6 +84,7 @@ impl Visitor for Papers<'_> {
             axis: default_axis()?,
             across: None,
             from: None,
+            shard: None,
             schedule: schedule(limits.until, usual),
             limits,
             output,

@@ -1,14 +1,11 @@
 //! Everything that fixes the work of a step, as far as it is known before one is taken.
 
-use std::path::PathBuf;
-
 use serde_json::json;
 
 use super::super::failure::Failure;
 use super::Ascent;
 use super::climber::Children;
 use crate::content;
-use crate::measure::Error;
 use crate::measure::bench::inputs;
 use crate::measure::stress::Axis;
 use crate::measure::study::Study;
@@ -20,11 +17,7 @@ impl<S: Study> Ascent<'_, S> {
     pub(super) fn template(&self, children: &Children<'_>) -> Result<StressRecord, Failure> {
         let environment = children.environment()?;
         let options = self.machine.resolve(0);
-        let folder_sha256 = |folder: &PathBuf| {
-            content::folder_sha256(folder)
-                .map_err(|e| Error::Input(format!("reading the shaders under {}: {e}", folder.display())))
-        };
-        let shaders = options.shader_dir.as_ref().map(folder_sha256).transpose()?;
+        let shaders = options.shaders_sha256()?;
         let parameters = S::parameters();
         let settings = Settings {
             parameters: parameters.iter().map(|p| (p.name.to_owned(), p.text(&self.setup))).collect(),
@@ -61,6 +54,7 @@ impl<S: Study> Ascent<'_, S> {
             across,
             factor: self.limits.factor,
             settings,
+            shard: self.shard.map(|shard| [shard.number, shard.count]),
             series: Vec::new(),
         })
     }

@@ -7,7 +7,7 @@ mod record;
 mod step;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -25,6 +25,7 @@ use crate::file::check_writable;
 use crate::measure::Variant;
 use crate::measure::measure::Schedule;
 use crate::measure::parameter::Given;
+use crate::measure::shard::Shard;
 use crate::measure::stress::console::{Form, tables};
 use crate::measure::stress::{Axis, Climb, Ladder, plots};
 use crate::measure::study::Study;
@@ -41,6 +42,9 @@ pub struct StressArgs {
     /// Cross two axes: for each value of B the steps of A
     #[arg(long, value_name = "A,B", conflicts_with = "axis")]
     matrix: Option<String>,
+    /// Of the series, one of each variant and value of a matrix's second axis, the part I of N; assemble joins the records
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     /// First value of the axis [default: the axis's own]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 40))]
     from: Option<u64>,
@@ -142,7 +146,8 @@ fn parse_budget(text: &str) -> Result<f64, String> {
 const BUDGET_S: f64 = 120.0;
 
 /// Options that a step's process does not get, and whether a value follows.
-const OURS: [(&str, bool); 10] = [
+const OURS: [(&str, bool); 11] = [
+    ("--shard", true),
     ("--devices", true),
     ("--device", true),
     ("--csv", true),
@@ -162,6 +167,7 @@ struct Ascent<'a, S: Study> {
     axis: Axis<S>,
     across: Option<Axis<S>>,
     from: Option<u64>,
+    shard: Option<Shard>,
     schedule: Schedule,
     limits: &'a LimitArgs,
     output: &'a StressOutput,
@@ -212,6 +218,7 @@ pub fn run<S: Study>(
             axis,
             across,
             from: arguments.from,
+            shard: arguments.shard,
             schedule: arguments.schedule(arguments.limits.until),
             limits: &arguments.limits,
             output: &arguments.output,
@@ -282,7 +289,7 @@ impl<S: Study> Ascent<'_, S> {
         outcome::check_file(&csv)?;
         let record = self.climb(File::new(json.clone()), budget_s)?;
 
-        let files = outcome_files(&record, &self.stem(), self.output, csv);
+        let files = outcome_files(&record, &self.stem(), &self.output.out, csv);
         let printed = match (is_printed, self.output.markdown) {
             (true, _) => outcome::print(&outcome::text(&record)?),
             (_, true) => outcome::print(&tables(&record, Form::Markdown)),
@@ -303,7 +310,8 @@ impl<S: Study> Ascent<'_, S> {
 
     fn stem(&self) -> String {
         let across = self.across.as_ref().map_or_else(String::new, |across| format!("-{}", across.name));
-        format!("stress-{}-{}{across}{}", S::PAPER, self.axis.name, self.suffix)
+        let shard = self.shard.map_or_else(String::new, |shard| format!("-{shard}"));
+        format!("stress-{}-{}{across}{}{shard}", S::PAPER, self.axis.name, self.suffix)
     }
 
     fn climb(&self, file: File, budget_s: f64) -> Result<StressRecord, Failure> {
@@ -317,6 +325,7 @@ impl<S: Study> Ascent<'_, S> {
             across: self.across.as_ref().map(|across| ladder(across, None)),
             variants: self.variants.iter().map(|variant| variant.as_str().to_owned()).collect(),
             counts_values: self.axis.counts_values(),
+            shard: self.shard.unwrap_or(Shard::ALONE),
             budget_s,
         };
         let (first, row) = (climb.ladder.from, climb.across.map(|across| across.from));
@@ -345,13 +354,13 @@ impl<S: Study> Ascent<'_, S> {
 }
 
 /// Rows and plots, with their files.
-fn outcome_files(record: &StressRecord, stem: &str, output: &StressOutput, csv: PathBuf) -> Vec<(PathBuf, String)> {
+pub fn outcome_files(record: &StressRecord, stem: &str, folder: &Path, csv: PathBuf) -> Vec<(PathBuf, String)> {
     let mut files = vec![(csv, record.csv())];
     let has_steps = record.series.iter().any(|series| !series.steps.is_empty());
     // A chart without a point is none.
     let mut plot = |name: String, svg: Result<String, _>| {
         if let Ok(svg) = svg {
-            files.push((output.out.join(name), svg));
+            files.push((folder.join(name), svg));
         }
     };
     if has_steps && record.series.len() > 1 {

@@ -51,6 +51,10 @@ impl File {
                 "going on with {path}: its steps differ in {what}; name another --json or --out, or use --anew"
             )));
         }
+        if record.shard != template.shard {
+            let message = format!("going on with {path}: it is of another --shard; name another --json or --out");
+            return Err(Failure::Input(message));
+        }
         Ok(record.series)
     }
 

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Input;
-use crate::report::record::{Record, Run};
+use crate::report::record::{Environment, Record, Run};
 
 /// Reasons why two sides cannot be compared.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
@@ -265,7 +265,7 @@ pub struct Difference {
 pub(super) fn differences_between(a: &[Input], b: &[Input]) -> Vec<Difference> {
     let of = |side: &[Input]| {
         let mut values: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for (what, value) in side.iter().flat_map(|input| conditions(&input.record)) {
+        for (what, value) in side.iter().flat_map(|input| all_conditions(&input.record)) {
             let known = values.entry(what).or_default();
             if !known.contains(&value) {
                 known.push(value);
@@ -282,9 +282,8 @@ pub(super) fn differences_between(a: &[Input], b: &[Input]) -> Vec<Difference> {
     differing.map(|name| Difference { what: name.clone(), a: values(&a, name), b: values(&b, name) }).collect()
 }
 
-/// Everything beside the work that a time may depend on, by its path in the record.
-fn conditions(record: &Record) -> Vec<(String, String)> {
-    let environment = &record.environment;
+/// What a time may depend on of device, host and build, by its path in the record.
+fn conditions(environment: &Environment) -> Vec<(String, String)> {
     let (device, host, build) = (&environment.device, &environment.host, &environment.build);
     let some = |value: &Option<String>| value.clone().unwrap_or_else(|| "unknown".to_owned());
     let number = |value: Option<u32>| value.map_or_else(|| "unset".to_owned(), |value| value.to_string());
@@ -306,6 +305,20 @@ fn conditions(record: &Record) -> Vec<(String, String)> {
     .map(|(name, value)| (name.to_owned(), value))
     .collect();
     conditions.extend(host.variables.iter().map(|(name, value)| (format!("host.variables.{name}"), value.clone())));
+    conditions
+}
+
+/// The first of [`conditions`] in which two machines differ, with the values of both.
+pub fn difference_of_machines(a: &Environment, b: &Environment) -> Option<[String; 3]> {
+    let [a, b] = [a, b].map(|environment| conditions(environment).into_iter().collect::<BTreeMap<_, _>>());
+    let what = a.keys().chain(b.keys()).find(|what| a.get(*what) != b.get(*what))?;
+    let value = |of: &BTreeMap<String, String>| of.get(what).cloned().unwrap_or_else(|| "unset".to_owned());
+    Some([what.clone(), value(&a), value(&b)])
+}
+
+/// Everything beside the work that a time may depend on, by its path in the record.
+fn all_conditions(record: &Record) -> Vec<(String, String)> {
+    let mut conditions = conditions(&record.environment);
     for (run, pass) in record.runs.iter().flat_map(|run| run.passes.iter().map(move |pass| (run, pass))) {
         let place = format!("{} {} {}", run.paper, run.variant, pass.name);
         if let Some(compiler) = &pass.shader_compiler {

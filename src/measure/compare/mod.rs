@@ -21,7 +21,7 @@ mod within;
 pub use console::{markdown, render, sections};
 pub use decision::{CONFIDENCE, Gate, Rules, SAME_MARGIN, Verdict, decide, gate, needed};
 pub use evidence::Evidence;
-pub use matching::{CompareError, Difference};
+pub use matching::{CompareError, Difference, difference_of_machines};
 pub use within::{Ratio, ratio_within_process};
 
 use serde::{Deserialize, Serialize};

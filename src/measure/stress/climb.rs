@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::super::shard::Shard;
 use super::{Ladder, foretell};
 use crate::report::stress::{Series, Step, Stop, StopKind};
 
@@ -57,6 +58,8 @@ pub struct Climb {
     pub variants: Vec<String>,
     /// Amounts of steps are values, only rounded up: values that a step has had already are passed over.
     pub counts_values: bool,
+    /// Whose series are climbed: they are dealt out one by one, those of a value of the second axis after those before it.
+    pub shard: Shard,
     /// Seconds for all steps together.
     pub budget_s: f64,
 }
@@ -66,6 +69,8 @@ const MEMORY_SHARE: f64 = 0.9;
 
 /// A series on its way.
 struct Track {
+    /// Among [`Climb::variants`].
+    variant: usize,
     series: Series,
     /// Values of the second axis before this one.
     row: usize,
@@ -87,29 +92,26 @@ impl Climb {
     /// Those of the climber.
     pub fn run<C: Climber>(&self, climber: &mut C, known: Vec<Series>) -> Result<Vec<Series>, C::Error> {
         let mut known = known;
-        let first_row = self.across.map(|across| across.first());
-        let mut tracks: Vec<Track> = match first_row {
-            Some(None) => Vec::new(),
-            row => self.variants.iter().map(|variant| self.track(variant, row.flatten(), 0, &mut known)).collect(),
-        };
+        let mut tracks = Vec::new();
+        for variant in 0..self.variants.len() {
+            tracks.extend(self.row_from(variant, 0).map(|(row, across)| self.track(variant, across, row, &mut known)));
+        }
         while let Some(at) = due(&tracks) {
             if climber.is_interrupted() {
                 tracks.iter_mut().filter(|track| track.series.stop.is_none()).for_each(Track::interrupt);
                 break;
             }
-            let below = tracks
-                .iter()
-                .position(|other| other.row + 1 == tracks[at].row && other.series.variant == tracks[at].series.variant);
-            let before = below.map(|below| tracks[below].series.clone());
+            let (row, variant) = (tracks[at].row, tracks[at].variant);
+            let of_variant = |other: &&Track| other.variant == variant;
+            let below = tracks.iter().filter(of_variant).filter(|other| other.row < row).max_by_key(|other| other.row);
+            let before = below.map(|below| (below.series.clone(), row - below.row));
             self.advance(&mut tracks[at], before.as_ref(), climber)?;
-            let (row, variant, across) = (tracks[at].row, tracks[at].series.variant.clone(), tracks[at].series.across);
-            let is_new = !tracks.iter().any(|track| track.row == row + 1 && track.series.variant == variant);
-            if let (Some(ladder), Some(value)) = (self.across, across)
-                && is_new
+            let is_last = !tracks.iter().filter(of_variant).any(|other| other.row > row);
+            if is_last
                 && !tracks[at].series.steps.is_empty()
-                && let Some(next) = ladder.after(value)
+                && let Some((next, across)) = self.row_from(variant, row + 1)
             {
-                tracks.push(self.track(&variant, Some(next), row + 1, &mut known));
+                tracks.push(self.track(variant, across, next, &mut known));
             }
             climber.keep(&all(&tracks, &known))?;
         }
@@ -118,12 +120,24 @@ impl Climb {
         Ok(all)
     }
 
-    fn track(&self, variant: &str, across: Option<u64>, row: usize, known: &mut Vec<Series>) -> Track {
-        let found = known.iter().position(|series| series.variant == variant && series.across == across);
+    /// The first row of a variant from one on that is the shard's, with its value of the second axis.
+    fn row_from(&self, variant: usize, first: usize) -> Option<(usize, Option<u64>)> {
+        let values: Vec<Option<u64>> = match self.across {
+            None => vec![None],
+            Some(ladder) => std::iter::successors(ladder.first(), |value| ladder.after(*value)).map(Some).collect(),
+        };
+        let is_own = |(row, _): &(usize, Option<u64>)| self.shard.has(row * self.variants.len() + variant);
+        values.into_iter().enumerate().skip(first).find(is_own)
+    }
+
+    fn track(&self, number: usize, across: Option<u64>, row: usize, known: &mut Vec<Series>) -> Track {
+        let variant = &self.variants[number];
+        let found = known.iter().position(|series| series.variant == *variant && series.across == across);
         let found = found.map(|at| known.remove(at));
         let (steps, stop) = found.map_or_else(Default::default, |series| (series.steps, series.stop));
         Track {
-            series: Series { variant: variant.to_owned(), across, steps: Vec::new(), stop: None, costs: Vec::new() },
+            variant: number,
+            series: Series { variant: variant.clone(), across, steps: Vec::new(), stop: None, costs: Vec::new() },
             row,
             rung: 0,
             next: self.ladder.first(),
@@ -133,7 +147,12 @@ impl Climb {
     }
 
     /// Takes the track's next step, or finds what stops it.
-    fn advance<C: Climber>(&self, track: &mut Track, before: Option<&Series>, climber: &mut C) -> Result<(), C::Error> {
+    fn advance<C: Climber>(
+        &self,
+        track: &mut Track,
+        before: Option<&(Series, usize)>,
+        climber: &mut C,
+    ) -> Result<(), C::Error> {
         let Some(value) = track.next else {
             let value = track.series.steps.last().map_or(self.ladder.from, |step| step.value);
             track.stop(StopKind::End, value, format!("the axis ends at {}", self.ladder.most));
@@ -163,7 +182,7 @@ impl Climb {
     fn take<C: Climber>(
         &self,
         track: &Track,
-        before: Option<&Series>,
+        before: Option<&(Series, usize)>,
         value: u64,
         climber: &mut C,
     ) -> Result<Result<Step, Stop>, C::Error> {
@@ -175,7 +194,10 @@ impl Climb {
         let foretold = |of: fn(&Step) -> Option<f64>| {
             let own = foretell::cost(&track.series, value as f64, place, of);
             // The first of a series: as the smaller one's, in proportion.
-            own.or_else(|| Some(of(before?.steps.first()?)? * self.across.map_or(1.0, |across| across.factor)))
+            own.or_else(|| {
+                let (series, rows) = before?;
+                Some(of(series.steps.first()?)? * self.across.map_or(1.0, |across| across.factor.powi(*rows as i32)))
+            })
         };
         let left_s = self.budget_s - climber.elapsed_s();
         if left_s <= 0.0 {

@@ -82,7 +82,7 @@ impl Climber for Made {
 
 fn climb(most: u64, budget_s: f64) -> Climb {
     let ladder = Ladder { from: 1, factor: 2.0, most };
-    Climb { ladder, across: None, variants: vec!["a".to_owned()], counts_values: true, budget_s }
+    Climb { ladder, across: None, variants: vec!["a".to_owned()], counts_values: true, shard: Shard::ALONE, budget_s }
 }
 
 fn values(series: &Series) -> Vec<u64> {
@@ -233,6 +233,24 @@ fn a_matrix_climbs_by_its_diagonals_and_ends_where_a_row_has_no_first_step() {
     let mut again = Made::default();
     assert_eq!(matrix.run(&mut again, series.clone()).unwrap(), series);
     assert!(again.taken.is_empty());
+}
+
+#[test]
+fn shards_climb_every_series_once() {
+    let across = Some(Ladder { from: 10, factor: 2.0, most: 100 });
+    let variants = vec!["a".to_owned(), "b".to_owned(), "c".to_owned()];
+    let whole = Climb { across, variants, ..climb(4, 100.0) };
+    let all = whole.run(&mut Made::default(), vec![]).unwrap();
+    for count in [1, 2, 5, 40] {
+        let mut found = vec![];
+        for number in 0..count {
+            let shard = Climb { shard: Shard { number, count }, ..whole.clone() };
+            found.extend(shard.run(&mut Made::default(), vec![]).unwrap());
+        }
+        let order = |series: &Series| (series.variant.clone(), series.across);
+        found.sort_by_key(order);
+        assert_eq!(found, all, "{count}");
+    }
 }
 
 #[test]

@@ -109,5 +109,7 @@ pub fn stop_kind(error: &Error) -> Option<StopKind> {
         Error::Parameter(_) => Some(StopKind::End),
         Error::Interrupted => Some(StopKind::Interruption),
         Error::Scene(_) | Error::Image(_) | Error::Output(_) | Error::Plot(_) | Error::Input(_) => None,
+        // Of an experiment alone.
+        Error::Shared => None,
     }
 }

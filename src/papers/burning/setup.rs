@@ -248,6 +248,7 @@ impl Study for Setup {
         "Burning: heat, deformation, consumption and melting of meshes (Amarasinghe), pass by pass";
     const BENCHED: &'static [Variant] = &[Variant::Shell];
     const RENDERED: Variant = Variant::Shell;
+    const SHARED: &'static [&'static str] = &["blocks", "scaling"];
 
     type Options = Options;
 

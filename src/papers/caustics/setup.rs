@@ -244,6 +244,7 @@ impl Study for Setup {
     const BENCHED: &'static [Variant] =
         &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Volumetric];
     const RENDERED: Variant = Variant::LevelMap;
+    const SHARED: &'static [&'static str] = &["5-1", "5-3", "appendix"];
 
     type Options = Options;
 

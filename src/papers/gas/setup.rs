@@ -271,6 +271,7 @@ impl Study for Setup {
     const BENCHED: &'static [Variant] = &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Table];
     const RENDERED: Variant = Variant::Table;
     const EXPERIMENT_FRAMES: (u32, u32) = (1, 5);
+    const SHARED: &'static [&'static str] = &["1", "2", "table-size", "steps", "noise"];
 
     type Options = Options;
 

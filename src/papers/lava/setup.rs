@@ -176,6 +176,7 @@ impl Study for Setup {
     const ABOUT: &'static str = "Lava: particles to density to isosurface to splats (Unnthorsson), pass by pass";
     const BENCHED: &'static [Variant] = &[Variant::Paper];
     const RENDERED: Variant = Variant::Paper;
+    const SHARED: &'static [&'static str] = &["scaling"];
 
     type Options = Options;
 

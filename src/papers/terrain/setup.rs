@@ -314,6 +314,7 @@ impl Study for Setup {
     const ABOUT: &'static str = "The volcano paper's terrain, ray-cast from a shape texture (Vyatkin), pass by pass";
     const BENCHED: &'static [Variant] = Variant::PAPER;
     const RENDERED: Variant = Variant::GpuCompute;
+    const SHARED: &'static [&'static str] = &["1", "screen", "steps", "interpolation"];
 
     type Options = Options;
 

@@ -28,6 +28,7 @@ mod ranges;
 mod render;
 mod report;
 mod shaders;
+mod shards;
 mod slurm;
 mod streams;
 mod stress;

@@ -135,16 +135,19 @@ fn a_film_of_an_array_is_that_of_one_process_though_a_task_is_killed() {
         assert!(drawn(17) == kept && drawn(18) > lost);
 
         let whole = out.path().join("whole");
-        assert_eq!(entries(&film.join("film")), entries(&whole));
+        assert_eq!(entries(&film.join("whole")), entries(&whole));
         assert_eq!(entries(&whole).len(), 24);
         for name in entries(&whole) {
-            assert!(fs::read(whole.join(&name)).unwrap() == fs::read(film.join("film").join(&name)).unwrap(), "{name}");
+            assert!(
+                fs::read(whole.join(&name)).unwrap() == fs::read(film.join("whole").join(&name)).unwrap(),
+                "{name}"
+            );
         }
         // Collecting again changes nothing, and another film needs another folder.
         succeeded(node.run(Command::new(script("collect")).arg(&film)));
         let other = submit(&["--seed", "2"]);
         assert_eq!(other.status.code(), Some(2));
-        assert!(String::from_utf8_lossy(&other.stderr).contains("another film"));
+        assert!(String::from_utf8_lossy(&other.stderr).contains("other work"));
     });
 }
 

@@ -1,97 +1,39 @@
-//! `assemble`: parts of films, and records of shards, put together.
+//! Parts of films, put together.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-
-use super::failure::Failure;
-use super::film;
-use super::outcome;
-use super::part::{Part, in_folder, rows_suffix};
+use super::super::failure::Failure;
+use super::super::part::{Part, rows_suffix};
 use crate::file;
-use crate::image::{Rgba8, read_png, write_png, y4m};
-use crate::measure::shard::{self, Shard};
-
-#[derive(Debug, Clone, Args)]
-pub struct AssembleArgs {
-    /// Folders with the parts that `render --shard` and `render --rows` leave
-    #[arg(value_name = "DIR", required = true)]
-    sources: Vec<PathBuf>,
-    /// Folder of the film's pictures
-    #[arg(long, value_name = "DIR", default_value = "fumarole-out/film")]
-    out: PathBuf,
-    /// Write the frames as one film, YUV4MPEG2, in place of pictures
-    #[arg(long, value_name = "FILE.y4m", conflicts_with = "out")]
-    film: Option<PathBuf>,
-    /// Frames of the film a second, 1 to 1000
-    #[arg(long, value_name = "N", default_value_t = y4m::RATE, requires = "film",
-        value_parser = clap::value_parser!(u32).range(1..=1000))]
-    film_rate: u32,
-    /// Of N shards, print the numbers of those that lack a part, comma-separated, and assemble nothing
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(shard::MOST)))]
-    missing: Option<u32>,
-    /// Print nothing but errors and what was asked for
-    #[arg(long, short)]
-    quiet: bool,
-}
+use crate::image::{Rgba8, read_png, write_png};
+use crate::measure::shard::Shard;
 
 /// Parts of one film, frame by frame, each frame's by their first row.
-struct Film {
-    frames: [u32; 2],
+pub struct Film {
+    /// The first frame, and the one after the last.
+    range: [u32; 2],
     size: [u32; 2],
     parts: BTreeMap<u32, Vec<(PathBuf, Part)>>,
 }
 
-pub fn run(arguments: &AssembleArgs) -> Result<(), Failure> {
-    let mut parts = Vec::new();
-    for source in &arguments.sources {
-        parts.extend(in_folder(source)?);
-    }
-    if let Some(count) = arguments.missing {
-        parts.retain(|(path, part)| part.has_picture(&path.with_file_name(&part.picture)));
-        return outcome::print(&missing(parts, count)?);
-    }
-    let film = Film::of(parts)?;
-    film.check_whole()?;
-    let frames = film.parts.values();
-    let wrote = match &arguments.film {
-        Some(path) => {
-            film::check(path)?;
-            let count = film::shoot(path, arguments.film_rate, frames.map(|parts| film.frame(parts)))?;
-            format!("wrote {count} frames to {}", path.display())
-        }
-        None => {
-            let count = frames.len();
-            for parts in frames {
-                film.write(parts, &arguments.out)?;
-            }
-            format!("wrote {count} pictures to {}", arguments.out.display())
-        }
-    };
-    if !arguments.quiet {
-        outcome::say(&wrote);
-    }
-    Ok(())
-}
-
 /// Numbers of the shards that lack a part; all of them where there is none.
-fn missing(parts: Vec<(PathBuf, Part)>, count: u32) -> Result<String, Failure> {
-    let list = |numbers: Vec<String>| if numbers.is_empty() { String::new() } else { numbers.join(",") + "\n" };
+pub fn missing(mut parts: Vec<(PathBuf, Part)>, count: u32) -> Result<Vec<u32>, Failure> {
+    parts.retain(|(path, part)| part.has_picture(&path.with_file_name(&part.picture)));
     if parts.is_empty() {
-        return Ok(list((0..count).map(|number| number.to_string()).collect()));
+        return Ok((0..count).collect());
     }
     let film = Film::of(parts)?;
     let lacks = |number: &u32| {
         let shard = Shard { number: *number, count };
         if film.is_range() {
-            shard.of(film.frames[0]..film.frames[1]).any(|frame| !film.gaps(frame).is_empty())
+            shard.of(film.range[0]..film.range[1]).any(|frame| !film.gaps(frame).is_empty())
         } else {
             let rows = shard.of(0..film.size[1]);
-            film.gaps(film.frames[0]).iter().any(|gap| gap[0] < rows.end && rows.start < gap[1])
+            film.gaps(film.range[0]).iter().any(|gap| gap[0] < rows.end && rows.start < gap[1])
         }
     };
-    Ok(list((0..count).filter(lacks).map(|number| number.to_string()).collect()))
+    Ok((0..count).filter(lacks).collect())
 }
 
 impl Film {
@@ -99,12 +41,11 @@ impl Film {
     ///
     /// # Errors
     /// [`Failure::Input`] for none, for parts of other settings, and for rows that several parts have.
-    fn of(parts: Vec<(PathBuf, Part)>) -> Result<Self, Failure> {
+    pub fn of(parts: Vec<(PathBuf, Part)>) -> Result<Self, Failure> {
         let Some((first_path, first)) = parts.first().cloned() else {
-            let message = "assemble: no part was found; render --shard and render --rows leave them";
-            return Err(Failure::Input(message.to_owned()));
+            return Err(Failure::Input("assemble: no part was found; render --shard leaves them".to_owned()));
         };
-        let mut film = Film { frames: first.frames, size: first.size, parts: BTreeMap::new() };
+        let mut film = Film { range: first.frames, size: first.size, parts: BTreeMap::new() };
         for (path, part) in parts {
             if part.identity != first.identity {
                 let (a, b, what) = (first_path.display(), path.display(), difference(&first, &part));
@@ -126,7 +67,7 @@ impl Film {
     }
 
     fn is_range(&self) -> bool {
-        self.frames[1] - self.frames[0] > 1
+        self.range[1] - self.range[0] > 1
     }
 
     /// Rows of a frame that no part has.
@@ -141,11 +82,12 @@ impl Film {
         gaps
     }
 
-    fn check_whole(&self) -> Result<(), Failure> {
-        let Some(frame) = (self.frames[0]..self.frames[1]).find(|&frame| !self.gaps(frame).is_empty()) else {
+    /// Fails where rows of a frame are missing.
+    pub fn check_whole(&self) -> Result<(), Failure> {
+        let Some(frame) = (self.range[0]..self.range[1]).find(|&frame| !self.gaps(frame).is_empty()) else {
             return Ok(());
         };
-        let count = self.frames[1] - self.frames[0];
+        let count = self.range[1] - self.range[0];
         let whole = self.parts.keys().filter(|frame| self.gaps(**frame).is_empty()).count();
         let rows: Vec<String> = self.gaps(frame).iter().map(|[first, end]| format!("{first}..{end}")).collect();
         Err(Failure::Input(format!(
@@ -173,12 +115,20 @@ impl Film {
         Ok(Rgba8::new(self.size[0], self.size[1], pixels)?)
     }
 
-    /// Writes a frame under the name that the whole film would have given it.
-    fn write(&self, parts: &[(PathBuf, Part)], out: &Path) -> Result<(), Failure> {
-        let name = parts.first().map(|(_, part)| whole_name(part)).unwrap_or_default();
-        let path = out.join(name);
-        file::check_writable(&path)?;
-        Ok(write_png(&path, &self.frame(parts)?)?)
+    /// Every frame, of a whole film.
+    pub fn frames(&self) -> impl Iterator<Item = Result<Rgba8, Failure>> {
+        self.parts.values().map(|parts| self.frame(parts))
+    }
+
+    /// Writes every frame under the name that the whole film would have given it, and gives their number.
+    pub fn write(&self, out: &Path) -> Result<usize, Failure> {
+        for parts in self.parts.values() {
+            let name = parts.first().map(|(_, part)| whole_name(part)).unwrap_or_default();
+            let path = out.join(name);
+            file::check_writable(&path)?;
+            write_png(&path, &self.frame(parts)?)?;
+        }
+        Ok(self.parts.len())
     }
 }
 
