@@ -1,6 +1,6 @@
 #version 450
 
-// The highest place of each row of the height field.
+// The heights by themselves, which a ray reads many of, and the highest place of each row.
 
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -18,6 +18,10 @@ layout(set = 0, binding = 1, std430) buffer Highest {
     float rows[];
 } highest;
 
+layout(set = 0, binding = 2, std430) buffer Heights {
+    float list[]; // metres, row by row
+} heights;
+
 void main() {
     uint row = gl_GlobalInvocationID.x;
     if (row >= field.rows) {
@@ -25,7 +29,9 @@ void main() {
     }
     float found_m = -1.0e30;
     for (uint column = 0u; column < field.columns; column++) {
-        found_m = max(found_m, texelFetch(normal_height, ivec2(column, row), 0).w);
+        float height_m = texelFetch(normal_height, ivec2(column, row), 0).w;
+        heights.list[row * field.columns + column] = height_m;
+        found_m = max(found_m, height_m);
     }
     highest.rows[row] = found_m;
 }

@@ -24,6 +24,10 @@ layout(set = 0, binding = 2, std430) readonly buffer Highest {
     float all; // place of the height field, metres
 } highest;
 
+layout(set = 0, binding = 5, std430) readonly buffer Heights {
+    float list[]; // metres, row by row
+} heights;
+
 #include "lava/height.glsl"
 #include "lava/color.glsl"
 
@@ -40,6 +44,23 @@ struct Hit {
     float t; // eye-space depth in metres, above far_m for none
     vec3 side; // normal of a wall, no vector for the sheet
 };
+
+float height_of(vec2 column) {
+    uvec2 at = uvec2(clamp(column, vec2(0.0), scene.columns - 1.0));
+    return heights.list[at.y * uint(scene.columns.x) + at.x];
+}
+
+// The sheet's height over a cell: at its first corner, its slopes along both sides from there, and its twist.
+vec4 patch_of(vec2 cell) {
+    float first = height_of(cell);
+    float across = height_of(cell + vec2(1.0, 0.0)) - first;
+    float down = height_of(cell + vec2(0.0, 1.0)) - first;
+    return vec4(first, across, down, height_of(cell + vec2(1.0, 1.0)) - first - across - down);
+}
+
+float height_in(vec4 sheet, vec2 at) {
+    return sheet.x + sheet.y * at.x + sheet.z * at.y + sheet.w * at.x * at.y;
+}
 
 float finite_over(float over, float under) {
     return under == 0.0 ? FAR_AWAY : clamp(over / under, -FAR_AWAY, FAR_AWAY);
@@ -78,7 +99,7 @@ Hit march(vec3 direction) {
     vec2 cell = clamp(floor(from + entry * along), vec2(-1.0), scene.columns - 1.0);
     float t = entry;
     float height_m = shading.eye_m.y + t * direction.y;
-    bool begins_above = height_m >= surface_at(from + t * along).w;
+    bool begins_above = height_m >= height_in(patch_of(cell), from + t * along - cell);
     if (!begins_above && height_m >= 0.0) {
         if (entry == enter.x) {
             return Hit(entry, vec3(-sign(direction.x), 0.0, 0.0));
@@ -91,14 +112,11 @@ Hit march(vec3 direction) {
         vec2 to_border = cell + forward - from;
         vec2 borders = vec2(finite_over(to_border.x, along.x), finite_over(to_border.y, along.y));
         float next = max(min(min(borders.x, borders.y), exit), t);
-        float h00 = texel_at(cell).w;
-        float across = texel_at(cell + vec2(1.0, 0.0)).w - h00;
-        float down = texel_at(cell + vec2(0.0, 1.0)).w - h00;
-        float twist = texel_at(cell + vec2(1.0, 1.0)).w - h00 - across - down;
+        vec4 sheet = patch_of(cell);
         vec2 at = from + t * along - cell;
-        float c0 = shading.eye_m.y + t * direction.y - (h00 + across * at.x + down * at.y + twist * at.x * at.y);
-        float c1 = direction.y - (across * along.x + down * along.y + twist * (at.x * along.y + at.y * along.x));
-        float c2 = -twist * along.x * along.y;
+        float c0 = shading.eye_m.y + t * direction.y - height_in(sheet, at);
+        float c1 = direction.y - (dot(sheet.yz, along) + sheet.w * (at.x * along.y + at.y * along.x));
+        float c2 = -sheet.w * along.x * along.y;
         float last = next - t;
         float root = first_root(c0, c1, c2, last);
         bool ends_above = c0 + last * (c1 + last * c2) >= 0.0;

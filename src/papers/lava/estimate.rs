@@ -27,14 +27,17 @@ impl Parameters {
             ("rock", size_of_val(&rock.texels[..]) as f64),
             ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
         ];
-        let invocations = match self.surface_draw(variant) {
+        let heights = 4.0 * f64::from(self.density[0]) * f64::from(self.density[2]);
+        let (drawn_bytes, invocations) = match self.surface_draw(variant) {
             SurfaceDraw::Splats => {
-                vec![("splat-radius", 2.0 * splats * (1.0 + self.splat_pixels().min(pixels))), ("splats", 8.0 * splats)]
+                let fragments = 2.0 * splats * (1.0 + self.splat_pixels().min(pixels));
+                (None, vec![("splat-radius", fragments), ("splats", 8.0 * splats)])
             }
-            SurfaceDraw::March => vec![("size", pixels)],
+            SurfaceDraw::March => (Some(("density", heights)), vec![("size", pixels)]),
         };
         Estimate {
-            bytes: first_stages.bytes.into_iter().chain(bytes).collect(),
+            bytes: first_stages.bytes.into_iter().chain(bytes).chain(drawn_bytes).collect(),
+            buffers: first_stages.buffers.into_iter().chain(drawn_bytes).collect(),
             invocations: first_stages.invocations.into_iter().chain(invocations).collect(),
             ..first_stages
         }

@@ -57,11 +57,15 @@ impl March {
         let (columns, rows) = (splats.normal_height.width(), splats.normal_height.height());
         let desc = BufferDesc::new(context.name("highest"), 4 * (1 + u64::from(rows)));
         let found = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
+        let desc = BufferDesc::new(context.name("heights"), 4 * u64::from(columns) * u64::from(rows));
+        let heights = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
+            .map_err(|error| error.set_by("density"))?;
         let highest_rows = Pass::compute("highest-rows", "", "lava/highest-rows.comp")
             .constants::<FieldConstants>()
             .with("normal_height", &splats.normal_height)
             .with("highest", &found)
-            .whole(&["normal_height"])
+            .with("heights", &heights)
+            .whole(&["normal_height", "heights"])
             .build(context.shaders)?;
         let highest = Pass::compute("highest", "", "lava/highest.comp")
             .constants::<FieldConstants>()
@@ -71,6 +75,7 @@ impl March {
             .constants::<RayConstants>()
             .with("scene", &splats.scene)
             .with("highest", &found)
+            .with("heights", &heights)
             .with("normal_height", &splats.normal_height)
             .with("rock", &blending.rock)
             .with("linear", &blending.linear)

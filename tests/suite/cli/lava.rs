@@ -159,6 +159,30 @@ fn the_frame_rate_stands_beside_the_thesis_s() {
     assert!(ended.stdout.contains("the thesis: around 20"), "{}", ended.stdout);
 }
 
+/// Each by its own drawing, both by splats, both by rays: three stages and the frame of each.
+#[test]
+fn readbacks_are_set_against_none() {
+    let out = folder();
+    small("experiment readback --quiet --out .").args(ONCE).inside(out.path()).run().succeeded();
+    let files = ["lava-readback-stages.csv", "lava-readback.csv", "lava-readback.json", "lava-readback.svg"];
+    assert_eq!(entries(out.path()), files);
+    let record = read_json(&out.path().join("lava-readback.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let drawn: Vec<_> = runs.iter().map(|run| (&run["variant"], &run["config"]["surface_draw"])).collect();
+    let [paper, driven] = [Value::from("paper"), Value::from("gpu-driven")];
+    let [splats, march] = [Value::from("splats"), Value::from("march")];
+    let expected = [(&paper, &splats), (&driven, &march), (&paper, &splats)];
+    assert_eq!(drawn[..3], expected);
+    assert_eq!(drawn[3..], [(&driven, &splats), (&paper, &march), (&driven, &march)]);
+    let waits = |run: &Value| run["passes"].as_array().unwrap().iter().any(|pass| !pass["wait_ms"].is_null());
+    assert!(waits(&runs[0]) && !waits(&runs[1]));
+    let accepted: Vec<_> = runs.iter().map(|run| run["results"]["accepted_grid_points"].as_u64().unwrap()).collect();
+    assert!(accepted[0] > 0 && accepted.iter().all(|&count| count == accepted[0]), "{accepted:?}");
+    let stages = fs::read_to_string(out.path().join("lava-readback-stages.csv")).unwrap();
+    assert_eq!(stages.lines().count(), 1 + 6 * 4, "{stages}");
+}
+
 #[test]
 fn every_pass_has_a_floor_where_limits_are_measured() {
     let out = folder();
