@@ -90,9 +90,8 @@ vec3 moved(uint block, vec3 p) {
     float omega = constants.omega;
     if (is_free_edge(block)) {
         float behind = max(0.0, clock.radius - constants.area_width - rest[base_points[block]].boundary_distance);
-        float fall = constants.fall_per_tick / constants.epsilon; // g dt^2
         float slower = max(behind / constants.block_size.y, 1.0);
-        return vec3(p.x, max(constants.floor_y, p.y - omega * fall / slower), p.z);
+        return vec3(p.x, max(constants.floor_y, p.y - omega * constants.gravity_per_tick / slower), p.z);
     }
     uint lowest = lowest_around(block);
     if (lowest == NONE) {

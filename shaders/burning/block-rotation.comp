@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/grid.glsl"
+#include "burning/block-levels.glsl"
 #include "burning/blocks.glsl"
 
 layout(set = 0, binding = 15, std430) readonly buffer Blocks {
@@ -36,7 +37,7 @@ bool has_weight(uint block) {
 float weight_of(uint block) {
     float live = float(blocks[block].live);
 #ifdef OBJECT_SOLID
-    float flammability = constants.flammability;
+    float flammability = block_levels[block].flammability;
     live *= flammability / (flammability + float(blocks[block].combustion));
 #endif
     return live;
@@ -62,7 +63,7 @@ vec3 own_change(uint block) {
         neighbours += has_weight(neighbour_of(block, direction)) ? 1 : 0;
     }
     float count = max(weight_of(block), 1.0) * float(max(neighbours, 1));
-    return constants.gamma * constants.rho * PI / count * vec3(signs);
+    return constants.gamma * block_levels[block].rho * PI / count * vec3(signs);
 }
 
 void main() {

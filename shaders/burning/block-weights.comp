@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/flammability.glsl"
 #include "burning/grid.glsl"
 #include "burning/blocks.glsl"
 #include "burning/hash.glsl"
@@ -74,7 +75,7 @@ void main() {
                 atomicAdd(blocks[cell].heated, 1);
             }
             // The combustion counter of a block goes up once in each tick with active vertices (5.4).
-            if (label == DEFORMED && old_state[vertex].left > constants.retired_left) {
+            if (label == DEFORMED && old_state[vertex].left > constants.retire_at * flammability_of(vertex)) {
                 int tick = int(clock.tick);
                 if (atomicMax(blocks[cell].last_active_tick, tick) < tick) {
                     atomicAdd(blocks[cell].combustion, 1);

@@ -9,18 +9,14 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     vec3 block_size;
     float mean_edge; // of the finest triangles at rest
     vec3 albedo; // linear RGB
-    float fall_per_tick; // epsilon g dt^2
+    float gravity_per_tick; // g dt^2
     uint vertex_count;
     uint triangle_count; // finest triangles
     uint draw_vertex_count;
     float growth_per_tick; // of the boundary's radius
     float area_width; // of the boundary
     float highest_source_y;
-    float flammability; // L before the fire, ticks
-    float epsilon; // meltability
-    float beta; // displacement
-    float rho; // density
-    float phi; // bond strength
+    uint level_stride; // of the lists of table 3.1's levels: 0 where an object has one material
     float gamma; // rotation of blocks (eq. 4)
     float spread; // x of 3.5.2
     float greatest_rotation_rad; // of a block
@@ -29,7 +25,7 @@ layout(set = 0, binding = 0, std140) uniform Constants {
     float chi; // longest over shortest edge
     float upsilon; // fraction of a violation that is folded in a tick
     float outward; // 1 where triangles wind outwards, else -1
-    float retired_left; // L at which a vertex of a solid retires (5.5), else 0
+    float retire_at; // fraction of L at which a vertex of a solid retires (5.5), else 0
     float char_depth; // of a solid
     uint active_limit; // of vertices (3.7.1), NONE for none
     uint seed;

@@ -4,13 +4,14 @@
 
 // Bond strength (3.4): weaker by phi where the other end is heated too. L counts as a fraction, and lengths in mean
 // rest edges, so that beta means the same on every mesh. A length of zero displaces nothing; half the edge is the most.
-float fraction_along(float edge, bool is_heated, float left_fraction) {
+// beta, rho and phi are those of the vertex's block at rest.
+float fraction_along(BlockLevels block, float edge, bool is_heated, float left_fraction) {
     if (edge <= 0.0) {
         return 0.0;
     }
-    float phi = is_heated ? constants.phi : 1.0;
-    float beta = constants.beta;
-    float rho = constants.rho;
+    float phi = is_heated ? block.phi : 1.0;
+    float beta = block.beta;
+    float rho = block.rho;
     return min(0.5, phi * beta * rho * left_fraction * constants.mean_edge / edge);
 }
 

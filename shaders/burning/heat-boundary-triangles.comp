@@ -6,6 +6,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/flammability.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
@@ -47,7 +48,7 @@ void main() {
             uint vertex = triangles[3u * triangle + corner];
             uint label = labels[vertex];
             highest = max(highest, label);
-            if (label == DEFORMED && old_state[vertex].left > constants.retired_left && alive[vertex] == 1u) {
+            if (label == DEFORMED && old_state[vertex].left > constants.retire_at * flammability_of(vertex) && alive[vertex] == 1u) {
                 is_active = true;
             }
         }

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/flammability.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
@@ -54,9 +55,11 @@ void main() {
     barrier();
     uint vertex = gl_GlobalInvocationID.x;
     if (vertex < constants.vertex_count) {
-        uint label = area_of(rest[vertex].boundary_distance);
+        // What does not burn is heated alone.
+        uint innermost = flammability_of(vertex) > 0.0 ? DEFORMED : INITIAL;
+        uint label = min(area_of(rest[vertex].boundary_distance), innermost);
         labels[vertex] = label;
-        if (label == DEFORMED && old_state[vertex].left > constants.retired_left && alive[vertex] == 1u) {
+        if (label == DEFORMED && old_state[vertex].left > constants.retire_at * flammability_of(vertex) && alive[vertex] == 1u) {
             atomicAdd(active_count, 1u);
         }
     }

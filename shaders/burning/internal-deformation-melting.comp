@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
+#include "burning/meltability.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
@@ -55,7 +56,7 @@ layout(set = 0, binding = 51, std430) readonly buffer NewBases {
 };
 
 layout(set = 0, binding = 52, std430) buffer Flows {
-    vec4 flows[]; // how far the vertex has followed
+    vec4 flows[]; // how far the vertex has followed; 1 where it keeps its place
 };
 
 layout(push_constant, std430) uniform Slice {
@@ -184,6 +185,17 @@ vec3 folding(uint vertex, vec3 s) {
     return growth <= 0.0 ? fold : vec3(0.0);
 }
 
+// g dt^2 by the mean epsilon of the edges around the vertex.
+float fall_of(uint vertex) {
+    float epsilons = 0.0;
+    uint from = incidence_offsets[vertex];
+    uint to = incidence_offsets[vertex + 1u];
+    for (uint i = from; i < to; i++) {
+        epsilons += meltabilities_at(incidence[i] / 4u, incidence[i] % 4u);
+    }
+    return constants.gravity_per_tick * epsilons / float(max(2u * (to - from), 1u));
+}
+
 void main() {
     if (gl_GlobalInvocationID.x >= slice.count) {
         return;
@@ -195,12 +207,17 @@ void main() {
         new_state[vertex] = before;
         return;
     }
+    bool is_burning = label == DEFORMED && before.left > 0.0;
+    float left = is_burning ? before.left - 1.0 : before.left;
+    if (flows[vertex].w > 0.0) {
+        new_state[vertex] = VertexState(before.position, left);
+        return;
+    }
     vec3 flow = flows[vertex].xyz;
     vec3 follow = following() * (guided(rest[vertex].position) - flow);
     flows[vertex] = vec4(flow + follow, 0.0);
     vec3 position = before.position + follow + folding(vertex, before.position);
-    bool is_burning = label == DEFORMED && before.left > 0.0;
-    position.y -= is_burning ? constants.fall_per_tick : 0.0; // gravity
+    position.y -= is_burning ? fall_of(vertex) : 0.0; // gravity
     position.y = max(position.y, constants.floor_y);
-    new_state[vertex] = VertexState(position, is_burning ? before.left - 1.0 : before.left);
+    new_state[vertex] = VertexState(position, left);
 }

@@ -12,7 +12,10 @@
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
+#include "burning/block-levels.glsl"
 #include "burning/displacement.glsl"
+#include "burning/flammability.glsl"
+#include "burning/meltability.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
@@ -47,6 +50,10 @@ layout(set = 0, binding = 24, std430) readonly buffer Alive {
     uint alive[];
 };
 
+layout(set = 0, binding = 83, std430) readonly buffer RestCells {
+    uint rest_cells[];
+};
+
 layout(push_constant, std430) uniform Slice {
     uint first;
     uint count;
@@ -67,8 +74,8 @@ vec3 contracted(vec3 a, vec3 b, vec3 c, vec3 d, float l) {
 }
 
 // The position, no farther than the char's depth from that at rest, which sinks with it.
-vec3 within_char(vec3 position, vec3 at_rest, float left) {
-    vec3 from = at_rest - vec3(0.0, constants.fall_per_tick * (constants.flammability - left), 0.0);
+vec3 within_char(vec3 position, vec3 at_rest, float fallen) {
+    vec3 from = at_rest - vec3(0.0, fallen, 0.0);
     float depth = distance(position, from);
     return depth > constants.char_depth ? from + constants.char_depth / depth * (position - from) : position;
 }
@@ -79,13 +86,16 @@ void main() {
     }
     uint vertex = slice.first + gl_GlobalInvocationID.x;
     VertexState before = old_state[vertex];
-    if (labels[vertex] != DEFORMED || before.left <= constants.retired_left || alive[vertex] == 0u) {
+    if (labels[vertex] != DEFORMED || before.left <= constants.retire_at * flammability_of(vertex) || alive[vertex] == 0u) {
         new_state[vertex] = before;
         return;
     }
     vec3 b = before.position;
-    float left_fraction = before.left / constants.flammability;
+    float flammability = flammability_of(vertex);
+    float left_fraction = before.left / flammability;
+    BlockLevels block = block_levels[rest_cells[vertex]];
     vec3 sum = vec3(0.0);
+    float epsilons = 0.0;
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
     for (uint i = from; i < to; i++) {
@@ -95,12 +105,14 @@ void main() {
         uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
         vec3 a = old_state[vertex_a].position;
         vec3 c = old_state[vertex_c].position;
-        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, left_fraction);
-        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, left_fraction);
+        float l = fraction_along(block, length(a - b), labels[vertex_a] >= INITIAL, left_fraction);
+        float m = fraction_along(block, length(c - b), labels[vertex_c] >= INITIAL, left_fraction);
         sum += contracted(a, b, c, cevians_meet(a, b, c, l, m), l) - b;
+        epsilons += meltabilities_at(triangle, corner);
     }
     vec3 moved = b + sum / float(max(to - from, 1u));
-    moved.y -= constants.fall_per_tick; // gravity
+    float fall = constants.gravity_per_tick * epsilons / float(max(2u * (to - from), 1u));
+    moved.y -= fall; // gravity
     float left = before.left - 1.0;
-    new_state[vertex] = VertexState(within_char(moved, rest[vertex].position, left), left);
+    new_state[vertex] = VertexState(within_char(moved, rest[vertex].position, fall * (flammability - left)), left);
 }

@@ -7,7 +7,10 @@
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
+#include "burning/block-levels.glsl"
 #include "burning/displacement.glsl"
+#include "burning/flammability.glsl"
+#include "burning/meltability.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 2, std430) readonly buffer Triangles {
@@ -38,6 +41,10 @@ layout(set = 0, binding = 24, std430) readonly buffer Alive {
     uint alive[];
 };
 
+layout(set = 0, binding = 83, std430) readonly buffer RestCells {
+    uint rest_cells[];
+};
+
 layout(push_constant, std430) uniform Slice {
     uint first;
     uint count;
@@ -54,8 +61,11 @@ void main() {
         return;
     }
     vec3 b = before.position;
-    float left_fraction = before.left / constants.flammability;
+    float flammability = flammability_of(vertex);
+    float left_fraction = before.left / flammability;
+    BlockLevels block = block_levels[rest_cells[vertex]];
     vec3 sum = vec3(0.0);
+    float epsilons = 0.0;
     uint from = incidence_offsets[vertex];
     uint to = incidence_offsets[vertex + 1u];
     for (uint i = from; i < to; i++) {
@@ -65,11 +75,13 @@ void main() {
         uint vertex_c = triangles[3u * triangle + (corner + 1u) % 3u];
         vec3 a = old_state[vertex_a].position;
         vec3 c = old_state[vertex_c].position;
-        float l = fraction_along(length(a - b), labels[vertex_a] >= INITIAL, left_fraction);
-        float m = fraction_along(length(c - b), labels[vertex_c] >= INITIAL, left_fraction);
+        float l = fraction_along(block, length(a - b), labels[vertex_a] >= INITIAL, left_fraction);
+        float m = fraction_along(block, length(c - b), labels[vertex_c] >= INITIAL, left_fraction);
         sum += cevians_meet(a, b, c, l, m) - b;
+        epsilons += meltabilities_at(triangle, corner);
     }
     vec3 moved = b + sum / float(max(to - from, 1u));
-    moved.y -= constants.fall_per_tick; // gravity
+    float fall = constants.gravity_per_tick * epsilons / float(max(2u * (to - from), 1u));
+    moved.y -= fall; // gravity
     new_state[vertex] = VertexState(moved, before.left - 1.0);
 }

@@ -10,15 +10,20 @@ layout(location = 3) in vec4 color; // charred albedo, glow
 
 const vec3 EMBERS = vec3(1.0, 0.35, 0.05);
 
-// `pattern` is what the surface's material makes of the albedo, a factor of it.
-vec4 lit(vec3 pattern) {
+// `pattern` is what a material makes of its albedo, a factor of it; `glow` is linear RGB.
+vec4 shone(vec3 pattern, vec3 own_albedo, float charring, vec3 glow) {
     vec3 n = normalize(normal.xyz);
     vec3 to_eye = view.eye - position;
     if (dot(n, to_eye) < 0.0) {
         n = -n;
     }
     // `color` mixes the plain albedo with that of char; this replaces it by the pattern's.
-    vec3 albedo = color.rgb + (1.0 - constants.charring * normal.w) * constants.albedo * (pattern - 1.0);
+    vec3 albedo = color.rgb + (1.0 - charring * normal.w) * own_albedo * (pattern - 1.0);
     float light = view.ambient + (1.0 - view.ambient) * max(dot(n, view.to_light), 0.0);
-    return vec4(albedo * light + constants.charring * color.a * EMBERS, 1.0);
+    return vec4(albedo * light + glow, 1.0);
+}
+
+// Of an object of one material.
+vec4 lit(vec3 pattern) {
+    return shone(pattern, constants.albedo, constants.charring, constants.charring * color.a * EMBERS);
 }

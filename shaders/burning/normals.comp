@@ -1,13 +1,16 @@
 #version 450
 
+#pragma variants SURFACE=one,several
+
 // Normals of the mapped mesh (appendix B: summed over triangles), weighted by area, gathered by draw vertex; and the
 // colour of its charring: the albedo of what chars fades from the initial boundary to the deformed area, and what has
-// just reached combustion glows.
+// just reached combustion glows; metal glows while the fire is near it.
 
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/substances.glsl"
 #include "burning/vertices.glsl"
 
 layout(set = 0, binding = 1, std430) readonly buffer Rest {
@@ -53,6 +56,16 @@ layout(set = 0, binding = 20, std430) buffer Normals {
 layout(set = 0, binding = 21, std430) buffer Colors {
     vec4 colors[]; // linear RGB, glow
 };
+
+#ifdef SURFACE_SEVERAL
+layout(set = 0, binding = 81, std430) readonly buffer Substances {
+    Appearance substances[];
+};
+
+layout(set = 0, binding = 82, std430) readonly buffer SubstanceOf {
+    uint substance_of[]; // of draw vertices
+};
+#endif
 
 const vec3 CHAR = vec3(0.02);
 
@@ -100,5 +113,19 @@ void main() {
     float charred = clamp((r - distance_to_boundary) / (2.0 * width), 0.0, 1.0);
     float glow = max(0.0, 1.0 - abs(distance_to_boundary - (r - width)) / (0.5 * width));
     normals[corner] = vec4(normal, charred);
+#ifdef SURFACE_SEVERAL
+    Appearance own = substances[substance_of[corner]];
+    // Areas that the boundary has come to lie beyond.
+    float areas = (r - distance_to_boundary) / width;
+    float heat = smoothstep(0.0, 3.0, areas) * (1.0 - smoothstep(6.0, 20.0, areas));
+    if (own.charring > 0.0) {
+        colors[corner] = vec4(mix(own.albedo, CHAR, charred), glow);
+    } else {
+        // Hot metal shows its own light rather than its colour.
+        float hidden = own.embers.x > 0.0 ? 0.9 * heat : 0.0;
+        colors[corner] = vec4(mix(own.albedo, CHAR, hidden), heat);
+    }
+#else
     colors[corner] = vec4(mix(constants.albedo, CHAR, constants.charring * charred), glow);
+#endif
 }

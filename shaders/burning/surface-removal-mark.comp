@@ -2,7 +2,7 @@
 
 #pragma variants OBJECT=kept,free,parts
 
-// A triangle is consumed when nothing is left at its three vertices (3.5.4); it leaves the stream for good, unless parts
+// A triangle is consumed when nothing is left at its three vertices that burns (3.5.4); it leaves the stream for good, unless parts
 // are kept and its block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
 // Where parts fall, none is kept; what is consumed leaves ash on the ground below it, and so do parts beyond the most.
 
@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/flammability.glsl"
 #include "burning/grid.glsl"
 #include "burning/blocks.glsl"
 #include "burning/vertices.glsl"
@@ -88,7 +89,14 @@ void main() {
         return;
     }
     uvec3 at = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);
-    bool is_consumed = new_state[at.x].left <= 0.0 && new_state[at.y].left <= 0.0 && new_state[at.z].left <= 0.0;
+    bool is_burnt = false;
+    bool is_consumed = true;
+    for (uint corner = 0u; corner < 3u; corner++) {
+        bool is_spent = new_state[at[corner]].left <= 0.0;
+        is_burnt = is_burnt || is_spent;
+        is_consumed = is_consumed && (is_spent || flammability_of(at[corner]) <= 0.0);
+    }
+    is_consumed = is_consumed && is_burnt;
 #ifdef OBJECT_PARTS
     is_consumed = is_consumed || part_of[at.x] == DUST;
 #endif

@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 #include "burning/constants.glsl"
+#include "burning/flammability.glsl"
 #include "burning/rotation.glsl"
 #include "burning/vertices.glsl"
 #include "burning/posed.glsl"
@@ -39,5 +40,5 @@ void main() {
 #ifdef OBJECT_PARTS
     position = posed(vertex, position);
 #endif
-    mapped[vertex] = MappedVertex(position, now.left / constants.flammability);
+    mapped[vertex] = MappedVertex(position, now.left / max(flammability_of(vertex), 1.0));
 }

@@ -90,6 +90,7 @@ fn assign(parts: &mut Parts, states: &mut [State], points: &mut Vec<u32>, groups
                     if let Some(&coordinate) = parts.texture_coordinates.get(vertex) {
                         parts.texture_coordinates.push(coordinate);
                     }
+                    parts.tags.double(vertex);
                     of_vertex.iter().for_each(|&corner| parts.indices[corner as usize] = twin);
                 }
             }

@@ -167,6 +167,7 @@ impl<'a> Dividing<'a> {
             let uv: Vec2 = of[a] * weights[0] + of[b] * weights[1] + of[c] * weights[2];
             self.made.texture_coordinates.push(uv);
         }
+        self.made.tags.add_between(&self.from.tags, [a, b, c], weights);
         number
     }
 }

@@ -15,6 +15,8 @@ pub struct MeshOptions {
     pub crease_deg: f32,
     /// Triangles and vertices are put into the order that the device's vertex cache likes best.
     pub is_optimised: bool,
+    /// The parts that the file names and the colours of its vertices are kept ([`Mesh::tags`](super::Mesh::tags)).
+    pub keeps_tags: bool,
 }
 
 /// Crease angle of meshes that none is given for, degrees.
@@ -23,14 +25,14 @@ pub const CREASE_DEG: f32 = 30.0;
 impl Default for MeshOptions {
     /// Vertices and triangles in the file's order.
     fn default() -> Self {
-        MeshOptions { crease_deg: CREASE_DEG, is_optimised: false }
+        MeshOptions { crease_deg: CREASE_DEG, is_optimised: false, keeps_tags: false }
     }
 }
 
 impl MeshOptions {
     /// For drawing: what is drawn does not depend on the order.
     pub fn to_draw(crease_deg: f32) -> Self {
-        MeshOptions { crease_deg, is_optimised: true }
+        MeshOptions { crease_deg, is_optimised: true, keeps_tags: false }
     }
 }
 

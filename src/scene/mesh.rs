@@ -1,5 +1,6 @@
 use crate::scene::error::{Fault, Place};
 use crate::scene::loading::timed;
+use crate::scene::tags::Tags;
 use crate::scene::{Bounds, creases, normals};
 use glam::{Mat3, Mat4, Vec2, Vec3};
 
@@ -19,6 +20,8 @@ pub struct Mesh {
     pub texture_coordinates: Vec<Vec2>,
     /// Three vertex numbers a triangle.
     pub indices: Vec<u32>,
+    /// Parts and colours, of a mesh that was loaded with them.
+    pub tags: Tags,
 }
 
 impl Mesh {
@@ -117,6 +120,8 @@ pub(super) struct Parts {
     pub texture_coordinates: Vec<Vec2>,
     /// Three vertex numbers a triangle.
     pub indices: Vec<u32>,
+    /// Of the vertices, where they are asked for.
+    pub tags: Tags,
 }
 
 impl Parts {
@@ -128,8 +133,8 @@ impl Parts {
             *normal = normal.as_dvec3().normalize_or_zero().as_vec3();
         }
         timed(|parts| &mut parts.normals_ms, || creases::fill_normals(&mut self, crease_deg));
-        let Parts { positions, normals, texture_coordinates, indices } = self;
-        Ok(Mesh { name: String::new(), positions, normals, texture_coordinates, indices })
+        let Parts { positions, normals, texture_coordinates, indices, tags } = self;
+        Ok(Mesh { name: String::new(), positions, normals, texture_coordinates, indices, tags })
     }
 }
 

@@ -13,9 +13,9 @@ use std::time::SystemTime;
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice, cast_slice_mut};
 use glam::{Vec2, Vec3};
 
-use super::Mesh;
 use super::identity::source_sha256;
 use super::loading::MeshOptions;
+use super::{Mesh, Tags};
 use crate::{content, file};
 
 /// Files below this load about as fast as their entries, bytes.
@@ -34,7 +34,7 @@ impl Key {
     pub fn of(path: &Path, options: &MeshOptions) -> Option<Self> {
         let contents = source_sha256(path).ok()?;
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let MeshOptions { crease_deg, is_optimised } = options;
+        let MeshOptions { crease_deg, is_optimised, .. } = options;
         let made_of = format!("{contents} {ending} {:08x} {is_optimised}", crease_deg.to_bits());
         Some(Key(content::sha256(&[&MAGIC, made_of.as_bytes()].concat())))
     }
@@ -106,6 +106,7 @@ fn read(file: &mut File) -> Option<Mesh> {
         normals: list(file, start.positions, &mut checksum)?,
         texture_coordinates: list(file, start.texture_coordinates, &mut checksum)?,
         indices: list(file, start.indices, &mut checksum)?,
+        tags: Tags::default(),
     };
     (checksum.finalize() == start.checksum && mesh.validate().is_ok()).then_some(mesh)
 }

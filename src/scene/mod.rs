@@ -23,6 +23,7 @@ mod polygon;
 pub mod random;
 pub mod shapes;
 mod source;
+mod tags;
 mod vertex_order;
 
 pub use bounds::Bounds;
@@ -36,3 +37,4 @@ pub use loading::MeshOptions;
 pub use mesh::Mesh;
 pub use mesh_cache::folder as mesh_cache_folder;
 pub use source::{MeshSource, promised_triangles};
+pub use tags::Tags;

@@ -1,5 +1,6 @@
 use crate::scene::error::{Fault, Place};
 use crate::scene::mesh::{self, Parts};
+use crate::scene::tags::Tags;
 use earcut::Earcut;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -20,6 +21,8 @@ pub(super) struct PolygonMesh {
     pub corners: Vec<u32>,
     /// Where one ends and the next begins.
     pub arities: Arities,
+    /// Of the vertices, where they are asked for.
+    pub tags: Tags,
 }
 
 impl PolygonMesh {
@@ -27,7 +30,7 @@ impl PolygonMesh {
     /// corners (points and lines) are left out.
     pub fn into_parts(self, size_bytes: u64) -> Result<Parts, Fault> {
         mesh::check_positions(&self.positions)?;
-        let PolygonMesh { positions, normals, texture_coordinates, corners, arities } = self;
+        let PolygonMesh { positions, normals, texture_coordinates, corners, arities, tags } = self;
         let indices = match arities {
             Arities::Triangles => corners,
             Arities::Each(arities) => {
@@ -48,7 +51,7 @@ impl PolygonMesh {
                 indices
             }
         };
-        Ok(Parts { positions, normals, texture_coordinates, indices })
+        Ok(Parts { positions, normals, texture_coordinates, indices, tags })
     }
 }
 

@@ -27,6 +27,8 @@ impl Mesh {
         move_to(&places, &mut self.positions);
         move_to(&places, &mut self.normals);
         move_to(&places, &mut self.texture_coordinates);
+        move_to(&places, &mut self.tags.part_of);
+        move_to(&places, &mut self.tags.colors);
     }
 }
 

@@ -68,7 +68,7 @@ fn objs_are_those_of_another_reader() {
     for (number, text) in shipped.iter().chain(&made).enumerate() {
         let path = folder.path().join("a.obj");
         fs::write(&path, text).unwrap();
-        let mesh = load(&path, &MeshOptions { crease_deg: 180.0, is_optimised: false });
+        let mesh = load(&path, &MeshOptions { crease_deg: 180.0, ..MeshOptions::default() });
         let options = tobj::LoadOptions { single_index: true, triangulate: true, ..tobj::LoadOptions::default() };
         let plain: String = text
             .lines()

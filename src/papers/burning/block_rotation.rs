@@ -23,7 +23,8 @@ pub fn block_rotation(
     };
     let rotate = Pass::compute("block-rotation", "3.5.2", &format!("burning/block-rotation-{object}.comp"))
         .with("constants", &buffers.constants)
-        .with("Blocks", &buffers.blocks);
+        .with("Blocks", &buffers.blocks)
+        .with("BlockConstants", &buffers.block_levels);
     let rotations = [old("OldRotations", &buffers.rotations), new("NewRotations", &buffers.rotations)];
     Ok(PingPong::new([(build(shaders, rotate, &rotations)?, model.block_count())]))
 }

@@ -27,6 +27,7 @@ pub fn block_weights(
         false => step("burning/block-weights-placed.comp"),
     };
     let count = count
+        .with("Flammabilities", &buffers.flammabilities)
         .with("Labels", &buffers.labels)
         .with("Cells", &buffers.cells)
         .with("Clock", &buffers.clock)

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 use glam::Vec3;
 
+use super::materials::MaterialLevels;
 use super::model::Model;
 use super::parameters::{Parameters, TICKS_PER_S, Variant};
 use crate::gpu::transfer::{copy_buffers, upload};
@@ -22,18 +23,14 @@ host_block! {
         block_size: Vec3,
         mean_edge: f32,
         albedo: Vec3,
-        fall_per_tick: f32,
+        gravity_per_tick: f32,
         vertex_count: u32,
         triangle_count: u32,
         draw_vertex_count: u32,
         growth_per_tick: f32,
         area_width: f32,
         highest_source_y: f32,
-        flammability: f32,
-        epsilon: f32,
-        beta: f32,
-        rho: f32,
-        phi: f32,
+        level_stride: u32,
         gamma: f32,
         spread: f32,
         greatest_rotation_rad: f32,
@@ -42,7 +39,7 @@ host_block! {
         chi: f32,
         upsilon: f32,
         outward: f32,
-        retired_left: f32,
+        retire_at: f32,
         char_depth: f32,
         active_limit: u32,
         seed: u32,
@@ -155,6 +152,12 @@ pub struct Buffers {
     pub base_points: Arc<Buffer>,
     /// uint\[N\].
     pub rest_cells: Arc<Buffer>,
+    /// float\[N\]: L before the fire, 0 for what does not burn; of one element where all have the same.
+    pub flammabilities: Arc<Buffer>,
+    /// float\[3T\]: epsilon of the edge after each corner; of one element where all have the same.
+    pub meltabilities: Arc<Buffer>,
+    /// [`BlockLevels`](super::materials::BlockLevels) of each block.
+    pub block_levels: Arc<Buffer>,
 
     /// [`VertexState`]\[N\], ping-pong: after tick t the newer one is that of index t % 2.
     pub states: [Arc<Buffer>; 2],
@@ -173,7 +176,8 @@ pub struct Buffers {
     /// vec4\[blocks\] twice, ping-pong as the states are: displacement of the base point since the start, 1 while it is
     /// active (6.3.4).
     pub base_displacements: [Arc<Buffer>; 2],
-    /// vec4\[N\]: displacement by which a vertex has followed the base points; of one element where nothing melts.
+    /// vec4\[N\]: displacement by which a vertex has followed the base points, 1 where it keeps its place; of one element
+    /// where nothing melts.
     pub flows: Arc<Buffer>,
     /// uint\[N\]: 1 where the vertex exists.
     pub alive: Arc<Buffer>,
@@ -224,9 +228,16 @@ impl Buffers {
         let corners = model.lattice.welds.len();
         let blocks = model.grid.cell_count() as usize;
 
-        let flammability = parameters.flammability as f32;
+        let MaterialLevels { flammabilities, meltabilities, blocks: block_levels, holds } =
+            MaterialLevels::new(variant, parameters, model);
+        // What does not burn has something left for ever.
+        let left = flammabilities.iter().cycle().map(|ticks| ticks.max(1.0));
+        let before = model.rest.iter().zip(left);
         let before: Vec<VertexState> =
-            model.rest.iter().map(|vertex| VertexState { position: vertex.position, left: flammability }).collect();
+            before.map(|(vertex, left)| VertexState { position: vertex.position, left }).collect();
+        let held = |vertex: usize| [0.0, 0.0, 0.0, f32::from(u8::from(holds.get(vertex).is_some_and(|holds| *holds)))];
+        let flowing = if variant == Variant::Melting { vertices } else { 1 };
+        let flows: Vec<[f32; 4]> = (0..flowing).map(held).collect();
         let alive = alive_at_rest(variant, model);
         let mut counts = vec![BlockCounts::default(); blocks];
         for (&cell, _) in model.rest_cells.iter().zip(&alive).filter(|&(_, &alive)| alive == 1) {
@@ -245,6 +256,9 @@ impl Buffers {
             corner_incidence: list("corner-incidence", &model.corner_incidence.entries)?,
             base_points: list("base-points", &model.base_points)?,
             rest_cells: list("rest-cells", &model.rest_cells)?,
+            flammabilities: uploaded("flammabilities", bytemuck::cast_slice(&flammabilities))?,
+            meltabilities: uploaded("meltabilities", bytemuck::cast_slice(&meltabilities))?,
+            block_levels: uploaded("block-levels", bytemuck::cast_slice(&block_levels))?,
             states: pair("state", bytemuck::cast_slice(&before))?,
             labels: zeros("labels", 4 * vertices)?,
             triangle_labels: zeros("triangle-labels", 4 * triangles)?,
@@ -253,7 +267,7 @@ impl Buffers {
             blocks: uploaded("blocks", bytemuck::cast_slice(&counts))?,
             rotations: pair("rotations", &vec![0; 16 * blocks])?,
             base_displacements: pair("base-displacements", &vec![0; 16 * blocks])?,
-            flows: zeros("flows", 16 * if variant == Variant::Melting { vertices } else { 1 })?,
+            flows: uploaded("flows", bytemuck::cast_slice(&flows))?,
             alive: list("alive", &alive)?,
             clock: zeros("clock", size_of::<Counts>())?,
             mapped: empty("mapped", 16 * vertices, plain)?,
@@ -279,7 +293,7 @@ impl Buffers {
     }
 
     /// The object, its blocks and the constants: the simulation reads them and no pass writes them.
-    pub fn unchanging(&self) -> [&Arc<Buffer>; 11] {
+    pub fn unchanging(&self) -> [&Arc<Buffer>; 14] {
         [
             &self.constants,
             &self.rest,
@@ -292,6 +306,9 @@ impl Buffers {
             &self.corner_incidence,
             &self.base_points,
             &self.rest_cells,
+            &self.flammabilities,
+            &self.meltabilities,
+            &self.block_levels,
         ]
     }
 
@@ -347,18 +364,14 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         block_size: model.grid.cell_size,
         mean_edge: model.mean_edge,
         albedo: p.albedo(variant),
-        fall_per_tick: (f64::from(p.epsilon) * GRAVITY * tick_s * tick_s) as f32,
+        gravity_per_tick: (GRAVITY * tick_s * tick_s) as f32,
         vertex_count: model.vertex_count(),
         triangle_count: model.triangle_count(),
         draw_vertex_count: model.draw_vertex_count(),
         growth_per_tick: (f64::from(p.speed_per_s) * tick_s) as f32,
         area_width: p.width_of_areas,
         highest_source_y: model.sources.iter().map(|s| s.y).fold(f32::NEG_INFINITY, f32::max),
-        flammability: p.flammability as f32,
-        epsilon: p.epsilon,
-        beta: p.beta,
-        rho: p.rho,
-        phi: p.phi,
+        level_stride: u32::from(p.materials.is_some()),
         gamma: p.gamma,
         spread: p.spread,
         greatest_rotation_rad: GREATEST_ROTATION_RAD,
@@ -367,7 +380,7 @@ fn constants(variant: Variant, parameters: &Parameters, model: &Model) -> Consta
         chi: p.chi,
         upsilon: p.upsilon,
         outward: model.outward,
-        retired_left: if variant == Variant::Solid { p.retire_at * p.flammability as f32 } else { 0.0 },
+        retire_at: if variant == Variant::Solid { p.retire_at } else { 0.0 },
         char_depth: model.char_depth,
         active_limit: if p.active_limit == 0 { u32::MAX } else { p.active_limit },
         seed: p.noise_seed(),

@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 
 use super::buffers::Buffers;
 use super::framing;
+use super::materials::Looks;
 use super::model::Model;
 use super::parameters::{Material, Parameters, Shading, Variant};
 use super::texture::Surface;
@@ -54,6 +55,7 @@ impl Draw {
         label: &str,
         (variant, parameters): (Variant, &Parameters),
         buffers: &Buffers,
+        looks: Option<&Looks>,
         model: &Model,
     ) -> Result<Self, Error> {
         let device = shaders.device();
@@ -89,6 +91,9 @@ impl Draw {
                 .with("TextureCoordinates", &surface.coordinates)
                 .with("TextureLevels", &surface.levels)
                 .with("texels", &surface.texels);
+        }
+        if let (Some(looks), "draw-several") = (looks, fragment) {
+            pass = pass.with("Substances", &looks.substances).with("SubstanceOf", &looks.substance_of);
         }
         if fragment != "draw-normals" {
             pass = pass.with("constants", &buffers.constants);
@@ -143,6 +148,7 @@ fn shaders_of(variant: Variant, parameters: &Parameters) -> (&'static str, &'sta
         (Shading::Areas, ..) => ("draw-areas", "draw"),
         (Shading::Blocks, ..) => ("draw-blocks", "draw"),
         (Shading::Normals, ..) => ("draw-surface", "draw-normals"),
+        (Shading::Lit, _) if parameters.materials.is_some() => ("draw-several", "draw-several"),
         // Edges stand out on a surface without a pattern.
         (Shading::Wire, _) | (Shading::Lit, Some(Material::Plain | Material::Wax)) => ("draw-surface", "draw"),
         (Shading::Lit, None) => ("draw-textured", "draw-textured"),

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
-use super::model::{Welded, own_levels};
+use super::model::Division;
 use super::parameters::{Parameters, Variant};
 use super::{draw_ground, falling, parts, puddle};
 use crate::measure::estimate::Estimate;
@@ -43,8 +43,8 @@ impl Counts {
 impl Parameters {
     /// Device memory, passes and shader invocations of the first picture.
     pub(super) fn estimate(&self, variant: Variant, mesh: &Mesh) -> Estimate {
-        let welded = Welded::new(mesh);
-        let levels = self.levels.unwrap_or_else(|| own_levels(&welded, variant, self.edge)).min(15);
+        let Division { welded, levels, .. } = Division::new(mesh, variant, self);
+        let levels = levels.min(15);
         let drawn = Counts::of(welded.welds.len(), welded.triangles.iter().copied());
         let to_simulated = |t: &[u32; 3]| t.map(|corner| welded.welds[corner as usize]);
         let simulated = Counts::of(welded.vertex_count as usize, welded.triangles.iter().map(to_simulated));
@@ -66,11 +66,16 @@ impl Parameters {
         let (collapses, has_puddle) = (self.collapses(variant), self.has_puddle(variant));
         let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
         let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX);
+        // L of each vertex, epsilon of each edge, and the materials of the draw vertices.
+        let several = self.materials.is_some();
+        let of_vertex = of_vertex + if_so(several, 4);
+        let of_corner = of_corner + if_so(several, 4);
+        let of_triangle = of_triangle + if_so(several, 12);
         let of_look = if_so(collapses, parts::BYTES + falling::BYTES)
             + if_so(has_puddle, puddle::BYTES)
             + if_so(self.has_ash(variant), draw_ground::BYTES);
         let of_block =
-            2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + size_of::<Group>() as f64;
+            2.0 * (size_of::<BlockCounts>() as f64 + 4.0 * VECTOR) + 2.0 * NUMBER + VECTOR + size_of::<Group>() as f64;
 
         let ticks_a_frame = self.slices_due(0).saturating_sub(self.slices_before()).max(1);
         let ticks = self.slices_before() as f64 + ticks_a_frame as f64;

@@ -15,13 +15,14 @@ pub fn heat_boundary(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) 
             .with("constants", &buffers.constants)
             .with("Clock", &buffers.clock)
     };
+    let of_burning = |shader: &str| step(shader).with("Flammabilities", &buffers.flammabilities);
     let old_state = [old("OldState", &buffers.states)];
     let clock = step("burning/heat-boundary-clock.comp");
-    let vertices = step("burning/heat-boundary-vertices.comp")
+    let vertices = of_burning("burning/heat-boundary-vertices.comp")
         .with("Rest", &buffers.rest)
         .with("Labels", &buffers.labels)
         .with("Alive", &buffers.alive);
-    let triangles = step("burning/heat-boundary-triangles.comp")
+    let triangles = of_burning("burning/heat-boundary-triangles.comp")
         .with("Triangles", &buffers.triangles)
         .with("Labels", &buffers.labels)
         .with("TriangleLabels", &buffers.triangle_labels)

@@ -51,7 +51,14 @@ impl InternalDeformation {
             .with("Triangles", &buffers.triangles)
             .with("IncidenceOffsets", &buffers.incidence_offsets)
             .with("Incidence", &buffers.incidence)
+            .with("Meltabilities", &buffers.meltabilities)
             .with("Alive", &buffers.alive);
+        if variant != Variant::Melting {
+            vertices = vertices
+                .with("Flammabilities", &buffers.flammabilities)
+                .with("RestCells", &buffers.rest_cells)
+                .with("BlockConstants", &buffers.block_levels);
+        }
         let mut swapped = vec![old("OldState", &buffers.states), new("NewState", &buffers.states)];
         let new_bases = new("NewBases", &buffers.base_displacements);
         if matches!(variant, Variant::Solid | Variant::Melting) {

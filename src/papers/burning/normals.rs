@@ -1,6 +1,7 @@
 //! `normals` (appendix B), with the colour of charring.
 
 use super::buffers::Buffers;
+use super::materials::Looks;
 use super::model::Model;
 use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
 
@@ -13,8 +14,20 @@ pub struct Normals {
 impl Normals {
     /// # Errors
     /// Those of the Vulkan layer.
-    pub fn new(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<Self, Error> {
-        let pass = Pass::compute("normals", "B", "burning/normals.comp")
+    pub fn new(
+        shaders: &ShaderLibrary,
+        buffers: &Buffers,
+        looks: Option<&Looks>,
+        model: &Model,
+    ) -> Result<Self, Error> {
+        let pass = |shader: &str| Pass::compute("normals", "B", shader);
+        let pass = match looks {
+            None => pass("burning/normals-one.comp"),
+            Some(looks) => pass("burning/normals-several.comp")
+                .with("Substances", &looks.substances)
+                .with("SubstanceOf", &looks.substance_of),
+        };
+        let pass = pass
             .with("constants", &buffers.constants)
             .with("Rest", &buffers.rest)
             .with("Triangles", &buffers.triangles)

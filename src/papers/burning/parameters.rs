@@ -1,18 +1,16 @@
 //! The parameters, under the dissertation's own words.
 
-use std::ffi::OsStr;
 use std::sync::Arc;
 
 use glam::Vec3;
-use serde_json::{Value as Json, json};
 
 use super::framing::seen_from;
+use super::level_of_detail::LevelOfDetail;
+use super::materials::Materials;
 use super::texture::Texture;
 use crate::field;
 use crate::measure::ParameterError;
-use crate::measure::parameter::{
-    self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one,
-};
+use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Size, Value};
 use crate::scene::Camera;
 
 /// The methods, one a chapter.
@@ -120,32 +118,6 @@ impl Choice for Shading {
     ];
 }
 
-/// The finest level that is drawn: a number, or `auto`, by the camera's distance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct LevelOfDetail(Option<u32>);
-
-impl Value for LevelOfDetail {
-    const SHAPE: Shape = Shape { placeholder: "auto|N", ..u32::SHAPE };
-
-    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
-        let text = one(texts)?;
-        let level = text.parse().map(Some).map_err(|_| format!("{text:?} is neither auto nor a level"));
-        Ok(LevelOfDetail(if text == "auto" { None } else { level? }))
-    }
-
-    fn text(&self) -> String {
-        self.0.map_or_else(|| "auto".to_owned(), |level| level.to_string())
-    }
-
-    fn json(&self) -> Json {
-        json!(self.0)
-    }
-
-    fn lies_in(&self, range: &Range) -> bool {
-        self.0.lies_in(range)
-    }
-}
-
 /// Ticks of the simulation in a second.
 pub const TICKS_PER_S: f64 = 60.0;
 
@@ -222,6 +194,8 @@ pub struct Parameters {
     pub material: Option<Material>,
     /// Covers the object in place of the material; the mesh must have texture coordinates.
     pub texture: Option<Arc<Texture>>,
+    /// Materials of parts of the object, in place of the constants of table 3.1 and of the material.
+    pub materials: Option<Arc<Materials>>,
     /// Linear RGB; a factor of the texture. Without, the material's own.
     pub albedo: Option<Vec3>,
     /// Behind the object, linear RGB.
@@ -279,6 +253,7 @@ impl Default for Parameters {
             level_of_detail: None,
             material: None,
             texture: None,
+            materials: None,
             albedo: None,
             background: Vec3::new(0.055, 0.06, 0.07),
             shading: Shading::Lit,

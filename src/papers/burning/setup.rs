@@ -8,7 +8,8 @@ use serde_json::{Map, Value, json};
 
 use super::axes;
 use super::experiments::{self, Options, presets};
-use super::model::with_triangles;
+use super::materials::{self, Materials};
+use super::model::{Model, with_triangles};
 use super::{BlockCounts, Burning, Material, NEEDS, Parameters, Texture, Variant, texture};
 use crate::field;
 use crate::gpu::transfer::read_buffer;
@@ -23,7 +24,7 @@ use crate::measure::parameter::{self, Choice, Cost, Given, Parameter, Range};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::measure::{Error, Paper as _};
+use crate::measure::{Error, Paper as _, ParameterError};
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{Mesh, MeshOptions, MeshSource};
 
@@ -42,6 +43,8 @@ pub struct Setup {
     pub triangles: Option<u32>,
     /// A PNG that covers the mesh by its texture coordinates, in place of the material.
     pub texture: Option<PathBuf>,
+    /// The materials of parts of the mesh, a TOML file.
+    pub materials: Option<PathBuf>,
     /// The preset that it was made of.
     pub preset: Option<String>,
 }
@@ -56,6 +59,7 @@ impl Default for Setup {
             stretch: Vec3::ONE,
             triangles: None,
             texture: None,
+            materials: None,
             preset: None,
         }
     }
@@ -70,6 +74,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// With its levels.
     pub texture: Option<Arc<Texture>>,
+    /// Of the mesh's vertices.
+    pub materials: Option<Arc<Materials>>,
 }
 
 impl Setup {
@@ -79,11 +85,22 @@ impl Setup {
     /// [`Error::Parameter`].
     pub fn check(&self) -> Result<(), Error> {
         parameter::check(&Self::own_parameters(), self)?;
+        if let Some(path) = &self.materials {
+            let is_whole = self.triangles.is_none() && self.texture.is_none();
+            let range = "goes without `triangles` and `texture`, which know no parts of a mesh";
+            ParameterError::check(is_whole, "materials", path.display(), range)?;
+        }
         Ok(self.parameters.validate()?)
     }
 
+    /// The numbers with what was loaded.
+    fn parameters_of(&self, scene: &Scene) -> Parameters {
+        let (texture, materials) = (scene.texture.clone(), scene.materials.clone());
+        Parameters { texture, materials, ..self.parameters.clone() }
+    }
+
     /// The parameters beside the numbers.
-    fn own_parameters() -> [Parameter<Self>; 5] {
+    fn own_parameters() -> [Parameter<Self>; 6] {
         [
             Parameter::new("mesh", field!(Setup.mesh))
                 .help(
@@ -111,6 +128,15 @@ impl Setup {
                 )
                 .excludes(&["material"])
                 .cost(Cost::Pipelines),
+            Parameter::new("materials", field!(Setup.materials))
+                .placeholder("FILE.toml")
+                .help(
+                    "Constants of table 3.1 for parts of the mesh: groups and materials of OBJ and glTF files, colours of \
+                     vertices",
+                )
+                .section("table 3.1")
+                .excludes(&["texture", "triangles"])
+                .cost(Cost::Buffers),
         ]
     }
 }
@@ -128,7 +154,9 @@ impl Study for Setup {
         // Where a fire begins, its flames and its base points follow the order of triangles and vertices, so that shapes keep
         // the one that they were made in.
         let is_optimised = self.mesh.path().is_some();
-        let mut mesh = self.mesh.load_with(&MeshOptions { crease_deg: self.crease_deg, is_optimised })?;
+        let keeps_tags = self.materials.is_some();
+        let options = MeshOptions { crease_deg: self.crease_deg, is_optimised, keeps_tags };
+        let mut mesh = self.mesh.load_with(&options)?;
         if self.stretch != Vec3::ONE {
             mesh = mesh.placed(&Mat4::from_scale(self.stretch));
         }
@@ -147,7 +175,8 @@ impl Study for Setup {
             }
             Some(path) => Some(Arc::new(texture::load(path)?)),
         };
-        Ok(Scene { mesh, texture })
+        let materials = self.materials.as_deref().map(|path| materials::load(path, &mesh)).transpose()?;
+        Ok(Scene { mesh, texture, materials: materials.map(Arc::new) })
     }
 
     fn reconfigure(&self, _: &Scene, paper: &mut Burning, changed: &Given) -> Result<bool, Error> {
@@ -165,7 +194,7 @@ impl Study for Setup {
         scene: &Scene,
         variant: Variant,
     ) -> Result<Burning, gpu::Error> {
-        let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
+        let parameters = self.parameters_of(scene);
         let made = Burning::new(shaders, label, variant, &parameters, &scene.mesh);
         made.map_err(|error| match (&error, &self.texture) {
             (gpu::Error::Limit { object, .. }, Some(_)) if *object == format!("{label}/texture") => {
@@ -181,8 +210,7 @@ impl Study for Setup {
         if foreseen.check(device, "").is_err() {
             return foreseen;
         }
-        let parameters = Parameters { texture: scene.texture.clone(), ..self.parameters.clone() };
-        parameters.estimate(variant, &scene.mesh)
+        self.parameters_of(scene).estimate(variant, &scene.mesh)
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
@@ -223,6 +251,8 @@ impl Study for Setup {
             ("floor", json!(model.floor)),
             ("material", json!(parameters.material(variant).map(Material::name))),
             ("albedo", json!(parameters.albedo(variant).to_array())),
+            ("substances", substances(variant, parameters, model)),
+            ("materials_sha256", json!(parameters.materials.as_ref().map(|materials| &materials.sha256))),
             ("camera", config::camera(paper.camera())),
         ]));
         config
@@ -288,6 +318,18 @@ impl Study for Setup {
     fn resolve(&mut self, _given: &Given) -> Result<(), Error> {
         self.check()
     }
+}
+
+/// The constants of each material of an object of several, and its vertices.
+fn substances(variant: Variant, parameters: &Parameters, model: &Model) -> Value {
+    let Some(materials) = &parameters.materials else { return Value::Null };
+    let all = (0..).zip(materials.all(variant, parameters));
+    let with_count = all.map(|(number, substance)| {
+        let mut constants = substance.json();
+        constants["vertices"] = json!(model.substances.iter().filter(|of| **of == number).count());
+        constants
+    });
+    with_count.collect()
 }
 
 /// The counts of the device by the last frame that was recorded, and the frame rate.

@@ -82,8 +82,11 @@ impl SurfaceRemoval {
                 .with("Blocks", &buffers.blocks),
             (None, false) => step("burning/surface-removal-mark-free.comp"),
         };
-        let mark =
-            mark.with("Triangles", &buffers.triangles).with("Removed", &buffers.removed).with("Clock", &buffers.clock);
+        let mark = mark
+            .with("Flammabilities", &buffers.flammabilities)
+            .with("Triangles", &buffers.triangles)
+            .with("Removed", &buffers.removed)
+            .with("Clock", &buffers.clock);
         let marks = ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])?;
         let over_all = |shader: &str| {
             let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);

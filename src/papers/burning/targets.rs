@@ -10,6 +10,9 @@ pub fn targets(paper: &Burning) -> Vec<Target> {
     let buffers = &paper.buffers;
     let mut targets = vec![
         Target::table("rest", &buffers.rest, 4),
+        Target::table("flammabilities", &buffers.flammabilities, 1),
+        Target::table("meltabilities", &buffers.meltabilities, 1),
+        Target::table("block-levels", &buffers.block_levels, 4),
         Target::words("triangles", &buffers.triangles, 3),
         Target::words("corners", &buffers.corners, 3),
         Target::words("welds", &buffers.welds, 1),

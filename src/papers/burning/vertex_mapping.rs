@@ -23,6 +23,7 @@ pub fn vertex_mapping(
             pass("burning/vertex-mapping-parts.comp").with("PartOf", &parts.part_of).with("Parts", &parts.parts)
         }
     };
+    let map = map.with("Flammabilities", &buffers.flammabilities);
     let map = map.with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Mapped", &buffers.mapped);
     let newest = [new("NewState", &buffers.states), new("NewRotations", &buffers.rotations)];
     Ok(PingPong::new([(build(shaders, map, &newest)?, model.vertex_count())]))

@@ -10,6 +10,7 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Gltf, Primitive, Semantic};
 use glam::{DVec3, Mat4, Vec2, Vec3};
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Most vertices and most triangle corners of any scene.
@@ -25,6 +26,14 @@ const OBJECT_BYTES: usize = 512;
 const POSITION_TYPES: [(Dimensions, DataType); 1] = [(Dimensions::Vec3, DataType::F32)];
 const TEXTURE_COORDINATE_TYPES: [(Dimensions, DataType); 3] =
     [(Dimensions::Vec2, DataType::F32), (Dimensions::Vec2, DataType::U8), (Dimensions::Vec2, DataType::U16)];
+const COLOR_TYPES: [(Dimensions, DataType); 6] = [
+    (Dimensions::Vec3, DataType::F32),
+    (Dimensions::Vec3, DataType::U8),
+    (Dimensions::Vec3, DataType::U16),
+    (Dimensions::Vec4, DataType::F32),
+    (Dimensions::Vec4, DataType::U8),
+    (Dimensions::Vec4, DataType::U16),
+];
 const INDEX_TYPES: [(Dimensions, DataType); 3] =
     [(Dimensions::Scalar, DataType::U8), (Dimensions::Scalar, DataType::U16), (Dimensions::Scalar, DataType::U32)];
 
@@ -32,15 +41,15 @@ const INDEX_TYPES: [(Dimensions, DataType); 3] =
 /// binary, in world space.
 ///
 /// The first scene serves where none is the default. Buffers may be embedded or lie in files
-/// below `directory`. Texture coordinates are the first set. Skins, morph targets, points,
-/// lines and materials are left out.
+/// below `directory`. Texture coordinates are the first set. Skins, morph targets, points and
+/// lines are left out, and so are the names of meshes and materials and the colours unless they are asked for.
 pub(super) fn read(stream: &mut Stream<'_>, directory: &Path) -> Result<Parts, Stop> {
     let bytes = stream.rest()?;
-    let parts = parse(&bytes, directory)?;
+    let parts = parse(&bytes, directory, stream.keeps_tags)?;
     Ok(parts)
 }
 
-fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
+fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Fault> {
     check_container(bytes)?;
     check_objects(bytes)?;
     let (document, chunk) = read_document(bytes)?;
@@ -49,7 +58,7 @@ fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     let is_drawn = |part: &Primitive| matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
     let placed = || {
         let parts = meshes.iter().flat_map(|(mesh, transform)| {
-            mesh.primitives().map(|part| Placed { mesh: mesh.index(), part, transform: *transform })
+            mesh.primitives().map(|part| Placed { mesh: mesh.index(), name: mesh.name(), part, transform: *transform })
         });
         parts.filter(|placed| is_drawn(&placed.part))
     };
@@ -63,12 +72,13 @@ fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
     if has_area == Some(false) {
         return Err(Fault::new(Place::Whole, "none of its triangles has a positive area; a mesh needs at least one"));
     }
-    let mut merged = Merged::default();
+    let mut merged = Merged { keeps_tags, ..Merged::default() };
     merged.parts.positions.reserve_exact(vertices);
     merged.parts.normals.reserve_exact(vertices);
     merged.parts.indices.reserve_exact(corners);
     for part in placed() {
         merged.append(&part, &buffers).map_err(|reason| part.fault(reason))?;
+        merged.tag(&part, &buffers)?;
     }
     merged.finish()
 }
@@ -77,6 +87,8 @@ fn parse(bytes: &[u8], directory: &Path) -> Result<Parts, Fault> {
 struct Placed<'a> {
     /// Number of its mesh.
     mesh: usize,
+    /// Its name.
+    name: Option<&'a str>,
     part: Primitive<'a>,
     /// To the world.
     transform: Mat4,
@@ -282,6 +294,9 @@ fn triangles(mode: Mode, corners: impl Iterator<Item = u32>) -> impl Iterator<It
 struct Merged {
     parts: Parts,
     has_texture_coordinates: bool,
+    keeps_tags: bool,
+    /// The part of each material of a mesh.
+    parts_of: HashMap<(usize, Option<usize>), u32>,
 }
 
 impl Merged {
@@ -290,7 +305,7 @@ impl Merged {
         let Placed { part, transform, .. } = placed;
         let reader = part.reader(|buffer| buffers.get(buffer.index()));
         let placement = Placement::new(transform);
-        let Parts { positions, normals, texture_coordinates, indices } = &mut self.parts;
+        let Parts { positions, normals, texture_coordinates, indices, .. } = &mut self.parts;
         let first = positions.len() as u32;
         let read = reader.read_positions().ok_or("it has no positions")?;
         positions.extend(read.map(|position| transform.transform_point3(Vec3::from(position))));
@@ -315,6 +330,38 @@ impl Merged {
         match reader.read_indices() {
             Some(read) => indices.extend(triangles(part.mode(), read.into_u32()).flat_map(turned)),
             None => indices.extend(triangles(part.mode(), 0..count).flat_map(turned)),
+        }
+        Ok(())
+    }
+
+    /// Gives the vertices of the primitive that was added last their part and their colours, where they are wanted.
+    fn tag(&mut self, placed: &Placed<'_>, buffers: &Buffers<'_>) -> Result<(), Fault> {
+        if !self.keeps_tags {
+            return Ok(());
+        }
+        let Placed { mesh, name, part, .. } = placed;
+        let Parts { positions, tags, .. } = &mut self.parts;
+        let material = part.material();
+        let number = match self.parts_of.get(&(*mesh, material.index())) {
+            Some(number) => *number,
+            None => {
+                let names = [*name, material.name()].into_iter().flatten();
+                tags.part(names.map(str::to_owned).collect())?
+            }
+        };
+        self.parts_of.insert((*mesh, material.index()), number);
+        tags.part_of.resize(positions.len(), number);
+        if let Some(accessor) = part.get(&Semantic::Colors(0)) {
+            let checked = gltf_accessor::check(&accessor, &COLOR_TYPES, buffers);
+            checked.map_err(|reason| placed.fault(format!("COLOR_0: {reason}")))?;
+            let read = part.reader(|buffer| buffers.get(buffer.index())).read_colors(0);
+            // Those of primitives before it that have none are white.
+            tags.colors.resize(positions.len() - accessor.count().min(positions.len()), Vec3::ONE);
+            let colors = read.into_iter().flat_map(|read| read.into_rgb_f32()).map(Vec3::from);
+            tags.colors.extend(colors.map(|color| if color.is_finite() { color } else { Vec3::ONE }));
+        }
+        if !tags.colors.is_empty() {
+            tags.colors.resize(positions.len(), Vec3::ONE);
         }
         Ok(())
     }

@@ -46,7 +46,9 @@ pub(super) fn load(path: &Path, options: &MeshOptions, conditions: &Conditions) 
     let written = || std::fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
     let written_before = written();
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let cache = conditions.cache.as_deref().filter(|_| size_bytes >= mesh_cache::LEAST_BYTES);
+    // What is kept there has no tags.
+    let is_kept = size_bytes >= mesh_cache::LEAST_BYTES && !options.keeps_tags;
+    let cache = conditions.cache.as_deref().filter(|_| is_kept);
     let entry = timed(|parts| &mut parts.cache_ms, || cache.and_then(|folder| Some((folder, Key::of(path, options)?))));
     if let Some((folder, key)) = &entry {
         conditions.watch.look(0, size_bytes).map_err(|stop| stopped(path, stop))?;
@@ -58,6 +60,7 @@ pub(super) fn load(path: &Path, options: &MeshOptions, conditions: &Conditions) 
     }
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut stream = Stream::new(file, size_bytes, &conditions.watch);
+    stream.keeps_tags = options.keeps_tags;
     let parts = parts(read, &mut stream, directory).map_err(|stop| stopped(path, stop))?;
     let mut mesh = parts.into_mesh(options.crease_deg).map_err(|fault| malformed(path, fault))?;
     conditions.watch.look(size_bytes, size_bytes).map_err(|stop| stopped(path, stop))?;

@@ -34,12 +34,14 @@ pub struct Stream<'a> {
     size_bytes: u64,
     done_bytes: u64,
     watch: &'a Watch<'a>,
+    /// Parts and colours are wanted.
+    pub keeps_tags: bool,
 }
 
 impl<'a> Stream<'a> {
     /// Reads at most `size_bytes` of what `input` gives.
     pub fn new(input: impl Read + 'a, size_bytes: u64, watch: &'a Watch<'a>) -> Self {
-        Stream { input: Box::new(input), size_bytes, done_bytes: 0, watch }
+        Stream { input: Box::new(input), size_bytes, done_bytes: 0, watch, keeps_tags: false }
     }
 
     /// Size of the whole file in bytes.

@@ -23,7 +23,7 @@ pub fn read_with(read: impl FnOnce(&mut Stream<'_>) -> Result<Parts, Stop>, byte
 }
 
 fn load_plain(path: &Path) -> Result<Mesh, Error> {
-    load(path, &MeshOptions { crease_deg: 180.0, is_optimised: false }, &Conditions::plain())
+    load(path, &MeshOptions { crease_deg: 180.0, ..MeshOptions::default() }, &Conditions::plain())
 }
 
 /// A small valid file of every kind, with its ending.

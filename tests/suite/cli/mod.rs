@@ -6,6 +6,8 @@ mod ab;
 mod arguments;
 mod bench;
 mod burning;
+mod burning_dumps;
+mod burning_materials;
 mod compare;
 pub mod depth;
 mod devices;

@@ -12,7 +12,9 @@ use crate::scene::Mesh;
 /// than wanted: it never closes holes nor joins parts.
 pub fn with_triangles(mesh: &Mesh, wanted: usize) -> Mesh {
     if mesh.triangle_count() < wanted {
-        return Splitting::new(mesh).until(wanted);
+        let mut splitting = Splitting::new(mesh);
+        splitting.until(wanted);
+        return splitting.mesh;
     }
     let points: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.to_array()).collect();
     let indices =
@@ -25,8 +27,11 @@ pub fn with_triangles(mesh: &Mesh, wanted: usize) -> Mesh {
 /// An edge between places: the numbers of the first vertices there, the lower one first.
 type Edge = (u32, u32);
 
-struct Splitting {
+/// Splits the longest edges of a mesh.
+pub(super) struct Splitting {
     mesh: Mesh,
+    /// The ends of the edge that each new vertex is in the middle of.
+    ends: Vec<[u32; 2]>,
     /// The first vertex at each vertex's place.
     places: Vec<u32>,
     triangles: HashMap<Edge, Vec<u32>>,
@@ -35,26 +40,54 @@ struct Splitting {
 }
 
 impl Splitting {
-    fn new(mesh: &Mesh) -> Self {
+    pub fn new(mesh: &Mesh) -> Self {
         let mut firsts = HashMap::new();
         let place = |(at, p): (u32, &Vec3)| *firsts.entry((*p + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert(at);
         let places = (0..).zip(&mesh.positions).map(place).collect();
-        let mut splitting =
-            Splitting { mesh: mesh.clone(), places, triangles: HashMap::new(), longest: BinaryHeap::new() };
+        let mut splitting = Splitting {
+            mesh: mesh.clone(),
+            ends: Vec::new(),
+            places,
+            triangles: HashMap::new(),
+            longest: BinaryHeap::new(),
+        };
         (0..mesh.triangle_count() as u32).for_each(|triangle| splitting.add(triangle));
         splitting
     }
 
-    fn until(mut self, wanted: usize) -> Mesh {
-        while self.mesh.triangle_count() < wanted
-            && let Some((_, edge)) = self.longest.pop()
-        {
-            // Split already, or named by several triangles.
-            if let Some(triangles) = self.triangles.remove(&edge) {
-                self.split(edge, &triangles);
+    /// Splits until there are so many triangles.
+    fn until(&mut self, wanted: usize) {
+        while self.mesh.triangle_count() < wanted && self.split_longest() {}
+    }
+
+    /// Splits until no edge is longer than `length`; false where that takes more than `most` triangles.
+    pub fn until_no_longer(&mut self, length: f32, most: usize) -> bool {
+        while self.longest.peek().is_some_and(|(bits, _)| f32::from_bits(*bits) > length * length) {
+            if self.mesh.triangle_count() >= most {
+                return false;
             }
+            self.split_longest();
         }
-        self.mesh
+        true
+    }
+
+    /// False where no edge is left.
+    fn split_longest(&mut self) -> bool {
+        let Some((_, edge)) = self.longest.pop() else { return false };
+        // Split already, or named by several triangles.
+        if let Some(triangles) = self.triangles.remove(&edge) {
+            self.split(edge, &triangles);
+        }
+        true
+    }
+
+    pub fn triangle_count(&self) -> usize {
+        self.mesh.triangle_count()
+    }
+
+    /// The mesh, whose new vertices come last, and the ends of the edge that each of those is in the middle of.
+    pub fn into_mesh(self) -> (Mesh, Vec<[u32; 2]>) {
+        (self.mesh, self.ends)
     }
 
     fn corners(&self, triangle: u32) -> [u32; 3] {
@@ -111,6 +144,8 @@ impl Splitting {
         if let (Some(&s), Some(&t)) = (mesh.texture_coordinates.get(a), mesh.texture_coordinates.get(b)) {
             mesh.texture_coordinates.push(0.5 * (s + t));
         }
+        mesh.tags.double(a);
+        self.ends.push([a as u32, b as u32]);
         let number = mesh.positions.len() as u32 - 1;
         self.places.push(number);
         number

@@ -14,6 +14,8 @@ pub struct Lattice {
     pub welds: Vec<u32>,
     /// As many as draw vertices, or empty.
     pub texture_coordinates: Vec<[f32; 2]>,
+    /// The material of each draw vertex, or empty where there is one alone.
+    pub substances: Vec<u32>,
     /// Draw vertices of the nodes, by level: child `i` of node `n` of level k is node `4 n + i` of level k + 1. The
     /// last level are the finest triangles.
     pub nodes: Vec<Vec<[u32; 3]>>,
@@ -28,7 +30,8 @@ fn key(a: u32, b: u32) -> (u32, u32) {
 
 impl Lattice {
     /// Divides every triangle `levels` times; the children of (a, b, c) are those at a, b, c, then the middle one.
-    pub fn new(welded: Welded, levels: u32) -> Self {
+    /// `substances` are the materials of the vertices of the mesh, or empty.
+    pub fn new(welded: Welded, substances: &[u32], levels: u32) -> Self {
         let mut positions = vec![Vec3::ZERO; welded.vertex_count as usize];
         for (&vertex, &position) in welded.welds.iter().zip(&welded.positions) {
             positions[vertex as usize] = position;
@@ -37,6 +40,7 @@ impl Lattice {
             positions,
             welds: welded.welds,
             texture_coordinates: welded.texture_coordinates,
+            substances: welded.origins.iter().filter_map(|at| substances.get(*at as usize).copied()).collect(),
             nodes: vec![welded.triangles],
         };
         let (mut drawn, mut simulated) = (Middles::new(), Middles::new());
@@ -73,6 +77,9 @@ impl Lattice {
         {
             let texture_coordinate = [0.5 * (s[0] + t[0]), 0.5 * (s[1] + t[1])];
             self.texture_coordinates.push(texture_coordinate);
+        }
+        if let (Some(s), Some(t)) = (self.substances.get(a as usize), self.substances.get(b as usize)) {
+            self.substances.push(*s.min(t));
         }
         drawn.insert(key(a, b), middle);
         middle

@@ -3,6 +3,7 @@
 mod blocks;
 mod boundary;
 mod count;
+mod division;
 mod incidence;
 mod lattice;
 mod touching;
@@ -12,12 +13,14 @@ mod weld;
 use glam::Vec3;
 
 use super::buffers::RestVertex;
+use super::materials::{conduct, stronger};
 use super::parameters::{Parameters, Variant};
 use crate::gpu::Error;
 use crate::scene::{Bounds, Mesh};
 
 pub use self::blocks::Grid;
 pub use self::count::with_triangles;
+pub use self::division::Division;
 pub use self::incidence::Incidence;
 pub use self::lattice::Lattice;
 pub use self::weld::Welded;
@@ -30,6 +33,8 @@ pub struct Model {
     pub lattice: Lattice,
     /// Every vertex at rest.
     pub rest: Vec<RestVertex>,
+    /// The material of each vertex, or empty where there is one alone.
+    pub substances: Vec<u32>,
     /// Vertices of the finest triangles.
     pub triangles: Vec<[u32; 3]>,
     /// Finest triangles of each vertex.
@@ -93,11 +98,13 @@ impl Model {
             if wanted > limit { Err(error) } else { Ok(()) }
         };
         check(mesh.triangle_count(), parameters.levels.or(variant.own_levels()).unwrap_or(0))?;
-        let welded = Welded::new(mesh);
+        let division = Division::new(mesh, variant, parameters);
+        let materials = parameters.materials.as_deref();
+        let of_mesh = materials.map_or_else(Vec::new, |materials| division.with_new(&materials.of_vertex));
+        let Division { welded, levels, .. } = division;
         let (degenerate, is_closed) = (welded.degenerate, welded.is_closed());
-        let levels = parameters.levels.unwrap_or_else(|| own_levels(&welded, variant, parameters.edge));
         check(welded.triangles.len(), levels)?;
-        let lattice = Lattice::new(welded, levels);
+        let lattice = Lattice::new(welded, &of_mesh, levels);
         let triangles: Vec<[u32; 3]> =
             lattice.finest().iter().map(|t| t.map(|corner| lattice.welds[corner as usize])).collect();
         let positions = &lattice.positions;
@@ -117,17 +124,24 @@ impl Model {
             given => given.to_vec(),
         };
         let seed = parameters.noise_seed();
-        let at_rest = |&position: &Vec3| {
-            let boundary_distance = boundary::distance(position, &sources, parameters.psi, seed) as f32;
-            RestVertex { position, boundary_distance }
-        };
+        let distance = |&position: &Vec3| boundary::distance(position, &sources, parameters.psi, seed) as f32;
+        let mut distances: Vec<f32> = positions.iter().map(distance).collect();
+        let mut substances = Vec::new();
+        if let Some(materials) = materials {
+            let all = materials.all(variant, parameters);
+            substances = substances_of(&lattice, |a, b| stronger(&all, a, b));
+            conduct(positions, &triangles, &all, &substances, parameters.psi.sqrt(), &mut distances);
+        }
+        let rest = positions.iter().zip(distances);
+        let rest = rest.map(|(&position, boundary_distance)| RestVertex { position, boundary_distance }).collect();
         let rest_cells: Vec<u32> = positions.iter().map(|&p| grid.cell(p)).collect();
         let volume = enclosed_volume(positions, &triangles);
         let mean_edge = mean_edge(positions, &triangles);
         Ok(Model {
             touching: touching::touching(positions, &triangles, mean_edge),
             levels,
-            rest: positions.iter().map(at_rest).collect(),
+            rest,
+            substances,
             incidence,
             corner_incidence: Incidence::new(lattice.welds.len(), lattice.finest()),
             base_points: base_points(&grid, positions, &rest_cells),
@@ -183,16 +197,6 @@ impl Variant {
     }
 }
 
-/// Solids and melting objects divide until no edge at rest is longer than `edge`.
-pub fn own_levels(welded: &Welded, variant: Variant, edge: f32) -> u32 {
-    variant.own_levels().unwrap_or_else(|| {
-        let position = |corner: u32| welded.positions[corner as usize];
-        let lengths = welded.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-        let longest = lengths.map(|(a, b)| position(a).distance(position(b))).fold(0.0, f32::max);
-        (0..5).find(|&level| longest / (1 << level) as f32 <= edge).unwrap_or(5)
-    })
-}
-
 /// The lowest vertex, and the highest of what melts: it is to run down. Of several the first.
 fn ignition(positions: &[Vec3], variant: Variant) -> Vec3 {
     let height = |p: &&Vec3| if variant == Variant::Melting { -p.y } else { p.y };
@@ -205,6 +209,16 @@ fn mean_edge(positions: &[Vec3], triangles: &[[u32; 3]]) -> f32 {
         position(a).distance(position(b)) + position(b).distance(position(c)) + position(c).distance(position(a))
     };
     (triangles.iter().map(around).sum::<f64>() / (3.0 * triangles.len().max(1) as f64)) as f32
+}
+
+/// The materials of the simulated vertices: of those of the draw vertices at each, what `chosen` takes of two.
+fn substances_of(lattice: &Lattice, chosen: impl Fn(u32, u32) -> u32) -> Vec<u32> {
+    let mut substances: Vec<Option<u32>> = vec![None; lattice.positions.len()];
+    for (&vertex, &substance) in lattice.welds.iter().zip(&lattice.substances) {
+        let own = &mut substances[vertex as usize];
+        *own = Some(own.map_or(substance, |own| chosen(own, substance)));
+    }
+    substances.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 /// Signed: by the tetrahedra that the triangles make with the origin.

@@ -14,6 +14,8 @@ pub struct Welded {
     pub texture_coordinates: Vec<[f32; 2]>,
     /// The simulated vertex of each draw vertex, numbered in order of first use.
     pub welds: Vec<u32>,
+    /// The vertex of the mesh of each draw vertex.
+    pub origins: Vec<u32>,
     /// Distinct positions.
     pub vertex_count: u32,
     /// Draw vertices of each triangle with three different simulated vertices.
@@ -35,6 +37,7 @@ impl Welded {
             positions: Vec::new(),
             texture_coordinates: Vec::new(),
             welds: Vec::new(),
+            origins: Vec::new(),
             vertex_count: 0,
             triangles: Vec::new(),
             degenerate: 0,
@@ -50,6 +53,7 @@ impl Welded {
             let next = vertices.len() as u32;
             welded.welds.push(*vertices.entry(scaled.to_array().map(f32::to_bits)).or_insert(next));
             welded.positions.push(scaled);
+            welded.origins.push(at as u32);
             welded.texture_coordinates.extend(mesh.texture_coordinates.get(at).map(|t| t.to_array()));
         }
         welded.vertex_count = vertices.len() as u32;

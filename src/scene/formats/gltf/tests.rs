@@ -2,7 +2,7 @@ use super::*;
 use crate::scene::Mesh;
 
 fn parse(bytes: &[u8], directory: &Path) -> Result<Mesh, Fault> {
-    super::parse(bytes, directory)?.into_mesh(180.0)
+    super::parse(bytes, directory, false)?.into_mesh(180.0)
 }
 
 /// A square in the plane z = 0: four positions, then the indices 0 1 2 3 0 2 as bytes.

@@ -7,16 +7,17 @@ use std::time::Instant;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use self::statements::{ABSENT, KINDS, Named, Piece, Reason, is_whole};
+use self::statements::{ABSENT, KINDS, Named, Piece, Reason, WHITE, is_whole};
 use super::stream::{Lines, Stop, Stream};
 use crate::scene::error::{Fault, Place};
 use crate::scene::loading::{LoadParts, timed};
 use crate::scene::mesh::Parts;
 use crate::scene::numbering::Numbering;
 use crate::scene::polygon::{Arities, PolygonMesh};
+use crate::scene::tags::{Runs, Tags};
 
-/// Reads the polygons of a Wavefront OBJ file; groups, materials, colours, lines and points are
-/// left out.
+/// Reads the polygons of a Wavefront OBJ file; lines and points are left out, and so are objects, groups, materials and
+/// colours unless they are asked for.
 ///
 /// Faces may name vertices that follow, or count back from the last with negative numbers. Where
 /// only some corners of the file name a normal (or a texture coordinate), none of them counts.
@@ -30,7 +31,7 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     if start == "\u{feff}".as_bytes() {
         start.clear();
     }
-    let size_bytes = stream.size_bytes();
+    let (size_bytes, keeps_tags) = (stream.size_bytes(), stream.keeps_tags);
     let mut joined = Joined::new(size_bytes);
     let mut lines = Lines::new(stream, start, is_whole);
     loop {
@@ -38,7 +39,7 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
         if pieces.is_empty() {
             break;
         }
-        let parsed: Vec<Piece> = pieces.into_par_iter().map(Piece::parse).collect();
+        let parsed: Vec<Piece> = pieces.into_par_iter().map(|piece| Piece::parse(piece, keeps_tags)).collect();
         let started = Instant::now();
         parsed.into_iter().try_for_each(|piece| joined.append(piece))?;
         LoadParts::welded_since(started);
@@ -61,6 +62,10 @@ struct Joined {
     are_partial: [bool; 2],
     corners: Vec<u32>,
     arities: Arities,
+    /// Of the positions, or empty.
+    colors: Vec<Vec3>,
+    runs: Runs,
+    faces: usize,
     has_faces: bool,
     /// More of any kind than the file can hold.
     beyond: u64,
@@ -78,6 +83,9 @@ impl Joined {
             are_partial: [false; 2],
             corners: Vec::new(),
             arities: Arities::Triangles,
+            colors: Vec::new(),
+            runs: Runs::default(),
+            faces: 0,
             has_faces: false,
             beyond: size_bytes.min(u64::from(ABSENT) - 1),
         }
@@ -117,6 +125,11 @@ impl Joined {
         self.positions.extend(piece.positions);
         self.texture_coordinates.extend(piece.texture_coordinates);
         self.normals.extend(piece.normals);
+        for (face, level, name) in piece.changes {
+            self.runs.change(self.faces + face, level, name);
+        }
+        self.faces += piece.faces;
+        self.colors.extend(piece.colors);
         let count = piece.corners[0].len();
         self.has_faces |= count > 0;
         self.arities.append(piece.arities, count, self.corners.len());
@@ -146,14 +159,31 @@ impl Joined {
         if !self.has_faces {
             return Err(Fault::new(Place::Whole, "it has no faces"));
         }
-        let Joined { positions, texture_coordinates, normals, vertices, are_partial, corners, arities, .. } = self;
+        let Joined {
+            positions,
+            texture_coordinates,
+            normals,
+            vertices,
+            are_partial,
+            corners,
+            arities,
+            colors,
+            runs,
+            ..
+        } = self;
         let vertices = vertices.into_keys();
         let gathered = |kind: usize| vertices.iter().map(move |key| key[kind] as usize);
         let positions: Vec<Vec3> = gathered(0).map(|at| positions[at]).collect();
         let texture_coordinates =
             if are_partial[0] { Vec::new() } else { gathered(1).map(|at| texture_coordinates[at]).collect() };
         let normals = if are_partial[1] { Vec::new() } else { gathered(2).map(|at| normals[at]).collect() };
-        Ok(PolygonMesh { positions, normals, texture_coordinates, corners, arities })
+        // Colours that no vertex of the file has would be all white.
+        let has_colors = colors.iter().any(|color| *color != WHITE);
+        let colors = if has_colors { gathered(0).map(|at| colors[at]).collect() } else { Vec::new() };
+        let tags = Tags { colors, ..Tags::default() };
+        let mut mesh = PolygonMesh { positions, normals, texture_coordinates, corners, arities, tags };
+        mesh.tag(&runs)?;
+        Ok(mesh)
     }
 }
 

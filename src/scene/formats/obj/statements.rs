@@ -3,10 +3,14 @@
 use glam::{Vec2, Vec3};
 
 use crate::scene::polygon::Arities;
+use crate::scene::tags::Level;
 
 /// Things that an index can count: positions, texture coordinates and normals, in the order in which a
 /// corner names them.
 pub const KINDS: [&str; 3] = ["positions", "texture coordinates", "normals"];
+
+/// The colour of a position without one.
+pub const WHITE: Vec3 = Vec3::ONE;
 
 /// No index of its kind.
 pub const ABSENT: u32 = u32::MAX;
@@ -21,6 +25,13 @@ pub struct Piece {
     /// last corner that names one.
     pub corners: [Vec<Named>; 3],
     pub arities: Arities,
+    /// Faces of three corners and more.
+    pub faces: usize,
+    /// The first face that another name holds from, of an object, of groups or of a material.
+    pub changes: Vec<(usize, Level, String)>,
+    /// Of each position, where colours are wanted.
+    pub colors: Vec<Vec3>,
+    keeps_tags: bool,
     /// Lines of the file.
     pub lines: usize,
     /// The largest index of each kind, from 1, and its line.
@@ -91,8 +102,8 @@ impl Piece {
     /// Parses whole lines.
     ///
     /// Faces that would be beyond the file's end are kept: what they name may follow.
-    pub fn parse(bytes: &[u8]) -> Self {
-        let mut piece = Piece::default();
+    pub fn parse(bytes: &[u8], keeps_tags: bool) -> Self {
+        let mut piece = Piece { keeps_tags, ..Piece::default() };
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text,
             Err(error) => {
@@ -139,10 +150,13 @@ impl Piece {
     fn add(&mut self, line: usize, statement: &str) -> Result<(), Reason> {
         let mut tokens = statement.split_ascii_whitespace();
         let keyword = tokens.next().unwrap_or_default();
-        let tokens = tokens.take_while(|token| !token.starts_with('#'));
+        let mut tokens = tokens.take_while(|token| !token.starts_with('#'));
         match keyword {
             // A fourth coordinate divides a position; six numbers are a position and a colour.
             "v" => {
+                if self.keeps_tags {
+                    self.colors.push(color(tokens.clone())?);
+                }
                 let ([x, y, z, w], count) = numbers(keyword, tokens)?;
                 let position = Vec3::new(x, y, z);
                 self.positions.push(if count == 4 { position / w } else { position });
@@ -156,9 +170,22 @@ impl Piece {
                 self.normals.push(Vec3::new(x, y, z));
             }
             "f" => return self.add_face(line, tokens),
+            "o" if self.keeps_tags => self.change(Level::Object, &mut tokens),
+            "g" if self.keeps_tags => self.change(Level::Group, &mut tokens),
+            "usemtl" if self.keeps_tags => self.change(Level::Material, &mut tokens),
             _ => {}
         }
         Ok(())
+    }
+
+    fn change<'t>(&mut self, level: Level, words: &mut dyn Iterator<Item = &'t str>) {
+        let name = words.collect::<Vec<_>>().join(" ");
+        // What held for no face is forgotten: there are three changes a face at most.
+        let mut latest = self.changes.iter_mut().rev().take_while(|(first, ..)| *first == self.faces);
+        match latest.find(|(_, other, _)| *other == level) {
+            Some((.., last)) => *last = name,
+            None => self.changes.push((self.faces, level, name)),
+        }
     }
 
     fn add_face<'t>(&mut self, line: usize, corners: impl Iterator<Item = &'t str>) -> Result<(), Reason> {
@@ -188,6 +215,7 @@ impl Piece {
             // A point or a line.
             self.corners.iter_mut().for_each(|named| named.truncate(first));
         } else {
+            self.faces += 1;
             self.arities.push(count as u32, first);
         }
         Ok(())
@@ -242,6 +270,18 @@ fn numbers<'t>(keyword: &str, tokens: impl Iterator<Item = &'t str>) -> Result<(
         }
     }
     Ok((numbers, kept))
+}
+
+/// The colour that follows a position, where all three numbers of one do.
+fn color<'t>(tokens: impl Iterator<Item = &'t str>) -> Result<Vec3, Reason> {
+    let texts: Vec<&str> = tokens.skip(3).take(3).collect();
+    let [red, green, blue] = texts[..] else { return Ok(WHITE) };
+    let mut color = [0.0_f32; 3];
+    for (value, text) in color.iter_mut().zip([red, green, blue]) {
+        *value = text.parse().map_err(|_| format!("{:?} is not a number", shortened(text)))?;
+    }
+    let color = Vec3::from(color);
+    if color.is_finite() { Ok(color) } else { Err("the colour of v must be finite".to_owned().into()) }
 }
 
 /// A token of the file for a message.

@@ -65,7 +65,7 @@ fn fixed_vertices<const BIG: bool>(
     window: &mut Window<'_, '_>,
     mesh: &mut PolygonMesh,
 ) -> Result<(), Stop> {
-    let carried = Carried::by(element)?;
+    let carried = Carried::by(element, window.stream.keeps_tags)?;
     // The file has so many by its header's check.
     carried.reserve(element.count, mesh);
     let mut numbers = Vec::new();
@@ -77,7 +77,7 @@ fn fixed_vertices<const BIG: bool>(
         }
     }
     let vertex = |bytes: &[u8]| {
-        let mut vertex: Vertex = [0.0; 8];
+        let mut vertex: Vertex = [0.0; 11];
         for &(offset, scalar, slot) in &numbers {
             vertex[slot] = float::<BIG>(scalar, &bytes[offset..]);
         }
@@ -179,7 +179,8 @@ impl<'e> TriangleFaces<'e> {
 
 /// Elements that are left out, and vertices with lists.
 fn others<const BIG: bool>(element: &Element, window: &mut Window<'_, '_>, mesh: &mut PolygonMesh) -> Result<(), Stop> {
-    let carried = (element.purpose == Purpose::Vertices).then(|| Carried::by(element)).transpose()?;
+    let carried =
+        (element.purpose == Purpose::Vertices).then(|| Carried::by(element, window.stream.keeps_tags)).transpose()?;
     (0..element.count).try_for_each(|_| one::<BIG>(element, carried, window, mesh))
 }
 
@@ -190,7 +191,7 @@ fn one<const BIG: bool>(
     window: &mut Window<'_, '_>,
     mesh: &mut PolygonMesh,
 ) -> Result<(), Stop> {
-    let mut vertex: Vertex = [0.0; 8];
+    let mut vertex: Vertex = [0.0; 11];
     for property in &element.properties {
         let (scalar, length) = match &property.kind {
             PropertyType::Scalar(scalar) => (scalar, 1),

@@ -4,7 +4,7 @@ use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{self, DefaultElement, Encoding, PropertyType, ScalarType};
 
 use super::super::stream::{Stop, Stream};
-use super::{CORNER_LISTS, Purpose, SLOTS};
+use super::{CORNER_LISTS, FIRST_COLOR, Purpose, SLOTS};
 use crate::scene::error::{Fault, Place};
 
 /// Bytes that are searched for the end of a header.
@@ -69,7 +69,7 @@ impl Element {
         let property = |(name, property): (&String, &ply::PropertyDef)| Property {
             name: name.clone(),
             kind: property.data_type.clone(),
-            slot: SLOTS.iter().find(|(known, _)| name == known && purpose == Purpose::Vertices).map(|(_, slot)| *slot),
+            slot: slot(name, &property.data_type).filter(|_| purpose == Purpose::Vertices),
             is_corners: purpose == Purpose::Faces && CORNER_LISTS.contains(&name.as_str()),
         };
         Element {
@@ -88,6 +88,12 @@ impl Element {
         };
         self.properties.iter().map(scalar).sum()
     }
+}
+
+/// Where the numbers of a property go in a vertex; colours that are lists go nowhere.
+fn slot(name: &str, kind: &PropertyType) -> Option<usize> {
+    let (_, slot) = SLOTS.iter().find(|(known, _)| name == *known)?;
+    Some(*slot).filter(|slot| *slot < FIRST_COLOR || matches!(kind, PropertyType::Scalar(_)))
 }
 
 /// True where a line says `end_header`.

@@ -5,7 +5,7 @@ mod header;
 mod text;
 
 use glam::{Vec2, Vec3};
-use ply_rs_bw::ply::{Encoding, PropertyType};
+use ply_rs_bw::ply::{Encoding, PropertyType, ScalarType};
 
 use self::header::Element;
 pub(super) use self::header::Header;
@@ -20,7 +20,8 @@ const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 /// Reads the `vertex` and `face` elements of a PLY file in any of its three encodings.
 ///
 /// Vertices may carry normals (`nx`, `ny`, `nz`) and texture coordinates (`s`, `t` or `u`, `v` or
-/// `texture_u`, `texture_v`); all else is left out.
+/// `texture_u`, `texture_v`), and colours (`red`, `green`, `blue`), which count where they are asked for; all else
+/// is left out.
 pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     let header = Header::read(stream)?;
     let mut mesh = PolygonMesh::default();
@@ -45,7 +46,7 @@ enum Purpose {
 }
 
 /// Where the number of a property goes in a vertex.
-const SLOTS: [(&str, usize); 12] = [
+const SLOTS: [(&str, usize); 15] = [
     ("x", 0),
     ("y", 1),
     ("z", 2),
@@ -58,22 +59,30 @@ const SLOTS: [(&str, usize); 12] = [
     ("t", 7),
     ("v", 7),
     ("texture_v", 7),
+    ("red", 8),
+    ("green", 9),
+    ("blue", 10),
 ];
 
+/// The first slot of a colour.
+const FIRST_COLOR: usize = 8;
+
 /// Numbers of a vertex, by their [`SLOTS`].
-type Vertex = [f32; 8];
+type Vertex = [f32; 11];
 
 /// What the vertices of a file have.
 #[derive(Clone, Copy)]
 struct Carried {
     normals: bool,
     texture_coordinates: bool,
+    /// The largest of a colour's numbers, where colours are wanted.
+    full_color: Option<f32>,
 }
 
 impl Carried {
     /// # Errors
     /// A vertex without a place; a list where a number is wanted.
-    fn by(element: &Element) -> Result<Self, Fault> {
+    fn by(element: &Element, keeps_tags: bool) -> Result<Self, Fault> {
         let has = |names: &[&str]| names.iter().all(|name| element.properties.iter().any(|p| p.name == *name));
         if !has(&["x", "y", "z"]) {
             return Err(Fault::new(Place::Whole, "its vertices have no properties x, y and z"));
@@ -86,16 +95,21 @@ impl Carried {
         Ok(Carried {
             normals: has(&["nx", "ny", "nz"]),
             texture_coordinates: has(&["s", "t"]) || has(&["u", "v"]) || has(&["texture_u", "texture_v"]),
+            full_color: full_color(element).filter(|_| keeps_tags),
         })
     }
 
-    fn add(self, [x, y, z, nx, ny, nz, u, v]: Vertex, mesh: &mut PolygonMesh) {
+    fn add(self, [x, y, z, nx, ny, nz, u, v, red, green, blue]: Vertex, mesh: &mut PolygonMesh) {
         mesh.positions.push(Vec3::new(x, y, z));
         if self.normals {
             mesh.normals.push(Vec3::new(nx, ny, nz));
         }
         if self.texture_coordinates {
             mesh.texture_coordinates.push(Vec2::new(u, v));
+        }
+        if let Some(full) = self.full_color {
+            let color = Vec3::new(red, green, blue) / full;
+            mesh.tags.colors.push(if color.is_finite() { color } else { Vec3::ONE });
         }
     }
 
@@ -107,12 +121,25 @@ impl Carried {
     }
 }
 
+/// The largest of the numbers of a colour; none where a vertex has no colour.
+fn full_color(element: &Element) -> Option<f32> {
+    let kind = |name: &str| element.properties.iter().find(|property| property.name == name).map(|p| &p.kind);
+    let (PropertyType::Scalar(red), true) = (kind("red")?, kind("green").is_some() && kind("blue").is_some()) else {
+        return None;
+    };
+    Some(match red {
+        ScalarType::Float | ScalarType::Double => 1.0,
+        ScalarType::Short | ScalarType::UShort => 65535.0,
+        ScalarType::Char | ScalarType::UChar | ScalarType::Int | ScalarType::UInt => 255.0,
+    })
+}
+
 /// Checks that faces have corners.
 ///
 /// # Errors
 /// No list of corners, or one of another kind.
 fn check_faces(element: &Element) -> Result<(), Fault> {
-    use ply_rs_bw::ply::ScalarType::{Double, Float};
+    use ScalarType::{Double, Float};
     match element.properties.iter().find(|property| property.is_corners).map(|property| &property.kind) {
         None => {
             let reason = "its faces have no property vertex_indices or vertex_index";

@@ -14,7 +14,7 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
     let mut carried = None;
     for element in &header.elements {
         match element.purpose {
-            Purpose::Vertices => carried = Some(Carried::by(element)?),
+            Purpose::Vertices => carried = Some(Carried::by(element, stream.keeps_tags)?),
             Purpose::Faces => check_faces(element)?,
             Purpose::Nothing => {}
         }
@@ -38,10 +38,11 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
         for piece in parsed {
             let piece = piece.map_err(|(line, reason)| Fault::new(Place::Line(first_line + line), reason))?;
             done += piece.lines;
-            let PolygonMesh { positions, normals, texture_coordinates, corners, arities } = piece.mesh;
+            let PolygonMesh { positions, normals, texture_coordinates, corners, arities, tags } = piece.mesh;
             mesh.positions.extend(positions);
             mesh.normals.extend(normals);
             mesh.texture_coordinates.extend(texture_coordinates);
+            mesh.tags.colors.extend(tags.colors);
             mesh.arities.append(arities, corners.len(), mesh.corners.len());
             mesh.corners.extend(corners);
         }
@@ -94,7 +95,7 @@ impl Piece {
         }
         let line = std::str::from_utf8(line).map_err(|_| "it is not text".to_owned())?;
         let mut tokens = line.split_ascii_whitespace();
-        let mut vertex: Vertex = [0.0; 8];
+        let mut vertex: Vertex = [0.0; 11];
         for property in &element.properties {
             let token = tokens.next().ok_or("a value is missing")?;
             match &property.kind {
