@@ -178,7 +178,7 @@ impl Piece {
         Ok(())
     }
 
-    fn change<'t>(&mut self, level: Level, words: &mut dyn Iterator<Item = &'t str>) {
+    fn change(&mut self, level: Level, words: &mut dyn Iterator<Item = &str>) {
         let name = words.collect::<Vec<_>>().join(" ");
         // What held for no face is forgotten: there are three changes a face at most.
         let mut latest = self.changes.iter_mut().rev().take_while(|(first, ..)| *first == self.faces);
