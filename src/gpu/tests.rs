@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::env;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use ash::vk;
 
@@ -19,6 +19,13 @@ use super::{
 };
 use super::{messages::Message, transfer};
 use crate::shader_build::{self, EMBEDDED, Format, Interface, Scalar, Stage};
+
+/// Held by each of these tests: the layer (1.3.239) looks its devices up in a table without a lock, so that one that is made
+/// or dropped takes the ground from under the calls of all others.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A device of this test's own under validation, chosen as the integration tests choose theirs.
 fn open_device() -> Arc<Device> {
@@ -103,6 +110,7 @@ fn open_failing_device() -> Arc<Device> {
 
 #[test]
 fn after_a_failed_wait_nothing_is_dropped_that_the_device_may_read() {
+    let _alone = alone();
     let device = open_failing_device();
     let live = device.live().clone();
     let count = |kind| live.alive().iter().find(|(k, _)| *k == kind).map_or(0, |(_, n)| *n);
@@ -196,6 +204,7 @@ fn sum_of_sums(device: &Arc<Device>, forget: bool) -> Vec<Message> {
 
 #[test]
 fn a_missing_barrier_between_kernels_is_reported() {
+    let _alone = alone();
     let device = open_device();
     assert!(sum_of_sums(&device, false).is_empty(), "with its barrier");
     let messages = sum_of_sums(&device, true);
@@ -239,6 +248,7 @@ fn draw_and_copy(device: &Arc<Device>, forget: bool) -> Vec<Message> {
 
 #[test]
 fn a_transition_that_waits_for_nothing_is_reported() {
+    let _alone = alone();
     let device = open_device();
     assert!(draw_and_copy(&device, false).is_empty(), "with its barrier");
     let messages = draw_and_copy(&device, true);
@@ -286,6 +296,7 @@ fn draw_pipeline(device: &Arc<Device>, modules: [Arc<ShaderModule>; 2]) -> Resul
 
 #[test]
 fn every_shader_makes_a_pipeline_with_both_compilers() {
+    let _alone = alone();
     let device = open_device();
     let interface = |name: &str| {
         let shader = EMBEDDED.iter().find(|s| s.name == name).unwrap();

@@ -1,9 +1,10 @@
 //! The harness of the tests that need a Vulkan device: a device for every test that runs at the time, each under
 //! validation with synchronization validation, and the machine alone for those that measure.
 
-use std::env;
+use std::num::NonZero;
 use std::panic::{self, AssertUnwindSafe};
-use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::sync::{Arc, Condvar, Mutex, PoisonError, RwLock};
+use std::{env, iter, mem, thread};
 
 use fumarole::gpu::live::Kind;
 use fumarole::gpu::physical::choose;
@@ -25,7 +26,9 @@ pub fn beside_others<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Runs `body` on a device that no other test uses meanwhile.
+/// Runs `body` on a device that no other test uses meanwhile. A body that makes an instance or a device of its own under
+/// validation takes [`gpu_test_alone`]: the layer (1.3.239) looks its devices up in a table without a lock, so that one
+/// that is made or dropped takes the ground from under the calls of all others.
 ///
 /// # Panics
 /// When no device can be opened (a test never passes for want of one), when the validation layer says anything, and
@@ -34,20 +37,15 @@ pub fn gpu_test(body: impl FnOnce(&Arc<Device>)) {
     beside_others(|| on_idle_device(body));
 }
 
-/// As [`gpu_test`], while no other test keeps the machine busy: for times.
+/// As [`gpu_test`], while no other test keeps the machine busy: for times, and for instances and devices of a test's own.
 pub fn gpu_test_alone(body: impl FnOnce(&Arc<Device>)) {
     let _alone = MACHINE.write().unwrap_or_else(PoisonError::into_inner);
     on_idle_device(body);
 }
 
 fn on_idle_device(body: impl FnOnce(&Arc<Device>)) {
-    static IDLE: Mutex<Vec<Arc<Device>>> = Mutex::new(Vec::new());
-    let idle = || IDLE.lock().unwrap_or_else(PoisonError::into_inner);
-    let taken = idle().pop();
-    let device = &taken.unwrap_or_else(|| match open_device() {
-        Ok(device) => device,
-        Err(error) => panic!("the tests need a Vulkan device ({DEVICE_VARIABLE} chooses another): {error}"),
-    });
+    let lent = Lent::take();
+    let device = &lent.0;
     let outcome = panic::catch_unwind(AssertUnwindSafe(|| body(device)));
     let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
     if let Err(failure) = outcome {
@@ -57,7 +55,55 @@ fn on_idle_device(body: impl FnOnce(&Arc<Device>)) {
     assert!(messages.is_empty(), "{} validation message(s):\n{}", messages.len(), messages.join("\n"));
     assert_eq!(device.live().alive(), [(Kind::Instance, 1), (Kind::Device, 1)], "objects left alive");
     assert_eq!(device.live().memory(), [], "memory left allocated");
-    idle().push(device.clone());
+}
+
+/// The devices of the tests, opened together before the first of them works.
+struct Pool {
+    idle: Vec<Arc<Device>>,
+    lent: usize,
+}
+
+static POOL: Mutex<Pool> = Mutex::new(Pool { idle: Vec::new(), lent: 0 });
+static RETURNED: Condvar = Condvar::new();
+
+/// A device of the pool; it goes back, unless its test failed.
+struct Lent(Arc<Device>);
+
+impl Lent {
+    /// Waits for a device. New ones are opened while none is at work: at the start, and once all were lost to failures.
+    fn take() -> Self {
+        let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            if pool.idle.is_empty() && pool.lent == 0 {
+                let count = thread::available_parallelism().map_or(2, NonZero::get);
+                let open = || {
+                    open_device().unwrap_or_else(|error| {
+                        panic!("the tests need a Vulkan device ({DEVICE_VARIABLE} chooses another): {error}")
+                    })
+                };
+                pool.idle = iter::repeat_with(open).take(count).collect();
+            }
+            if let Some(device) = pool.idle.pop() {
+                pool.lent += 1;
+                return Lent(device);
+            }
+            pool = RETURNED.wait(pool).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl Drop for Lent {
+    fn drop(&mut self) {
+        let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+        pool.lent -= 1;
+        if thread::panicking() {
+            // What the test has left on it may be anything, and it cannot be dropped beside others.
+            mem::forget(self.0.clone());
+        } else {
+            pool.idle.push(self.0.clone());
+        }
+        RETURNED.notify_one();
+    }
 }
 
 /// The device that the tests run on, as [`choose`] takes it.

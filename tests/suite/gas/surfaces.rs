@@ -15,7 +15,7 @@ use glam::{DVec3, Mat4, Quat, UVec2, Vec2, Vec3};
 
 use super::drawing::Drawing;
 use super::scenes::small;
-use crate::common::gpu_test;
+use crate::common::{gpu_test, gpu_test_alone};
 
 const WIDTH: u32 = 45;
 const HEIGHT: u32 = 31;
@@ -188,7 +188,7 @@ fn without_geometry_stages(device: &Arc<Device>) -> Arc<Device> {
 /// Vertex pulling makes the footprints that a geometry stage makes, those cut by the hither plane among them.
 #[test]
 fn a_device_without_geometry_stages_draws_the_same() {
-    gpu_test(|device| {
+    gpu_test_alone(|device| {
         let lesser = without_geometry_stages(device);
         for preset in [Preset::Fig6, Preset::Fig4] {
             let (mut parameters, objects) = small(preset);
@@ -209,7 +209,7 @@ fn a_device_without_geometry_stages_draws_the_same() {
 
 #[test]
 fn a_missing_geometry_stage_is_told() {
-    gpu_test(|device| {
+    gpu_test_alone(|device| {
         let lesser = without_geometry_stages(device);
         let warnings = |device: &Arc<Device>, geometry_stage| {
             let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();

@@ -7,7 +7,7 @@ use fumarole::gpu::live::Kind;
 use fumarole::gpu::physical::choose;
 use fumarole::gpu::{Device, Error, Feature, Instance, PhysicalDevice};
 
-use crate::common::gpu_test;
+use crate::common::{gpu_test, gpu_test_alone};
 
 fn enumerate(instance: &Arc<Instance>) -> Vec<PhysicalDevice> {
     PhysicalDevice::enumerate(instance).unwrap()
@@ -104,7 +104,7 @@ fn what_a_device_lacks_is_named() {
 
 #[test]
 fn an_instance_and_its_device_leave_nothing_behind() {
-    gpu_test(|shared| {
+    gpu_test_alone(|shared| {
         let instance = Instance::new(true).unwrap();
         let live = instance.live().clone();
         let physical = choose(enumerate(&instance), Some(&shared.physical().uuid_text()), &[]).unwrap();

@@ -13,7 +13,7 @@ use fumarole::gpu::{
 };
 
 use super::fixtures::{Advance, BLACK, color_target, paint, paint_pass, run, shaders, storage_buffer, texels, values};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, gpu_test_alone};
 
 /// The message of a refusal, which is one line.
 pub fn message<T>(outcome: Result<T, Error>) -> String {
@@ -180,7 +180,7 @@ fn mapped_memory_is_lent_to_readers_alone_and_only_what_was_written_for_them() {
 
 #[test]
 fn objects_of_another_device_are_refused() {
-    gpu_test(|device| {
+    gpu_test_alone(|device| {
         let other = other_device(device);
         let theirs = storage_buffer(&other, "theirs", &[0.0; 64]);
         let pass = advance_pass(&other, &theirs);
@@ -193,7 +193,7 @@ fn objects_of_another_device_are_refused() {
 
 #[test]
 fn a_device_is_opened_as_it_is_and_where_it_was_found() {
-    gpu_test(|device| {
+    gpu_test_alone(|device| {
         let wanted = device.physical().uuid_text();
         let find = |instance: &Arc<Instance>| {
             choose(PhysicalDevice::enumerate(instance).unwrap(), Some(&wanted), &[]).unwrap()

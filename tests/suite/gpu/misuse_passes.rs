@@ -16,7 +16,7 @@ use super::fixtures::{
     Advance, BLACK, Range, Vertex, color_target, paint_pass, run, shaders, storage_buffer, texels, values,
 };
 use super::misuse::{advance_pass, message};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, gpu_test_alone};
 
 fn vertices(device: &Arc<Device>, count: usize) -> Arc<Buffer> {
     let usage = vk::BufferUsageFlags::VERTEX_BUFFER;
@@ -378,7 +378,7 @@ fn resources_are_such_as_the_device_has() {
 
 #[test]
 fn what_a_device_was_not_opened_with_is_refused() {
-    gpu_test(|device| {
+    gpu_test_alone(|device| {
         let devices = PhysicalDevice::enumerate(device.instance()).unwrap();
         let same = choose(devices, Some(&device.physical().uuid_text()), &[]).unwrap();
         let lesser = same.without(Feature::FragmentStores).without(Feature::GeometryShader);

@@ -8,7 +8,7 @@ use fumarole::scene::Camera;
 use glam::Vec3;
 
 use super::scene::{draw, lava, parameters, texels};
-use crate::common::gpu_test;
+use crate::common::{gpu_test, gpu_test_alone};
 
 #[test]
 fn passes_run_in_the_order_of_the_thesis() {
@@ -99,7 +99,7 @@ fn instanced_quads_draw_what_the_geometry_stage_draws() {
 /// lavapipe has geometry stages, so it is opened as if it had none: no pass may ask for one.
 #[test]
 fn a_device_without_geometry_stages_draws_quads_and_says_so() {
-    gpu_test(|device| {
+    gpu_test_alone(|device| {
         let parameters = parameters();
         let mut with = lava(device, &parameters);
         draw(device, &mut with, 0);

@@ -3,6 +3,7 @@
 use fumarole::gpu::{Device, Instance, PhysicalDevice};
 
 use crate::cli::program::fumarole;
+use crate::common::gpu_test_alone;
 
 fn is_of_windows(extension: &str) -> bool {
     extension.contains("surface") || extension.contains("swapchain")
@@ -10,16 +11,18 @@ fn is_of_windows(extension: &str) -> bool {
 
 #[test]
 fn no_extension_of_windows_is_asked_for_without_one() {
-    for validate in [false, true] {
-        let instance = Instance::new(validate).unwrap();
-        assert!(!instance.extensions().iter().any(|name| is_of_windows(name)), "{:?}", instance.extensions());
-        for physical in PhysicalDevice::enumerate(&instance).unwrap() {
-            if physical.lacks(&[]).is_empty() {
-                let device = Device::open(&instance, physical).unwrap();
-                assert!(!device.extensions().iter().any(|name| is_of_windows(name)), "{:?}", device.extensions());
+    gpu_test_alone(|_| {
+        for validate in [false, true] {
+            let instance = Instance::new(validate).unwrap();
+            assert!(!instance.extensions().iter().any(|name| is_of_windows(name)), "{:?}", instance.extensions());
+            for physical in PhysicalDevice::enumerate(&instance).unwrap() {
+                if physical.lacks(&[]).is_empty() {
+                    let device = Device::open(&instance, physical).unwrap();
+                    assert!(!device.extensions().iter().any(|name| is_of_windows(name)), "{:?}", device.extensions());
+                }
             }
         }
-    }
+    });
 }
 
 #[test]
