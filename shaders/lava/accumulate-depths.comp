@@ -12,6 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant, std430) uniform Accumulate {
     vec2 spacing_m;
     ivec2 columns; // grid points along x and z
+    ivec2 first; // grid point of the dispatch
     float radius_m; // R_i of eq. 6.3
     float each; // 1 where every accepted point counts, 0 where one stands for the column
     int reach; // columns to either side
@@ -26,7 +27,7 @@ layout(set = 0, binding = 1, rgba32f) uniform image2D sums;
 const float ON_THE_RADIUS = 1.00001;
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 at = accumulate.first + ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= accumulate.columns.x || at.y >= accumulate.columns.y) {
         return;
     }

@@ -15,6 +15,7 @@ layout(push_constant, std430) uniform Gather {
     uint piece;
     uvec3 cells; // along x, y and z
     float radius_m; // h
+    uvec3 first; // grid point and layer of the dispatch
     float peak; // F(0, h)
 } gather;
 
@@ -60,7 +61,7 @@ uvec3 cell_of(vec3 place_m) {
 }
 
 void main() {
-    uvec3 at = gl_GlobalInvocationID;
+    uvec3 at = gather.first + gl_GlobalInvocationID;
     uint state = reached.list[gather.piece];
     if (state == 0u || at.x >= gather.grid.x || at.y >= gather.grid.z) {
         return;

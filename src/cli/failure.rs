@@ -85,6 +85,7 @@ impl From<gpu::Error> for Failure {
             | E::Unsupported { .. }
             | E::Pass { .. }
             | E::BeyondEnd { .. }
+            | E::Interrupted
             | E::Validation { .. } => Failure::Running(message),
         }
     }

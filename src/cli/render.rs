@@ -14,13 +14,14 @@ use super::options::{MachineArgs, OutputArgs, split};
 use super::outcome;
 use super::part::{self, Part, parse_rows};
 use super::watch::{interrupted, patiently, progress_bar};
+use crate::gpu;
 use crate::image::{self, Rgba8, y4m};
 use crate::measure::bench::{Loaded, build, load_for};
 use crate::measure::machine::Machine;
 use crate::measure::picture;
 use crate::measure::shard::Shard;
 use crate::measure::study::Study;
-use crate::measure::{Paper, Variant};
+use crate::measure::{Error, Paper, Variant};
 
 /// Frames to draw, and their files.
 #[derive(Debug, Clone, Args)]
@@ -185,7 +186,10 @@ pub fn draw<S: Study>(
             return Ok(None);
         }
         bar.set_message(S::PAPER);
-        let rendered = picture::render(&mut machine, &mut built.paper, number)?;
+        let rendered = match picture::render_unless(interrupted(), &mut machine, &mut built.paper, number) {
+            Err(Error::Gpu(gpu::Error::Interrupted)) => return Ok(None),
+            other => other?,
+        };
         if has_pictures {
             let path = picture_path(number);
             let kept = if is_cut { &rendered.rows(rows.clone())? } else { &rendered };

@@ -47,6 +47,8 @@ pub enum Error {
     HostAccess { object: String, problem: String },
     #[error("pass {pass}: it lies behind the end that this frame was given")]
     BeyondEnd { pass: String },
+    #[error("interrupted between two submissions of a frame")]
+    Interrupted,
     #[error("pass {pass}: {problem}")]
     Pass { pass: String, problem: String },
     #[error("shader {name}: {problem}")]

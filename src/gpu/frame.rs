@@ -2,6 +2,7 @@
 //! timestamps, so that no pass can be unnamed, untimed or unsynchronised.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use ash::vk;
@@ -30,6 +31,10 @@ pub struct Frame<'a> {
     pub(super) end: End,
     /// Milliseconds from the frame's start to that of this submission's recording.
     pub(super) recording_ms: f64,
+    /// Set when the frame is to be given up after the submission that executes.
+    pub(super) interrupted: Option<&'a AtomicBool>,
+    /// Work of this submission, as [`Frame::make_room`] was told.
+    pub(super) work: f64,
 }
 
 /// Where a frame ends.
@@ -50,6 +55,7 @@ impl Frame<'_> {
         r.commands.begin()?;
         r.intervals.clear();
         r.counted.clear();
+        self.work = 0.0;
         for pool in [&mut r.timestamps, &mut r.samples_passed, &mut r.graphics_counts, &mut r.compute_counts]
             .into_iter()
             .flatten()
@@ -101,7 +107,7 @@ impl Frame<'_> {
     /// another submission.
     ///
     /// # Errors
-    /// Any error of Vulkan.
+    /// Any error of Vulkan; [`Error::Interrupted`] of a frame that [`Recorder::run_unless`] gives up.
     pub fn wait_for(&mut self, pass: &Pass) -> Result<(), Error> {
         self.admit(pass.info())?;
         let at = self.sample_of(pass.info());
@@ -111,9 +117,26 @@ impl Frame<'_> {
         self.failed = Some(pass.info().name);
         let wait_ms = waiting.elapsed().as_secs_f64() * 1e3;
         *self.recorder.sample.passes[at].wait_ms.get_or_insert(0.0) += wait_ms;
+        if self.interrupted.is_some_and(|interrupted| interrupted.load(Ordering::Relaxed)) {
+            return Err(Error::Interrupted);
+        }
         self.submission += 1;
         self.begin()?;
         self.failed = None;
+        Ok(())
+    }
+
+    /// Makes room for a dispatch of `pass`: where this submission would hold more `work` than `most`, what is recorded is
+    /// submitted first and waited for. A frame of hours is many submissions then, and can be given up between them. Both are
+    /// invocations, or turns of their loops.
+    ///
+    /// # Errors
+    /// Those of [`Frame::wait_for`].
+    pub fn make_room(&mut self, pass: &Pass, work: f64, most: f64) -> Result<(), Error> {
+        if self.work > 0.0 && self.work + work > most {
+            self.wait_for(pass)?;
+        }
+        self.work += work;
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use std::ffi::CString;
 use std::mem;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use ash::vk;
@@ -95,7 +96,20 @@ impl Recorder {
         mode: Mode,
         record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
     ) -> Result<&FrameSample, E> {
-        self.run_to(mode, End::Open, record)
+        self.run_to(mode, End::Open, None, record)
+    }
+
+    /// As [`Recorder::run`], of a frame that is given up between two of its submissions once `interrupted` is set.
+    ///
+    /// # Errors
+    /// As [`Recorder::run`]; [`Error::Interrupted`].
+    pub fn run_unless<E: From<Error>>(
+        &mut self,
+        interrupted: &AtomicBool,
+        mode: Mode,
+        record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
+    ) -> Result<&FrameSample, E> {
+        self.run_to(mode, End::Open, Some(interrupted), record)
     }
 
     /// As [`Recorder::run`], of a frame that ends where the next pass after its first `passes` would begin; a pass of many
@@ -110,13 +124,14 @@ impl Recorder {
         passes: usize,
         record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
     ) -> Result<&FrameSample, E> {
-        self.run_to(mode, End::After(passes), record)
+        self.run_to(mode, End::After(passes), None, record)
     }
 
     fn run_to<E: From<Error>>(
         &mut self,
         mode: Mode,
         end: End,
+        interrupted: Option<&AtomicBool>,
         record: impl FnOnce(&mut Frame<'_>) -> Result<(), E>,
     ) -> Result<&FrameSample, E> {
         self.sample.passes.clear();
@@ -124,7 +139,17 @@ impl Recorder {
         self.sample.bracket_ms = None;
         self.overrun.clear();
         let started = Instant::now();
-        let mut frame = Frame { recorder: self, mode, submission: 0, started, failed: None, end, recording_ms: 0.0 };
+        let mut frame = Frame {
+            recorder: self,
+            mode,
+            submission: 0,
+            started,
+            failed: None,
+            end,
+            recording_ms: 0.0,
+            interrupted,
+            work: 0.0,
+        };
         frame.begin()?;
         match record(&mut frame) {
             // The error told of the end.

@@ -73,8 +73,7 @@ impl Estimate {
     pub fn patience(&self, device: &Device) -> Option<String> {
         /// Seconds.
         const LONG: f64 = 10.0;
-        let is_cpu = device.physical().device_type == DeviceType::Cpu;
-        let per_second = if is_cpu { PER_SECOND.0 } else { PER_SECOND.1 };
+        let per_second = per_second(device);
         let total: f64 = self.invocations.iter().map(|(_, count)| count).sum();
         let (parameter, _) = largest(&self.invocations).filter(|_| total > LONG * per_second)?;
         Some(format!(
@@ -83,6 +82,12 @@ impl Estimate {
             total / per_second
         ))
     }
+}
+
+/// Invocations of shaders, or turns of their loops, that a device finishes in a second, roughly.
+pub fn per_second(device: &Device) -> f64 {
+    let is_cpu = device.physical().device_type == DeviceType::Cpu;
+    if is_cpu { PER_SECOND.0 } else { PER_SECOND.1 }
 }
 
 fn largest(items: &[(&'static str, f64)]) -> Option<(&'static str, f64)> {

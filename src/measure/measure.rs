@@ -117,7 +117,8 @@ pub fn measure(
             }
             // The counters compile nothing new, but a driver may make its timestamps' first use slow.
             let mode = if number == 0 { Mode::Plain } else { MODES[number as usize % MODES.len()] };
-            let sample = recorder.run(mode, |frame| paper.record(frame, number))?;
+            let sample = recorder.run_unless(watch.interrupted, mode, |frame| paper.record(frame, number));
+            let Some(sample) = finished(sample)? else { return Ok(results) };
             if number == 0 {
                 result.first_frame_ms = sample.frame_ms;
             }
@@ -138,7 +139,8 @@ pub fn measure(
                         return Ok(results);
                     }
                     let frame_start_ms = origin.elapsed().as_secs_f64() * 1e3;
-                    let sample = recorder.run(mode, |frame| paper.record(frame, number))?;
+                    let sample = recorder.run_unless(watch.interrupted, mode, |frame| paper.record(frame, number));
+                    let Some(sample) = finished(sample)? else { return Ok(results) };
                     result.take(mode, sample);
                     if mode == Mode::Timestamped && result.spans.len() + sample.spans.len() < MOST_SPANS {
                         let of_frame = |&span| FrameSpan { repetition, frame: number, frame_start_ms, span };
@@ -154,7 +156,8 @@ pub fn measure(
 
     restart(papers)?;
     for (paper, result) in papers.iter_mut().zip(&mut results) {
-        let sample = recorder.run(Mode::Counted, |frame| paper.record(frame, 0))?;
+        let sample = recorder.run_unless(watch.interrupted, Mode::Counted, |frame| paper.record(frame, 0));
+        let Some(sample) = finished(sample)? else { return Ok(results) };
         for pass in &sample.passes {
             let measured = result.pass(pass);
             (measured.counts, measured.work) = (pass.counts, pass.work.clone());
@@ -162,6 +165,14 @@ pub fn measure(
         tick(expected);
     }
     Ok(results)
+}
+
+/// None of a frame that was given up half-way.
+fn finished(sample: Result<&FrameSample, Error>) -> Result<Option<&FrameSample>, Error> {
+    match sample {
+        Err(Error::Interrupted) => Ok(None),
+        other => other.map(Some),
+    }
 }
 
 /// Every repetition replays the same frames.

@@ -1,6 +1,7 @@
 //! Pictures and dumps of a frame, read back after it.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use ash::vk;
 
@@ -45,9 +46,23 @@ pub fn advance(
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`].
 pub fn render(machine: &mut Machine, paper: &mut dyn Paper, number: u32) -> Result<Rgba8, Error> {
+    static NEVER: AtomicBool = AtomicBool::new(false);
+    render_unless(&NEVER, machine, paper, number)
+}
+
+/// As [`render`], of a frame that is given up between two of its submissions once `interrupted` is set.
+///
+/// # Errors
+/// Those of [`render`]; [`Interrupted`](crate::gpu::Error::Interrupted) among them.
+pub fn render_unless(
+    interrupted: &AtomicBool,
+    machine: &mut Machine,
+    paper: &mut dyn Paper,
+    number: u32,
+) -> Result<Rgba8, Error> {
     advance(machine, paper, number, |_| true)?;
     loop {
-        machine.recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number))?;
+        machine.recorder.run_unless(interrupted, Mode::Plain, |frame| paper.record_picture(frame, number))?;
         if paper.settle(&machine.shaders)? {
             break;
         }

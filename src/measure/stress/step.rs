@@ -104,6 +104,7 @@ pub fn stop_kind(error: &Error) -> Option<StopKind> {
             | E::MissingFeature { .. }
             | E::Shader { .. }
             | E::Capture { .. } => None,
+            E::Interrupted => Some(StopKind::Interruption),
             E::InUse { .. } | E::Foreign { .. } | E::HostAccess { .. } | E::BeyondEnd { .. } => Some(StopKind::Crash),
         },
         Error::Parameter(_) => Some(StopKind::End),

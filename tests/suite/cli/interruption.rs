@@ -6,7 +6,7 @@ use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::program::{Ended, Program, Running, assert_schema, caustics, entries, folder, read_json};
+use super::program::{Ended, Program, Running, assert_schema, caustics, entries, folder, lava, read_json};
 
 /// Far above what a frame of the tiny scene takes.
 const SOON: Duration = Duration::from_secs(30);
@@ -21,6 +21,16 @@ fn handles_interrupts(process: u32) -> bool {
 fn children(process: u32) -> Vec<u32> {
     let listed = fs::read_to_string(format!("/proc/{process}/task/{process}/children")).unwrap_or_default();
     listed.split_whitespace().map(|id| id.parse().unwrap()).collect()
+}
+
+/// Time in seconds that a process has computed so far.
+fn computed_s(process: u32) -> u64 {
+    /// By the kernel's interface for programs, whatever it uses itself.
+    const TICKS_PER_S: u64 = 100;
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    // Behind the name, which may hold anything: user time and system time are the fields 14 and 15.
+    let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(2);
+    fields.filter_map(|ticks| ticks.parse::<u64>().ok()).sum::<u64>() / TICKS_PER_S
 }
 
 /// Waits until `ready` or the end of the program.
@@ -130,4 +140,21 @@ fn term_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() {
     assert_eq!(entries(temporary.path()), [""; 0]);
     assert_eq!(entries(out.path()), ["a.json"]);
     assert_interrupted(&out.path().join("a.json"));
+}
+
+/// A frame of 4e12 weights, which is hours: it is given up half-way.
+#[test]
+fn term_ends_a_picture_within_its_frame() {
+    let out = folder();
+    let options = "render --variant gpu-driven --density 4096x4x1024 --radius 0.5 --size 64x48 --image a.png";
+    let mut running = lava(options).on_test_device().inside(out.path()).start();
+    // By then it has begun.
+    wait_until(&mut running, |id| computed_s(id) >= 4);
+    assert!(Command::new("kill").args(["-TERM", &running.id().to_string()]).status().unwrap().success());
+    let pressed = Instant::now();
+    let ended = running.end();
+    assert!(pressed.elapsed() < SOON, "it took {:?} to end", pressed.elapsed());
+    assert_eq!(ended.status.code(), Some(1), "{}", ended.stderr);
+    assert!(ended.stderr.contains("interrupted before a picture was written"), "{}", ended.stderr);
+    assert_eq!(entries(out.path()), [""; 0]);
 }

@@ -3,13 +3,14 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 use ash::vk;
 use fumarole::gpu::physical::choose;
 use fumarole::gpu::{
-    Blend, Buffer, BufferDesc, Device, Error, Feature, Instance, Load, Location, Mode, Pass, PhysicalDevice, Recorder,
-    transfer,
+    Blend, Buffer, BufferDesc, Device, Error, Feature, Frame, Instance, Load, Location, Mode, Pass, PhysicalDevice,
+    Recorder, transfer,
 };
 
 use super::fixtures::{Advance, BLACK, color_target, paint, paint_pass, run, shaders, storage_buffer, texels, values};
@@ -84,6 +85,38 @@ fn a_frame_that_is_given_up_leaves_no_trace() {
         assert!(half.is_err());
         assert_eq!(readback.read(4, <[u8]>::to_vec).unwrap(), 10.0f32.to_le_bytes());
         assert_eq!(texels::<f32>(device, &target), [10.0; 16]);
+    });
+}
+
+#[test]
+fn a_frame_is_given_up_between_submissions_alone() {
+    gpu_test(|device| {
+        let library = shaders(device);
+        let target = color_target(device, "target", vk::Format::R32_SFLOAT, 4, 4);
+        let fill = paint_pass(&library, "fill", &target, BLACK, Blend::Replace);
+        let mut recorder = Recorder::new(device).unwrap();
+        let interrupted = AtomicBool::new(true);
+        // Room for both is no reason to wait.
+        let record = |frame: &mut Frame<'_>, most: f64| -> Result<(), Error> {
+            for value in [1.0, 2.0] {
+                frame.make_room(&fill, 3.0, most)?;
+                paint(frame, &fill, value)?;
+            }
+            Ok(())
+        };
+        for (most, painted) in [(6.0, Some(2.0)), (5.0, None), (2.0, None)] {
+            let ended = recorder.run_unless(&interrupted, Mode::Plain, |frame| record(frame, most)).map(|_| ());
+            assert_eq!(matches!(ended, Err(Error::Interrupted)), painted.is_none(), "{most}: {ended:?}");
+            // What was submitted before stands.
+            assert_eq!(texels::<f32>(device, &target), [painted.unwrap_or(1.0); 16]);
+        }
+        interrupted.store(false, Ordering::Relaxed);
+        for mode in [Mode::Plain, Mode::Timestamped, Mode::Bracketed, Mode::Counted] {
+            let sample = recorder.run_unless(&interrupted, mode, |frame| record(frame, 5.0)).unwrap();
+            let [pass] = &sample.passes[..] else { panic!("{sample:?}") };
+            assert!(pass.calls == 2 && pass.wait_ms.is_some(), "{pass:?}");
+            assert_eq!(texels::<f32>(device, &target), [2.0; 16]);
+        }
     });
 }
 

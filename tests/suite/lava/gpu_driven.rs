@@ -131,6 +131,37 @@ fn two_runs_are_equal_to_the_bit() {
     });
 }
 
+/// Submissions of less work give the same to the bit, in whatever parts.
+#[test]
+fn a_frame_in_several_submissions_is_the_same() {
+    gpu_test(|device| {
+        let wide = Parameters { density: [61, 10, 37], radius_m: 0.4, ..parameters() };
+        for parameters in [parameters(), wide] {
+            let run = |most_work: Option<f64>| {
+                let mut lava = driven(device, &parameters);
+                if let Method::GpuDriven(driven) = &mut lava.method {
+                    driven.most_work = most_work.unwrap_or(driven.most_work);
+                }
+                let sample = draw(device, &mut lava, 2);
+                let of = |name: &str| {
+                    let pass = sample.passes.iter().find(|p| p.info.name == name).unwrap();
+                    (pass.calls, pass.wait_ms.is_some())
+                };
+                let passes = [of("density"), of("accumulate-depths")];
+                let targets = [lava.method.density(), lava.method.sums()];
+                (passes, targets.map(|target| texels::<u32>(device, target)))
+            };
+            let (passes, whole) = run(None);
+            assert_eq!(passes, [(1, false); 2]);
+            for most_work in [3e3, 1e4] {
+                let (passes, found) = run(Some(most_work));
+                assert!(passes.iter().all(|&(calls, waits)| calls > 1 && waits), "{passes:?}");
+                assert!(found == whole, "{most_work}");
+            }
+        }
+    });
+}
+
 /// More particles in one stretch of cells than one dispatch takes: in one spot, as far as the radius sees.
 #[test]
 fn stretches_are_gathered_piece_by_piece() {

@@ -35,6 +35,15 @@ impl Cells {
         self.counts.iter().product()
     }
 
+    /// Particles that a column of four planes looks at where they fill the space evenly: three by three columns of cells, over
+    /// its own height and a radius to either side.
+    pub fn seen(&self, parameters: &Parameters) -> f64 {
+        let [across, _, along] = self.counts.map(|count| (3.0 / f64::from(count)).min(1.0));
+        let height_m = f64::from(parameters.space_m.y);
+        let seen_m = 4.0 * height_m / f64::from(parameters.density[1]) + 4.0 * f64::from(parameters.radius_m);
+        f64::from(self.particles) * across * along * (seen_m / height_m).min(1.0)
+    }
+
     /// Bits of the largest number of a cell.
     pub fn bits(&self) -> u32 {
         u32::BITS - (self.count() - 1).leading_zeros()

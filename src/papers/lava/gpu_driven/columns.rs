@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::super::accumulate_depths::radius_m;
 use super::super::parameters::{Parameters, SurfaceKind};
 use super::super::targets::Context;
+use super::tiles::{Tile, tiles};
 use crate::gpu::{Error, Frame, ImageView, Pass};
 use crate::host_block;
 
@@ -21,6 +22,7 @@ host_block! {
     struct AccumulateConstants {
         spacing_m: [f32; 2],
         columns: [i32; 2],
+        first: [i32; 2],
         radius_m: f32,
         each: f32,
         reach: i32,
@@ -72,20 +74,34 @@ impl Columns {
         Ok(Columns { extract, accumulate_depths, constants, bands: bands(parameters), columns, sums })
     }
 
-    /// Sums up the columns of the densities, and eq. 6.3 over the columns.
+    /// Sums up the columns of the densities, and eq. 6.3 over the columns; `most_work` is that of one submission.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, most_work: f64) -> Result<(), Error> {
         let [columns, _, rows] = self.constants.grid;
         frame.compute(&self.extract, |dispatch| {
             dispatch.constants(&self.constants).threads(columns, rows, 1);
         })?;
-        self.bands.iter().try_for_each(|band| {
-            frame.compute(&self.accumulate_depths, |dispatch| {
-                dispatch.constants(band).threads(columns, rows, 1);
-            })
-        })
+        for band in &self.bands {
+            let each = band.taps();
+            for tile in tiles([columns, rows, 1], each, most_work) {
+                frame.make_room(&self.accumulate_depths, tile.work(each), most_work)?;
+                frame.compute(&self.accumulate_depths, |dispatch| {
+                    let Tile { first: [x, y, _], count } = tile;
+                    let constants = AccumulateConstants { first: [x as i32, y as i32], ..*band };
+                    dispatch.constants(&constants).threads(count[0], count[1], 1);
+                })?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl AccumulateConstants {
+    /// Columns that a grid point looks at.
+    fn taps(&self) -> f64 {
+        f64::from(self.last_row - self.first_row + 1) * f64::from(2 * self.reach + 1)
     }
 }
 
@@ -101,6 +117,7 @@ fn bands(parameters: &Parameters) -> Vec<AccumulateConstants> {
     let band = |first: i64| AccumulateConstants {
         spacing_m,
         columns: [columns as i32, rows as i32],
+        first: [0; 2],
         radius_m,
         each: f32::from(u8::from(parameters.surface == SurfaceKind::Mean)),
         reach: across as i32,
@@ -117,8 +134,7 @@ pub fn dispatches(parameters: &Parameters) -> u64 {
 
 /// Columns that a grid point looks at.
 pub fn taps(parameters: &Parameters) -> f64 {
-    let rows = |band: &AccumulateConstants| f64::from(band.last_row - band.first_row + 1);
-    bands(parameters).iter().map(|band| rows(band) * f64::from(2 * band.reach + 1)).sum()
+    bands(parameters).iter().map(AccumulateConstants::taps).sum()
 }
 
 #[cfg(test)]

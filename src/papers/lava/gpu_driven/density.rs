@@ -6,6 +6,7 @@ use super::super::density::peak;
 use super::super::targets::Context;
 use super::cells::Cells;
 use super::sort::Sort;
+use super::tiles::{Tile, tiles};
 use crate::gpu::{Error, Frame, Image, ImageView, Pass};
 use crate::host_block;
 
@@ -17,6 +18,7 @@ host_block! {
         piece: u32,
         cells: [u32; 3],
         radius_m: f32,
+        first: [u32; 3],
         peak: f32,
     }
 }
@@ -35,6 +37,8 @@ pub struct GatheredDensity {
     constants: GatherConstants,
     clusters: u32,
     pieces: u32,
+    /// Particles that an invocation looks at, all pieces together.
+    seen: f64,
     /// A layer for each four grid planes, a component for each of them.
     pub density: Arc<ImageView>,
 }
@@ -64,23 +68,36 @@ impl GatheredDensity {
             piece: 0,
             cells: cells.counts,
             radius_m: parameters.radius_m,
+            first: [0; 3],
             peak: peak(parameters.radius_m),
         };
-        Ok(GatheredDensity { pass, constants, clusters, pieces: pieces(cells.particles), density })
+        let (pieces, seen) = (pieces(cells.particles), cells.seen(parameters));
+        Ok(GatheredDensity { pass, constants, clusters, pieces, seen, density })
     }
 
-    /// Gathers the densities of the sorted particles.
+    /// Gathers the densities of the sorted particles; `most_work` is that of one submission.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, most_work: f64) -> Result<(), Error> {
         let [columns, _, rows] = self.constants.grid;
         for piece in 0..self.pieces {
-            frame.compute(&self.pass, |dispatch| {
-                let constants = GatherConstants { piece, ..self.constants };
-                dispatch.constants(&constants).threads(columns, rows, self.clusters);
-            })?;
+            let each = self.seen_in(piece);
+            for tile in tiles([columns, rows, self.clusters], each, most_work) {
+                frame.make_room(&self.pass, tile.work(each), most_work)?;
+                frame.compute(&self.pass, |dispatch| {
+                    let Tile { first, count: [x, y, z] } = tile;
+                    dispatch.constants(&GatherConstants { piece, first, ..self.constants }).threads(x, y, z);
+                })?;
+            }
         }
         Ok(())
+    }
+
+    /// Particles that an invocation looks at in one piece, where they fill the space evenly.
+    fn seen_in(&self, piece: u32) -> f64 {
+        let [across, _, along] = self.constants.cells.map(|count| f64::from(count.min(3)));
+        let stretch = self.seen / (across * along);
+        (stretch - f64::from(piece) * f64::from(PIECE)).clamp(0.0, f64::from(PIECE)) * across * along
     }
 }

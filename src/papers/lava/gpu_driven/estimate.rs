@@ -12,11 +12,7 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let particles = f64::from(parameters.particles);
     let clusters = f64::from(parameters.clusters());
     let cells = Cells::new(parameters, parameters.particles);
-    // A column of four planes looks at three by three columns of cells, over its own height and a radius.
-    let [across, _, along] = cells.counts.map(|count| (3.0 / f64::from(count)).min(1.0));
-    let height_m = f64::from(parameters.space_m.y);
-    let seen_m = 4.0 * height_m / f64::from(parameters.density[1]) + 4.0 * f64::from(parameters.radius_m);
-    let seen = particles * across * along * (seen_m / height_m).min(1.0);
+    let seen = cells.seen(parameters);
     let taps = columns::taps(parameters);
     Estimate {
         bytes: vec![

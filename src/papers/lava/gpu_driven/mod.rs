@@ -15,6 +15,7 @@ mod columns;
 mod density;
 mod estimate;
 pub mod sort;
+mod tiles;
 
 use std::sync::Arc;
 
@@ -28,9 +29,13 @@ use super::extract::Accepted;
 use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::read_image;
 use crate::gpu::{Device, Error, Frame, Image, ImageDesc, ImageView};
+use crate::measure::estimate::per_second;
 
 pub use self::cells::Cells;
 pub use self::estimate::estimate;
+
+/// Time of a submission, by a rough rate: short for who waits for a frame of hours to be given up.
+const SUBMISSION_S: f64 = 1.0;
 
 /// Invocations along the first axis of a list that is dispatched in rows.
 const ROW: u32 = 1 << 20;
@@ -42,6 +47,8 @@ pub struct GpuDriven {
     /// Densities at the grid points.
     pub density: GatheredDensity,
     columns: Columns,
+    /// Turns of the loops of `density` and `accumulate-depths` in one submission. A frame of more is several.
+    pub most_work: f64,
 }
 
 impl GpuDriven {
@@ -52,7 +59,8 @@ impl GpuDriven {
         let sort = Sort::new(context, &cells, animate)?;
         let density = GatheredDensity::new(context, &cells, &sort)?;
         let columns = Columns::new(context, &density.density)?;
-        Ok(GpuDriven { sort, density, columns })
+        let most_work = SUBMISSION_S * per_second(context.device());
+        Ok(GpuDriven { sort, density, columns, most_work })
     }
 
     /// Sorts the particles of the state with this index.
@@ -68,8 +76,8 @@ impl GpuDriven {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn accumulate(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.density.record(frame)?;
-        self.columns.record(frame)
+        self.density.record(frame, self.most_work)?;
+        self.columns.record(frame, self.most_work)
     }
 
     /// Sum of weighted heights in red, metres; sum of weights in alpha.
