@@ -2,14 +2,11 @@
 
 use std::sync::Arc;
 
-use ash::vk;
-
 use super::parameters::Shading;
-use super::rock::Rock;
+use super::scene::Scene;
 use super::splats::Splats;
-use super::targets::{Context, FLOATS, ZERO};
-use super::visibility::Visibility;
-use crate::gpu::{Blend, Error, Frame, ImageView, Pass, Sampler};
+use super::targets::{Context, ZERO};
+use crate::gpu::{Blend, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
 host_block! {
@@ -23,31 +20,29 @@ host_block! {
 pub struct Blending {
     pass: Pass,
     shading: Shading,
-    /// The rock on the device.
-    pub(super) rock: Arc<ImageView>,
-    /// The sampler of the rock.
-    pub(super) linear: Arc<Sampler>,
-    /// Weighted colours, sum of weights in alpha.
-    pub sums: Arc<ImageView>,
 }
 
 impl Blending {
+    /// Adds to `sums` what the depths of `visibility` do not hide.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, splats: &Splats, visibility: &Visibility, rock: &Rock) -> Result<Self, Error> {
-        let parameters = context.parameters;
-        let sums = context.target("accumulated-colors", FLOATS, parameters.width, parameters.height)?;
-        let rock = rock.load(context)?;
-        let linear = Sampler::new(context.device(), "linear", vk::Filter::LINEAR)?;
+    pub fn new(
+        context: Context<'_>,
+        scene: &Scene,
+        splats: &Splats,
+        visibility: &Arc<ImageView>,
+        sums: &Arc<ImageView>,
+    ) -> Result<Self, Error> {
         let pass = splats
-            .pass("blending", "7.2", "lava/blending.frag")
+            .pass(scene, "blending", "7.2", "lava/blending.frag")
             .constants::<ShadingConstants>()
-            .with("visibility", &visibility.depth)
-            .with("rock", &rock)
-            .with("linear", &linear)
-            .color(&sums, ZERO, Blend::Add)
+            .with("visibility", visibility)
+            .with("rock", &scene.rock)
+            .with("linear", &scene.linear)
+            .color(sums, ZERO, Blend::Add)
             .build(context.shaders)?;
-        Ok(Blending { pass, shading: parameters.shading, rock, linear, sums })
+        Ok(Blending { pass, shading: context.parameters.shading })
     }
 
     /// Draws the splats; the rock has drifted `drift_m` along x.

@@ -22,22 +22,21 @@ impl Parameters {
         let vertices: usize = objects.iter().map(|mesh| mesh.positions.len()).sum();
         let indices: usize = objects.iter().map(|mesh| mesh.indices.len()).sum();
         let bytes = [
-            ("splats", 8.0 * splats),
             ("size", (TEXEL + 8.0) * pixels),
             ("rock", size_of_val(&rock.texels[..]) as f64),
             ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
         ];
         let heights = 4.0 * f64::from(self.density[0]) * f64::from(self.density[2]);
-        let (drawn_bytes, invocations) = match self.surface_draw(variant) {
+        let (drawn_bytes, buffers, invocations) = match self.surface_draw(variant) {
             SurfaceDraw::Splats => {
                 let fragments = 2.0 * splats * (1.0 + self.splat_pixels().min(pixels));
-                (None, vec![("splat-radius", fragments), ("splats", 8.0 * splats)])
+                (("splats", 8.0 * splats), None, vec![("splat-radius", fragments), ("splats", 8.0 * splats)])
             }
-            SurfaceDraw::March => (Some(("density", heights)), vec![("size", pixels)]),
+            SurfaceDraw::March => (("density", heights), Some(("density", heights)), vec![("size", pixels)]),
         };
         Estimate {
-            bytes: first_stages.bytes.into_iter().chain(bytes).chain(drawn_bytes).collect(),
-            buffers: first_stages.buffers.into_iter().chain(drawn_bytes).collect(),
+            bytes: first_stages.bytes.into_iter().chain(bytes).chain([drawn_bytes]).collect(),
+            buffers: first_stages.buffers.into_iter().chain(buffers).collect(),
             invocations: first_stages.invocations.into_iter().chain(invocations).collect(),
             ..first_stages
         }

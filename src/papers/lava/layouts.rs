@@ -1,6 +1,6 @@
 //! The uniform block against the shaders that read it.
 
-use super::splats::SceneBlock;
+use super::scene::SceneBlock;
 use crate::papers::layout::check_block;
 
 #[test]

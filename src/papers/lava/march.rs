@@ -1,14 +1,14 @@
 //! Passes `highest-rows`, `highest` and `march`: a ray for each pixel against the height field, from its highest place on, in
 //! place of the splats of sections 7.1 and 7.2. Ours.
 
+use std::sync::Arc;
+
 use ash::vk;
 
-use super::blending::Blending;
 use super::parameters::{Parameters, Shading};
-use super::splats::Splats;
+use super::scene::Scene;
 use super::targets::{Context, FAR, ZERO};
-use super::visibility::Visibility;
-use crate::gpu::{Blend, Buffer, BufferDesc, DepthTest, Error, Frame, Pass};
+use crate::gpu::{Blend, Buffer, BufferDesc, DepthTest, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
 host_block! {
@@ -44,17 +44,17 @@ pub struct March {
 }
 
 impl March {
-    /// Writes the targets of the passes that it stands for.
+    /// Draws into `depth` and `sums`, the targets of the passes that it stands for.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(
         context: Context<'_>,
-        splats: &Splats,
-        visibility: &Visibility,
-        blending: &Blending,
+        scene: &Scene,
+        depth: &Arc<ImageView>,
+        sums: &Arc<ImageView>,
     ) -> Result<Self, Error> {
-        let (columns, rows) = (splats.normal_height.width(), splats.normal_height.height());
+        let (columns, rows) = (scene.normal_height.width(), scene.normal_height.height());
         let desc = BufferDesc::new(context.name("highest"), 4 * (1 + u64::from(rows)));
         let found = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
         let desc = BufferDesc::new(context.name("heights"), 4 * u64::from(columns) * u64::from(rows));
@@ -62,7 +62,7 @@ impl March {
             .map_err(|error| error.set_by("density"))?;
         let highest_rows = Pass::compute("highest-rows", "", "lava/highest-rows.comp")
             .constants::<FieldConstants>()
-            .with("normal_height", &splats.normal_height)
+            .with("normal_height", &scene.normal_height)
             .with("highest", &found)
             .with("heights", &heights)
             .whole(&["normal_height", "heights"])
@@ -73,14 +73,14 @@ impl March {
             .build(context.shaders)?;
         let march = Pass::graphics("march", "", "common/fullscreen.vert", "lava/march.frag")
             .constants::<RayConstants>()
-            .with("scene", &splats.scene)
+            .with("scene", &scene.block)
             .with("highest", &found)
             .with("heights", &heights)
-            .with("normal_height", &splats.normal_height)
-            .with("rock", &blending.rock)
-            .with("linear", &blending.linear)
-            .color(&blending.sums, ZERO, Blend::Replace)
-            .depth(&visibility.depth, FAR, DepthTest::LessWrite)
+            .with("normal_height", &scene.normal_height)
+            .with("rock", &scene.rock)
+            .with("linear", &scene.linear)
+            .color(sums, ZERO, Blend::Replace)
+            .depth(depth, FAR, DepthTest::LessWrite)
             .build(context.shaders)?;
         let shading = context.parameters.shading;
         let field = FieldConstants { columns, rows };

@@ -39,25 +39,22 @@ mod read_density;
 mod read_positions;
 pub mod reference;
 mod rock;
+mod scene;
 pub mod setup;
 mod splats;
+mod splatting;
 mod start;
 mod targets;
 mod visibility;
 
 use std::sync::Arc;
 
-use self::blending::Blending;
-use self::march::March;
 use self::normal_height::NormalHeight;
-use self::normalisation::Normalisation;
 use self::objects::Objects;
 use self::particles::ParticlePoints;
-use self::splats::Splats;
-use self::targets::{Context, EMPTY};
-use self::visibility::Visibility;
+use self::targets::Context;
 use crate::gpu::transfer::read_image;
-use crate::gpu::{Blend, Error, Feature, Frame, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
@@ -70,7 +67,8 @@ pub use self::parameters::{CAMERAS, Parameters, Shading, SurfaceDraw, SurfaceKin
 pub use self::placement::{Object, Place};
 pub use self::read_back::ReadBack;
 pub use self::rock::Rock;
-pub use self::splats::depth_range_m;
+pub use self::scene::depth_range_m;
+pub use self::splatting::Splatting;
 pub use self::start::Particles;
 
 /// Features that a device must have for this paper, beyond the baseline of the Vulkan layer. Without a geometry stage
@@ -116,36 +114,6 @@ pub struct Lava {
     lacks_geometry_stage: bool,
     /// The next frame draws the particles of the last one.
     repeats: bool,
-}
-
-/// Stage three (chapter 7): the surface as splats, blended and normalised.
-pub struct Splatting {
-    splats: Splats,
-    /// In place of the splats, into their targets.
-    march: Option<March>,
-    /// Depths of eq. 7.1.
-    pub visibility: Visibility,
-    /// Sums of eq. 7.2.
-    pub blending: Blending,
-    /// The picture.
-    pub normalisation: Normalisation,
-    splats_floor: Pass,
-}
-
-impl Splatting {
-    /// Draws the surface; the rock has drifted `drift_m` along x.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
-        if let Some(march) = &self.march {
-            march.record(frame, drift_m)?;
-        } else {
-            self.visibility.record(frame, &self.splats)?;
-            self.blending.record(frame, &self.splats, drift_m)?;
-        }
-        self.normalisation.record(frame)
-    }
 }
 
 impl Paper for Lava {
@@ -249,8 +217,8 @@ impl Paper for Lava {
             Target::image("density", self.method.density()),
             Target::image("accumulated-depths", self.method.sums()),
             Target::image("normal-height", &self.normal_height.surface),
-            Target::image("visibility", &self.splatting.visibility.depth),
-            Target::image("accumulated-colors", &self.splatting.blending.sums),
+            Target::image("visibility", &self.splatting.depth),
+            Target::image("accumulated-colors", &self.splatting.sums),
             Target::image("picture", &self.splatting.normalisation.picture),
         ]
     }
@@ -281,15 +249,15 @@ impl Lava {
         let normal_height = NormalHeight::new(context, method.sums())?;
         let draw = parameters.surface_draw(variant);
         let splatting = Splatting::new(shaders, label, parameters, &normal_height.surface, rock, instanced, draw)?;
-        let Splatting { splats, visibility, normalisation, .. } = &splatting;
+        let Splatting { scene, depth, normalisation, .. } = &splatting;
         let view_warnings = view_warnings(parameters, objects);
         let meshes = objects.to_vec();
         let objects = match objects {
             [] => None,
-            meshes => Some(Objects::new(context, meshes, splats, visibility, normalisation)?),
+            meshes => Some(Objects::new(context, meshes, scene, depth, normalisation)?),
         };
         let points = (parameters.shading == Shading::Particles)
-            .then(|| ParticlePoints::new(context, &animate, count, splats, normalisation))
+            .then(|| ParticlePoints::new(context, &animate, count, scene, normalisation))
             .transpose()?;
         let is_splatted = variant == Variant::Paper || draw == SurfaceDraw::Splats;
         let lacks_geometry_stage = is_splatted && parameters.geometry_stage && !has_geometry_stage;
@@ -320,11 +288,7 @@ impl Lava {
     pub fn set_drawn(&mut self, parameters: &Parameters, rock: &Rock, objects: &[Mesh]) -> Result<(), Error> {
         let parameters = &reaching(parameters, objects);
         self.parameters = parameters.clone();
-        self.splatting.splats.set_scene(parameters, rock)?;
-        self.splatting.normalisation.set_tone(parameters);
-        if let Some(march) = &mut self.splatting.march {
-            march.set_rays(parameters);
-        }
+        self.splatting.set_drawn(parameters, rock)?;
         if let Some(drawn) = &mut self.objects {
             drawn.set_constants(parameters);
         }
@@ -341,11 +305,7 @@ impl Lava {
         if let Method::Paper(read_back) = &self.method {
             read_back.record_floors(frame)?;
         }
-        let Splatting { splats, march, splats_floor, .. } = &self.splatting;
-        if march.is_some() {
-            return Ok(());
-        }
-        frame.graphics(splats_floor, |draw| splats.draw(draw))
+        self.splatting.record_floor(frame)
     }
 
     /// The variant.
@@ -381,34 +341,4 @@ fn view_warnings(parameters: &Parameters, objects: &[Mesh]) -> Vec<String> {
     let Parameters { camera, space_m, width, height, .. } = parameters;
     let of_space = placement::space_warning(camera, *space_m, (*width, *height));
     of_space.into_iter().chain(placement::warnings(objects, camera, parameters.aspect())).collect()
-}
-
-impl Splatting {
-    /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats
-    /// are quads without a geometry stage.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer.
-    pub fn new(
-        shaders: &ShaderLibrary,
-        label: &str,
-        parameters: &Parameters,
-        normal_height: &Arc<ImageView>,
-        rock: &Rock,
-        instanced: bool,
-        draw: SurfaceDraw,
-    ) -> Result<Self, Error> {
-        let context = Context { shaders, label, parameters };
-        let splats = Splats::new(context, normal_height, rock, instanced)?;
-        let visibility = Visibility::new(context, &splats)?;
-        let blending = Blending::new(context, &splats, &visibility, rock)?;
-        let march = match draw {
-            SurfaceDraw::Splats => None,
-            SurfaceDraw::March => Some(March::new(context, &splats, &visibility, &blending)?),
-        };
-        let normalisation = Normalisation::new(context, &blending.sums)?;
-        let splats_floor =
-            splats.pass(FLOORS[2].1, "7.1", EMPTY).color(&blending.sums, Load::Keep, Blend::Masked).build(shaders)?;
-        Ok(Splatting { splats, march, visibility, blending, normalisation, splats_floor })
-    }
 }

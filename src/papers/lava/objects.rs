@@ -1,15 +1,16 @@
 //! Pass `objects`: polygon objects in the lava's space, with mutually hidden surfaces. The thesis has none; a picture
 //! without objects is the thesis's own.
 
+use std::sync::Arc;
+
 use ash::vk;
 
 use super::normalisation::Normalisation;
 use super::parameters::Parameters;
-use super::splats::Splats;
+use super::scene::Scene;
 use super::targets::{Context, DEPTH, FAR};
-use super::visibility::Visibility;
 use crate::gpu::transfer::upload_each;
-use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, Load, Pass};
+use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
 use crate::host_block;
 use crate::scene::Mesh;
 
@@ -43,8 +44,8 @@ impl Objects {
     pub fn new(
         context: Context<'_>,
         meshes: &[Mesh],
-        splats: &Splats,
-        visibility: &Visibility,
+        scene: &Scene,
+        visibility: &Arc<ImageView>,
         normalisation: &Normalisation,
     ) -> Result<Self, Error> {
         let Context { shaders, parameters, .. } = context;
@@ -68,8 +69,8 @@ impl Objects {
                     .vertices::<ObjectVertex>(&vertices)
                     .indices(&indices)
                     .constants::<ObjectConstants>()
-                    .with("scene", &splats.scene)
-                    .with("visibility", &visibility.depth)
+                    .with("scene", &scene.block)
+                    .with("visibility", visibility)
                     .color(&normalisation.picture, Load::Keep, Blend::Replace)
                     .depth(&depth, FAR, DepthTest::LessWrite)
                     .build(shaders)?,

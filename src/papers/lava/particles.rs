@@ -2,7 +2,7 @@
 
 use super::animate::Animate;
 use super::normalisation::Normalisation;
-use super::splats::Splats;
+use super::scene::Scene;
 use super::targets::{Context, ZERO};
 use crate::gpu::{Blend, Error, Frame, Pass, Topology};
 use crate::host_block;
@@ -31,14 +31,14 @@ impl ParticlePoints {
         context: Context<'_>,
         animate: &Animate,
         count: u32,
-        splats: &Splats,
+        scene: &Scene,
         normalisation: &Normalisation,
     ) -> Result<Self, Error> {
         let [a, b] = animate.states.each_ref().map(|state| &state.positions);
         let first = Pass::graphics("particles", "5.1", "lava/particles.vert", "lava/particles.frag")
             .topology(Topology::Points)
             .constants::<PointsConstants>()
-            .with("scene", &splats.scene)
+            .with("scene", &scene.block)
             .with("positions", a)
             .color(&normalisation.picture, ZERO, Blend::Replace)
             .build(context.shaders)?;

@@ -175,6 +175,14 @@ fn readbacks_are_set_against_none() {
     let expected = [(&paper, &splats), (&driven, &march), (&paper, &splats)];
     assert_eq!(drawn[..3], expected);
     assert_eq!(drawn[3..], [(&driven, &splats), (&paper, &march), (&driven, &march)]);
+    for run in runs {
+        // Nothing is made for the other way of drawing.
+        let resources = run["memory"]["by_resource"].as_array().unwrap();
+        for (name, drawing) in [("splats", &splats), ("heights", &march)] {
+            let is_made = resources.iter().any(|resource| resource["name"] == name);
+            assert_eq!(is_made, run["config"]["surface_draw"] == *drawing, "{name}: {resources:?}");
+        }
+    }
     let waits = |run: &Value| run["passes"].as_array().unwrap().iter().any(|pass| !pass["wait_ms"].is_null());
     assert!(waits(&runs[0]) && !waits(&runs[1]));
     let accepted: Vec<_> = runs.iter().map(|run| run["results"]["accepted_grid_points"].as_u64().unwrap()).collect();

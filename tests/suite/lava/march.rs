@@ -50,8 +50,8 @@ fn rays_meet_the_height_field_where_the_oracle_s_do() {
             };
             let surface = ridge(&parameters);
             let stage = stage(device, &parameters, &surface, Rock::built_in());
-            let sums: Vec<[f32; 4]> = texels(device, &stage.blending.sums);
-            let depths: Vec<f32> = texels(device, &stage.visibility.depth);
+            let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
+            let depths: Vec<f32> = texels(device, &stage.depth);
             let range_m = f64::from(depth_range_m(&parameters));
             let (eye, near, far) = (camera.eye.as_dvec3(), f64::from(camera.near_m), f64::from(camera.far_m));
             let (mut met, mut off) = (0, 0);
@@ -105,7 +105,7 @@ fn objects_mix_with_a_marched_surface() {
                     Lava::new(&shaders, "test", Variant::Paper, &parameters, &particles, Rock::built_in(), objects)
                         .unwrap();
                 draw(device, &mut lava, 0);
-                let depths: Vec<f32> = texels(device, &lava.splatting.visibility.depth);
+                let depths: Vec<f32> = texels(device, &lava.splatting.depth);
                 (texels::<[u8; 4]>(device, lava.picture()), depths)
             };
             let (alone, depths) = picture(&[]);

@@ -89,7 +89,7 @@ impl<'a> HeightField<'a> {
 
     /// Pixels that meet the field and those of them without weight: inside the border, and on its slope.
     fn holes(&self, device: &Arc<Device>, lava: &Lava) -> [(u32, u32); 2] {
-        let sums: Vec<[f32; 4]> = texels(device, &lava.splatting.blending.sums);
+        let sums: Vec<[f32; 4]> = texels(device, &lava.splatting.sums);
         let mut counts = [(0, 0); 2];
         for (at, sums) in (0..).zip(&sums) {
             let Some(place) = self.met(at % self.parameters.width, at / self.parameters.width) else { continue };

@@ -89,8 +89,8 @@ fn the_front_blends_and_the_back_does_not() {
             let radius = f64::from(parameters.splat_radius_m);
             let camera = &parameters.camera;
             let splats = Splats::new(&surface, parameters.splats, radius, f64::from(epsilon_m), camera, size);
-            let sums: Vec<[f32; 4]> = texels(device, &stage.blending.sums);
-            let depths: Vec<f32> = texels(device, &stage.visibility.depth);
+            let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
+            let depths: Vec<f32> = texels(device, &stage.depth);
             let range_m = f64::from(depth_range_m(&parameters));
             let (mut drawn, mut hiding, mut close_calls, mut off) = (0, 0, 0, 0);
             // Every eleventh: the oracle asks every splat.
@@ -157,7 +157,7 @@ fn a_constant_colour_comes_out_constant() {
                 Shading::Color => color,
                 _ => color * texel,
             };
-            let sums: Vec<[f32; 4]> = texels(device, &stage.blending.sums);
+            let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
             let picture: Vec<[u8; 4]> = texels(device, &stage.normalisation.picture);
             let mut drawn = 0;
             for (sums, pixel) in sums.iter().zip(&picture) {
@@ -214,7 +214,7 @@ fn the_rock_is_read_at_the_splats_centre_and_drifts() {
         // The one splat's centre is the middle of the space.
         for drift_m in [0.0, 0.1, 0.29, 0.5] {
             recorder.run(Mode::Plain, |frame| stage.record(frame, drift_m)).unwrap();
-            let sums: Vec<[f32; 4]> = texels(device, &stage.blending.sums);
+            let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
             let drawn = sums.iter().find(|s| s[3] > 0.1).unwrap();
             let at = |place: f64, count: f64| (place / 0.7).rem_euclid(1.0) * count - 0.5;
             let (u, v) = (at(1.0 - f64::from(drift_m), 3.0), at(0.6, 2.0));

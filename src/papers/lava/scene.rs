@@ -1,0 +1,83 @@
+//! Everything that stage three draws from, by splats or by rays: the surface, the camera and the rock.
+
+use std::sync::Arc;
+
+use ash::vk;
+
+use super::parameters::Parameters;
+use super::rock::Rock;
+use super::targets::Context;
+use crate::gpu::transfer::update;
+use crate::gpu::{Buffer, Error, ImageView, Sampler};
+use crate::host_block;
+
+host_block! {
+    pub(super) struct SceneBlock {
+        view_projection: [f32; 16],
+        glow: [f32; 3],
+        splat_radius_m: f32,
+        space_m: [f32; 3],
+        epsilon_m: f32,
+        columns: [f32; 2],
+        rock_texels: [f32; 2],
+        depth_per_m: f32,
+        rock_tile_m: f32,
+        _pad: [f32; 2],
+    }
+}
+
+/// The scene on the device.
+pub struct Scene {
+    /// Normals in RGB, heights in metres in alpha, over the whole space.
+    pub normal_height: Arc<ImageView>,
+    /// The uniform block of the stage.
+    pub block: Arc<Buffer>,
+    /// The rock.
+    pub rock: Arc<ImageView>,
+    /// The sampler of the rock.
+    pub linear: Arc<Sampler>,
+}
+
+impl Scene {
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn new(context: Context<'_>, normal_height: &Arc<ImageView>, rock: &Rock) -> Result<Self, Error> {
+        let block = block(context.parameters, normal_height, rock);
+        Ok(Scene {
+            normal_height: normal_height.clone(),
+            block: context.upload("scene", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
+            rock: rock.load(context)?,
+            linear: Sampler::new(context.device(), "linear", vk::Filter::LINEAR)?,
+        })
+    }
+
+    /// Writes the uniform block anew.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn set(&self, parameters: &Parameters, rock: &Rock) -> Result<(), Error> {
+        update(&self.block, bytemuck::bytes_of(&block(parameters, &self.normal_height, rock)))
+    }
+}
+
+/// The eye-space depth in metres that the depth texture stores as 1.
+pub fn depth_range_m(parameters: &Parameters) -> f32 {
+    parameters.camera.far_m + parameters.epsilon_m
+}
+
+fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -> SceneBlock {
+    let camera = &parameters.camera;
+    let view_projection = camera.projection(parameters.aspect()) * camera.view();
+    SceneBlock {
+        view_projection: view_projection.to_cols_array(),
+        glow: parameters.color.to_array(),
+        splat_radius_m: parameters.splat_radius_m,
+        space_m: parameters.space_m.to_array(),
+        epsilon_m: parameters.epsilon_m,
+        columns: [normal_height.width() as f32, normal_height.height() as f32],
+        rock_texels: [rock.width as f32, rock.height as f32],
+        depth_per_m: 1.0 / depth_range_m(parameters),
+        rock_tile_m: parameters.rock_tile_m,
+        _pad: [0.0; 2],
+    }
+}

@@ -1,0 +1,120 @@
+//! Stage three (chapter 7): the surface as splats, or by rays in their place, blended and normalised.
+
+use std::sync::Arc;
+
+use super::FLOORS;
+use super::blending::Blending;
+use super::march::March;
+use super::normalisation::Normalisation;
+use super::parameters::{Parameters, SurfaceDraw};
+use super::rock::Rock;
+use super::scene::Scene;
+use super::splats::Splats;
+use super::targets::{Context, DEPTH, EMPTY, FLOATS};
+use super::visibility::Visibility;
+use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+
+/// The stage.
+pub struct Splatting {
+    /// What is drawn.
+    pub(super) scene: Scene,
+    drawing: Drawing,
+    /// Eye-space depth of the nearest splat plus epsilon, as a fraction of [`depth_range_m`](super::depth_range_m).
+    pub depth: Arc<ImageView>,
+    /// Weighted colours, sum of weights in alpha.
+    pub sums: Arc<ImageView>,
+    /// The picture.
+    pub normalisation: Normalisation,
+}
+
+/// By [`SurfaceDraw`].
+enum Drawing {
+    Splats(SplatPasses),
+    March(March),
+}
+
+/// The thesis's.
+struct SplatPasses {
+    splats: Splats,
+    /// Depths of eq. 7.1.
+    visibility: Visibility,
+    /// Sums of eq. 7.2.
+    blending: Blending,
+    floor: Pass,
+}
+
+impl Splatting {
+    /// The stage on a texture of normals (RGB) and heights in metres (alpha) over the whole space. `instanced` splats
+    /// are quads without a geometry stage.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        normal_height: &Arc<ImageView>,
+        rock: &Rock,
+        instanced: bool,
+        draw: SurfaceDraw,
+    ) -> Result<Self, Error> {
+        let context = Context { shaders, label, parameters };
+        let scene = Scene::new(context, normal_height, rock)?;
+        let depth = context.target("visibility", DEPTH, parameters.width, parameters.height)?;
+        let sums = context.target("accumulated-colors", FLOATS, parameters.width, parameters.height)?;
+        let drawing = match draw {
+            SurfaceDraw::Splats => {
+                let splats = Splats::new(context, instanced)?;
+                let visibility = Visibility::new(context, &scene, &splats, &depth)?;
+                let blending = Blending::new(context, &scene, &splats, &depth, &sums)?;
+                let floor = splats
+                    .pass(&scene, FLOORS[2].1, "7.1", EMPTY)
+                    .color(&sums, Load::Keep, Blend::Masked)
+                    .build(shaders)?;
+                Drawing::Splats(SplatPasses { splats, visibility, blending, floor })
+            }
+            SurfaceDraw::March => Drawing::March(March::new(context, &scene, &depth, &sums)?),
+        };
+        let normalisation = Normalisation::new(context, &sums)?;
+        Ok(Splatting { scene, drawing, depth, sums, normalisation })
+    }
+
+    /// Sets the numbers of [`DRAWN`](super::DRAWN) of the next frames.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub(super) fn set_drawn(&mut self, parameters: &Parameters, rock: &Rock) -> Result<(), Error> {
+        self.scene.set(parameters, rock)?;
+        self.normalisation.set_tone(parameters);
+        if let Drawing::March(march) = &mut self.drawing {
+            march.set_rays(parameters);
+        }
+        Ok(())
+    }
+
+    /// Draws the surface; the rock has drifted `drift_m` along x.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, drift_m: f32) -> Result<(), Error> {
+        match &self.drawing {
+            Drawing::Splats(SplatPasses { splats, visibility, blending, .. }) => {
+                visibility.record(frame, splats)?;
+                blending.record(frame, splats, drift_m)?;
+            }
+            Drawing::March(march) => march.record(frame, drift_m)?,
+        }
+        self.normalisation.record(frame)
+    }
+
+    /// Draws the splats, where there are any, with an empty fragment stage. It changes no texture.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub(super) fn record_floor(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+        match &self.drawing {
+            Drawing::Splats(SplatPasses { splats, floor, .. }) => frame.graphics(floor, |draw| splats.draw(draw)),
+            Drawing::March(_) => Ok(()),
+        }
+    }
+}
