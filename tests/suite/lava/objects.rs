@@ -122,3 +122,54 @@ fn objects_and_lava_hide_each_other() {
         }
     });
 }
+
+/// Warnings of a picture, after it.
+fn warnings(device: &Arc<Device>, variant: Variant, parameters: &Parameters, objects: &[Mesh]) -> Vec<String> {
+    let particles = Particles::seeded(parameters);
+    let shaders = shaders(device);
+    let mut lava = Lava::new(&shaders, "test", variant, parameters, &particles, Rock::built_in(), objects).unwrap();
+    draw(device, &mut lava, 0);
+    assert!(lava.settle(&shaders).unwrap() && lava.settle(&shaders).unwrap());
+    lava.warnings()
+}
+
+#[test]
+fn an_object_under_the_lava_is_named_once() {
+    gpu_test(|device| {
+        let parameters = Parameters { geometry_stage: false, ..level() };
+        let under = Ball { center: DVec3::new(0.9, 0.25, 0.6), radius: 0.2 };
+        for variant in [Variant::Paper, Variant::GpuDriven] {
+            // One that the surface cuts, and one that reaches beyond the space, can be seen.
+            let seen = [BALLS[0], Ball { center: DVec3::new(0.1, 0.25, 0.6), radius: 0.2 }].map(Ball::mesh);
+            assert_eq!(warnings(device, variant, &parameters, &seen), [""; 0], "{variant:?}");
+            let found = warnings(device, variant, &parameters, &[BALLS[0].mesh(), under.mesh()]);
+            let [warning] = &found[..] else { panic!("{found:?}") };
+            assert!(warning.contains("2 of 2") && warning.contains("lies under the lava"), "{warning}");
+        }
+    });
+}
+
+/// Beyond the 20 m that a camera reaches by itself.
+#[test]
+fn far_away_lava_is_drawn_or_said_to_be_small() {
+    gpu_test(|device| {
+        for variant in [Variant::Paper, Variant::GpuDriven] {
+            let near = Parameters { geometry_stage: false, ..level() };
+            let away = |factor: f32| {
+                let eye = near.camera.target + factor * (near.camera.eye - near.camera.target);
+                Parameters { camera: Camera { eye, ..near.camera }, ..near.clone() }
+            };
+            let lit = |parameters: &Parameters| {
+                let mut lava = super::scene::variant_of(device, variant, parameters, &Particles::seeded(parameters));
+                draw(device, &mut lava, 0);
+                let pixels: Vec<[u8; 4]> = texels(device, lava.picture());
+                (pixels.iter().filter(|p| p[0] > 0).count(), lava.warnings())
+            };
+            // 22 m: some 14 pixels wide.
+            let (pixels, said) = lit(&away(9.0));
+            assert!(pixels > 20 && said.is_empty(), "{variant:?}: {pixels} {said:?}");
+            let (_, said) = lit(&away(90.0));
+            assert!(said.len() == 1 && said[0].contains("pixels large"), "{variant:?}: {said:?}");
+        }
+    });
+}
