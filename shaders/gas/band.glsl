@@ -8,6 +8,7 @@ layout(push_constant, std430) uniform Band {
     uint call; // of the band's dispatches of the pass, from 0
     uint calls; // their number
     uint first_triangle; // of those that are drawn, among all
+    uint triangle_count; // of those that are drawn
 } band;
 
 // The list of a pixel.

@@ -9,4 +9,6 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
     uint attenuations; // of a fragment for each light: 1 where light-attenuation runs, else 0
     uint samples; // of an increment along the viewer's ray
     uint jitter; // their places: RANDOM or BLUE_NOISE
+    uint nearest; // fragments that are kept of a pixel, where not all are
+    uint chunks; // of the triangles of tiles that there is room for
 } counts;

@@ -7,16 +7,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #include "gas/frame.glsl"
 #include "gas/band.glsl"
+#include "gas/counters.glsl"
 
 layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
-};
-
-layout(set = 0, binding = 11, std430) buffer Counters {
-    uint fragment_count; // that the band wants, beyond the capacity as well
-    uint section_count;
-    uint most_fragments; // in a band before
-    uint most_sections;
 };
 
 void main() {

@@ -8,9 +8,10 @@
 #include "gas/mesh.glsl"
 
 struct Footprint {
-    vec4 ab; // the polygon's corners, pixels
+    vec4 ab; // the polygon's corners, pixels; of a triangle the last two are one
     vec4 cd;
     vec4 box; // pixels; empty where the triangle is not seen
+    float nearest_m; // depth of its nearest corner
     uint corners; // 3 or 4, and 0 where it is not seen
 };
 
@@ -30,64 +31,53 @@ vec3 cut(vec3 seen, vec3 hidden) {
     return vec3(mix(seen.xy, hidden.xy, fraction), frame.hither_m);
 }
 
+// The corners of what the hither plane leaves of a triangle; none where it lies before it.
+Footprint polygon_of(vec3 a, vec3 b, vec3 c) {
+    float hither = frame.hither_m;
+    bvec3 hidden = bvec3(a.z < hither, b.z < hither, c.z < hither);
+    uint count = uint(hidden.x) + uint(hidden.y) + uint(hidden.z);
+    // Turned so that one hidden corner is the last, and one seen corner the first.
+    bool is_odd = count == 2u;
+    bool from_b = is_odd ? !hidden.y : (count == 1u && hidden.x);
+    bool from_c = is_odd ? !hidden.z : (count == 1u && hidden.y);
+    vec3 p = from_b ? b : (from_c ? c : a);
+    vec3 q = from_b ? c : (from_c ? a : b);
+    vec3 r = from_b ? a : (from_c ? b : c);
+    vec3 second = is_odd ? cut(p, q) : q;
+    vec3 third = count == 0u ? r : (count == 1u ? cut(q, r) : cut(p, r));
+    vec3 last = count == 1u ? cut(p, r) : third;
+    Footprint seen;
+    seen.corners = count == 3u ? 0u : (count == 1u ? 4u : 3u);
+    seen.ab = vec4(to_pixel(p), to_pixel(second));
+    seen.cd = vec4(to_pixel(third), to_pixel(last));
+    seen.nearest_m = max(min(a.z, min(b.z, c.z)), hither);
+    seen.box = vec4(0.0);
+    return seen;
+}
+
+// Twice the area of the polygon. Rows go down: of counter-clockwise triangles it is negative.
+float signed_area(vec4 ab, vec4 cd) {
+    vec2 a = ab.zw - ab.xy;
+    vec2 b = cd.xy - ab.xy;
+    vec2 c = cd.zw - ab.xy;
+    return a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x;
+}
+
 Footprint footprint_of(uint triangle) {
     uvec3 corner = triangles[triangle].vertices;
     uint object = triangles[triangle].object;
     vec3 offset = objects[object].offset_m;
-    vec3 points[3];
-    points[0] = to_view(vertices[corner.x].position + offset);
-    points[1] = to_view(vertices[corner.y].position + offset);
-    points[2] = to_view(vertices[corner.z].position + offset);
-    float hither = frame.hither_m;
-    vec2 polygon[4];
-    uint count = 0u;
-    for (uint i = 0u; i < 3u; i++) {
-        vec3 from = points[i];
-        vec3 to = points[i == 2u ? 0u : i + 1u];
-        if (from.z >= hither) {
-            polygon[count] = to_pixel(from);
-            count++;
-            if (to.z < hither) {
-                polygon[count] = to_pixel(cut(from, to));
-                count++;
-            }
-        } else if (to.z >= hither) {
-            polygon[count] = to_pixel(cut(to, from));
-            count++;
-        }
-    }
-    Footprint seen;
-    seen.corners = 0u;
-    seen.ab = vec4(0.0);
-    seen.cd = vec4(0.0);
-    seen.box = vec4(0.0);
-    if (count < 3u) {
-        return seen;
-    }
-    vec2 low = min(polygon[0], min(polygon[1], polygon[2]));
-    vec2 high = max(polygon[0], max(polygon[1], polygon[2]));
-    vec2 last = polygon[2];
-    if (count == 4u) {
-        last = polygon[3];
-        low = min(low, last);
-        high = max(high, last);
-    }
+    Footprint seen = polygon_of(to_view(vertices[corner.x].position + offset),
+        to_view(vertices[corner.y].position + offset), to_view(vertices[corner.z].position + offset));
+    vec2 low = min(min(seen.ab.xy, seen.ab.zw), min(seen.cd.xy, seen.cd.zw));
+    vec2 high = max(max(seen.ab.xy, seen.ab.zw), max(seen.cd.xy, seen.cd.zw));
     low = max(floor(low), vec2(0.0, band.first_row));
     high = min(ceil(high), vec2(frame.size.x, band.end_row));
-    bool faces_away = false;
-    if (objects[object].is_two_sided == 0u) {
-        vec2 a = polygon[1] - polygon[0];
-        vec2 b = polygon[2] - polygon[0];
-        vec2 c = last - polygon[0];
-        // Rows go down: counter-clockwise triangles have negative areas.
-        faces_away = a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x >= 0.0;
-    }
-    if (low.x >= high.x || low.y >= high.y || faces_away) {
+    bool faces_away = objects[object].is_two_sided == 0u && signed_area(seen.ab, seen.cd) >= 0.0;
+    if (seen.corners == 0u || !(low.x < high.x) || !(low.y < high.y) || faces_away) {
+        seen.corners = 0u;
         return seen;
     }
-    seen.corners = count;
-    seen.ab = vec4(polygon[0], polygon[1]);
-    seen.cd = vec4(polygon[2], last);
     seen.box = vec4(low, high);
     return seen;
 }

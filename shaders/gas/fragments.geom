@@ -10,7 +10,7 @@ layout(triangle_strip, max_vertices = 4) out;
 
 layout(location = 0) flat out vec4 corners_ab;
 layout(location = 1) flat out vec4 corners_cd;
-layout(location = 2) flat out uvec2 identity; // triangle, number of corners
+layout(location = 2) flat out uint seen_triangle;
 
 void main() {
     uint triangle = uint(gl_PrimitiveIDIn);
@@ -21,7 +21,7 @@ void main() {
     for (uint i = 0u; i < 4u; i++) {
         corners_ab = seen.ab;
         corners_cd = seen.cd;
-        identity = uvec2(triangle, seen.corners);
+        seen_triangle = triangle;
         gl_Position = vec4(box_corner(seen.box, i), 0.5, 1.0);
         EmitVertex();
     }

@@ -13,6 +13,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/progress.glsl"
 #include "gas/volume.glsl"
 #include "gas/lists.glsl"
+#include "gas/counters.glsl"
+
 layout(set = 0, binding = 7, std430) buffer Heads {
     uint heads[];
 };
@@ -27,13 +29,6 @@ layout(set = 0, binding = 9, std430) readonly buffer Surfaces {
 
 layout(set = 0, binding = 10, std430) readonly buffer Colors {
     Color colors[];
-};
-
-layout(set = 0, binding = 11, std430) buffer Counters {
-    uint fragment_count; // that the band wants, beyond the capacity as well
-    uint section_count;
-    uint most_fragments; // in a band before
-    uint most_sections;
 };
 
 layout(set = 0, binding = 12, std430) buffer Pixels {

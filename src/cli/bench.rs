@@ -62,7 +62,9 @@ fn measure<S: Study>(
     if output.json_to_stdout() {
         outcome::say_device(output, &machine);
     }
-    for &variant in variants {
+    let alternatives = study.alternatives();
+    for (&variant, study) in variants.iter().flat_map(|variant| alternatives.iter().map(move |study| (variant, study)))
+    {
         outcome::foretell(output, &study.estimate(&machine.device, &loaded.scene, variant), &machine);
     }
     let profiled = match &depth.profile {
@@ -76,7 +78,7 @@ fn measure<S: Study>(
     for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
         *warning = spelling::options(warning);
     }
-    for (&variant, run) in variants.iter().zip(&mut runs) {
+    for (&variant, run) in variants.iter().zip(runs.iter_mut().step_by(alternatives.len().max(1))) {
         if let Some(pass) = depth.profile.as_deref().filter(|_| profiled.contains(&variant)) {
             let title = format!("{} {pass}, both compilers", S::PAPER);
             run.profile = watched(output.quiet, &title, |watch| {

@@ -307,6 +307,18 @@ impl<'a, S: Study> Typed<'a, S> {
         Ok(setup)
     }
 
+    /// The same, of one value a parameter.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] where there are several to be measured in turn.
+    fn resolve_one(&self) -> Result<S, Failure> {
+        let setup = self.resolve()?;
+        match setup.alternatives().len() {
+            1 => Ok(setup),
+            _ => Err(Failure::Input("several values of an option in turn are for bench; give one".to_owned())),
+        }
+    }
+
     fn preset_variant(&self) -> Option<S::Variant> {
         self.preset.as_ref().and_then(|preset| preset.variant)
     }
@@ -354,7 +366,7 @@ fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
     match verb {
         "passes" => {
             let machine = MachineArgs::from_arg_matches(matches)?;
-            let setup = typed.resolve()?;
+            let setup = typed.resolve_one()?;
             passes::list(&setup, &typed.variants(&setup, S::Variant::ALL)?, &machine, matches.get_flag("json"))
         }
         "bench" => {
@@ -365,7 +377,7 @@ fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
             bench::publish(&common, &depth, &setup, &typed.variants(&setup, S::BENCHED)?)
         }
         "render" => {
-            let setup = typed.resolve()?;
+            let setup = typed.resolve_one()?;
             let name = matches.get_one::<String>("variant");
             let named = name.and_then(|name| S::Variant::ALL.iter().copied().find(|v| v.as_str() == name));
             let variant = named.unwrap_or_else(|| setup.rendered(typed.preset_variant()));
@@ -374,7 +386,7 @@ fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
         }
         "stress" => {
             let arguments = StressArgs::from_arg_matches(matches)?;
-            let setup = typed.resolve()?;
+            let setup = typed.resolve_one()?;
             let variants = typed.variants(&setup, &[setup.rendered(None)])?;
             stress::run(&arguments, setup, variants, &given(matches))
         }
@@ -383,7 +395,7 @@ fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
         "worker" => super::worker::run::<S>(matches),
         #[cfg(feature = "window")]
         "view" => {
-            let setup = typed.resolve()?;
+            let setup = typed.resolve_one()?;
             typed.variants(&setup, &[setup.rendered(typed.preset_variant())])?;
             super::view::run::<S>(matches)
         }
@@ -405,7 +417,7 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
     let mut context = Context {
         name: experiment.name,
         preset: typed.preset.clone(),
-        setup: typed.resolve()?,
+        setup: typed.resolve_one()?,
         options,
         given: given(matches),
         machine: common.machine.resolve(common.measure.process),
@@ -429,7 +441,7 @@ fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) ->
     let mut context = Context {
         name: verb.name,
         preset: typed.preset.clone(),
-        setup: typed.resolve()?,
+        setup: typed.resolve_one()?,
         options,
         given: given(matches),
         machine: defaults.machine.resolve(0),

@@ -97,15 +97,26 @@ pub struct Built<S: Study> {
 /// # Errors
 /// [`Error::Gpu`]; a limit by its parameter for what is larger than the device, before anything is allocated.
 pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: S::Variant) -> Result<Built<S>, Error> {
+    build_as(machine, study, scene, variant, variant.as_str())
+}
+
+/// The same, under a label that no other has.
+fn build_as<S: Study>(
+    machine: &Machine,
+    study: &S,
+    scene: &S::Scene,
+    variant: S::Variant,
+    label: &str,
+) -> Result<Built<S>, Error> {
     let live = Arc::clone(machine.device.live());
     let before: u64 = live.memory().iter().map(|m| m.bytes).sum();
     live.reset_peak();
     let started = Instant::now();
     study.estimate(&machine.device, scene, variant).check(&machine.device, variant.as_str())?;
-    let made = study.make(&machine.shaders, variant.as_str(), scene, variant);
+    let made = study.make(&machine.shaders, label, scene, variant);
     let paper = made.map_err(|error| machine.shaders.blamed(error))?;
     let build_ms = started.elapsed().as_secs_f64() * 1e3;
-    let prefix = format!("{}/", variant.as_str());
+    let prefix = format!("{label}/");
     let memory = live
         .memory()
         .into_iter()
@@ -117,7 +128,7 @@ pub fn build<S: Study>(machine: &Machine, study: &S, scene: &S::Scene, variant: 
     Ok(Built { variant, paper, build_ms, memory, peak_bytes: live.peak_bytes() - before })
 }
 
-/// A configuration to measure.
+/// A configuration to measure, with its [alternatives](Study::alternatives).
 pub struct Bench<'a, S: Study> {
     /// The configuration.
     pub study: &'a S,
@@ -156,7 +167,7 @@ pub struct VariantRun {
 }
 
 impl<S: Study> Bench<'_, S> {
-    /// Measures the variants, interleaved.
+    /// Measures the variants, interleaved; each in all alternatives, one after the other.
     ///
     /// # Errors
     /// [`Error::Gpu`]; [`Error::Interrupted`] when not one frame was measured.
@@ -176,11 +187,20 @@ impl<S: Study> Bench<'_, S> {
     ) -> Result<Vec<VariantRun>, Error> {
         let Bench { study, loaded, variants, schedule, .. } = *self;
         let started = environment::instant();
-        let estimates = variants.iter().map(|&variant| study.estimate(&machine.device, &loaded.scene, variant));
+        let studies = study.alternatives();
+        let sides = variants.iter().flat_map(|&variant| studies.iter().map(move |study| (study, variant)));
+        let estimates = sides.clone().map(|(study, variant)| study.estimate(&machine.device, &loaded.scene, variant));
         Estimate::all(estimates).check(&machine.device, "all variants together")?;
-        let mut built = variants
-            .iter()
-            .map(|&variant| build(machine, study, &loaded.scene, variant))
+        let mut built = sides
+            .clone()
+            .enumerate()
+            .map(|(number, (study, variant))| {
+                let label = match studies.len() {
+                    1 => variant.as_str().to_owned(),
+                    _ => format!("{}-{number}", variant.as_str()),
+                };
+                build_as(machine, study, &loaded.scene, variant, &label)
+            })
             .collect::<Result<Vec<_>, _>>()?;
         machine.device.wait_idle()?;
         let stamp_floor_ms = machine.recorder.timestamp_floor_ms()?;
@@ -206,7 +226,7 @@ impl<S: Study> Bench<'_, S> {
         let warnings = [machine.warnings(), self.limits.and_then(limits::warning).into_iter().collect()].concat();
         let identity = study.identity();
         let inputs = inputs(study)?;
-        let runs = measured.iter().zip(metrics).map(|((built, measurement), metrics)| {
+        let runs = measured.iter().zip(metrics).zip(sides).map(|(((built, measurement), metrics), (study, _))| {
             let metadata = RunMetadata {
                 paper: S::PAPER,
                 variant: built.variant.as_str().to_owned(),

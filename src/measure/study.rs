@@ -153,6 +153,12 @@ pub trait Study: Clone + Default + 'static {
         None
     }
 
+    /// The set-ups that a bench measures in turn, in each variant: several where a parameter was given several values for
+    /// that. They share the input.
+    fn alternatives(&self) -> Vec<Self> {
+        vec![self.clone()]
+    }
+
     /// The variant of a picture that names none.
     fn rendered(&self, preset: Option<Self::Variant>) -> Self::Variant {
         preset.unwrap_or(Self::RENDERED)

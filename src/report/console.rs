@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use serde_json::Value;
+
 use super::profile::profile;
 use super::record::{Limits, Pass, Record, Run, Summary};
 use super::table::{Align, Style, Table};
@@ -14,7 +16,7 @@ pub fn record(record: &Record, style: Style) -> String {
     let mut text = format!("device: {} ({})\n", one_line(&device.name), device.kind.name());
     for item in &record.runs {
         text.push('\n');
-        text.push_str(&run(item, style));
+        text.push_str(&run(item, &alternative(item, &record.runs), style));
         text.push_str(&profile(item, style));
     }
     if let Some(limits) = record.runs.iter().find_map(|run| run.limits.as_ref()) {
@@ -55,11 +57,23 @@ fn significant(value: f64) -> String {
     format!("{value:.*}", (2.0 - before).clamp(0.0, 9.0) as usize)
 }
 
+/// The parameters that tell a run from others of its variant and preset, with a comma before each; empty for a run without
+/// such others.
+fn alternative(run: &Run, runs: &[Run]) -> String {
+    let is_like =
+        |other: &&Run| (&other.paper, &other.variant, &other.preset) == (&run.paper, &run.variant, &run.preset);
+    let others: Vec<&Run> = runs.iter().filter(is_like).collect();
+    let differs = |name: &str| others.iter().any(|other| other.config.get(name) != run.config.get(name));
+    let telling = run.config.iter().filter(|(name, value)| !value.is_array() && !value.is_object() && differs(name));
+    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    telling.map(|(name, value)| format!(", {name} {}", text(value))).collect()
+}
+
 /// One run: its name, the table of passes in the paper's order, the frame, and what the passes leave
 /// unaccounted. Times are `median ± MAD` in milliseconds; `fraction` is the pass's GPU and host time over the median
 /// frame. Columns that no pass has are left out; a time that was not measured is a dash.
-pub fn run(run: &Run, style: Style) -> String {
-    let mut text = title(run, style);
+pub fn run(run: &Run, alternative: &str, style: Style) -> String {
+    let mut text = title(run, alternative, style);
     if !run.passes.is_empty() {
         text.push_str(&passes(run).render(style));
     }
@@ -67,14 +81,14 @@ pub fn run(run: &Run, style: Style) -> String {
     text
 }
 
-fn title(run: &Run, style: Style) -> String {
+fn title(run: &Run, alternative: &str, style: Style) -> String {
     let preset = run.preset.as_ref().map_or_else(String::new, |preset| format!(", {preset}"));
     let repeat = if run.repeat > 1 { format!(" × {} repetitions", run.repeat) } else { String::new() };
     let process = if run.process > 0 { format!(", process {}", run.process) } else { String::new() };
     format!(
         "{}\n",
         style.bold(&one_line(&format!(
-            "{} {}{preset}: {} × {}, {} frames{repeat}, seed {}{process}",
+            "{} {}{preset}{alternative}: {} × {}, {} frames{repeat}, seed {}{process}",
             run.paper, run.variant, run.width, run.height, run.frames, run.seed
         )))
     )
@@ -215,6 +229,6 @@ mod tests {
     fn submissions_are_shown_when_there_are_several() {
         let mut run = example::full().runs.remove(0);
         run.passes[1].submission = Some(1);
-        assert!(super::run(&run, Style::default()).contains("submission"));
+        assert!(super::run(&run, "", Style::default()).contains("submission"));
     }
 }

@@ -25,8 +25,11 @@ pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/surface-removal-mark-free.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-kept.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-parts.comp", "an atomic: removed triangles are counted"),
+    ("gas/fragments-tiles.comp", "an atomic: tiles take slots for their fragments"),
     ("gas/fragments.frag", "atomics: fragments take their slots and their places in the lists"),
     ("gas/sort.comp", "an atomic: pixels reserve the slots of their sections"),
+    ("gas/tiles-count.comp", "an atomic: the triangles of tiles are counted"),
+    ("gas/tiles-fill.comp", "an atomic: triangles take their places in tiles"),
     ("lava/point.vert", "it feeds a geometry stage and writes no gl_Position, which naga demands"),
     ("lava/splat.vert", "it feeds a geometry stage and writes no gl_Position, which naga demands"),
 ];

@@ -88,8 +88,22 @@ impl ABuffer {
         Ok(Capacity {
             fragments: most(|c| c.fragment_count.max(c.most_fragments)),
             sections: most(|c| c.section_count.max(c.most_sections)),
+            chunks: most(|c| c.most_chunks),
             ..self.capacity
         })
+    }
+
+    /// The most triangles of a tile that any band of any frame has had.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] where the device ended a loop over them; those of Vulkan.
+    pub fn most_of_tile(&self, shaders: &ShaderLibrary) -> Result<u32, Error> {
+        let counters = read::<CountersBlock>(shaders, &self.counters)?;
+        if counters.iter().any(|c| c.is_ended != 0) {
+            let problem = "the device ends its loops over the triangles of a tile; give `lists` linked".to_owned();
+            return Err(Error::Pass { pass: "fragments".to_owned(), problem });
+        }
+        Ok(counters.iter().map(|c| c.most_of_tile).max().unwrap_or(0))
     }
 
     /// Evaluations of the density that `volume` has noted in the last band.
@@ -133,7 +147,7 @@ impl ABuffer {
 }
 
 /// The elements of a buffer.
-fn read<T: bytemuck::Pod>(shaders: &ShaderLibrary, buffer: &Arc<Buffer>) -> Result<Vec<T>, Error> {
+pub fn read<T: bytemuck::Pod>(shaders: &ShaderLibrary, buffer: &Arc<Buffer>) -> Result<Vec<T>, Error> {
     Ok(bytemuck::pod_collect_to_vec(&read_buffer(shaders.device(), buffer)?))
 }
 

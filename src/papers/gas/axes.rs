@@ -87,6 +87,7 @@ impl Setup {
             mesh.normals.extend([-forward; 4]);
             mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
         }
-        (self.layers > 0).then(|| Object::new(mesh, Vec3::splat(0.5)))
+        let opacity = self.layer_opacity;
+        (self.layers > 0).then(|| Object { opacity, ..Object::new(mesh, Vec3::splat(0.5)) })
     }
 }

@@ -1,5 +1,7 @@
 //! Bands of rows, in which a picture is done whose lists no buffer of the device holds at once.
 
+use bytemuck::Zeroable;
+
 use crate::gpu::{Error, Frame, Pass};
 use crate::host_block;
 
@@ -15,6 +17,7 @@ host_block! {
         call: u32,
         calls: u32,
         first_triangle: u32,
+        triangle_count: u32,
     }
 }
 
@@ -38,12 +41,36 @@ impl Band {
 
     pub fn constants(self) -> BandConstants {
         let Band { first_row, end_row, .. } = self;
-        BandConstants { list_row: first_row, first_row, end_row, call: 0, calls: 1, first_triangle: 0 }
+        BandConstants { list_row: first_row, first_row, end_row, call: 0, calls: 1, ..BandConstants::zeroed() }
     }
 
-    /// For the triangles of a piece, of which so many come before.
-    pub fn constants_of_piece(self, first_triangle: u32) -> BandConstants {
-        BandConstants { first_triangle, ..self.constants() }
+    /// For so many triangles of a piece, before which come others.
+    pub fn constants_of_piece(self, first_triangle: u32, triangle_count: u32) -> BandConstants {
+        BandConstants { first_triangle, triangle_count, ..self.constants() }
+    }
+
+    /// Tiles of that many pixels a side along both axes, the first at its first row.
+    pub fn tiles(self, side: u32) -> (u32, u32) {
+        (self.width.div_ceil(side), (self.end_row - self.first_row).div_ceil(side))
+    }
+
+    /// Dispatches a thread a pixel `calls` times for the triangles of a piece.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn dispatch_piece(
+        self,
+        piece: BandConstants,
+        calls: u32,
+        frame: &mut Frame<'_>,
+        pass: &Pass,
+    ) -> Result<(), Error> {
+        (0..calls).try_for_each(|call| {
+            frame.compute(pass, |dispatch| {
+                let constants = BandConstants { call, calls, ..piece };
+                dispatch.constants(&constants).threads(self.width, self.end_row - self.first_row, 1);
+            })
+        })
     }
 
     /// Dispatches a thread a pixel.

@@ -42,6 +42,8 @@ host_block! {
         attenuations: u32,
         samples: u32,
         jitter: u32,
+        nearest: u32,
+        chunks: u32,
     }
 }
 
@@ -200,6 +202,14 @@ host_block! {
         pub most_fragments: u32,
         /// Most sections that a band before it wanted.
         pub most_sections: u32,
+        /// Chunks of the triangles of tiles that the last piece of them wanted.
+        pub chunk_count: u32,
+        /// Most chunks that a piece wanted.
+        pub most_chunks: u32,
+        /// Most triangles of a tile.
+        pub most_of_tile: u32,
+        /// 1 where the device ended a loop over them.
+        pub is_ended: u32,
     }
 }
 
@@ -248,7 +258,7 @@ impl FrameBlock {
 
 impl CountsBlock {
     /// Of a variant that makes that use of the scene's volumes.
-    pub fn new(parameters: &Parameters, gas: GasUse) -> Self {
+    pub fn new(parameters: &Parameters, gas: GasUse, capacity: Capacity) -> Self {
         CountsBlock {
             volumes: gas.volume_count as u32,
             lights: parameters.lights.len() as u32,
@@ -256,6 +266,8 @@ impl CountsBlock {
             attenuations: gas.has_attenuations.into(),
             samples: parameters.samples,
             jitter: parameters.jitter as u32,
+            nearest: parameters.lists.nearest().unwrap_or(0),
+            chunks: capacity.chunks,
         }
     }
 }

@@ -1,8 +1,9 @@
 //! The rows of the picture that are done at once, and the slots of their lists.
 
 use super::blocks::{LinkBlock, SectionBlock};
-use super::parameters::Parameters;
+use super::parameters::{Lists, Parameters};
 use super::progress::StateBlock;
+use super::tiles::{CHUNK_BYTES, TILE};
 use crate::gpu::{Device, Error};
 
 /// Bytes of each list's widest buffer: of a fragment, of a section, of a pixel.
@@ -23,6 +24,8 @@ pub struct Capacity {
     pub fragments: u32,
     /// Slots of sections.
     pub sections: u32,
+    /// Chunks of the triangles of tiles; 0 without tiles.
+    pub chunks: u32,
 }
 
 /// The most bytes of a buffer of the lists.
@@ -55,18 +58,23 @@ impl BufferLimit {
 }
 
 impl Capacity {
-    /// Four fragments and two sections a pixel, of as many rows as the buffers hold.
-    pub fn initial(parameters: &Parameters, limit: BufferLimit) -> Self {
+    /// Four fragments, or all that are kept, and two sections a pixel, of as many rows as the buffers hold; of tiles a chunk each, and four
+    /// places a triangle.
+    pub fn initial(parameters: &Parameters, triangles: usize, limit: BufferLimit) -> Self {
         let width = parameters.width.max(1);
-        let rows = [limit.slots(PIXEL_BYTES), limit.slots(4 * LINK_BYTES), limit.slots(2 * SECTION_BYTES)]
+        let of_pixel = parameters.lists.nearest().unwrap_or(4);
+        let rows = [limit.slots(PIXEL_BYTES), limit.slots(u64::from(of_pixel) * LINK_BYTES), limit.slots(2 * SECTION_BYTES)]
             .into_iter()
             .fold(parameters.height, |rows, pixels| rows.min(pixels / width))
             .max(1);
         let pixels = rows.saturating_mul(width);
+        let tiles = u64::from(width.div_ceil(TILE)) * u64::from(rows.div_ceil(TILE));
+        let chunks = (tiles + triangles as u64 / 8).min(limit.slots(CHUNK_BYTES).into()) as u32;
         Capacity {
             rows,
-            fragments: pixels.saturating_mul(4).min(limit.slots(LINK_BYTES)),
+            fragments: pixels.saturating_mul(of_pixel).min(limit.slots(LINK_BYTES)),
             sections: pixels.saturating_mul(2).min(limit.slots(SECTION_BYTES)),
+            chunks: if parameters.lists == Lists::Linked { 0 } else { chunks },
         }
     }
 
@@ -80,6 +88,7 @@ impl Capacity {
         for (name, slots, wanted, slot_bytes) in [
             ("fragments", &mut grown.fragments, demand.fragments, LINK_BYTES),
             ("sections", &mut grown.sections, demand.sections, SECTION_BYTES),
+            ("triangles of tiles", &mut grown.chunks, demand.chunks, CHUNK_BYTES),
         ] {
             if wanted <= *slots {
                 continue;
@@ -114,28 +123,28 @@ mod tests {
     #[test]
     fn a_large_picture_is_done_in_bands_whose_lists_fit() {
         for (width, height) in [(1, 1), (1024, 768), (4096, 4096), (16384, 16384), (16384, 1)] {
-            let capacity = Capacity::initial(&parameters(width, height), LAVAPIPE);
+            let capacity = Capacity::initial(&parameters(width, height), 12, LAVAPIPE);
             assert!(u64::from(capacity.fragments) * LINK_BYTES <= LAVAPIPE.bytes);
             assert!(u64::from(capacity.sections) * SECTION_BYTES <= LAVAPIPE.bytes);
             assert!(u64::from(capacity.rows * width) * PIXEL_BYTES <= LAVAPIPE.bytes);
             assert_eq!(capacity.fragments, 4 * capacity.rows * width);
         }
-        assert_eq!(Capacity::initial(&parameters(1024, 768), LAVAPIPE).rows, 768);
-        assert_eq!(Capacity::initial(&parameters(4096, 4096), LAVAPIPE).rows, 512);
+        assert_eq!(Capacity::initial(&parameters(1024, 768), 12, LAVAPIPE).rows, 768);
+        assert_eq!(Capacity::initial(&parameters(4096, 4096), 12, LAVAPIPE).rows, 512);
     }
 
     /// Lists grow as far as a buffer goes, then the bands shrink, down to one row and no further.
     #[test]
     fn lists_grow_and_bands_shrink() {
         let limit = BufferLimit { bytes: 16_000, parameters: "list-bytes" };
-        let capacity = Capacity { rows: 40, fragments: 100, sections: 50 };
+        let capacity = Capacity { rows: 40, fragments: 100, sections: 50, chunks: 0 };
         assert_eq!(capacity.grown(capacity, limit).unwrap(), None);
         let demand = Capacity { fragments: 160, ..capacity };
         assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { fragments: 180, ..capacity }));
         let demand = Capacity { fragments: 990, ..capacity };
         assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { fragments: 1000, ..capacity }));
         let demand = Capacity { fragments: 3000, sections: 5000, ..capacity };
-        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { rows: 3, fragments: 1000, sections: 500 }));
+        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { rows: 3, fragments: 1000, sections: 500, chunks: 0 }));
         let row = Capacity { rows: 1, ..capacity };
         let error = row.grown(demand, limit).unwrap_err().to_string();
         assert!(error.contains("fragments") && error.contains("list-bytes") && error.contains("3000"), "{error}");

@@ -7,6 +7,7 @@ use super::capacity::{BufferLimit, Capacity};
 use super::model::Object;
 use super::parameters::{Parameters, Variant};
 use super::progress::StateBlock;
+use super::tiles;
 use crate::measure::estimate::Estimate;
 
 /// Bytes of a number.
@@ -25,7 +26,8 @@ fn bytes_of<T>() -> f64 {
 impl Parameters {
     /// Device memory, passes and shader invocations of a frame, as long as no list grows.
     pub(super) fn estimate(&self, variant: Variant, objects: &[Object], limit: BufferLimit) -> Estimate {
-        let capacity = Capacity::initial(self, limit);
+        let triangles: usize = objects.iter().map(|o| o.mesh.triangle_count()).sum();
+        let capacity = Capacity::initial(self, triangles, limit);
         let pixels = f64::from(self.width) * f64::from(self.height);
         let band = f64::from(self.width) * f64::from(capacity.rows);
         let (fragments, sections) = (f64::from(capacity.fragments), f64::from(capacity.sections));
@@ -34,7 +36,6 @@ impl Parameters {
         let shadows = has_volume && variant != Variant::None;
         let table = if has_volume && variant == Variant::Table { f64::from(self.table_size).powi(3) } else { 0.0 };
         let vertices: usize = objects.iter().map(|o| o.mesh.positions.len()).sum();
-        let triangles: usize = objects.iter().map(|o| o.mesh.triangle_count()).sum();
         let (vertices, triangles) = (vertices as f64, triangles as f64);
         let of_fragment = bytes_of::<LinkBlock>() + bytes_of::<SurfaceBlock>() + bytes_of::<ColorBlock>();
         let of_pixel = NUMBER + bytes_of::<PixelBlock>() + bytes_of::<StateBlock>();
@@ -55,6 +56,7 @@ impl Parameters {
             buffers: Vec::new(),
             bytes: vec![
                 ("size", of_fragment * fragments + of_pixel * band + (RADIANCE + NUMBER) * pixels),
+                ("object", tiles::bytes(self, capacity)),
                 ("size", optional(has_volume, bytes_of::<SectionBlock>() * sections)),
                 ("light", optional(shadows, NUMBER * fragments * lights)),
                 ("table", NUMBER * table * volumes * (1.0 + lights)),

@@ -9,8 +9,8 @@ use crate::gpu::{Error, Feature, Frame, Pass, Topology};
 
 /// The pass `fragments`, a call for each piece of the triangles.
 pub struct Fragments {
-    /// Each with the triangles before it and its vertices.
-    passes: Vec<(Pass, u32, u32)>,
+    /// Each with the triangles before it, its own, and the vertices of each.
+    passes: Vec<(Pass, u32, u32, u32)>,
 }
 
 impl Fragments {
@@ -21,7 +21,7 @@ impl Fragments {
         let has_geometry_stage =
             parameters.geometry_stage && context.shaders.device().physical().has(Feature::GeometryShader);
         let vertices_a_triangle = if has_geometry_stage { 1 } else { 6 };
-        let mut passes: Vec<(Pass, u32, u32)> = Vec::with_capacity(scene.pieces.len());
+        let mut passes: Vec<(Pass, u32, u32, u32)> = Vec::with_capacity(scene.pieces.len());
         for piece in &scene.pieces {
             let pass = match passes.first() {
                 None => Self::pass(context, has_geometry_stage, scene, piece, lists)?,
@@ -31,7 +31,7 @@ impl Fragments {
                     .with("Triangles", &piece.triangles)
                     .build(context.shaders)?,
             };
-            passes.push((pass, piece.first_triangle, piece.triangle_count.saturating_mul(vertices_a_triangle)));
+            passes.push((pass, piece.first_triangle, piece.triangle_count, vertices_a_triangle));
         }
         Ok(Fragments { passes })
     }
@@ -69,9 +69,10 @@ impl Fragments {
     }
 
     pub fn record(&self, frame: &mut Frame<'_>, band: Band) -> Result<(), Error> {
-        self.passes.iter().try_for_each(|(pass, first_triangle, vertices)| {
+        self.passes.iter().try_for_each(|&(ref pass, first_triangle, triangle_count, vertices_a_triangle)| {
             frame.graphics(pass, |draw| {
-                draw.constants(&band.constants_of_piece(*first_triangle)).vertices(*vertices);
+                draw.constants(&band.constants_of_piece(first_triangle, triangle_count))
+                    .vertices(triangle_count.saturating_mul(vertices_a_triangle));
             })
         })
     }

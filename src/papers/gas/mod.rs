@@ -34,6 +34,7 @@ pub mod scenes;
 pub mod setup;
 mod shadow_table;
 mod sort;
+mod tiles;
 mod view;
 mod volume;
 
@@ -54,6 +55,7 @@ use self::resolve::Resolve;
 use self::scene_buffers::SceneBuffers;
 use self::shadow_table::ShadowTable;
 use self::sort::Sort;
+use self::tiles::Tiles;
 use self::view::View;
 use self::volume::VolumeMarch;
 use crate::gpu::{Error, Feature, Frame, ImageView, ShaderLibrary};
@@ -62,7 +64,7 @@ use crate::scene::Camera;
 
 pub use self::a_buffer::Fragment;
 pub use self::capacity::Capacity;
-pub use self::parameters::{Parameters, Variant};
+pub use self::parameters::{Lists, Parameters, Variant};
 
 /// Features that a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 1] = [Feature::FragmentStores];
@@ -79,6 +81,8 @@ pub struct Gas {
     scene: SceneBuffers,
     passes: Passes,
     calls: Calls,
+    /// Dispatches of `fragments` by tiles.
+    tile_calls: u32,
     buffer_limit: BufferLimit,
     lacks_geometry_stage: bool,
 }
@@ -87,7 +91,7 @@ pub struct Gas {
 struct Passes {
     lists: ABuffer,
     empty_lists: EmptyLists,
-    fragments: Fragments,
+    surfaces: Surfaces,
     sort: Sort,
     density_table: Option<DensityTable>,
     shadow_table: Option<ShadowTable>,
@@ -95,6 +99,12 @@ struct Passes {
     light_attenuation: Option<LightAttenuation>,
     resolve: Resolve,
     view: View,
+}
+
+/// The way to the lists of fragments.
+enum Surfaces {
+    Linked(Fragments),
+    Tiles(Tiles),
 }
 
 impl Passes {
@@ -105,7 +115,10 @@ impl Passes {
 
         let lists = ABuffer::new(context, capacity)?;
         let empty_lists = EmptyLists::new(context, scene, &lists)?;
-        let fragments = Fragments::new(context, scene, &lists)?;
+        let surfaces = match context.parameters.lists {
+            Lists::Linked => Surfaces::Linked(Fragments::new(context, scene, &lists)?),
+            Lists::Tiles | Lists::Nearest(_) => Surfaces::Tiles(Tiles::new(context, scene, &lists)?),
+        };
         let sort = Sort::new(context, scene, &lists)?;
         let density_table = has_tables.then(|| DensityTable::new(context, scene)).transpose()?;
         let densities = density_table.as_ref().map(|table| &table.densities);
@@ -123,7 +136,7 @@ impl Passes {
         Ok(Passes {
             lists,
             empty_lists,
-            fragments,
+            surfaces,
             sort,
             density_table,
             shadow_table,
@@ -151,14 +164,17 @@ impl Gas {
         capacity: Option<Capacity>,
     ) -> Result<Self, Error> {
         let buffer_limit = BufferLimit::new(shaders.device(), parameters);
-        let capacity = capacity.unwrap_or_else(|| Capacity::initial(parameters, buffer_limit));
+        let triangles = objects.iter().map(|object| object.mesh.triangle_count()).sum();
+        let capacity = capacity.unwrap_or_else(|| Capacity::initial(parameters, triangles, buffer_limit));
         let context = Context { shaders, label, parameters };
         let scene = SceneBuffers::new(&context, objects)?;
         let passes = Passes::new(&context, &scene, variant, capacity)?;
         let (label, parameters) = (label.to_owned(), parameters.clone());
-        let lacks_geometry_stage =
-            parameters.geometry_stage && !shaders.device().physical().has(Feature::GeometryShader);
-        Ok(Gas { label, variant, parameters, scene, passes, calls: Calls::ONCE, buffer_limit, lacks_geometry_stage })
+        let lacks_geometry_stage = parameters.lists == Lists::Linked
+            && parameters.geometry_stage
+            && !shaders.device().physical().has(Feature::GeometryShader);
+        let calls = Calls::ONCE;
+        Ok(Gas { label, variant, parameters, scene, passes, calls, tile_calls: 1, buffer_limit, lacks_geometry_stage })
     }
 
     /// Sets the numbers of [`WRITTEN`] of the next frames; all others are those that it was made with. The caller has
@@ -184,6 +200,18 @@ impl Gas {
         self.passes.lists.read(shaders, self.passes.volume.as_ref().map(|volume| &volume.sections))
     }
 
+    /// The numbers of the triangles that touch each tile of 8 x 8 pixels, row by row, in the last frame; nothing without
+    /// tiles.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
+    pub fn tiles(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<u32>>, Error> {
+        match &self.passes.surfaces {
+            Surfaces::Linked(_) => Ok(Vec::new()),
+            Surfaces::Tiles(tiles) => tiles.read(shaders),
+        }
+    }
+
     /// Evaluations of the density along the viewer's rays in the last frame; in its last band, if there are several.
     ///
     /// # Errors
@@ -203,7 +231,10 @@ impl Paper for Gas {
         self.scene.write(&self.parameters, self.parameters.scene_frame(number), gas, capacity)?;
         for band in Band::all(self.parameters.width, self.parameters.height, capacity.rows) {
             passes.empty_lists.record(frame, band)?;
-            passes.fragments.record(frame, band)?;
+            match &passes.surfaces {
+                Surfaces::Linked(fragments) => fragments.record(frame, band)?,
+                Surfaces::Tiles(tiles) => tiles.record(frame, band, self.tile_calls)?,
+            }
             passes.sort.record(frame, band, self.calls.of(Carried::Sort))?;
             // All bands look up the same tables.
             if let (Some(densities), Some(shadows), true) =
@@ -230,6 +261,11 @@ impl Paper for Gas {
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         let lists = &self.passes.lists;
+        let tile_calls = tiles::calls(lists.most_of_tile(shaders)?);
+        if tile_calls > self.tile_calls {
+            self.tile_calls = tile_calls;
+            return Ok(false);
+        }
         let Some(capacity) = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)? else {
             let raised = self.calls.raised(shaders, &lists.progress)?;
             self.calls = raised.unwrap_or(self.calls);

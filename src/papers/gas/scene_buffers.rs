@@ -81,7 +81,7 @@ impl SceneBuffers {
     pub fn write(&self, parameters: &Parameters, number: u32, gas: GasUse, capacity: Capacity) -> Result<(), Error> {
         let block = FrameBlock::new(parameters, number, capacity);
         self.frame.write(0, bytemuck::bytes_of(&block))?;
-        self.counts.write(0, bytemuck::bytes_of(&CountsBlock::new(parameters, gas)))?;
+        self.counts.write(0, bytemuck::bytes_of(&CountsBlock::new(parameters, gas, capacity)))?;
         let mut textures = parameters.volumes.len()..;
         let mut blocks: Vec<ObjectBlock> = self
             .objects_without_meshes

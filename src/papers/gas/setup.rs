@@ -19,13 +19,13 @@ use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::{self, Cost, Given, Parameter};
+use crate::measure::parameter::{self, Cost, Given, Parameter, Value as _};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
-use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
+use crate::papers::gas::{Gas, Lists, NEEDS, Parameters, Variant, WRITTEN};
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{Light, promised_triangles};
 
@@ -42,6 +42,10 @@ pub struct Setup {
     pub surface_triangles: Option<u64>,
     /// Layers behind the scene that each fill the picture.
     pub layers: u32,
+    /// Of each layer, 0 to 1.
+    pub layer_opacity: f32,
+    /// The ways to the lists of fragments, which a bench measures in turn.
+    pub lists: Vec<Lists>,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
     /// The preset, as the record names it.
@@ -69,6 +73,8 @@ impl Setup {
             objects: Vec::new(),
             surface_triangles: None,
             layers: 0,
+            layer_opacity: 1.0,
+            lists: vec![Lists::Linked],
             crease_deg: CREASE_DEG,
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
@@ -113,6 +119,7 @@ impl Setup {
     /// Adds the volumes and sets their numbers and the lights.
     fn apply(&mut self, given: &Given) {
         let all = &mut self.parameters.volumes;
+        self.parameters.lists = self.lists.first().copied().unwrap_or(Lists::Linked);
         let first = all.first().copied().unwrap_or_else(default_volume);
         all.extend(self.placements.iter().map(|&Placement { shape, center, half_extent_m }| model::Volume {
             shape,
@@ -142,6 +149,10 @@ impl Default for Setup {
         setup
     }
 }
+
+/// The passes that surfaces take, by every way to their lists.
+pub(super) const LIST_PASSES: [&str; 8] =
+    ["tiles-empty", "tiles-count", "tiles-sum", "tiles-fill", "tiles-pixels", "fragments", "sort", "resolve"];
 
 /// A setup with its surfaces.
 pub struct Scene {
@@ -224,6 +235,7 @@ impl Study for Setup {
         let mut config = parameter::config(&Self::parameters(), self);
         config.extend(entries([
             ("scene", json!(self.scene.as_str())),
+            ("lists", p.lists.json()),
             ("triangles", json!(triangles)),
             ("volumes", json!(volumes)),
             ("lights", json!(p.lights.iter().map(config::light).collect::<Vec<_>>())),
@@ -232,12 +244,14 @@ impl Study for Setup {
         ]));
         if self.layers > 0 {
             config.insert("layers".to_owned(), json!(self.layers));
+            config.insert("layer_opacity".to_owned(), json!(self.layer_opacity));
         }
         config
     }
 
     fn summary(&self) -> String {
-        format!("{}, frame {}", self.scene.as_str(), self.parameters.first_frame)
+        let Parameters { lists, first_frame, .. } = &self.parameters;
+        format!("{}, frame {first_frame}, {}", self.scene.as_str(), lists.text())
     }
 
     fn metrics(
@@ -252,7 +266,7 @@ impl Study for Setup {
                 let passes = measurement.passes.iter().filter(|p| names.contains(&p.info.name));
                 passes.filter_map(|p| median(&p.gpu_ms)).sum::<f64>()
             };
-            let surfaces_ms = gpu_ms(&["fragments", "sort", "resolve"]);
+            let surfaces_ms = gpu_ms(&LIST_PASSES);
             let results = entries([
                 ("fragments", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
@@ -287,6 +301,18 @@ impl Study for Setup {
                 .cost(Cost::Buffers)
                 .everyday(),
             parameter::crease_angle(field!(Setup.crease_deg)),
+            Parameter::new("lists", field!(Setup.lists))
+                .help(
+                    "The way to the lists of fragments. linked: the rasteriser draws a box around each triangle, and \
+                     fragments are linked as they come; tiles: triangles are put into tiles of 8 x 8 pixels, and of what \
+                     an opaque triangle hides that fills a pixel only the next fragment is kept; k:N: as tiles, but a \
+                     pixel keeps its N nearest fragments alone, 1 to 32. bench takes several, comma-separated, and \
+                     measures them in turn",
+                )
+                .section("Combining A-buffer and volume rendering techniques")
+                .cost(Cost::Pipelines)
+                .everyday()
+                .unrecorded(),
             Parameter::new("volume", field!(Setup.placements))
                 .group("Gases")
                 .help(
@@ -358,6 +384,14 @@ impl Study for Setup {
         self.given = given.clone();
         self.apply(given);
         Ok(())
+    }
+
+    fn alternatives(&self) -> Vec<Self> {
+        let of = |&lists: &Lists| {
+            let parameters = Parameters { lists, ..self.parameters.clone() };
+            Setup { parameters, lists: vec![lists], ..self.clone() }
+        };
+        self.lists.iter().map(of).collect()
     }
 
     /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.

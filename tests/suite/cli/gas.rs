@@ -305,3 +305,25 @@ fn what_cannot_be_is_refused_by_its_option() {
     gas("bench --preset fig-9").run().misused(&["--preset", "fig-8"]);
     gas("experiment 2 --preset fig-3").run().refused(2, &["--preset"]);
 }
+
+/// Each way to the lists has its passes; a bench measures several in turn and says which is which, other verbs take one.
+#[test]
+fn ways_to_the_lists_are_measured_in_turn() {
+    let ended = small("bench --json --variant no-volume --lists linked,tiles,k:4").args(ONCE).run();
+    let record = ended.succeeded().json();
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let lists: Vec<_> = runs.iter().map(|run| run["config"]["lists"].as_str().unwrap()).collect();
+    assert_eq!(lists, ["linked", "tiles", "k:4"]);
+    let names = |run: &serde_json::Value| -> Vec<String> {
+        run["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(names(&runs[0]), ["empty-lists", "fragments", "sort", "resolve"]);
+    let tiles = ["tiles-empty", "tiles-count", "tiles-sum", "tiles-fill", "tiles-pixels"];
+    assert_eq!(names(&runs[1]), [&["empty-lists"], &tiles[..], &["fragments", "sort", "resolve"]].concat());
+    assert_eq!(names(&runs[2]), names(&runs[1]));
+    let kept = |run: &serde_json::Value| run["results"]["fragments"].as_u64().unwrap();
+    assert_eq!(kept(&runs[2]), 4 * 45 * 31);
+    small("render --lists linked,tiles --image never.png").run().refused(2, &["give one"]);
+    small("render --lists k:0 --image never.png").run().refused(2, &["k:1"]);
+}

@@ -17,6 +17,8 @@ pub struct Drawing {
     /// Of each pixel, sorted.
     pub lists: Vec<Vec<Fragment>>,
     pub demand: Capacity,
+    /// Numbers of the triangles of each tile; none without tiles.
+    pub tiles: Vec<Vec<u32>>,
     /// Evaluations of the density along the viewer's rays.
     pub evaluations: u64,
     pub picture: Rgba8,
@@ -87,6 +89,7 @@ impl Drawing {
             radiance,
             lists: gas.fragments(&shaders).unwrap(),
             demand: gas.demand(&shaders).unwrap(),
+            tiles: gas.tiles(&shaders).unwrap(),
             evaluations: gas.evaluations(&shaders).unwrap(),
             picture,
             runs,

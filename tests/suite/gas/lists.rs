@@ -4,7 +4,7 @@ use fumarole::gpu::{Compiler, Mode, Recorder, ShaderLibrary};
 use fumarole::measure::Paper;
 use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::reference::coverage::{area, cut};
-use fumarole::papers::gas::{Capacity, Gas, Parameters, Variant};
+use fumarole::papers::gas::{Capacity, Gas, Lists, Parameters, Variant};
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, Mesh};
 use glam::{DVec2, Vec3};
@@ -12,11 +12,11 @@ use glam::{DVec2, Vec3};
 use super::drawing::Drawing;
 use crate::common::gpu_test;
 
-const WIDTH: u32 = 90;
-const HEIGHT: u32 = 62;
+pub const WIDTH: u32 = 90;
+pub const HEIGHT: u32 = 62;
 
 /// The camera at the origin looks along -Z.
-fn parameters() -> Parameters {
+pub fn parameters() -> Parameters {
     Parameters {
         volumes: Vec::new(),
         camera: Camera { eye: Vec3::ZERO, target: Vec3::NEG_Z, near_m: 0.5, ..Parameters::default().camera },
@@ -26,7 +26,7 @@ fn parameters() -> Parameters {
     }
 }
 
-fn object(triangles: &[[Vec3; 3]]) -> Object {
+pub fn object(triangles: &[[Vec3; 3]]) -> Object {
     let positions: Vec<Vec3> = triangles.concat();
     let mesh = Mesh {
         name: "triangles".to_owned(),
@@ -39,13 +39,13 @@ fn object(triangles: &[[Vec3; 3]]) -> Object {
 }
 
 /// A place of the picture at a depth, as a point of the world.
-fn unproject(pixel: DVec2, depth_m: f32) -> Vec3 {
+pub fn unproject(pixel: DVec2, depth_m: f32) -> Vec3 {
     let size = (f64::from(parameters().camera.vertical_fov_rad) / 2.0).tan() / (f64::from(HEIGHT) / 2.0);
     let (x, y) = (pixel.x - f64::from(WIDTH) / 2.0, pixel.y - f64::from(HEIGHT) / 2.0);
     Vec3::new((x * size) as f32, (-y * size) as f32, -1.0) * depth_m
 }
 
-fn random_corners(random: &mut Random, reach: f32) -> [DVec2; 3] {
+pub fn random_corners(random: &mut Random, reach: f32) -> [DVec2; 3] {
     let middle = [random.range(5.0, 85.0), random.range(5.0, 57.0)];
     [(); 3].map(|()| {
         let mut near = |m: f32| f64::from(m + random.range(-reach, reach));
@@ -209,20 +209,23 @@ fn lists_that_overflow_grow() {
         let triangles: Vec<[Vec3; 3]> =
             (0..9).map(|i| triangle.map(|(x, y)| unproject(DVec2::new(x, y), 2.0 + 0.5 * i as f32))).collect();
         let objects = [Object { opacity: 0.3, ..object(&triangles) }];
-        let expected = Drawing::of(device, Variant::NoVolume, &parameters(), &objects);
         let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
-        let small = Capacity { rows: HEIGHT, fragments: 100, sections: 1 };
-        let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &parameters(), &objects, Some(small)).unwrap();
-        let mut recorder = Recorder::new(device).unwrap();
-        let mut runs = 0;
-        loop {
-            runs += 1;
-            recorder.run(Mode::Plain, |frame| gas.record(frame, 0)).unwrap();
-            if gas.settle(&shaders).unwrap() {
-                break;
+        for (lists, most_runs) in [(Lists::Linked, 2), (Lists::Tiles, 3)] {
+            let parameters = Parameters { lists, ..parameters() };
+            let expected = Drawing::of(device, Variant::NoVolume, &parameters, &objects);
+            let small = Capacity { rows: HEIGHT, fragments: 100, sections: 1, chunks: 1 };
+            let mut gas = Gas::new(&shaders, "test", Variant::NoVolume, &parameters, &objects, Some(small)).unwrap();
+            let mut recorder = Recorder::new(device).unwrap();
+            let mut runs = 0;
+            loop {
+                runs += 1;
+                recorder.run(Mode::Plain, |frame| gas.record(frame, 0)).unwrap();
+                if gas.settle(&shaders).unwrap() {
+                    break;
+                }
             }
+            assert_eq!((runs, gas.demand(&shaders).unwrap()), (most_runs, expected.demand));
+            assert_eq!(gas.fragments(&shaders).unwrap(), expected.lists);
         }
-        assert_eq!((runs, gas.demand(&shaders).unwrap()), (2, expected.demand));
-        assert_eq!(gas.fragments(&shaders).unwrap(), expected.lists);
     });
 }

@@ -12,3 +12,4 @@ mod shadows;
 mod slab;
 mod surfaces;
 mod tables;
+mod tiles;

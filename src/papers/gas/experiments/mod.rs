@@ -1,5 +1,6 @@
 //! The tables and figures of the `gas` paper, with the paper's own numbers.
 
+mod lists;
 mod tables;
 mod trade;
 
@@ -25,7 +26,7 @@ type Context<'a> = experiment::Context<'a, Setup>;
 /// Options of the experiments.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Table sizes or steps of a sweep.
+    /// Table sizes, steps or sheets of a sweep.
     counts: Vec<u32>,
 }
 
@@ -34,8 +35,8 @@ pub fn options() -> Vec<Parameter<Options>> {
     vec![
         Parameter::new("counts", field!(Options.counts))
             .placeholder("N,N,..")
-            .help("Table sizes or steps of a sweep, comma-separated")
-            .default_text("16,32,64,96,128, or 10,20,40,80,160"),
+            .help("Table sizes, steps or sheets of a sweep, comma-separated")
+            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128"),
     ]
 }
 
@@ -78,6 +79,13 @@ pub fn all() -> Vec<Experiment<Setup>> {
             options: &[],
             refuses: &[("density", "this experiment compares two")],
             run: noise,
+        },
+        Experiment {
+            name: "lists",
+            help: "Linked lists, lists by tiles and a k-buffer behind 2 to 128 sheets: cost, and the difference of the pictures",
+            options: &["counts"],
+            refuses: &[("lists", "this experiment compares three")],
+            run: lists::run,
         },
         Experiment {
             name: "sequence",

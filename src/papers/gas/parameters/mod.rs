@@ -1,9 +1,12 @@
 //! The paper's parameters under its own names, each declared once.
 
+mod lists;
 pub mod placed_object;
 pub mod volumes;
 
 use glam::Vec3;
+
+pub use lists::Lists;
 
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
 use crate::field;
@@ -99,6 +102,8 @@ pub struct Parameters {
     pub frame_step: u32,
     /// Of noise, jitter and the fog's random table.
     pub seed: u64,
+    /// The way to the lists of fragments.
+    pub lists: Lists,
     /// Footprints by a geometry stage, where the device has one; else by the vertex stage.
     pub geometry_stage: bool,
     /// Most bytes of a buffer of the lists, at least 4096: the picture is done in bands of rows whose lists fit.
@@ -136,6 +141,7 @@ impl Default for Parameters {
             first_frame: 0,
             frame_step: 1,
             seed: 1,
+            lists: Lists::Linked,
             geometry_stage: true,
             list_bytes: None,
             width: 360,

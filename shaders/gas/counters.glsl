@@ -1,0 +1,12 @@
+// What a band wants of the lists, beyond their capacity as well, and the most that a band of any frame has wanted.
+
+layout(set = 0, binding = 11, std430) buffer Counters {
+    uint fragment_count;
+    uint section_count;
+    uint most_fragments; // in a band before
+    uint most_sections;
+    uint chunk_count; // of the triangles of tiles, see tiles.glsl
+    uint most_chunks;
+    uint most_of_tile; // triangles
+    uint is_ended; // 1 where a device ended a loop over them
+};

@@ -1,0 +1,317 @@
+// Section "Combining A-buffer and volume rendering techniques" and reference 2 (Carpenter): what a triangle leaves in a
+// pixel. Coverage is the area of the triangle inside the pixel, cut exactly; the mask has a bit for each of 4 x 8
+// sub-pixels whose centre lies inside. Both come from the triangle's edges, not from the rasteriser's samples. A sliver
+// that misses every centre takes the nearest sub-pixel at the opacity of its coverage. Depths are those of the corners
+// of the piece inside the pixel; the text's light attenuations are a buffer of their own, filled for visible fragments
+// by light-attenuation.
+
+
+const uint FULL = 0xffffffffu;
+
+// Twice the area of edge and point, positive on the left of from -> to. It is computed in one direction for both
+// triangles of an edge, so that a point is inside exactly one of them.
+float side_of(vec2 low, vec2 high, vec2 point) {
+    vec2 edge = high - low;
+    vec2 offset = point - low;
+    return edge.x * offset.y - edge.y * offset.x;
+}
+
+// Mean of y between 0 and 1 along a straight line from y0 to y1.
+float mean_within(float y0, float y1) {
+    float low = min(y0, y1);
+    float high = max(y0, y1);
+    if (low >= 1.0) {
+        return 1.0;
+    }
+    if (high <= 0.0) {
+        return 0.0;
+    }
+    float first = max(low, 0.0);
+    float last = min(high, 1.0);
+    float length = high - low;
+    if (length < 1.0e-6) {
+        return last;
+    }
+    return (max(high - 1.0, 0.0) + (last - first) * 0.5 * (first + last)) / length;
+}
+
+// Area between an edge and the side y = 0, inside the pixel; positive for edges to the left.
+float area_under(vec2 from, vec2 to) {
+    float x0 = clamp(from.x, 0.0, 1.0);
+    float x1 = clamp(to.x, 0.0, 1.0);
+    if (x0 == x1) {
+        return 0.0;
+    }
+    float slope = (to.y - from.y) / (to.x - from.x);
+    return (x0 - x1) * mean_within(from.y + (x0 - from.x) * slope, from.y + (x1 - from.x) * slope);
+}
+
+// The segment of an edge that lies inside the pixel, as fractions of the edge; empty (x > y) where none does.
+vec2 segment_inside(vec2 from, vec2 to) {
+    vec2 edge = to - from;
+    vec2 segment = vec2(0.0, 1.0);
+    for (uint axis = 0u; axis < 2u; axis++) {
+        float start = axis == 0u ? from.x : from.y;
+        float along = axis == 0u ? edge.x : edge.y;
+        if (abs(along) < 1.0e-12) {
+            if (start < 0.0 || start > 1.0) {
+                return vec2(1.0, 0.0);
+            }
+        } else {
+            float a = -start / along;
+            float b = (1.0 - start) / along;
+            segment = vec2(max(segment.x, min(a, b)), min(segment.y, max(a, b)));
+        }
+    }
+    return segment;
+}
+
+// Mean of 1 in even and -1 in odd intervals of length 1, over a width around a place.
+float mean_side(float place, float width) {
+    float side = mod(floor(place), 2.0) < 0.5 ? 1.0 : -1.0;
+    // Its integral goes up and down between 0 and 1.
+    float low = 1.0 - abs(mod(place - 0.5 * width, 2.0) - 1.0);
+    float high = 1.0 - abs(mod(place + 0.5 * width, 2.0) - 1.0);
+    return width < 1.0e-3 ? side : clamp((high - low) / width, -1.0, 1.0);
+}
+
+// A triangle as the pixels see it.
+struct Facet {
+    uint triangle;
+    uint object;
+    uvec3 corner;
+    vec3 eye; // in the object's space
+    vec3 p0;
+    vec3 p1;
+    vec3 p2;
+    vec3 facing; // twice its area long
+    float height; // of its plane over the eye, times that length
+    vec2 range; // depths of its nearest and its farthest corner
+};
+
+Facet facet_of(uint triangle) {
+    Facet facet;
+    facet.triangle = triangle;
+    facet.corner = triangles[triangle].vertices;
+    facet.object = triangles[triangle].object;
+    facet.eye = frame.eye - objects[facet.object].offset_m;
+    facet.p0 = vertices[facet.corner.x].position;
+    facet.p1 = vertices[facet.corner.y].position;
+    facet.p2 = vertices[facet.corner.z].position;
+    facet.facing = cross(facet.p1 - facet.p0, facet.p2 - facet.p0);
+    vec3 depths = vec3(dot(facet.p0 - facet.eye, frame.forward), dot(facet.p1 - facet.eye, frame.forward),
+        dot(facet.p2 - facet.eye, frame.forward));
+    vec2 range = vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
+    facet.range = max(range, vec2(frame.hither_m));
+    facet.height = dot(facet.facing, facet.p0 - facet.eye);
+    return facet;
+}
+
+// What a ray gains towards the triangle's plane, at a pixel's first corner, and its changes over a column and a row.
+vec3 slopes_at(Facet facet, vec2 origin) {
+    return vec3(dot(facet.facing, ray_direction(origin)), dot(facet.facing, frame.ray_per_column),
+        dot(facet.facing, frame.ray_per_row));
+}
+
+// Depth under a place of the pixel: where its ray meets the triangle's plane, but no nearer or farther than its
+// corners.
+float depth_at(Facet facet, vec3 slopes, vec2 place) {
+    float slope = slopes.x + slopes.y * place.x + slopes.z * place.y;
+    float depth = abs(slope) > 1.0e-12 ? facet.height / slope : facet.range.x;
+    return clamp(depth, facet.range.x, facet.range.y);
+}
+
+// Where the ray of a place of the picture meets the triangle's plane, from the eye.
+vec3 in_plane(Facet facet, vec2 pixel) {
+    vec3 ray = ray_direction(pixel);
+    float slope = dot(facet.facing, ray);
+    return abs(slope) > 1.0e-12 ? ray * (facet.height / slope) : ray * frame.yon_m;
+}
+
+// The piece of a triangle that is inside a pixel.
+struct Piece {
+    vec4 corners_inside; // distances of the pixel's corners from the nearest edge
+    uint mask;
+    bool is_beside; // it is empty
+    float area;
+    vec2 center; // sum of its corners: those of the pixel that are inside, and the ends of the edges' segments in it
+    float corner_count;
+    vec2 depths; // nearest and farthest
+};
+
+// Those of 4 sub-pixels that are not negative.
+uint signs_of(vec4 sides) {
+    uvec4 bits = uvec4(greaterThanEqual(sides, vec4(0.0))) * uvec4(1u, 2u, 4u, 8u);
+    return (bits.x | bits.y) | (bits.z | bits.w);
+}
+
+// The sub-pixels that are not on the right of an edge.
+uint left_of(vec2 low, vec2 high) {
+    vec2 edge = high - low;
+    vec4 across = edge.y * (vec4(0.125, 0.375, 0.625, 0.875) - low.x);
+    vec4 upper = edge.x * (vec4(0.0625, 0.1875, 0.3125, 0.4375) - low.y);
+    vec4 lower = edge.x * (vec4(0.5625, 0.6875, 0.8125, 0.9375) - low.y);
+    uint top = signs_of(upper.x - across) | signs_of(upper.y - across) << 4u | signs_of(upper.z - across) << 8u
+        | signs_of(upper.w - across) << 12u;
+    uint bottom = signs_of(lower.x - across) | signs_of(lower.y - across) << 4u | signs_of(lower.z - across) << 8u
+        | signs_of(lower.w - across) << 12u;
+    return top | bottom << 16u;
+}
+
+void cut_by_edge(inout Piece piece, vec2 a, vec2 b, bool is_positive) {
+    if (a == b) {
+        return; // the fourth edge of a triangle
+    }
+    bool forwards = a.x < b.x || (a.x == b.x && a.y < b.y);
+    vec2 low = forwards ? a : b;
+    vec2 high = forwards ? b : a;
+    float inwards = forwards == is_positive ? 1.0 : -1.0;
+    vec4 sides = inwards * vec4(side_of(low, high, vec2(0.0, 0.0)), side_of(low, high, vec2(1.0, 0.0)),
+        side_of(low, high, vec2(0.0, 1.0)), side_of(low, high, vec2(1.0, 1.0)));
+    piece.is_beside = piece.is_beside || max(max(sides.x, sides.y), max(sides.z, sides.w)) < 0.0;
+    piece.corners_inside = min(piece.corners_inside, sides);
+    if (min(min(sides.x, sides.y), min(sides.z, sides.w)) <= 0.0) {
+        // A point on the edge belongs to the triangle on one side of it.
+        uint left = left_of(low, high);
+        piece.mask &= inwards > 0.0 ? left : ~left;
+    }
+}
+
+void add_corner(inout Piece piece, Facet facet, vec3 slopes, vec2 place) {
+    float depth = depth_at(facet, slopes, place);
+    piece.depths = vec2(min(piece.depths.x, depth), max(piece.depths.y, depth));
+    piece.center += place;
+    piece.corner_count += 1.0;
+}
+
+void add_edge(inout Piece piece, Facet facet, vec3 slopes, vec2 a, vec2 b) {
+    if (a == b) {
+        return;
+    }
+    piece.area += area_under(a, b);
+    vec2 segment = segment_inside(a, b);
+    if (segment.x <= segment.y) {
+        add_corner(piece, facet, slopes, clamp(mix(a, b, segment.x), vec2(0.0), vec2(1.0)));
+        add_corner(piece, facet, slopes, clamp(mix(a, b, segment.y), vec2(0.0), vec2(1.0)));
+    }
+}
+
+const Piece WHOLE = Piece(vec4(1.0), FULL, false, 0.0, vec2(0.0), 0.0, vec2(1.0e30, 0.0));
+
+// Nearest and farthest depth of a triangle that fills the pixel.
+vec2 depths_of_full(Facet facet, vec2 origin) {
+    Piece piece = WHOLE;
+    vec3 slopes = slopes_at(facet, origin);
+    add_corner(piece, facet, slopes, vec2(0.0, 0.0));
+    add_corner(piece, facet, slopes, vec2(1.0, 0.0));
+    add_corner(piece, facet, slopes, vec2(0.0, 1.0));
+    add_corner(piece, facet, slopes, vec2(1.0, 1.0));
+    return piece.depths;
+}
+
+struct Fragment {
+    bool is_there;
+    Link link;
+    Surface surface;
+    Color color;
+};
+
+// The point that is shaded, with what the triangle's object is there.
+Fragment shaded(Facet facet, vec2 at, float depth, uint mask, float coverage, vec2 depths, vec2 center) {
+    vec3 point = facet.eye + ray_direction(at) * depth;
+    float twice_area = dot(facet.facing, facet.facing);
+    float weight_1 = clamp(dot(cross(point - facet.p0, facet.p2 - facet.p0), facet.facing) / max(twice_area, 1.0e-30),
+        0.0, 1.0);
+    float weight_2 = clamp(dot(cross(facet.p1 - facet.p0, point - facet.p0), facet.facing) / max(twice_area, 1.0e-30),
+        0.0, 1.0 - weight_1);
+    vec3 normal = vertices[facet.corner.x].normal * (1.0 - weight_1 - weight_2)
+        + vertices[facet.corner.y].normal * weight_1 + vertices[facet.corner.z].normal * weight_2;
+    if (dot(normal, normal) < 1.0e-12) {
+        normal = facet.facing;
+    }
+
+    vec3 color = objects[facet.object].color;
+    float edge_m = objects[facet.object].checker_edge_m;
+    if (edge_m > 0.0) {
+        // Half a square up, so that boards that lie on a border of squares have one colour.
+        vec3 at_square = point / edge_m + vec3(0.0, 0.5, 0.0);
+        vec3 across = in_plane(facet, at + vec2(0.5, 0.0)) - in_plane(facet, at - vec2(0.5, 0.0));
+        vec3 along = in_plane(facet, at + vec2(0.0, 0.5)) - in_plane(facet, at - vec2(0.0, 0.5));
+        vec3 width = min((abs(across) + abs(along)) / edge_m, vec3(1.0e3));
+        vec3 sides = vec3(mean_side(at_square.x, width.x), mean_side(at_square.y, width.y),
+            mean_side(at_square.z, width.z));
+        color = mix(objects[facet.object].checker_color, color, 0.5 + 0.5 * sides.x * sides.y * sides.z);
+    }
+    float opacity = objects[facet.object].opacity;
+    int texture_index = objects[facet.object].solid_texture;
+    if (texture_index >= 0) {
+        // Surface-defined gases: the solid texture is the surface's transparency.
+        opacity *= clamp(gas_density(uint(texture_index), point + objects[facet.object].offset_m), 0.0, 1.0);
+        vec2 ends_m = objects[facet.object].ends_m;
+        float fade_m = objects[facet.object].fade_m;
+        if (ends_m.x > 0.0) {
+            vec2 t = clamp((ends_m - abs(point.xz)) / max(fade_m, 1.0e-3), 0.0, 1.0);
+            opacity *= t.x * t.x * (3.0 - 2.0 * t.x) * t.y * t.y * (3.0 - 2.0 * t.y);
+        }
+        // What fades before the opaque surface behind it must not be one.
+        opacity = fade_m > 0.0 ? min(opacity, 0.9999) : opacity;
+    }
+    uint covered = mask;
+    if (mask == 0u) {
+        // Never opaque: it does not cover the sub-pixel whole, so that no tracing may end at it.
+        opacity *= min(coverage * 32.0, 0.99);
+        uvec2 nearest = min(uvec2(center * vec2(4.0, 8.0)), uvec2(3u, 7u));
+        covered = 1u << (nearest.y * 4u + nearest.x);
+    }
+
+    uint packed_opacity = uint(round(clamp(opacity, 0.0, 1.0) * 65535.0));
+    Fragment fragment;
+    fragment.is_there = packed_opacity != 0u; // else a hole in a surface-defined gas
+    fragment.link = Link(NONE, covered, depths.x, depths.y);
+    fragment.surface = Surface(pack_normal(normalize(normal)), facet.object, band.first_triangle + facet.triangle,
+        coverage);
+    fragment.color = Color(packHalf2x16(color.xy), packHalf2x16(vec2(color.z, 0.0)) | (packed_opacity << 16u));
+    return fragment;
+}
+
+// What a triangle whose polygon has these corners leaves in a pixel.
+Fragment fragment_of(Facet facet, vec4 ab, vec4 cd, vec2 origin) {
+    bool is_positive = signed_area(ab, cd) >= 0.0;
+    vec2 a = ab.xy - origin;
+    vec2 b = ab.zw - origin;
+    vec2 c = cd.xy - origin;
+    vec2 d = cd.zw - origin;
+    Piece piece = WHOLE;
+    cut_by_edge(piece, a, b, is_positive);
+    cut_by_edge(piece, b, c, is_positive);
+    cut_by_edge(piece, c, d, is_positive);
+    cut_by_edge(piece, d, a, is_positive);
+    vec4 inside = piece.corners_inside;
+    bool is_full = min(min(inside.x, inside.y), min(inside.z, inside.w)) > 0.0;
+    vec3 slopes = slopes_at(facet, origin);
+    if (inside.x >= 0.0) {
+        add_corner(piece, facet, slopes, vec2(0.0, 0.0));
+    }
+    if (inside.y >= 0.0) {
+        add_corner(piece, facet, slopes, vec2(1.0, 0.0));
+    }
+    if (inside.z >= 0.0) {
+        add_corner(piece, facet, slopes, vec2(0.0, 1.0));
+    }
+    if (inside.w >= 0.0) {
+        add_corner(piece, facet, slopes, vec2(1.0, 1.0));
+    }
+    if (!is_full) {
+        add_edge(piece, facet, slopes, a, b);
+        add_edge(piece, facet, slopes, b, c);
+        add_edge(piece, facet, slopes, c, d);
+        add_edge(piece, facet, slopes, d, a);
+    }
+    float coverage = is_full ? 1.0 : clamp(is_positive ? piece.area : -piece.area, 0.0, 1.0);
+    vec2 center = piece.center / max(piece.corner_count, 1.0);
+    Fragment fragment = shaded(facet, origin + center, depth_at(facet, slopes, center), piece.mask, coverage,
+        piece.depths, center);
+    fragment.is_there = fragment.is_there && !piece.is_beside && coverage > 0.0 && piece.corner_count > 0.0
+        && piece.depths.x <= frame.yon_m;
+    return fragment;
+}

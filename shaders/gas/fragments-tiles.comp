@@ -1,0 +1,149 @@
+#version 450
+
+// What the triangles of each tile leave in its pixels, a thread a pixel that goes through those that touch it. Behind
+// the nearest one that is opaque and fills the pixel only the next fragment is kept: a fraction of it may show where
+// depths overlap. So the lists are those of `linked` up to there. Each thread adds to its own list; slots are taken for
+// all of a tile at once.
+
+#include "gas/tile-pixels.glsl"
+
+shared uint wanted_of[64];
+shared uint wanted_of_row[8];
+shared uint first_of_tile;
+
+void main() {
+    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
+    uint lane = gl_LocalInvocationID.y * TILE + gl_LocalInvocationID.x;
+    bool is_mine = is_in_band(pixel);
+    uint list = is_mine ? list_of(pixel) : 0u;
+    vec2 origin = vec2(pixel);
+
+    Chunks chunks = chunks_of_call(tile_of_group(), is_mine);
+    uint from = chunks.from;
+    uint to = chunks.to;
+
+    // The nearest full cover.
+    float cover_m = 1.0e30;
+    uint touching = 0u;
+    uint chunk = from;
+    uint bits = 0u;
+    while (bits != 0u || chunk < to) {
+        while (bits == 0u && chunk < to) {
+            uvec2 pixels = tile_pixels[chunk * 64u + lane];
+            touching += uint(bitCount(pixels.x));
+            bits = pixels.y;
+            chunk++;
+        }
+        if (bits != 0u) {
+            uint at = (chunk - 1u) * CHUNK + uint(findLSB(bits));
+            bits &= bits - 1u;
+            vec2 depths = depths_of_full(facet_of(tile_triangles[at].x), origin);
+            cover_m = depths.x <= frame.yon_m ? min(cover_m, 0.5 * (depths.x + depths.y)) : cover_m;
+        }
+    }
+    bool is_ended_here = bits != 0u || chunk < to;
+    // What is farther is behind it, however its depth was rounded.
+    float bound_m = cover_m * (1.0 + 1.0e-6);
+
+    // The slots that are wanted: of all that may be nearer, and one more.
+    uint nearer = 0u;
+    chunk = cover_m < 1.0e30 ? from : to;
+    bits = 0u;
+    while (bits != 0u || chunk < to) {
+        while (bits == 0u && chunk < to) {
+            bits = tile_pixels[chunk * 64u + lane].x;
+            chunk++;
+        }
+        if (bits != 0u) {
+            uint at = (chunk - 1u) * CHUNK + uint(findLSB(bits));
+            bits &= bits - 1u;
+            nearer += uint(uintBitsToFloat(tile_triangles[at].y) <= bound_m);
+        }
+    }
+    is_ended_here = is_ended_here || bits != 0u || chunk < to;
+    uint wanted = cover_m < 1.0e30 ? min(nearer + 1u, touching) : touching;
+    wanted_of[lane] = wanted;
+    barrier();
+    if (lane < TILE) {
+        uint sum = 0u;
+        for (uint i = 0u; i < TILE; i++) {
+            sum += wanted_of[lane * TILE + i];
+        }
+        wanted_of_row[lane] = sum;
+    }
+    barrier();
+    uint before = 0u;
+    uint of_tile = 0u;
+    for (uint i = 0u; i < TILE; i++) {
+        uint of_row = wanted_of_row[i];
+        of_tile += of_row;
+        before += i < gl_LocalInvocationID.y ? of_row : 0u;
+        before += i < gl_LocalInvocationID.x ? wanted_of[gl_LocalInvocationID.y * TILE + i] : 0u;
+    }
+    if (lane == 0u) {
+        first_of_tile = of_tile > 0u ? atomicAdd(fragment_count, of_tile) : 0u;
+    }
+    barrier();
+    uint first = first_of_tile + before;
+    // What has no room is counted: the host grows the buffers and repeats the run.
+    bool has_room = first_of_tile + of_tile <= frame.fragment_capacity;
+
+    uint head = is_mine ? heads[list] : NONE;
+    uint used = 0u;
+    uint behind = NONE; // the nearest fragment behind the cover
+    float behind_m = 1.0e30;
+    uint behind_object = 0u;
+    uint behind_triangle = 0u;
+    chunk = has_room ? from : to;
+    bits = 0u;
+    while (bits != 0u || chunk < to) {
+        uint triangle = NONE;
+        while (triangle == NONE && (bits != 0u || chunk < to)) {
+            if (bits == 0u) {
+                bits = tile_pixels[chunk * 64u + lane].x;
+                chunk++;
+            }
+            if (bits != 0u) {
+                uvec2 next = tile_triangles[(chunk - 1u) * CHUNK + uint(findLSB(bits))];
+                bits &= bits - 1u;
+                float nearest_m = uintBitsToFloat(next.y);
+                triangle = nearest_m <= bound_m || nearest_m <= behind_m ? next.x : NONE;
+            }
+        }
+        if (triangle != NONE) {
+            Fragment fragment = fragment_in(triangle, origin);
+            float depth_m = mean_depth(fragment.link);
+            bool is_behind = depth_m > bound_m;
+            uint object = fragment.surface.object;
+            uint number = fragment.surface.triangle;
+            bool is_nearest = depth_m < behind_m || (depth_m == behind_m && (object < behind_object
+                || (object == behind_object && number < behind_triangle)));
+            if (fragment.is_there && (!is_behind || is_nearest)) {
+                uint slot = is_behind ? first + wanted - 1u : first + used;
+                links[slot] = Link(head, fragment.link.mask, fragment.link.near_m, fragment.link.far_m);
+                surfaces[slot] = fragment.surface;
+                colors[slot] = fragment.color;
+                if (is_behind) {
+                    behind = slot;
+                    behind_m = depth_m;
+                    behind_object = object;
+                    behind_triangle = number;
+                } else {
+                    head = slot;
+                    used++;
+                }
+            }
+        }
+    }
+    is_ended_here = is_ended_here || bits != 0u || chunk < to;
+    if (behind != NONE) {
+        links[behind].next = head;
+        head = behind;
+    }
+    if (is_mine) {
+        heads[list] = head;
+    }
+    if (is_ended_here) {
+        is_ended = 1u;
+    }
+}

@@ -1,0 +1,43 @@
+#version 450
+
+// The triangles of each tile in its chunks, a thread a triangle. Their order in a tile follows from nothing: what they
+// leave in a pixel is sorted.
+
+layout(local_size_x = 64) in;
+
+#include "gas/counts.glsl"
+#include "gas/footprint.glsl"
+#include "gas/tiles.glsl"
+#include "gas/tile-range.glsl"
+
+layout(set = 0, binding = 23, std430) buffer TileTriangles {
+    uvec2 tile_triangles[]; // of each its number in the piece, and the depth of its nearest corner
+};
+
+layout(set = 0, binding = 24, std430) buffer ChunkTiles {
+    uint chunk_tiles[]; // the tile of each chunk
+};
+
+void main() {
+    uint triangle = triangle_of(gl_GlobalInvocationID.xy);
+    if (triangle >= band.triangle_count) {
+        return;
+    }
+    Footprint seen = footprint_of(triangle);
+    TileRange range = tile_range(seen);
+    Edges edges = edges_in(range, seen);
+    uint count = range.size.x * range.size.y;
+    for (uint at = 0u; at < count; at++) {
+        if (touches(edges, place_of(range, at), float(TILE))) {
+            uint tile = tile_of(range, at);
+            uint slot = tiles[2u * tile + 1u] * CHUNK + atomicAdd(tiles[2u * tile], 1u);
+            // Another rounding than that of the count could at most leave a triangle out.
+            if (slot < min(counts.chunks, tiles[2u * tile + 3u]) * CHUNK) {
+                tile_triangles[slot] = uvec2(triangle, floatBitsToUint(seen.nearest_m));
+                if (slot % CHUNK == 0u) {
+                    chunk_tiles[slot / CHUNK] = tile;
+                }
+            }
+        }
+    }
+}

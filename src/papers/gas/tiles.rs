@@ -1,0 +1,199 @@
+//! `tiles-*` and their `fragments`: the triangles of tiles of 8 x 8 pixels, and what they leave in each pixel.
+
+use std::sync::Arc;
+
+use super::a_buffer::{ABuffer, read};
+use super::band::{Band, BandConstants};
+use super::capacity::Capacity;
+use super::context::Context;
+use super::parameters::{Lists, Parameters};
+use super::pieces::Piece;
+use super::scene_buffers::SceneBuffers;
+use crate::gpu::pass::PassBuilder;
+use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
+
+/// Pixels along a tile's side.
+pub const TILE: u32 = 8;
+/// Bytes of a chunk in its widest buffer: two words a pixel.
+pub const CHUNK_BYTES: u64 = 8 * (TILE * TILE) as u64;
+/// Triangles of a chunk.
+const CHUNK: u32 = 32;
+/// Chunks of a tile that a dispatch of `fragments` does.
+const CHUNKS_A_CALL: u32 = 32;
+/// Threads of a row of a dispatch with a thread a triangle.
+const TRIANGLES_A_ROW: u32 = 1 << 16;
+/// Chunks of a row of a dispatch with a workgroup a chunk.
+const CHUNKS_A_ROW: u32 = 1 << 15;
+/// Bytes of a triangle in a chunk.
+const TRIANGLE_BYTES: u64 = 8;
+/// Bytes of a tile's count and place.
+const TILE_BYTES: u64 = 8;
+
+/// The passes that make the lists by tiles.
+pub struct Tiles {
+    chunks: u32,
+    /// Of each tile its triangles and its first chunk.
+    tiles: Arc<Buffer>,
+    /// Of each place in a chunk the number of a triangle, and the depth of its nearest corner.
+    triangles: Arc<Buffer>,
+    empty: Pass,
+    sum: Pass,
+    pieces: Vec<PieceOfTiles>,
+}
+
+/// The passes of a piece of the triangles.
+struct PieceOfTiles {
+    first_triangle: u32,
+    triangle_count: u32,
+    count: Pass,
+    fill: Pass,
+    pixels: Pass,
+    fragments: Pass,
+}
+
+/// Tiles of a band of full height.
+fn tile_count(parameters: &Parameters, capacity: Capacity) -> u64 {
+    u64::from(parameters.width.div_ceil(TILE)) * u64::from(capacity.rows.div_ceil(TILE))
+}
+
+/// Bytes of the buffers of tiles; 0 without.
+pub fn bytes(parameters: &Parameters, capacity: Capacity) -> f64 {
+    let of_chunk = CHUNK_BYTES + u64::from(CHUNK) * TRIANGLE_BYTES + size_of::<u32>() as u64;
+    let tiles = TILE_BYTES * (tile_count(parameters, capacity) + 1);
+    match parameters.lists {
+        Lists::Linked => 0.0,
+        Lists::Tiles | Lists::Nearest(_) => (of_chunk * u64::from(capacity.chunks) + tiles) as f64,
+    }
+}
+
+/// Dispatches of `fragments` for tiles of up to so many triangles.
+pub fn calls(most_of_tile: u32) -> u32 {
+    most_of_tile.div_ceil(CHUNK).div_ceil(CHUNKS_A_CALL).max(1)
+}
+
+impl Tiles {
+    /// # Errors
+    /// [`Error::Limit`] for more chunks than the device binds; what Vulkan answers.
+    pub fn new(context: &Context<'_>, scene: &SceneBuffers, lists: &ABuffer) -> Result<Self, Error> {
+        let capacity = lists.capacity;
+        let chunks = u64::from(capacity.chunks);
+        let tiles = context.storage::<[u32; 2]>("tiles", tile_count(context.parameters, capacity) + 1)?;
+        let triangles = context.storage::<[u32; 2]>("tile-triangles", chunks * u64::from(CHUNK))?;
+        let chunk_tiles = context.storage::<u32>("chunk-tiles", chunks)?;
+        let pixels = context.storage::<[u32; 2]>("tile-pixels", chunks * u64::from(TILE * TILE))?;
+        let named = |name, shader| {
+            let pass = Pass::compute(name, "A-buffer", shader).with("frame", &scene.frame).with("Tiles", &tiles);
+            pass.constants::<BandConstants>()
+        };
+        let of_triangles = |name, shader| {
+            named(name, shader).with("Objects", &scene.objects).with("TileTriangles", &triangles)
+        };
+        let buffers = [("ChunkTiles", &chunk_tiles), ("TilePixels", &pixels), ("Counters", &lists.counters)];
+        let [chunk_tiles, tile_pixels, counters] = buffers;
+        let with = |pass: PassBuilder, (name, buffer): (&'static str, &Arc<Buffer>)| pass.with(name, buffer);
+        let mut pieces: Vec<PieceOfTiles> = Vec::with_capacity(scene.pieces.len());
+        for piece in &scene.pieces {
+            let passes = match pieces.first() {
+                Some(first) => first.rebound(context, piece)?,
+                None => {
+                    let of_piece = |pass: PassBuilder| {
+                        pass.with("Vertices", &piece.vertices).with("Triangles", &piece.triangles)
+                    };
+                    let count = of_piece(named("tiles-count", "gas/tiles-count.comp"))
+                        .with("Objects", &scene.objects);
+                    let fill = of_piece(of_triangles("tiles-fill", "gas/tiles-fill.comp"))
+                        .with("counts", &scene.counts);
+                    let pixels = of_piece(of_triangles("tiles-pixels", "gas/tiles-pixels.comp"))
+                        .with("counts", &scene.counts);
+                    let shader = match context.parameters.lists.nearest() {
+                        Some(_) => "gas/fragments-nearest.comp",
+                        None => "gas/fragments-tiles.comp",
+                    };
+                    let fragments = of_piece(of_triangles("fragments", shader))
+                        .with("counts", &scene.counts)
+                        .with("Volumes", &scene.volumes)
+                        .with("Offsets", &scene.offsets)
+                        .with("Heads", &lists.heads)
+                        .with("Links", &lists.links)
+                        .with("Surfaces", &lists.surfaces)
+                        .with("Colors", &lists.colors);
+                    PieceOfTiles {
+                        first_triangle: piece.first_triangle,
+                        triangle_count: piece.triangle_count,
+                        count: count.build(context.shaders)?,
+                        fill: with(fill, chunk_tiles).build(context.shaders)?,
+                        pixels: with(with(with(pixels, chunk_tiles), tile_pixels), counters).build(context.shaders)?,
+                        fragments: with(with(fragments, tile_pixels), counters).build(context.shaders)?,
+                    }
+                }
+            };
+            pieces.push(passes);
+        }
+        let empty = named("tiles-empty", "gas/tiles-empty.comp").build(context.shaders)?;
+        let sum = with(named("tiles-sum", "gas/tiles-sum.comp"), counters).build(context.shaders)?;
+        Ok(Tiles { chunks: capacity.chunks, tiles, triangles, empty, sum, pieces })
+    }
+
+    /// The triangles of each tile of the last piece of the last band, by their numbers in the piece.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
+    pub fn read(&self, shaders: &ShaderLibrary) -> Result<Vec<Vec<u32>>, Error> {
+        let tiles = read::<[u32; 2]>(shaders, &self.tiles)?;
+        let triangles = read::<[u32; 2]>(shaders, &self.triangles)?;
+        let of_tile = |&[count, first_chunk]: &[u32; 2]| {
+            let places = triangles.iter().skip((first_chunk * CHUNK) as usize).take(count as usize);
+            places.map(|[triangle, _]| *triangle).collect()
+        };
+        Ok(tiles.iter().take(tiles.len().saturating_sub(1)).map(of_tile).collect())
+    }
+
+    /// Adds the fragments of a band to its lists, piece by piece.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn record(&self, frame: &mut Frame<'_>, band: Band, calls: u32) -> Result<(), Error> {
+        let rows = |count: u32, of: u32| (count.min(of), count.div_ceil(of));
+        for piece in &self.pieces {
+            let constants = band.constants_of_piece(piece.first_triangle, piece.triangle_count);
+            let (x, y) = band.tiles(TILE);
+            frame.compute(&self.empty, |dispatch| {
+                dispatch.constants(&constants).threads(x, y, 1);
+            })?;
+            let (x, y) = rows(piece.triangle_count, TRIANGLES_A_ROW);
+            frame.compute(&piece.count, |dispatch| {
+                dispatch.constants(&constants).threads(x, y, 1);
+            })?;
+            frame.compute(&self.sum, |dispatch| {
+                dispatch.constants(&constants).threads(1, 1, 1);
+            })?;
+            frame.compute(&piece.fill, |dispatch| {
+                dispatch.constants(&constants).threads(x, y, 1);
+            })?;
+            let (x, y) = rows(self.chunks, CHUNKS_A_ROW);
+            frame.compute(&piece.pixels, |dispatch| {
+                dispatch.constants(&constants).threads(x * CHUNK, y, 1);
+            })?;
+            band.dispatch_piece(constants, calls, frame, &piece.fragments)?;
+        }
+        Ok(())
+    }
+}
+
+impl PieceOfTiles {
+    /// The same passes for another piece.
+    fn rebound(&self, context: &Context<'_>, piece: &Piece) -> Result<Self, Error> {
+        let rebound = |pass: &Pass| {
+            let pass = pass.rebind().with("Vertices", &piece.vertices).with("Triangles", &piece.triangles);
+            pass.build(context.shaders)
+        };
+        Ok(PieceOfTiles {
+            first_triangle: piece.first_triangle,
+            triangle_count: piece.triangle_count,
+            count: rebound(&self.count)?,
+            fill: rebound(&self.fill)?,
+            pixels: rebound(&self.pixels)?,
+            fragments: rebound(&self.fragments)?,
+        })
+    }
+}
