@@ -9,4 +9,6 @@ layout(set = 0, binding = 11, std430) buffer Counters {
     uint most_chunks;
     uint most_of_tile; // triangles
     uint is_ended; // 1 where a device ended a loop over them
+    uint lost_pixels; // of a frame so far, see fragments-nearest.comp
+    uint most_lost_pixels; // of a frame before
 };

@@ -23,5 +23,7 @@ void main() {
         most_sections = max(most_sections, section_count);
         fragment_count = 0u;
         section_count = 0u;
+        most_lost_pixels = max(most_lost_pixels, lost_pixels);
+        lost_pixels *= min(band.first_row, 1u);
     }
 }

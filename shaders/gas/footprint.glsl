@@ -11,7 +11,6 @@ struct Footprint {
     vec4 ab; // the polygon's corners, pixels; of a triangle the last two are one
     vec4 cd;
     vec4 box; // pixels; empty where the triangle is not seen
-    float nearest_m; // depth of its nearest corner
     uint corners; // 3 or 4, and 0 where it is not seen
 };
 
@@ -50,7 +49,6 @@ Footprint polygon_of(vec3 a, vec3 b, vec3 c) {
     seen.corners = count == 3u ? 0u : (count == 1u ? 4u : 3u);
     seen.ab = vec4(to_pixel(p), to_pixel(second));
     seen.cd = vec4(to_pixel(third), to_pixel(last));
-    seen.nearest_m = max(min(a.z, min(b.z, c.z)), hither);
     seen.box = vec4(0.0);
     return seen;
 }
@@ -60,7 +58,7 @@ float signed_area(vec4 ab, vec4 cd) {
     vec2 a = ab.zw - ab.xy;
     vec2 b = cd.xy - ab.xy;
     vec2 c = cd.zw - ab.xy;
-    return a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x;
+    return (a.x * b.y - a.y * b.x) + (b.x * c.y - b.y * c.x);
 }
 
 Footprint footprint_of(uint triangle) {

@@ -5,6 +5,7 @@
 // of the piece inside the pixel; the text's light attenuations are a buffer of their own, filled for visible fragments
 // by light-attenuation.
 
+#include "gas/facet.glsl"
 
 const uint FULL = 0xffffffffu;
 
@@ -75,48 +76,10 @@ float mean_side(float place, float width) {
     return width < 1.0e-3 ? side : clamp((high - low) / width, -1.0, 1.0);
 }
 
-// A triangle as the pixels see it.
-struct Facet {
-    uint triangle;
-    uint object;
-    uvec3 corner;
-    vec3 eye; // in the object's space
-    vec3 p0;
-    vec3 p1;
-    vec3 p2;
-    vec3 facing; // twice its area long
-    float height; // of its plane over the eye, times that length
-    vec2 range; // depths of its nearest and its farthest corner
-};
-
-Facet facet_of(uint triangle) {
-    Facet facet;
-    facet.triangle = triangle;
-    facet.corner = triangles[triangle].vertices;
-    facet.object = triangles[triangle].object;
-    facet.eye = frame.eye - objects[facet.object].offset_m;
-    facet.p0 = vertices[facet.corner.x].position;
-    facet.p1 = vertices[facet.corner.y].position;
-    facet.p2 = vertices[facet.corner.z].position;
-    facet.facing = cross(facet.p1 - facet.p0, facet.p2 - facet.p0);
-    vec3 depths = vec3(dot(facet.p0 - facet.eye, frame.forward), dot(facet.p1 - facet.eye, frame.forward),
-        dot(facet.p2 - facet.eye, frame.forward));
-    vec2 range = vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
-    facet.range = max(range, vec2(frame.hither_m));
-    facet.height = dot(facet.facing, facet.p0 - facet.eye);
-    return facet;
-}
-
-// What a ray gains towards the triangle's plane, at a pixel's first corner, and its changes over a column and a row.
-vec3 slopes_at(Facet facet, vec2 origin) {
-    return vec3(dot(facet.facing, ray_direction(origin)), dot(facet.facing, frame.ray_per_column),
-        dot(facet.facing, frame.ray_per_row));
-}
-
-// Depth under a place of the pixel: where its ray meets the triangle's plane, but no nearer or farther than its
+// Depth under a place of the picture: where its ray meets the triangle's plane, but no nearer or farther than its
 // corners.
-float depth_at(Facet facet, vec3 slopes, vec2 place) {
-    float slope = slopes.x + slopes.y * place.x + slopes.z * place.y;
+float depth_at(Facet facet, vec2 pixel) {
+    float slope = dot(facet.facing, ray_direction(pixel));
     float depth = abs(slope) > 1.0e-12 ? facet.height / slope : facet.range.x;
     return clamp(depth, facet.range.x, facet.range.y);
 }
@@ -177,22 +140,22 @@ void cut_by_edge(inout Piece piece, vec2 a, vec2 b, bool is_positive) {
     }
 }
 
-void add_corner(inout Piece piece, Facet facet, vec3 slopes, vec2 place) {
-    float depth = depth_at(facet, slopes, place);
+void add_corner(inout Piece piece, Facet facet, vec2 origin, vec2 place) {
+    float depth = depth_at(facet, origin + place);
     piece.depths = vec2(min(piece.depths.x, depth), max(piece.depths.y, depth));
     piece.center += place;
     piece.corner_count += 1.0;
 }
 
-void add_edge(inout Piece piece, Facet facet, vec3 slopes, vec2 a, vec2 b) {
+void add_edge(inout Piece piece, Facet facet, vec2 origin, vec2 a, vec2 b) {
     if (a == b) {
         return;
     }
     piece.area += area_under(a, b);
     vec2 segment = segment_inside(a, b);
     if (segment.x <= segment.y) {
-        add_corner(piece, facet, slopes, clamp(mix(a, b, segment.x), vec2(0.0), vec2(1.0)));
-        add_corner(piece, facet, slopes, clamp(mix(a, b, segment.y), vec2(0.0), vec2(1.0)));
+        add_corner(piece, facet, origin, clamp(mix(a, b, segment.x), vec2(0.0), vec2(1.0)));
+        add_corner(piece, facet, origin, clamp(mix(a, b, segment.y), vec2(0.0), vec2(1.0)));
     }
 }
 
@@ -201,11 +164,10 @@ const Piece WHOLE = Piece(vec4(1.0), FULL, false, 0.0, vec2(0.0), 0.0, vec2(1.0e
 // Nearest and farthest depth of a triangle that fills the pixel.
 vec2 depths_of_full(Facet facet, vec2 origin) {
     Piece piece = WHOLE;
-    vec3 slopes = slopes_at(facet, origin);
-    add_corner(piece, facet, slopes, vec2(0.0, 0.0));
-    add_corner(piece, facet, slopes, vec2(1.0, 0.0));
-    add_corner(piece, facet, slopes, vec2(0.0, 1.0));
-    add_corner(piece, facet, slopes, vec2(1.0, 1.0));
+    add_corner(piece, facet, origin, vec2(0.0, 0.0));
+    add_corner(piece, facet, origin, vec2(1.0, 0.0));
+    add_corner(piece, facet, origin, vec2(0.0, 1.0));
+    add_corner(piece, facet, origin, vec2(1.0, 1.0));
     return piece.depths;
 }
 
@@ -288,28 +250,27 @@ Fragment fragment_of(Facet facet, vec4 ab, vec4 cd, vec2 origin) {
     cut_by_edge(piece, d, a, is_positive);
     vec4 inside = piece.corners_inside;
     bool is_full = min(min(inside.x, inside.y), min(inside.z, inside.w)) > 0.0;
-    vec3 slopes = slopes_at(facet, origin);
     if (inside.x >= 0.0) {
-        add_corner(piece, facet, slopes, vec2(0.0, 0.0));
+        add_corner(piece, facet, origin, vec2(0.0, 0.0));
     }
     if (inside.y >= 0.0) {
-        add_corner(piece, facet, slopes, vec2(1.0, 0.0));
+        add_corner(piece, facet, origin, vec2(1.0, 0.0));
     }
     if (inside.z >= 0.0) {
-        add_corner(piece, facet, slopes, vec2(0.0, 1.0));
+        add_corner(piece, facet, origin, vec2(0.0, 1.0));
     }
     if (inside.w >= 0.0) {
-        add_corner(piece, facet, slopes, vec2(1.0, 1.0));
+        add_corner(piece, facet, origin, vec2(1.0, 1.0));
     }
     if (!is_full) {
-        add_edge(piece, facet, slopes, a, b);
-        add_edge(piece, facet, slopes, b, c);
-        add_edge(piece, facet, slopes, c, d);
-        add_edge(piece, facet, slopes, d, a);
+        add_edge(piece, facet, origin, a, b);
+        add_edge(piece, facet, origin, b, c);
+        add_edge(piece, facet, origin, c, d);
+        add_edge(piece, facet, origin, d, a);
     }
     float coverage = is_full ? 1.0 : clamp(is_positive ? piece.area : -piece.area, 0.0, 1.0);
     vec2 center = piece.center / max(piece.corner_count, 1.0);
-    Fragment fragment = shaded(facet, origin + center, depth_at(facet, slopes, center), piece.mask, coverage,
+    Fragment fragment = shaded(facet, origin + center, depth_at(facet, origin + center), piece.mask, coverage,
         piece.depths, center);
     fragment.is_there = fragment.is_there && !piece.is_beside && coverage > 0.0 && piece.corner_count > 0.0
         && piece.depths.x <= frame.yon_m;

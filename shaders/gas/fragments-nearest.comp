@@ -1,9 +1,17 @@
 #version 450
 
 // The nearest fragments of each pixel alone (a k-buffer): those that the triangles of its tile leave, each put into its
-// place among those that are kept. What is behind the last place is lost.
+// place among those that are kept. What is behind the last place is lost. Pixels are counted where that may show: where
+// the opaque fragments before the last place, behind each of which the next one is kept, do not cover all sub-pixels.
 
 #include "gas/tile-pixels.glsl"
+
+layout(set = 0, binding = 26, std430) buffer Losses {
+    uint losses[]; // of each pixel LOST and SHOWS, or 0
+};
+
+const uint LOST = 1u; // a fragment found no place
+const uint SHOWS = 2u; // the pixel is counted
 
 bool is_before(Link link, Surface surface, uint slot) {
     float depth_m = mean_depth(link);
@@ -35,6 +43,9 @@ void main() {
         kept++;
     }
     float last_m = kept == counts.nearest ? mean_depth(links[first + kept - 1u]) : 1.0e30;
+    // Nothing is lost before the first dispatch of a band.
+    uint before = is_mine ? losses[list] * min(band.first_triangle + band.call, 1u) : 0u;
+    bool has_lost = (before & LOST) != 0u;
     uint bits = 0u;
     while (bits != 0u || chunk < chunks.to) {
         uint triangle = NONE;
@@ -46,13 +57,16 @@ void main() {
             if (bits != 0u) {
                 uvec2 next = tile_triangles[(chunk - 1u) * CHUNK + uint(findLSB(bits))];
                 bits &= bits - 1u;
-                triangle = uintBitsToFloat(next.y) <= last_m ? next.x : NONE;
+                // However its depth was rounded; and anything until the first loss is known.
+                bool may_count = !has_lost || uintBitsToFloat(next.y) <= last_m * (1.0 + 1.0e-6);
+                triangle = may_count ? next.x : NONE;
             }
         }
         if (triangle != NONE) {
             Fragment fragment = fragment_in(triangle, vec2(pixel));
             bool is_full = kept == counts.nearest;
             uint slot = first + min(kept, counts.nearest - 1u); // of the last place
+            has_lost = has_lost || (is_full && fragment.is_there);
             if (fragment.is_there && (!is_full || is_before(fragment.link, fragment.surface, slot))) {
                 kept = min(kept + 1u, counts.nearest);
                 while (slot > first && is_before(fragment.link, fragment.surface, slot - 1u)) {
@@ -68,7 +82,7 @@ void main() {
             }
         }
     }
-    if (bits != 0u || chunk < chunks.to) {
+    if (bits != 0u || chunk < chunks.to || is_cut) {
         is_ended = 1u;
     }
     for (uint i = 0u; i < kept; i++) {
@@ -76,5 +90,17 @@ void main() {
     }
     if (kept > 0u) {
         heads[list] = first;
+    }
+    uint covered = 0u;
+    for (uint i = 1u; i < kept; i++) {
+        uint slot = first + i - 1u;
+        covered |= opacity_of(colors[slot]) >= 1.0 ? links[slot].mask : 0u;
+    }
+    bool shows = has_lost && covered != FULL;
+    if (shows != ((before & SHOWS) != 0u)) {
+        atomicAdd(lost_pixels, shows ? 1u : 0xffffffffu);
+    }
+    if (is_mine) {
+        losses[list] = (has_lost ? LOST : 0u) | (shows ? SHOWS : 0u);
     }
 }

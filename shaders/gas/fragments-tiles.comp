@@ -143,7 +143,7 @@ void main() {
     if (is_mine) {
         heads[list] = head;
     }
-    if (is_ended_here) {
+    if (is_ended_here || is_cut) {
         is_ended = 1u;
     }
 }

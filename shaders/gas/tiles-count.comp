@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 #include "gas/footprint.glsl"
 #include "gas/tiles.glsl"
 #include "gas/tile-range.glsl"
+#include "gas/counters.glsl"
 
 void main() {
     uint triangle = triangle_of(gl_GlobalInvocationID.xy);
@@ -17,9 +18,13 @@ void main() {
     TileRange range = tile_range(seen);
     Edges edges = edges_in(range, seen);
     uint count = range.size.x * range.size.y;
-    for (uint at = 0u; at < count; at++) {
+    uint at = 0u;
+    for (; at < count; at++) {
         if (touches(edges, place_of(range, at), float(TILE))) {
             atomicAdd(tiles[2u * tile_of(range, at)], 1u);
         }
+    }
+    if (at < count) {
+        is_ended = 1u;
     }
 }

@@ -9,6 +9,8 @@ layout(local_size_x = 64) in;
 #include "gas/footprint.glsl"
 #include "gas/tiles.glsl"
 #include "gas/tile-range.glsl"
+#include "gas/counters.glsl"
+#include "gas/facet.glsl"
 
 layout(set = 0, binding = 23, std430) buffer TileTriangles {
     uvec2 tile_triangles[]; // of each its number in the piece, and the depth of its nearest corner
@@ -27,17 +29,22 @@ void main() {
     TileRange range = tile_range(seen);
     Edges edges = edges_in(range, seen);
     uint count = range.size.x * range.size.y;
-    for (uint at = 0u; at < count; at++) {
+    float nearest_m = facet_of(triangle).range.x;
+    uint at = 0u;
+    for (; at < count; at++) {
         if (touches(edges, place_of(range, at), float(TILE))) {
             uint tile = tile_of(range, at);
             uint slot = tiles[2u * tile + 1u] * CHUNK + atomicAdd(tiles[2u * tile], 1u);
             // Another rounding than that of the count could at most leave a triangle out.
             if (slot < min(counts.chunks, tiles[2u * tile + 3u]) * CHUNK) {
-                tile_triangles[slot] = uvec2(triangle, floatBitsToUint(seen.nearest_m));
+                tile_triangles[slot] = uvec2(triangle, floatBitsToUint(nearest_m));
                 if (slot % CHUNK == 0u) {
                     chunk_tiles[slot / CHUNK] = tile;
                 }
             }
         }
+    }
+    if (at < count) {
+        is_ended = 1u;
     }
 }

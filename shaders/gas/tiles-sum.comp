@@ -26,11 +26,13 @@ void main() {
     uint to = min(from + each, count);
     uint own = 0u;
     uint largest = 0u;
-    for (uint tile = from; tile < to; tile++) {
+    uint tile = from;
+    for (; tile < to; tile++) {
         uint size = tiles[2u * tile];
         own += (size + CHUNK - 1u) / CHUNK;
         largest = max(largest, size);
     }
+    bool is_ended_here = tile < to;
     sums[lane] = own;
     most[lane] = largest;
     barrier();
@@ -47,11 +49,14 @@ void main() {
         barrier();
     }
     uint first = sums[lane] - own;
-    for (uint tile = from; tile < to; tile++) {
+    for (tile = from; tile < to; tile++) {
         uint size = tiles[2u * tile];
         tiles[2u * tile] = 0u; // filled in again by tiles-fill
         tiles[2u * tile + 1u] = first;
         first += (size + CHUNK - 1u) / CHUNK;
+    }
+    if (is_ended_here || tile < to) {
+        is_ended = 1u;
     }
     if (lane == GROUP - 1u) {
         tiles[2u * count + 1u] = sums[lane];

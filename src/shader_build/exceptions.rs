@@ -25,6 +25,7 @@ pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/surface-removal-mark-free.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-kept.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-parts.comp", "an atomic: removed triangles are counted"),
+    ("gas/fragments-nearest.comp", "an atomic: pixels that lose fragments are counted"),
     ("gas/fragments-tiles.comp", "an atomic: tiles take slots for their fragments"),
     ("gas/fragments.frag", "atomics: fragments take their slots and their places in the lists"),
     ("gas/sort.comp", "an atomic: pixels reserve the slots of their sections"),

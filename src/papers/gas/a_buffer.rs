@@ -106,6 +106,16 @@ impl ABuffer {
         Ok(counters.iter().map(|c| c.most_of_tile).max().unwrap_or(0))
     }
 
+    /// Pixels that lack fragments which linked lists may show, in the frame that has the most of them; 0 without a
+    /// k-buffer.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn lost_pixels(&self, shaders: &ShaderLibrary) -> Result<u32, Error> {
+        let counters = read::<CountersBlock>(shaders, &self.counters)?;
+        Ok(counters.iter().map(|c| c.lost_pixels.max(c.most_lost_pixels)).max().unwrap_or(0))
+    }
+
     /// Evaluations of the density that `volume` has noted in the last band.
     ///
     /// # Errors

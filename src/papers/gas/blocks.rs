@@ -210,6 +210,10 @@ host_block! {
         pub most_of_tile: u32,
         /// 1 where the device ended a loop over them.
         pub is_ended: u32,
+        /// Pixels of the last frame that a k-buffer shows less of than there is.
+        pub lost_pixels: u32,
+        /// Most such pixels of a frame before it.
+        pub most_lost_pixels: u32,
     }
 }
 

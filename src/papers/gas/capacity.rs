@@ -58,13 +58,14 @@ impl BufferLimit {
 }
 
 impl Capacity {
-    /// Four fragments, or all that are kept, and two sections a pixel, of as many rows as the buffers hold; of tiles a chunk each, and four
-    /// places a triangle.
+    /// Four fragments, or all that are kept, and two sections a pixel, of as many rows as the buffers hold; of tiles a
+    /// chunk each, and four places a triangle.
     pub fn initial(parameters: &Parameters, triangles: usize, limit: BufferLimit) -> Self {
         let width = parameters.width.max(1);
         let of_pixel = parameters.lists.nearest().unwrap_or(4);
-        let rows = [limit.slots(PIXEL_BYTES), limit.slots(u64::from(of_pixel) * LINK_BYTES), limit.slots(2 * SECTION_BYTES)]
+        let rows = [PIXEL_BYTES, u64::from(of_pixel) * LINK_BYTES, 2 * SECTION_BYTES]
             .into_iter()
+            .map(|bytes| limit.slots(bytes))
             .fold(parameters.height, |rows, pixels| rows.min(pixels / width))
             .max(1);
         let pixels = rows.saturating_mul(width);
@@ -144,7 +145,8 @@ mod tests {
         let demand = Capacity { fragments: 990, ..capacity };
         assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { fragments: 1000, ..capacity }));
         let demand = Capacity { fragments: 3000, sections: 5000, ..capacity };
-        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(Capacity { rows: 3, fragments: 1000, sections: 500, chunks: 0 }));
+        let shrunk = Capacity { rows: 3, fragments: 1000, sections: 500, chunks: 0 };
+        assert_eq!(capacity.grown(demand, limit).unwrap(), Some(shrunk));
         let row = Capacity { rows: 1, ..capacity };
         let error = row.grown(demand, limit).unwrap_err().to_string();
         assert!(error.contains("fragments") && error.contains("list-bytes") && error.contains("3000"), "{error}");

@@ -83,6 +83,8 @@ pub struct Gas {
     calls: Calls,
     /// Dispatches of `fragments` by tiles.
     tile_calls: u32,
+    /// Pixels that a k-buffer shows less of than there is, in the frame that has the most of them.
+    lost_pixels: u32,
     buffer_limit: BufferLimit,
     lacks_geometry_stage: bool,
 }
@@ -174,7 +176,18 @@ impl Gas {
             && parameters.geometry_stage
             && !shaders.device().physical().has(Feature::GeometryShader);
         let calls = Calls::ONCE;
-        Ok(Gas { label, variant, parameters, scene, passes, calls, tile_calls: 1, buffer_limit, lacks_geometry_stage })
+        Ok(Gas {
+            label,
+            variant,
+            parameters,
+            scene,
+            passes,
+            calls,
+            tile_calls: 1,
+            lost_pixels: 0,
+            buffer_limit,
+            lacks_geometry_stage,
+        })
     }
 
     /// Sets the numbers of [`WRITTEN`] of the next frames; all others are those that it was made with. The caller has
@@ -210,6 +223,13 @@ impl Gas {
             Surfaces::Linked(_) => Ok(Vec::new()),
             Surfaces::Tiles(tiles) => tiles.read(shaders),
         }
+    }
+
+    /// Pixels that lack fragments which linked lists may show, in the frame that has the most of them; of complete frames
+    /// before the last [`Gas::settle`], nothing without a k-buffer.
+    #[must_use]
+    pub fn lost_pixels(&self) -> Option<u32> {
+        self.parameters.lists.nearest().map(|_| self.lost_pixels)
     }
 
     /// Evaluations of the density along the viewer's rays in the last frame; in its last band, if there are several.
@@ -262,21 +282,22 @@ impl Paper for Gas {
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
         let lists = &self.passes.lists;
         let tile_calls = tiles::calls(lists.most_of_tile(shaders)?);
-        if tile_calls > self.tile_calls {
-            self.tile_calls = tile_calls;
-            return Ok(false);
-        }
-        let Some(capacity) = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)? else {
+        let capacity = lists.capacity.grown(lists.demand(shaders)?, self.buffer_limit)?;
+        if capacity.is_none() && tile_calls <= self.tile_calls {
+            self.lost_pixels = lists.lost_pixels(shaders)?;
             let raised = self.calls.raised(shaders, &lists.progress)?;
             self.calls = raised.unwrap_or(self.calls);
             return Ok(raised.is_none());
-        };
+        }
+        // Counts of frames with gaps are forgotten.
+        self.tile_calls = self.tile_calls.max(tile_calls);
+        let capacity = capacity.unwrap_or(lists.capacity);
         let context = Context { shaders, label: &self.label, parameters: &self.parameters };
         self.passes = Passes::new(&context, &self.scene, self.variant, capacity)?;
         Ok(false)
     }
 
-    /// The device has no geometry stage.
+    /// The device has no geometry stage; a k-buffer was too small.
     fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.lacks_geometry_stage {
@@ -285,6 +306,13 @@ impl Paper for Gas {
                  stage, so that its time is not that of the other devices' method"
                     .to_owned(),
             );
+        }
+        if let (Some(nearest), Some(lost @ 1..)) = (self.parameters.lists.nearest(), self.lost_pixels()) {
+            let pixels = u64::from(self.parameters.width) * u64::from(self.parameters.height);
+            warnings.push(format!(
+                "`lists` k:{nearest}: {lost} of {pixels} pixels lose fragments that may show, behind their {nearest} \
+                 nearest"
+            ));
         }
         warnings
     }

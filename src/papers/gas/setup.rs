@@ -267,13 +267,14 @@ impl Study for Setup {
                 passes.filter_map(|p| median(&p.gpu_ms)).sum::<f64>()
             };
             let surfaces_ms = gpu_ms(&LIST_PASSES);
-            let results = entries([
+            let mut results = entries([
                 ("fragments", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
                 ("rows", json!(demand.rows)),
                 ("samples", json!(built.paper.evaluations(&machine.shaders)?)),
                 ("surfaces_ms", json!(Some(surfaces_ms).filter(|&ms| ms > 0.0))),
             ]);
+            results.extend(built.paper.lost_pixels().map(|pixels| ("lost_pixels".to_owned(), json!(pixels))));
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }
         Ok(metrics)

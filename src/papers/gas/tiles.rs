@@ -59,10 +59,12 @@ fn tile_count(parameters: &Parameters, capacity: Capacity) -> u64 {
 /// Bytes of the buffers of tiles; 0 without.
 pub fn bytes(parameters: &Parameters, capacity: Capacity) -> f64 {
     let of_chunk = CHUNK_BYTES + u64::from(CHUNK) * TRIANGLE_BYTES + size_of::<u32>() as u64;
+    let losses = size_of::<u32>() as u64 * u64::from(parameters.width) * u64::from(capacity.rows);
     let tiles = TILE_BYTES * (tile_count(parameters, capacity) + 1);
     match parameters.lists {
         Lists::Linked => 0.0,
-        Lists::Tiles | Lists::Nearest(_) => (of_chunk * u64::from(capacity.chunks) + tiles) as f64,
+        Lists::Tiles => (of_chunk * u64::from(capacity.chunks) + tiles) as f64,
+        Lists::Nearest(_) => (of_chunk * u64::from(capacity.chunks) + tiles + losses) as f64,
     }
 }
 
@@ -81,6 +83,9 @@ impl Tiles {
         let triangles = context.storage::<[u32; 2]>("tile-triangles", chunks * u64::from(CHUNK))?;
         let chunk_tiles = context.storage::<u32>("chunk-tiles", chunks)?;
         let pixels = context.storage::<[u32; 2]>("tile-pixels", chunks * u64::from(TILE * TILE))?;
+        let pixel_count = u64::from(context.parameters.width) * u64::from(capacity.rows);
+        let has_losses = context.parameters.lists.nearest().is_some();
+        let losses = has_losses.then(|| context.storage::<u32>("losses", pixel_count)).transpose()?;
         let named = |name, shader| {
             let pass = Pass::compute(name, "A-buffer", shader).with("frame", &scene.frame).with("Tiles", &tiles);
             pass.constants::<BandConstants>()
@@ -99,8 +104,7 @@ impl Tiles {
                     let of_piece = |pass: PassBuilder| {
                         pass.with("Vertices", &piece.vertices).with("Triangles", &piece.triangles)
                     };
-                    let count = of_piece(named("tiles-count", "gas/tiles-count.comp"))
-                        .with("Objects", &scene.objects);
+                    let count = of_piece(named("tiles-count", "gas/tiles-count.comp")).with("Objects", &scene.objects);
                     let fill = of_piece(of_triangles("tiles-fill", "gas/tiles-fill.comp"))
                         .with("counts", &scene.counts);
                     let pixels = of_piece(of_triangles("tiles-pixels", "gas/tiles-pixels.comp"))
@@ -117,11 +121,12 @@ impl Tiles {
                         .with("Links", &lists.links)
                         .with("Surfaces", &lists.surfaces)
                         .with("Colors", &lists.colors);
+                    let fragments = losses.iter().fold(fragments, |pass, losses| pass.with("Losses", losses));
                     PieceOfTiles {
                         first_triangle: piece.first_triangle,
                         triangle_count: piece.triangle_count,
-                        count: count.build(context.shaders)?,
-                        fill: with(fill, chunk_tiles).build(context.shaders)?,
+                        count: with(count, counters).build(context.shaders)?,
+                        fill: with(with(fill, chunk_tiles), counters).build(context.shaders)?,
                         pixels: with(with(with(pixels, chunk_tiles), tile_pixels), counters).build(context.shaders)?,
                         fragments: with(with(fragments, tile_pixels), counters).build(context.shaders)?,
                     }

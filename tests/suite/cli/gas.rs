@@ -325,5 +325,5 @@ fn ways_to_the_lists_are_measured_in_turn() {
     let kept = |run: &serde_json::Value| run["results"]["fragments"].as_u64().unwrap();
     assert_eq!(kept(&runs[2]), 4 * 45 * 31);
     small("render --lists linked,tiles --image never.png").run().refused(2, &["give one"]);
-    small("render --lists k:0 --image never.png").run().refused(2, &["k:1"]);
+    small("render --lists k:0 --image never.png").run().misused(&["k:1 to k:32"]);
 }

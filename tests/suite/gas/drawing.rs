@@ -19,6 +19,8 @@ pub struct Drawing {
     pub demand: Capacity,
     /// Numbers of the triangles of each tile; none without tiles.
     pub tiles: Vec<Vec<u32>>,
+    /// Pixels that a k-buffer says it shows less of than there is; nothing without one.
+    pub lost_pixels: Option<u32>,
     /// Evaluations of the density along the viewer's rays.
     pub evaluations: u64,
     pub picture: Rgba8,
@@ -90,6 +92,7 @@ impl Drawing {
             lists: gas.fragments(&shaders).unwrap(),
             demand: gas.demand(&shaders).unwrap(),
             tiles: gas.tiles(&shaders).unwrap(),
+            lost_pixels: gas.lost_pixels(),
             evaluations: gas.evaluations(&shaders).unwrap(),
             picture,
             runs,

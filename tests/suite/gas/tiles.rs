@@ -90,7 +90,8 @@ fn tiles_hold_the_triangles_that_touch_them() {
         let (mut held, mut touching) = (0, 0);
         for (tile, list) in (0..).zip(&drawing.tiles) {
             let low = DVec2::new((tile % across * TILE).into(), (tile / across * TILE).into());
-            let high = (low + f64::from(TILE)).min(DVec2::new(WIDTH.into(), HEIGHT.into()));
+            let end = low + f64::from(TILE);
+            let high = end.min(DVec2::new(WIDTH.into(), HEIGHT.into())); // of what is in the picture
             for (number, corners) in (0..).zip(&corners) {
                 let count = list.iter().filter(|&&n| n == number).count();
                 assert!(count <= 1, "triangle {number} is {count} times in tile {tile}");
@@ -99,7 +100,7 @@ fn tiles_hold_the_triangles_that_touch_them() {
                 let turn = (b - a).perp_dot(c - a).signum();
                 let reaches = |from: DVec2, to: DVec2| {
                     let side = |x, y| turn * (to - from).normalize().perp_dot(DVec2::new(x, y) - from);
-                    [side(low.x, low.y), side(high.x, low.y), side(low.x, high.y), side(high.x, high.y)]
+                    [side(low.x, low.y), side(end.x, low.y), side(low.x, end.y), side(end.x, end.y)]
                         .into_iter()
                         .any(|side| side > -0.05)
                 };
@@ -134,5 +135,77 @@ fn tiles_of_many_triangles_are_done_in_several_dispatches() {
         let tiles = Drawing::of(device, Variant::NoVolume, &with(Lists::Tiles, &parameters), &sheets);
         assert!(tiles.lists.iter().all(|list| list.len() == 2500), "{:?}", tiles.demand);
         assert!(tiles.lists == linked.lists && tiles.radiance == linked.radiance);
+    });
+}
+
+/// Pictures of other sizes than whole tiles, with a triangle, a sliver or nothing in them; far from the origin as well,
+/// where depths are rounded more coarsely than tiles are bound by them.
+#[test]
+fn odd_pictures_are_the_same_by_tiles() {
+    gpu_test(|device| {
+        let triangle = [(20.0, 10.0), (60.3, 12.0), (31.0, 50.0)].map(|(x, y)| unproject(DVec2::new(x, y), 3.0));
+        let sliver = [(20.0, 10.0), (60.3, 12.0), (60.3, 12.01)].map(|(x, y)| unproject(DVec2::new(x, y), 3.0));
+        let behind = triangle.map(|corner| corner + 8.0 * Vec3::Z);
+        let contents: [&[[Vec3; 3]]; 4] = [&[], &[triangle], &[sliver], &[behind]];
+        let sheets: Vec<[Vec3; 3]> = (0..40)
+            .map(|i| {
+                let depth = 2.0 + 1e-4 * i as f32;
+                [(-90.0, -90.0), (300.0, -90.0), (-90.0, 300.0)].map(|(x, y)| unproject(DVec2::new(x, y), depth))
+            })
+            .collect();
+        for (width, height) in [(1, 1), (333, 7), (8, 8), (9, 17)] {
+            for (content, triangles) in contents.iter().chain([&sheets.as_slice()]).enumerate() {
+                for away in [Vec3::ZERO, Vec3::new(2000.0, -700.0, 3000.0)] {
+                    let mut parameters = Parameters { width, height, ..parameters() };
+                    parameters.camera.eye += away;
+                    parameters.camera.target += away;
+                    let moved: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|corner| corner + away)).collect();
+                    let objects: Vec<Object> = (!moved.is_empty()).then(|| object(&moved)).into_iter().collect();
+                    let linked = Drawing::of(device, Variant::NoVolume, &parameters, &objects);
+                    let tiles = Drawing::of(device, Variant::NoVolume, &with(Lists::Tiles, &parameters), &objects);
+                    for (list, linked) in tiles.lists.iter().zip(&linked.lists) {
+                        assert!(is_cut_behind_its_cover(list, linked), "{content}, {away}: {list:?}\n{linked:?}");
+                    }
+                    assert!(tiles.radiance == linked.radiance, "{width} x {height}, {content}, {away}");
+                }
+            }
+        }
+    });
+}
+
+/// A k-buffer has the first fragments of the linked lists, says of how many pixels it shows less, and shows the same of
+/// all others.
+#[test]
+fn a_k_buffer_counts_the_pixels_that_lose_what_shows() {
+    gpu_test(|device| {
+        for preset in [Preset::Fig3, Preset::Fig4, Preset::Fig8] {
+            let (mut parameters, objects) = small(preset);
+            parameters.list_bytes = (preset == Preset::Fig8).then_some(60_000);
+            let draw = |lists| Drawing::of(device, Variant::NoVolume, &with(lists, &parameters), &objects);
+            let all = Parameters { list_bytes: None, ..parameters.clone() };
+            let linked = Drawing::of(device, Variant::NoVolume, &all, &objects);
+            for nearest in [1, 2, 5, 32] {
+                let kept = draw(Lists::Nearest(nearest));
+                let count = nearest as usize;
+                let shows = |list: &&Vec<Fragment>| {
+                    let ends = list.iter().take(count - 1).filter(|f| f.opacity == 1.0);
+                    list.len() > count && ends.fold(0, |mask, f| mask | f.mask) != u32::MAX
+                };
+                let lost = linked.lists.iter().filter(shows).count();
+                println!("{preset:?}, k:{nearest}: {lost} pixels lose of {}", linked.lists.len());
+                assert_eq!(kept.lost_pixels, Some(lost as u32), "{preset:?}, k:{nearest}");
+                if parameters.list_bytes.is_none() {
+                    for (list, linked) in kept.lists.iter().zip(&linked.lists) {
+                        assert_eq!(list.as_slice(), &linked[..linked.len().min(count)], "{preset:?}, k:{nearest}");
+                    }
+                } else {
+                    assert!(kept.demand.rows < parameters.height, "{:?}", kept.demand);
+                }
+                let colors = kept.radiance.chunks(4).zip(linked.radiance.chunks(4));
+                for (list, (kept, linked)) in linked.lists.iter().zip(colors) {
+                    assert!(shows(&list) || kept == linked, "{preset:?}, k:{nearest}: {kept:?} for {linked:?}");
+                }
+            }
+        }
     });
 }

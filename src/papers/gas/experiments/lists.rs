@@ -87,6 +87,7 @@ fn table(machine: &mut Machine, points: &[Point<Setup>], rows: &[Row]) -> Result
                 json!(row.run.median_frame_ms()),
                 json!(gpu_ms(row, &LIST_PASSES)),
                 row.run.results.get("fragments").cloned().unwrap_or_default(),
+                row.run.results.get("lost_pixels").cloned().unwrap_or_default(),
                 json!(row.run.memory.device_bytes),
                 json!(difference.mean),
                 json!(difference.p99),
@@ -95,7 +96,17 @@ fn table(machine: &mut Machine, points: &[Point<Setup>], rows: &[Row]) -> Result
     }
     Ok(ResultTable {
         title: "Lists of fragments: cost and Luv difference from linked ones, by sheets behind the scene",
-        columns: &["sheets", "lists", "frame ms", "surfaces ms", "fragments", "bytes", "Luv mean", "Luv p99"],
+        columns: &[
+            "sheets",
+            "lists",
+            "frame ms",
+            "surfaces ms",
+            "fragments",
+            "lost pixels",
+            "bytes",
+            "Luv mean",
+            "Luv p99",
+        ],
         rows: cells,
     })
 }

@@ -82,7 +82,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
         },
         Experiment {
             name: "lists",
-            help: "Linked lists, lists by tiles and a k-buffer behind 2 to 128 sheets: cost, and the difference of the pictures",
+            help: "Linked lists, lists by tiles and a k-buffer behind 2 to 128 sheets: cost, and their pictures' difference",
             options: &["counts"],
             refuses: &[("lists", "this experiment compares three")],
             run: lists::run,
