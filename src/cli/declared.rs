@@ -16,7 +16,7 @@ use super::{bench, loading, passes, render, spelling};
 use crate::measure::experiment::{Context, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
-use crate::measure::study::{Preset, Study};
+use crate::measure::study::{ONE_ALTERNATIVE, Preset, Study};
 use crate::measure::{Error, Variant};
 
 /// Options of all papers that the short help lists.
@@ -315,7 +315,7 @@ impl<'a, S: Study> Typed<'a, S> {
         let setup = self.resolve()?;
         match setup.alternatives().len() {
             1 => Ok(setup),
-            _ => Err(Failure::Input("several values of an option in turn are for bench; give one".to_owned())),
+            _ => Err(Failure::Input(ONE_ALTERNATIVE.to_owned())),
         }
     }
 

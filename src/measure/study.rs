@@ -13,6 +13,9 @@ use super::stress::Axis;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 
+/// The refusal of several [alternatives](Study::alternatives) where one is taken.
+pub const ONE_ALTERNATIVE: &str = "several values of an option in turn are for bench; give one";
+
 /// One paper as a user set it up: it declares its parameters, presets and experiments, from which the command line
 /// follows, and makes what is measured.
 pub trait Study: Clone + Default + 'static {

@@ -324,6 +324,10 @@ fn ways_to_the_lists_are_measured_in_turn() {
     assert_eq!(names(&runs[2]), names(&runs[1]));
     let kept = |run: &serde_json::Value| run["results"]["fragments"].as_u64().unwrap();
     assert_eq!(kept(&runs[2]), 4 * 45 * 31);
+    let lost: Vec<_> = runs.iter().map(|run| run["results"]["lost_pixels"].as_u64()).collect();
+    assert!(matches!(lost[..], [None, None, Some(1..)]), "{lost:?}");
+    let warnings = runs[2]["warnings"].to_string();
+    assert!(warnings.contains(&format!("k:4: {} of 1395 pixels lose", lost[2].unwrap())), "{warnings}");
     small("render --lists linked,tiles --image never.png").run().refused(2, &["give one"]);
     small("render --lists k:0 --image never.png").run().misused(&["k:1 to k:32"]);
 }
