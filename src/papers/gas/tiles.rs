@@ -90,9 +90,8 @@ impl Tiles {
             let pass = Pass::compute(name, "A-buffer", shader).with("frame", &scene.frame).with("Tiles", &tiles);
             pass.constants::<BandConstants>()
         };
-        let of_triangles = |name, shader| {
-            named(name, shader).with("Objects", &scene.objects).with("TileTriangles", &triangles)
-        };
+        let of_triangles =
+            |name, shader| named(name, shader).with("Objects", &scene.objects).with("TileTriangles", &triangles);
         let buffers = [("ChunkTiles", &chunk_tiles), ("TilePixels", &pixels), ("Counters", &lists.counters)];
         let [chunk_tiles, tile_pixels, counters] = buffers;
         let with = |pass: PassBuilder, (name, buffer): (&'static str, &Arc<Buffer>)| pass.with(name, buffer);
@@ -101,14 +100,13 @@ impl Tiles {
             let passes = match pieces.first() {
                 Some(first) => first.rebound(context, piece)?,
                 None => {
-                    let of_piece = |pass: PassBuilder| {
-                        pass.with("Vertices", &piece.vertices).with("Triangles", &piece.triangles)
-                    };
+                    let of_piece =
+                        |pass: PassBuilder| pass.with("Vertices", &piece.vertices).with("Triangles", &piece.triangles);
                     let count = of_piece(named("tiles-count", "gas/tiles-count.comp")).with("Objects", &scene.objects);
-                    let fill = of_piece(of_triangles("tiles-fill", "gas/tiles-fill.comp"))
-                        .with("counts", &scene.counts);
-                    let pixels = of_piece(of_triangles("tiles-pixels", "gas/tiles-pixels.comp"))
-                        .with("counts", &scene.counts);
+                    let fill =
+                        of_piece(of_triangles("tiles-fill", "gas/tiles-fill.comp")).with("counts", &scene.counts);
+                    let pixels =
+                        of_piece(of_triangles("tiles-pixels", "gas/tiles-pixels.comp")).with("counts", &scene.counts);
                     let shader = match context.parameters.lists.nearest() {
                         Some(_) => "gas/fragments-nearest.comp",
                         None => "gas/fragments-tiles.comp",
