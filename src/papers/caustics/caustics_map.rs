@@ -94,7 +94,7 @@ impl CausticsMap {
     ) -> Result<(), Error> {
         match &self.drawing {
             Drawing::All { intersections, .. } => intersections.record(frame, lit, planes, volumes)?,
-            Drawing::Culled(culled) => culled.record(frame)?,
+            Drawing::Culled(culled) => culled.record(frame, lit.absorption_per_m)?,
         }
         self.coverage.as_ref().map_or(Ok(()), |coverage| coverage.record(frame))
     }

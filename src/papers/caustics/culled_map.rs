@@ -225,11 +225,11 @@ impl CulledMap {
         })
     }
 
-    /// Finds the pairs, and draws them after clearing the map.
+    /// Finds the pairs, and draws them after clearing the map; the light has passed water of that absorption.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         for level in &self.levels {
             frame.compute(&self.position_pyramid, |dispatch| {
                 dispatch.constants(level).threads(level.to_size, level.to_size, 1);
@@ -249,9 +249,9 @@ impl CulledMap {
             })?;
         }
         frame.graphics(&self.caustics_map, |draw| {
-            match &self.options {
-                None => draw.constants(&self.draw),
-                Some(options) => draw.constants(options),
+            match self.options {
+                None => draw.constants(&DrawConstants { absorption_per_m, ..self.draw }),
+                Some(options) => draw.constants(&OptionConstants { absorption_per_m, ..options }),
             }
             .indices_indirect();
         })

@@ -95,6 +95,11 @@ impl IlluminationVolumes {
         Ok(IlluminationVolumes { rays, index_count, axes, reference, intensity, pass, constants })
     }
 
+    /// Sets whether the water of the next frames reflects a part of the light.
+    pub fn set_fresnel(&mut self, fresnel: bool) {
+        self.constants.fresnel = f32::from(u8::from(fresnel));
+    }
+
     /// Refracts the light at every water vertex.
     ///
     /// # Errors

@@ -83,7 +83,7 @@ pub use self::water_map::WaterMap;
 pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Float, Feature::DepthStencil32];
 
 /// Parameters of the viewer and the clock alone, as constants.
-pub const DRAWN: [&str; 3] = ["camera", "samples", "time-step"];
+pub const DRAWN: [&str; 5] = ["absorption", "camera", "fresnel", "samples", "time-step"];
 
 /// Slope of water, root of the mean square, above which point sampling is warned of.
 const STEEP: f64 = 0.12;
@@ -215,10 +215,12 @@ impl Caustics {
             return Ok(false);
         }
         self.underwater.set_camera(parameters)?;
-        self.view.set_camera(parameters, &self.underwater)?;
+        self.view.set_drawn(parameters, &self.underwater)?;
         if let Technique::Stencil { stencil_volumes, .. } = &mut self.technique {
-            stencil_volumes.iter_mut().try_for_each(|volumes| volumes.set_camera(&self.underwater))?;
+            stencil_volumes.iter_mut().try_for_each(|volumes| volumes.set_drawn(parameters, &self.underwater))?;
         }
+        self.illumination_volumes.iter_mut().for_each(|volumes| volumes.set_fresnel(parameters.fresnel));
+        self.lit_receivers.iter_mut().for_each(|lit| lit.absorption_per_m = parameters.absorption_per_m);
         self.parameters = parameters.clone();
         Ok(true)
     }

@@ -262,13 +262,15 @@ impl Parameters {
                 .cost(Cost::Buffers),
             Parameter::new("smart-placement", PLACEMENT)
                 .help("Smart slicing: planes fitted into sub-boxes, or the uniform planes whose cell holds a texel")
-                .section("4.7.2"),
+                .section("4.7.2")
+                .cost(Cost::Buffers),
             Parameter::new("epsilon", EPSILON)
                 .range(Range::above(0.0))
                 .unit("metres")
                 .help("Acceptance threshold of smart slicing")
                 .section("eq. 4-22")
-                .default_text("h / (2 (planes - 1)), as in table 5-4"),
+                .default_text("h / (2 (planes - 1)), as in table 5-4")
+                .cost(Cost::Buffers),
             Parameter::new("coverage", field!(Parameters.coverage))
                 .range(Range::from(1.0).to(64.0))
                 .unit("texel a side")
@@ -292,7 +294,8 @@ impl Parameters {
             Parameter::new("refraction-index", field!(Parameters.refraction_index))
                 .range(Range::above(1.0).to(4.0))
                 .help("Refraction index of water against air")
-                .section("eq. 4-1"),
+                .section("eq. 4-1")
+                .cost(Cost::Buffers),
             Parameter::new("absorption", field!(Parameters.absorption_per_m))
                 .range(Range::from(0.0).to(1e6))
                 .unit("per metre")

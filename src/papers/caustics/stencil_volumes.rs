@@ -8,6 +8,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::illumination_volumes::IlluminationVolumes;
+use super::parameters::Parameters;
 use super::receivers::Receivers;
 use super::resources::Context;
 use super::underwater::Underwater;
@@ -87,11 +88,12 @@ impl StencilVolumes {
         Ok(StencilVolumes { pass, block, volumes: uniform })
     }
 
-    /// Sets the camera of the next frames.
+    /// Sets camera and water of the next frames.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn set_camera(&mut self, underwater: &Underwater) -> Result<(), Error> {
+    pub fn set_drawn(&mut self, parameters: &Parameters, underwater: &Underwater) -> Result<(), Error> {
+        self.block.absorption_per_m = parameters.absorption_per_m;
         self.block.view_projection = underwater.view_projection.to_cols_array();
         update(&self.volumes, bytemuck::bytes_of(&self.block))
     }

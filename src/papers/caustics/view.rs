@@ -129,11 +129,16 @@ impl View {
         Ok(View { pass: pass.build(shaders)?, picture, constants, view, node_count, most_steps })
     }
 
-    /// Sets the camera of the next pictures, on the same side of the water as it was.
+    /// Sets the camera of the next pictures, on the same side of the water as it was, and the water's absorption.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn set_camera(&self, parameters: &Parameters, underwater: &Underwater) -> Result<(), Error> {
+    pub fn set_drawn(&mut self, parameters: &Parameters, underwater: &Underwater) -> Result<(), Error> {
+        match &mut self.constants {
+            Constants::Below => {}
+            Constants::AboveWaves(waves) => waves.absorption_per_m = parameters.absorption_per_m,
+            Constants::AboveMap(map) => map.absorption_per_m = parameters.absorption_per_m,
+        }
         let block = block(parameters, underwater, self.node_count);
         update(&self.view, bytemuck::bytes_of(&block))
     }

@@ -308,6 +308,7 @@ impl Parameters {
                 .help("Density that a grid point must reach to be accepted")
                 .section("6.2")
                 .default_text("the particles' mean density")
+                .cost(Cost::Buffers)
                 .unrecorded(),
             Parameter::new("surface", field!(Parameters.surface))
                 .help("Height of the surface over a column of grid points")
@@ -343,7 +344,8 @@ impl Parameters {
                 .range(Range::from(0.0).to(1000.0))
                 .unit("metres")
                 .help("Distance from the borders over which the surface falls off")
-                .section("6.4"),
+                .section("6.4")
+                .cost(Cost::Buffers),
             Parameter::new("speed", field!(Parameters.speed_m_s))
                 .range(Range::from(0.0).to(1000.0))
                 .unit("metres per second")
@@ -391,7 +393,8 @@ impl Parameters {
                 .range(Range::from(0.0).to(1000.0))
                 .unit("seconds")
                 .help("Simulated time between two frames")
-                .default_text("1/30"),
+                .default_text("1/30")
+                .cost(Cost::Buffers),
         ]
     }
 

@@ -50,9 +50,11 @@ fn a_picture_is_that_of_render_and_a_camera_moves_without_building() {
 #[test]
 fn constants_that_a_paper_takes_over_are_seen_without_building() {
     beside_others(|| {
-        let cases: [(&str, &[(&str, &str)]); 4] = [
+        let water: &[(&str, &str)] = &[("absorption", "0.7"), ("fresnel", "true")];
+        let cases: [(&str, &str, &[(&str, &str)]); 6] = [
             (
                 "lava",
+                "",
                 &[
                     ("color", "0.1,0.3,0.9"),
                     ("epsilon", "0.3"),
@@ -65,6 +67,7 @@ fn constants_that_a_paper_takes_over_are_seen_without_building() {
             ),
             (
                 "gas",
+                "",
                 &[
                     ("ambient", "0.4,0.2,0.1"),
                     ("early-end", "0.5"),
@@ -74,19 +77,26 @@ fn constants_that_a_paper_takes_over_are_seen_without_building() {
                     ("shadow-threshold", "0.3"),
                 ],
             ),
-            ("caustics", &[("samples", "2"), ("time-step", "0.3")]),
-            ("terrain", &[("haze", "0.2"), ("normals", "nodes"), ("sun", "120,20"), ("camera", "top")]),
+            ("caustics", "", &[water[0], water[1], ("samples", "2"), ("time-step", "0.3")]),
+            ("caustics", "--variant culled", water),
+            ("caustics", "--variant stencil", water),
+            ("terrain", "", &[("haze", "0.2"), ("normals", "nodes"), ("sun", "120,20"), ("camera", "top")]),
         ];
-        for (paper, changes) in cases {
-            let mut worker = Worker::small(paper);
-            worker.frame_of(Request::GoTo(2));
-            let mut options = format!("{} --frame 2", small(paper));
+        for (paper, more, changes) in cases {
+            let scene = format!("{} {more}", small(paper));
+            let mut worker = Worker::start(paper, &scene);
+            let first = picture(&worker.frame_of(Request::GoTo(2)), 0);
+            let mut last = first.clone();
+            let mut options = format!("{scene} --frame 2");
             for (name, value) in changes {
-                options += &format!(" --{name}={value}");
+                let is_flag = *value == "true";
+                options += &if is_flag { format!(" --{name}") } else { format!(" --{name}={value}") };
                 let shown = picture(&worker.frame_of(set(name, value)), 0);
-                assert!(shown == rendered(paper, &options), "{paper}: {name} {value}");
+                assert!(shown == rendered(paper, &options), "{paper} {more}: {name} {value}");
+                last = shown;
             }
-            assert_eq!(builds(&worker), 1, "{paper}");
+            assert!(last != first, "{paper} {more}: nothing has changed");
+            assert_eq!(builds(&worker), 1, "{paper} {more}");
             worker.quit();
         }
     });
