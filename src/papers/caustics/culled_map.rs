@@ -251,7 +251,7 @@ impl CulledMap {
         frame.graphics(&self.caustics_map, |draw| {
             match self.options {
                 None => draw.constants(&DrawConstants { absorption_per_m, ..self.draw }),
-                Some(options) => draw.constants(&OptionConstants { absorption_per_m, ..options }),
+                Some(options) => draw.constants(&options.absorbing(absorption_per_m)),
             }
             .indices_indirect();
         })

@@ -73,6 +73,13 @@ impl PlaneConstants {
     }
 }
 
+impl OptionConstants {
+    /// The same in water of that absorption.
+    pub(super) fn absorbing(self, absorption_per_m: f32) -> Self {
+        OptionConstants { absorption_per_m, ..self }
+    }
+}
+
 /// Resources of a pass that draws intersection triangles.
 #[derive(Clone, Copy)]
 pub struct Scope<'a> {

@@ -180,7 +180,7 @@ impl Drop for Display {
 /// A running window.
 pub struct Window<'a> {
     pub display: &'a Display,
-    program: Option<Running>,
+    pub program: Option<Running>,
     pub id: WindowId,
     controls: PathBuf,
     pub folder: TempDir,
@@ -198,12 +198,17 @@ impl<'a> Window<'a> {
         arguments: &str,
         change: impl FnOnce(crate::cli::program::Program) -> crate::cli::program::Program,
     ) -> Self {
+        let program = fumarole(&format!("view {arguments} --validate"));
+        Self::start(display, change(program))
+    }
+
+    /// As [`Window::open`], of the program as it is given.
+    pub fn start(display: &'a Display, program: crate::cli::program::Program) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let controls = folder.path().join("controls.json");
-        let program = fumarole(&format!("view {arguments} --validate")).arg("--controls").arg(&controls);
+        let program = program.arg("--controls").arg(&controls);
         let program = program.env("DISPLAY", &display.name).without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
-        let program = program.env("XDG_STATE_HOME", folder.path()).inside(folder.path());
-        let program = change(program).start();
+        let program = program.env("XDG_STATE_HOME", folder.path()).inside(folder.path()).start();
         let mut window = Window { display, program: Some(program), id: 0, controls, folder };
         window.id =
             window.wait("the window", |window| display.find(display.root, "fumarole").filter(|_| window.has("paper")));

@@ -1,5 +1,8 @@
 //! The worker of every paper: its pictures are those of `render`, whatever is changed on the way.
 
+use fumarole::measure::parameter::Cost;
+use fumarole::measure::study::Study;
+use fumarole::papers::{burning, caustics, gas, lava, terrain};
 use fumarole::window::protocol::{Event, Request};
 
 use super::scene::{PAPERS, Worker, picture, rendered, set, small, unset, variant};
@@ -45,6 +48,22 @@ fn a_picture_is_that_of_render_and_a_camera_moves_without_building() {
         assert!(!worker.setup().sides[0].set.contains(&"camera".to_owned()));
         worker.quit();
     });
+}
+
+/// The parameters whose change the window says is shown with the next frame.
+fn constants<S: Study>() -> Vec<&'static str> {
+    let mut names: Vec<_> = S::parameters().iter().filter(|p| p.cost == Cost::Constants).map(|p| p.name).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn what_is_declared_as_constants_is_what_a_paper_takes_over() {
+    assert_eq!(constants::<lava::setup::Setup>(), lava::DRAWN);
+    assert_eq!(constants::<gas::setup::Setup>(), gas::WRITTEN);
+    assert_eq!(constants::<caustics::setup::Setup>(), caustics::DRAWN);
+    assert_eq!(constants::<burning::setup::Setup>(), ["camera"]);
+    assert_eq!(constants::<terrain::setup::Setup>(), terrain::WRITTEN);
 }
 
 #[test]

@@ -1,0 +1,190 @@
+//! The window as its user feels it, on an Xvfb of its own: `cargo bench --bench window -- [interface] [latency] [idle]
+//! [soak SECONDS]`; without a word the first three. No validation layer. The worker draws the whole time but for `idle`.
+
+#[path = "../tests/suite/common.rs"]
+#[expect(dead_code, reason = "the harness is that of the tests")]
+mod common;
+#[path = "../tests/suite/cli/program.rs"]
+pub mod program;
+mod cli {
+    pub use super::program;
+}
+#[path = "../tests/suite/window/display.rs"]
+#[expect(dead_code, reason = "the harness is that of the tests")]
+mod display;
+
+use std::fs;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use display::{Display, Window};
+use fumarole::measure::statistics::median;
+use program::{Running, fumarole};
+use x11rb::protocol::xproto::{ConnectionExt, ImageFormat};
+
+/// X key symbols.
+const SPACE: u32 = 0x20;
+const F1: u32 = 0xffbe;
+
+/// A frame of seconds, which a window must not wait for.
+const HEAVY: &str = "gas --variant traced --size 640x400 --steps 160";
+/// A frame that is there soon, so that the interface has something new to show all the time.
+const LIGHT: &str = "caustics --size 640x400";
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let asked = |name: &str| words.is_empty() || words.iter().any(|word| word == name);
+    if asked("interface") {
+        interface();
+    }
+    if asked("latency") {
+        latency();
+    }
+    if asked("idle") {
+        idle();
+    }
+    if let Some(at) = words.iter().position(|word| word == "soak") {
+        let seconds = words.get(at + 1).and_then(|text| text.parse().ok()).expect("soak SECONDS");
+        soak(Duration::from_secs(seconds));
+    }
+}
+
+fn open<'a>(display: &'a Display, scene: &str) -> Window<'a> {
+    let mut window = Window::start(display, fumarole(&format!("view {scene}")));
+    window.resize(1280, 800);
+    window.wait_for_frame(0);
+    window
+}
+
+fn process_id(window: &Window<'_>) -> u32 {
+    window.program.as_ref().map(Running::id).expect("it is open")
+}
+
+/// Bytes of a part of the screen: left, top, width, height.
+fn pixels(display: &Display, [left, top, width, height]: [i16; 4]) -> Vec<u8> {
+    let size = (width as u16, height as u16);
+    let part = display.connection.get_image(ImageFormat::Z_PIXMAP, display.root, left, top, size.0, size.1, u32::MAX);
+    part.unwrap().reply().unwrap().data
+}
+
+/// What the window says of its own drawing, in milliseconds.
+fn own_ms(window: &Window<'_>) -> Option<f64> {
+    words(window).iter().find_map(|text| text.strip_prefix("window ")?.strip_suffix(" ms")?.parse().ok())
+}
+
+/// What it says of the last frame, as "frame 3 in 21.4 ms".
+fn frame(window: &Window<'_>) -> String {
+    words(window).into_iter().find(|text| text.starts_with("frame ") && text.ends_with(" ms")).unwrap_or_default()
+}
+
+/// All that it says.
+fn words(window: &Window<'_>) -> Vec<String> {
+    let texts = |control: serde_json::Value| {
+        ["label", "value"].map(|key| control[key].as_str().map(str::to_owned)).into_iter().flatten()
+    };
+    window.controls().into_iter().flat_map(texts).collect()
+}
+
+fn interface() {
+    let display = Display::start();
+    let window = open(&display, LIGHT);
+    display.key(SPACE);
+    let started = Instant::now();
+    let mut samples = vec![];
+    let mut last = String::new();
+    while started.elapsed() < Duration::from_secs(20) {
+        let now = frame(&window);
+        if now != last {
+            samples.extend(own_ms(&window));
+            last = now;
+        }
+        sleep(Duration::from_millis(20));
+    }
+    tell("interface", "ms of the window's own drawing at 1280x800 while it plays", samples);
+    window.close().succeeded();
+}
+
+fn latency() {
+    let display = Display::start();
+    let mut window = open(&display, HEAVY);
+    display.key(F1);
+    let [left, top, right, bottom] = window.rectangle("this list");
+    let area = [left, top, right - left, bottom - top];
+    display.key(SPACE);
+    sleep(Duration::from_secs(1));
+    let mut samples = vec![];
+    for number in 0..40_u64 {
+        let before = pixels(&display, area);
+        let pressed = Instant::now();
+        display.key(F1);
+        while pixels(&display, area) == before {
+            sleep(Duration::from_millis(1));
+        }
+        samples.push(pressed.elapsed().as_secs_f64() * 1e3);
+        sleep(Duration::from_millis(400 + 37 * number));
+    }
+    tell("latency", &format!("ms from a key to the screen while the worker draws, {}", frame(&window)), samples);
+    window.close().succeeded();
+}
+
+fn idle() {
+    let display = Display::start();
+    let window = open(&display, LIGHT);
+    sleep(Duration::from_secs(3));
+    let (window_ticks, worker_ticks) = (ticks(process_id(&window)), ticks(worker(process_id(&window))));
+    sleep(Duration::from_secs(10));
+    let of_window = ticks(process_id(&window)) - window_ticks;
+    let of_worker = ticks(worker(process_id(&window))) - worker_ticks;
+    println!("idle: {of_window} ticks of the window and {of_worker} of its worker in 10 s, of 1000 a core");
+    window.close().succeeded();
+}
+
+fn soak(time: Duration) {
+    let display = Display::start();
+    let mut window = open(&display, LIGHT);
+    display.key(SPACE);
+    let started = Instant::now();
+    let mut next = Duration::from_secs(10);
+    let mut step = 0;
+    while started.elapsed() < time {
+        let middle = window.middle("picture");
+        step += 1;
+        window.drag(1, middle, (middle.0 + if step % 2 == 0 { 70 } else { -70 }, middle.1 + step % 7 - 3));
+        if started.elapsed() >= next {
+            let (own, of_worker) = (resident_kb(process_id(&window)), resident_kb(worker(process_id(&window))));
+            println!("soak: {:4} s, {own} kB the window, {of_worker} kB its worker, {step} drags", next.as_secs());
+            next += Duration::from_secs(60);
+        }
+    }
+    window.close().succeeded();
+}
+
+fn tell(name: &str, what: &str, mut samples: Vec<f64>) {
+    samples.sort_by(f64::total_cmp);
+    let (Some(least), Some(most)) = (samples.first(), samples.last()) else { panic!("{name}: nothing was measured") };
+    let median = median(&samples).unwrap_or_default();
+    println!("{name}: median {median:.1}, least {least:.1}, most {most:.1} of {} {what}", samples.len());
+}
+
+/// The process that draws the paper for a window.
+fn worker(window: u32) -> u32 {
+    let children = fs::read_dir(format!("/proc/{window}/task"))
+        .unwrap()
+        .map(|task| fs::read_to_string(task.unwrap().path().join("children")).unwrap_or_default());
+    let children: String = children.collect();
+    children.split_whitespace().next().and_then(|id| id.parse().ok()).expect("the window has a worker")
+}
+
+/// Processor time in hundredths of a second.
+fn ticks(process: u32) -> u64 {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    // Behind the name, which may hold anything: state is the third field, the two times are the 14th and 15th.
+    let fields: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
+    fields[11..13].iter().map(|field| field.parse::<u64>().unwrap()).sum()
+}
+
+fn resident_kb(process: u32) -> u64 {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    line.trim().trim_end_matches(" kB").parse().unwrap()
+}
