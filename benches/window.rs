@@ -27,7 +27,7 @@ const SPACE: u32 = 0x20;
 const F1: u32 = 0xffbe;
 
 /// A frame of seconds, which a window must not wait for.
-const HEAVY: &str = "gas --variant traced --size 640x400 --steps 160";
+const HEAVY: &str = "gas --variant traced --size 320x200 --steps 80";
 /// A frame that is there soon, so that the interface has something new to show all the time.
 const LIGHT: &str = "caustics --size 640x400";
 
@@ -65,6 +65,16 @@ fn pixels(display: &Display, [left, top, width, height]: [i16; 4]) -> Vec<u8> {
     let size = (width as u16, height as u16);
     let part = display.connection.get_image(ImageFormat::Z_PIXMAP, display.root, left, top, size.0, size.1, u32::MAX);
     part.unwrap().reply().unwrap().data
+}
+
+/// Left, top, width and height of a text, on a display where nobody moves the window.
+fn place(window: &Window<'_>, text: &str) -> Option<[i16; 4]> {
+    let controls = window.controls();
+    let side = |control: &serde_json::Value, index: usize| control["rectangle_px"][index].as_f64();
+    controls.iter().find(|control| control["value"] == text).and_then(|control| {
+        let [left, top, right, bottom] = [0, 1, 2, 3].map(|index| side(control, index).unwrap_or_default() as i16);
+        Some([left, top, right - left, bottom - top]).filter(|[.., width, height]| *width > 0 && *height > 0)
+    })
 }
 
 /// What the window says of its own drawing, in milliseconds.
@@ -108,8 +118,7 @@ fn latency() {
     let display = Display::start();
     let mut window = open(&display, HEAVY);
     display.key(F1);
-    let [left, top, right, bottom] = window.rectangle("this list");
-    let area = [left, top, right - left, bottom - top];
+    let area = window.wait("the list of keys", |window| place(window, "this list"));
     display.key(SPACE);
     sleep(Duration::from_secs(1));
     let mut samples = vec![];
