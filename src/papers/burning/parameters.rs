@@ -304,7 +304,7 @@ macro_rules! p {
     };
 }
 
-/// A row of the table below.
+/// A row of the table below. A change of the fire's numbers is one of all that has burnt: it starts anew.
 fn row<T: Value>(
     name: &'static str,
     field: Field<Parameters, T>,
@@ -312,7 +312,7 @@ fn row<T: Value>(
     help: &'static str,
     section: &'static str,
 ) -> Parameter<Parameters> {
-    Parameter::new(name, field).range(range).help(help).section(section)
+    Parameter::new(name, field).range(range).help(help).section(section).cost(Cost::Buffers)
 }
 
 impl Parameters {
@@ -322,11 +322,9 @@ impl Parameters {
         let any = Range::ANY;
         vec![
             row("levels", p!(levels), LEVELS, "Divide each triangle into 4^N", "4.4.1")
-                .default_text("low-poly and fully-subdivided 5, shell 0, solid and melting by the longest edge")
-                .cost(Cost::Buffers),
+                .default_text("low-poly and fully-subdivided 5, shell 0, solid and melting by the longest edge"),
             row("edge", p!(edge), LENGTH, "solid and melting: divided until no edge is longer", "")
-                .unit("diagonals")
-                .cost(Cost::Buffers),
+                .unit("diagonals"),
             row(
                 "source",
                 p!(sources),
@@ -335,17 +333,14 @@ impl Parameters {
                 "3.3",
             )
             .default_text("the lowest vertex, melting the highest")
-            .cost(Cost::Buffers)
             .everyday(),
-            row("psi", p!(psi), R::above(0.0).to(100.0), "Heat index of the squared distance", "3.3")
-                .cost(Cost::Buffers),
+            row("psi", p!(psi), R::above(0.0).to(100.0), "Heat index of the squared distance", "3.3"),
             row("speed", p!(speed_per_s), R::above(0.0).to(10.0), "Growth of the boundary's radius", "3.3")
                 .unit("diagonals a second")
                 .everyday(),
             row("area-width", p!(width_of_areas), LENGTH, "Width of an area of the boundary", "3.3").unit("diagonals"),
             row("flammability", p!(flammability), R::from(1.0).to(1e6), "L of a vertex", "table 3.1")
                 .unit("ticks of combustion")
-                .cost(Cost::Buffers)
                 .everyday(),
             row("epsilon", p!(epsilon), FRACTION, "Meltability", "table 3.1"),
             row("beta", p!(beta), FRACTION, "Displacement scale", "table 3.1"),
@@ -369,12 +364,11 @@ impl Parameters {
             ),
             row("blocks", BLOCKS, R::from(1.0).to(256.0), "Blocks along x, y and z, 1048576 in all at most", "3.5.1")
                 .placeholder("XxYxZ")
-                .cost(Cost::Buffers)
                 .everyday(),
             row("active-limit", p!(active_limit), any, ACTIVE_LIMIT, "3.7.1"),
             row("time-division", p!(time_division), R::from(1.0).to(64.0), "Spread each tick over so many", "3.7.2")
                 .unit("frames"),
-            row("preload", p!(preload), any, PRELOAD, "3.7.4").cost(Cost::Buffers),
+            row("preload", p!(preload), any, PRELOAD, "3.7.4"),
             row("keep-connected", p!(keep_connected), any, KEEP_CONNECTED, "3.5.4"),
             row("look", p!(look), any, "What is ours beside the text", "").cost(Cost::Pipelines).everyday(),
             row("collapse", p!(collapse), any, COLLAPSE, "").cost(Cost::Pipelines),
@@ -389,11 +383,9 @@ impl Parameters {
             row("ground", p!(ground), any, "Draw the ground, of the natural look", "").cost(Cost::Pipelines),
             row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6")
                 .unit("particles")
-                .cost(Cost::Buffers)
                 .everyday(),
             row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6")
                 .unit("particles")
-                .cost(Cost::Buffers)
                 .everyday(),
             row("particle-radius", p!(particle_radius), LENGTH, "Radius of a particle", "").unit("diagonals"),
             row(
@@ -416,20 +408,18 @@ impl Parameters {
             row("camera", CAMERA, any, "Camera: eye and target, x,y,z,x,y,z", "")
                 .unit("diagonals")
                 .default_text("the object fills 80 % of the picture")
+                .cost(Cost::Constants)
                 .everyday(),
             row("size", SIZE, R::from(1.0), "Size of the picture", "")
                 .unit("pixel")
-                .cost(Cost::Buffers)
                 .everyday()
                 .unrecorded(),
             row("seed", p!(seed), any, "Seed of the boundary's noise and of the particles", "")
-                .cost(Cost::Buffers)
                 .unrecorded(),
             row("time-step", p!(time_step_s), R::from(0.0).to(10.0), "Simulated time between two frames", "")
                 .unit("seconds")
                 .default_text("1/60"),
             row("first-frame", p!(first_frame), R::from(0.0).to(1e5), "Frame of the simulation that frame 0 shows", "")
-                .cost(Cost::Buffers)
                 .everyday(),
         ]
     }
