@@ -323,8 +323,7 @@ impl Parameters {
         vec![
             row("levels", p!(levels), LEVELS, "Divide each triangle into 4^N", "4.4.1")
                 .default_text("low-poly and fully-subdivided 5, shell 0, solid and melting by the longest edge"),
-            row("edge", p!(edge), LENGTH, "solid and melting: divided until no edge is longer", "")
-                .unit("diagonals"),
+            row("edge", p!(edge), LENGTH, "solid and melting: divided until no edge is longer", "").unit("diagonals"),
             row(
                 "source",
                 p!(sources),
@@ -381,12 +380,8 @@ impl Parameters {
             )
             .unit("diagonals a second"),
             row("ground", p!(ground), any, "Draw the ground, of the natural look", "").cost(Cost::Pipelines),
-            row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6")
-                .unit("particles")
-                .everyday(),
-            row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6")
-                .unit("particles")
-                .everyday(),
+            row("fire", p!(fire), PARTICLES, "Most fire particles", "3.6").unit("particles").everyday(),
+            row("smoke", p!(smoke), PARTICLES, "Most smoke particles", "3.6").unit("particles").everyday(),
             row("particle-radius", p!(particle_radius), LENGTH, "Radius of a particle", "").unit("diagonals"),
             row(
                 "lod",
@@ -410,12 +405,8 @@ impl Parameters {
                 .default_text("the object fills 80 % of the picture")
                 .cost(Cost::Constants)
                 .everyday(),
-            row("size", SIZE, R::from(1.0), "Size of the picture", "")
-                .unit("pixel")
-                .everyday()
-                .unrecorded(),
-            row("seed", p!(seed), any, "Seed of the boundary's noise and of the particles", "")
-                .unrecorded(),
+            row("size", SIZE, R::from(1.0), "Size of the picture", "").unit("pixel").everyday().unrecorded(),
+            row("seed", p!(seed), any, "Seed of the boundary's noise and of the particles", "").unrecorded(),
             row("time-step", p!(time_step_s), R::from(0.0).to(10.0), "Simulated time between two frames", "")
                 .unit("seconds")
                 .default_text("1/60"),
