@@ -3,9 +3,8 @@
 // Eq. 6.2 summed over the particles around a column of four grid planes, gathered from the cells that a radius reaches. Cells
 // along y follow each other, so each neighbouring column of cells is one stretch of the sorted particles.
 //
-// lavapipe ends all loops of a shader after 65,535 iterations, those of neighbouring invocations together. A dispatch takes a
-// piece of every stretch, 32 particles an iteration and then four; where one is longer, the next piece is marked as reached,
-// and its dispatch adds to the sums.
+// lavapipe ends all loops of a shader after 65,535 iterations. A dispatch takes a piece of every stretch; where one is longer,
+// the next piece is marked as reached, and its dispatch adds to the sums.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -42,8 +41,8 @@ layout(set = 0, binding = 4, std430) buffer Reached {
 
 layout(set = 0, binding = 5, rgba32f) uniform image2DArray density;
 
-// Particles of a stretch in one piece: of nine stretches 64,512 iterations, and as many as eight more of each.
-const uint PIECE = 229376u;
+// Particles of a stretch in one piece, four an iteration: nine stretches are 64,512 iterations.
+const uint PIECE = 28672u;
 const uint REACHED = 1u;
 const float NO_PLANE_M = 1.0e9;
 
@@ -55,11 +54,6 @@ vec4 metaballs(uint at, uint end, vec2 column_m, vec4 heights_m) {
     vec4 a_squared = min(dot(across, across) + up * up, 2.0);
     vec4 inside = at < end ? max(1.0 - a_squared, 0.0) : vec4(0.0);
     return inside * inside * (1.0 - 4.0 / 9.0 * a_squared);
-}
-
-vec4 four(uint at, uint end, vec2 column_m, vec4 heights_m) {
-    vec4 two = metaballs(at, end, column_m, heights_m) + metaballs(at + 1u, end, column_m, heights_m);
-    return two + (metaballs(at + 2u, end, column_m, heights_m) + metaballs(at + 3u, end, column_m, heights_m));
 }
 
 uvec3 cell_of(vec3 place_m) {
@@ -88,19 +82,9 @@ void main() {
             uint first = min(starts.list[column + low.y] + gather.piece * PIECE, last);
             uint end = min(first + PIECE, last);
             goes_on = goes_on || end < last;
-            uint i = first;
-            for (; i + 32u <= end; i += 32u) {
-                sum += four(i, end, column_m, heights_m);
-                sum += four(i + 4u, end, column_m, heights_m);
-                sum += four(i + 8u, end, column_m, heights_m);
-                sum += four(i + 12u, end, column_m, heights_m);
-                sum += four(i + 16u, end, column_m, heights_m);
-                sum += four(i + 20u, end, column_m, heights_m);
-                sum += four(i + 24u, end, column_m, heights_m);
-                sum += four(i + 28u, end, column_m, heights_m);
-            }
-            for (; i < end; i += 4u) {
-                sum += four(i, end, column_m, heights_m);
+            for (uint i = first; i < end; i += 4u) {
+                vec4 two = metaballs(i, end, column_m, heights_m) + metaballs(i + 1u, end, column_m, heights_m);
+                sum += two + (metaballs(i + 2u, end, column_m, heights_m) + metaballs(i + 3u, end, column_m, heights_m));
             }
         }
     }

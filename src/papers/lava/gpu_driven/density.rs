@@ -24,9 +24,9 @@ host_block! {
 }
 
 /// Particles of a stretch in one dispatch: as in `lava/density.comp`.
-const PIECE: u32 = 229_376;
+const PIECE: u32 = 28_672;
 
-/// Dispatches that hold every particle, were they all in one stretch of cells. Those that no stretch reaches end at once.
+/// Dispatches that hold every particle, were they all in one stretch of cells.
 pub fn pieces(particles: u32) -> u32 {
     particles.div_ceil(PIECE)
 }
