@@ -70,7 +70,8 @@ fn what_is_declared_as_constants_is_what_a_paper_takes_over() {
 fn constants_that_a_paper_takes_over_are_seen_without_building() {
     beside_others(|| {
         let water: &[(&str, &str)] = &[("absorption", "0.7"), ("fresnel", "true")];
-        let cases: [(&str, &str, &[(&str, &str)]); 6] = [
+        type Changes = [(&'static str, &'static str)];
+        let cases: [(&str, &str, &Changes); 6] = [
             (
                 "lava",
                 "",
