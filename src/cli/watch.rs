@@ -97,7 +97,8 @@ pub fn watched<T>(quiet: bool, what: &str, work: impl FnOnce(&mut Watch<'_>) -> 
             bar.set_position(done);
             if is_piped && said.elapsed() >= BETWEEN_LINES {
                 said = Instant::now();
-                eprintln!("{what}: {done} of {expected} frames, {:.0} %", 100.0 * done as f64 / expected.max(1) as f64);
+                let percent = 100.0 * done as f64 / expected.max(1) as f64;
+                say(&format!("{what}: {done} of {expected} frames, {percent:.0} %"));
             }
         },
     });
