@@ -92,6 +92,8 @@ pub struct Target {
     pub columns: u32,
     /// Of a buffer's values; images have their own format.
     pub kind: Kind,
+    /// What a texel or row holds, with units; empty of what its name says.
+    pub holds: &'static str,
 }
 
 /// Type of a buffer's 32-bit values.
@@ -105,12 +107,12 @@ pub enum Kind {
 impl Target {
     /// An image.
     pub fn image(name: impl Into<String>, view: &Arc<ImageView>) -> Self {
-        Target { name: name.into(), resource: view.into(), columns: 0, kind: Kind::F32 }
+        Target { name: name.into(), resource: view.into(), columns: 0, kind: Kind::F32, holds: "" }
     }
 
     /// A buffer of rows of `columns` 32-bit floats.
     pub fn table(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
-        Target { name: name.into(), resource: buffer.into(), columns, kind: Kind::F32 }
+        Target { name: name.into(), resource: buffer.into(), columns, kind: Kind::F32, holds: "" }
     }
 
     /// A buffer of rows of `columns` unsigned 32-bit integers.
@@ -121,5 +123,10 @@ impl Target {
     /// A buffer of rows of `columns` signed 32-bit integers.
     pub fn integers(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
         Target { kind: Kind::I32, ..Self::table(name, buffer, columns) }
+    }
+
+    /// With what a texel or row holds, and its unit.
+    pub fn of(self, holds: &'static str) -> Self {
+        Target { holds, ..self }
     }
 }

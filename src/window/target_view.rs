@@ -112,7 +112,9 @@ fn words(choice: &TargetChoice, info: &TargetInfo, x: u32, y: u32, numbers: &[f6
     let values: Vec<String> = numbers.iter().map(text).collect();
     let depth = numbers.first().filter(|_| info.is_depth);
     let linear = depth.map(|depth| format!(" = {:.3} near planes away", linear_depth(*depth))).unwrap_or_default();
-    let format = if info.format.is_empty() { String::new() } else { format!(" ({})", info.format) };
+    let of = [info.holds.as_str(), info.format.as_str()].into_iter().filter(|text| !text.is_empty());
+    let of = of.collect::<Vec<_>>().join("; ");
+    let format = if of.is_empty() { of } else { format!(" ({of})") };
     let layer = if choice.layer > 0 { format!(", layer {}", choice.layer) } else { String::new() };
     format!("{} {x}, {y}{layer}: {}{linear}{format}", choice.name, values.join(" "))
 }
@@ -130,6 +132,7 @@ fn show_heading(ui: &mut Ui, face: &mut Interface, choice: &TargetChoice, info: 
             TargetShape::Table { rows, columns } => format!("{rows} rows of {columns}"),
         };
         ui.weak(format!("{shape}  {}", info.format));
+        ui.label(&info.holds);
         let mut changed = choice.clone();
         if let TargetShape::Image { layers, .. } = info.shape
             && layers > 1

@@ -304,7 +304,7 @@ impl Caustics {
         };
         let of_light = self.lit_receivers.iter().zip(maps).filter(|(lit, _)| lit.light == light);
         let named = |(lit, maps): (&LitReceiver, [(&str, &Arc<ImageView>); 4])| {
-            maps.map(|(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view))
+            maps.map(|(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view).of(holds(name)))
         };
         of_light.flat_map(named).collect()
     }
@@ -434,19 +434,40 @@ impl Paper for Caustics {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let mut targets = vec![Target::table("water", &self.water_surface.vertices, VERTEX_FLOATS)];
+        let mut targets = vec![
+            Target::table("water", &self.water_surface.vertices, VERTEX_FLOATS)
+                .of("position x, y, z in metres and a filler, normal x, y, z and a filler"),
+        ];
         for (light, volumes) in self.illumination_volumes.iter().enumerate() {
-            targets.push(Target::table(numbered("illumination-volumes", &[light]), &volumes.rays, RAY_FLOATS));
+            targets.push(Target::table(numbered("illumination-volumes", &[light]), &volumes.rays, RAY_FLOATS).of(
+                "a vertex's ray: origin in metres along the light's axes, light that enters, slope, secant, direction",
+            ));
             targets.extend(self.map_targets(light));
         }
         if let Technique::Stencil { receivers, .. } = &self.technique {
-            targets.push(Target::image("surface-position", &receivers.position));
-            targets.push(Target::image("surface-normal", &receivers.normal));
-            targets.push(Target::image("surface-albedo", &receivers.albedo));
+            targets.push(Target::image("surface-position", &receivers.position).of("x, y, z in metres"));
+            targets.push(Target::image("surface-normal", &receivers.normal).of("x, y, z of the unit normal"));
+            targets
+                .push(Target::image("surface-albedo", &receivers.albedo).of("reflectance in red, green, blue, 0 to 1"));
         }
-        targets.push(Target::image("underwater-color", &self.underwater.color));
-        targets.push(Target::image("underwater-depth", &self.underwater.fetched_depth));
-        targets.push(Target::image("picture", &self.view.picture));
+        targets.push(Target::image("underwater-color", &self.underwater.color).of("light in red, green, blue, linear"));
+        targets.push(
+            Target::image("underwater-depth", &self.underwater.fetched_depth)
+                .of("depth, 0 at the near plane to 1 at the far one"),
+        );
+        targets.push(
+            Target::image("picture", &self.view.picture).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
+        );
         targets
+    }
+}
+
+/// What a texel of a receiver's map holds.
+fn holds(map: &str) -> &'static str {
+    match map {
+        "position-map" => "height in metres along the light",
+        "diffuse-map" => "diffuse light in red, green, blue, linear, without the light's intensity",
+        "caustics-map" => "I_c of eq. 4-18 for light of unit intensity",
+        _ => "light in red, green, blue, linear; alpha 1 where there is a receiver",
     }
 }

@@ -330,12 +330,17 @@ impl Paper for Gas {
         let row = self.parameters.table_size;
         let lights = self.parameters.lights.len() as u32;
         let buffers = [
-            density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, row)),
-            shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, row)),
-            volume.as_ref().map(|pass| Target::table("sections", &pass.sections, 8)),
-            light_attenuation.as_ref().map(|pass| Target::table("light-attenuations", &pass.attenuations, lights)),
+            density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, row).of("density, a table of each volume, x fastest")),
+            shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, row).of("density times metres towards the light, a table of each volume and light, x fastest")),
+            volume.as_ref().map(|pass| Target::table("sections", &pass.sections, 8)
+                .of("a section: near and far in metres, increments, the next one, light in red, green, blue, transparency")),
+            light_attenuation.as_ref().map(|pass| Target::table("light-attenuations", &pass.attenuations, lights).of("share of each light that the gas takes, 0 to 1")),
         ];
-        let images = [Target::image("radiance", &resolve.radiance), Target::image("picture", &view.picture)];
+        let images = [
+            Target::image("radiance", &resolve.radiance)
+                .of("light in red, green, blue, linear, and the opacity, 0 to 1"),
+            Target::image("picture", &view.picture).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
+        ];
         buffers.into_iter().flatten().chain(images).collect()
     }
 }

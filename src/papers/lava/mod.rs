@@ -212,14 +212,19 @@ impl Paper for Lava {
     fn targets(&self) -> Vec<Target> {
         let State { positions, velocities } = self.animate.state();
         vec![
-            Target::image("positions", positions),
-            Target::image("velocities", velocities),
-            Target::image("density", self.method.density()),
-            Target::image("accumulated-depths", self.method.sums()),
-            Target::image("normal-height", &self.normal_height.surface),
-            Target::image("visibility", &self.splatting.depth),
-            Target::image("accumulated-colors", &self.splatting.sums),
-            Target::image("picture", &self.splatting.normalisation.picture),
+            Target::image("positions", positions).of("x, y, z in metres"),
+            Target::image("velocities", velocities).of("x, y, z in metres per second"),
+            Target::image("density", self.method.density()).of("densities at four grid planes above each other"),
+            Target::image("accumulated-depths", self.method.sums())
+                .of("sum of weighted heights in metres in red, sum of weights in alpha"),
+            Target::image("normal-height", &self.normal_height.surface)
+                .of("normal in red, green, blue, height in metres in alpha"),
+            Target::image("visibility", &self.splatting.depth)
+                .of("distance from the eye and epsilon, as a share of the depth range"),
+            Target::image("accumulated-colors", &self.splatting.sums)
+                .of("sum of weighted light in red, green, blue, linear, sum of weights in alpha"),
+            Target::image("picture", &self.splatting.normalisation.picture)
+                .of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
         ]
     }
 }

@@ -330,9 +330,20 @@ impl Shading {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let mut targets = vec![Target::image("depth", &self.depth), Target::image("normal", &self.normal.target)];
-        targets.extend(self.shadow.as_ref().map(|shadow| Target::image("shadow", &shadow.target)));
-        targets.extend(self.occlusion.as_ref().map(|occlusion| Target::image("occlusion", &occlusion.target)));
+        let mut targets = vec![
+            Target::image("depth", &self.depth)
+                .of("depth along the view in metres, place on the map in two coordinates, code of the surface"),
+            Target::image("normal", &self.normal.target)
+                .of("x, y, z of the unit normal, height above the base in metres"),
+        ];
+        targets.extend(
+            self.shadow
+                .as_ref()
+                .map(|shadow| Target::image("shadow", &shadow.target).of("share of the sun that arrives, 0 to 1")),
+        );
+        targets.extend(self.occlusion.as_ref().map(|occlusion| {
+            Target::image("occlusion", &occlusion.target).of("share of the sun that arrives past objects, 0 to 1")
+        }));
         targets
     }
 }
@@ -376,9 +387,10 @@ impl ObjectPasses {
     fn targets(&self) -> Vec<Target> {
         let shadow = |ObjectShadows { hits, shadow, occlusion }: &ObjectShadows| {
             [
-                Target::image("object-hits", &hits.target),
-                Target::image("object-shadow", &shadow.target),
-                Target::image("object-occlusion", &occlusion.target),
+                Target::image("object-hits", &hits.target).of("depth along the view in metres, and what was met"),
+                Target::image("object-shadow", &shadow.target).of("share of the sun that arrives, 0 to 1"),
+                Target::image("object-occlusion", &occlusion.target)
+                    .of("share of the sun that arrives past objects, 0 to 1"),
             ]
         };
         self.shadow.iter().flat_map(shadow).collect()
@@ -449,7 +461,9 @@ impl Paper for Terrain {
             Technique::RayCast(_, shading) | Technique::Mesh(_, _, shading) => shading.targets(),
         };
         targets.extend(self.objects.iter().flat_map(ObjectPasses::targets));
-        targets.push(Target::image("picture", self.picture()));
+        targets.push(
+            Target::image("picture", self.picture()).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
+        );
         targets
     }
 }

@@ -77,6 +77,10 @@ impl Show {
 
     /// The processor's depth and normal.
     pub fn targets(&self) -> Vec<Target> {
-        vec![Target::table("depth", &self.depths, 4), Target::table("normal", &self.normals, 4)]
+        vec![
+            Target::table("depth", &self.depths, 4)
+                .of("depth along the view in metres, place on the map in two coordinates, code of the surface"),
+            Target::table("normal", &self.normals, 4).of("x, y, z of the unit normal"),
+        ]
     }
 }

@@ -296,4 +296,6 @@ pub struct TargetInfo {
     pub is_depth: bool,
     /// 8-bit sRGB, as a picture is.
     pub is_srgb: bool,
+    /// What a texel or row holds, with units; empty of what the name says.
+    pub holds: String,
 }

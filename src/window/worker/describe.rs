@@ -118,6 +118,7 @@ pub fn target(target: &Target, prefix: &str) -> Option<TargetInfo> {
                 format: format!("{format:?}"),
                 is_depth: matches!(format, vk::Format::D32_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT),
                 is_srgb: format == vk::Format::R8G8B8A8_SRGB,
+                holds: target.holds.to_owned(),
             }
         }
         Resource::Buffer(view) => {
@@ -134,6 +135,7 @@ pub fn target(target: &Target, prefix: &str) -> Option<TargetInfo> {
                 format: String::new(),
                 is_depth: false,
                 is_srgb: false,
+                holds: target.holds.to_owned(),
             }
         }
         Resource::Sampler(_) => return None,

@@ -176,6 +176,8 @@ fn passes_are_listed_and_a_frame_ends_after_each_of_them() {
         let count = built.passes.len() as u32;
         assert!(count >= 2, "{paper}: {:?}", built.passes);
         assert!(built.passes.iter().all(|pass| pass.calls > 0));
+        let unsaid = built.targets.iter().find(|target| target.holds.is_empty());
+        assert!(unsaid.is_none(), "{paper}: what {unsaid:?} holds, and its unit");
         let written_by = |name: &str| {
             let is_one = |index: &usize| built.targets[*index].name == name;
             built.passes.iter().position(|pass| pass.written_targets.iter().any(is_one))
