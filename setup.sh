@@ -89,6 +89,15 @@ has_browser() {
     return 1
 }
 
+# Whether a session's bus can start the one of assistive tools.
+has_a11y_bus() (
+    IFS=:
+    for directory in ${XDG_DATA_DIRS:-/usr/local/share:/usr/share}; do
+        [ -e "$directory/dbus-1/services/org.a11y.Bus.service" ] && exit
+    done
+    exit 1
+)
+
 # Collects the missing pieces in words and as packages.
 find_missing() {
     missing='' packages=''
@@ -110,6 +119,10 @@ find_missing() {
         need openbox 'a small window manager for the same tests'
     [ -z "$tests" ] || command -v weston >/dev/null ||
         need weston 'weston, a Wayland compositor, for the same tests'
+    [ -z "$tests" ] || has_programs dbus-run-session dbus-send ||
+        need dbus 'dbus, the buses that assistive tools read the window over, for the same tests'
+    [ -z "$tests" ] || has_a11y_bus ||
+        need at-spi2-core 'at-spi2-core, their registry'
     [ -z "$tests" ] || has_programs sbatch slurmctld slurmd ||
         need slurm-wlm 'Slurm, for the tests of films on many machines'
     [ -z "$tests" ] || has_programs munged mungekey ||
@@ -169,6 +182,8 @@ package_here() {
     arch:libx11-xcb1) echo libx11 ;;
     suse:libx11-xcb1) echo libX11-xcb1 ;;
     fedora:chromium-* | arch:chromium-* | suse:chromium-*) echo chromium ;;
+    fedora:dbus) echo dbus-daemon dbus-tools ;;
+    suse:dbus) echo dbus-1-daemon dbus-1-tools ;;
     fedora:slurm-wlm) echo slurm slurm-slurmctld slurm-slurmd ;;
     arch:slurm-wlm) echo slurm-llnl ;;
     suse:slurm-wlm) echo slurm ;;

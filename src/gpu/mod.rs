@@ -106,5 +106,5 @@ pub use recorder::Recorder;
 pub use render_pass::{Blend, DepthTest, Load};
 pub use sample::{Counts, FrameSample, Mode, PassSample, Span, Track};
 pub use shader::{Compiler, ShaderLibrary};
-pub use threads::pin_software_threads;
+pub use threads::{draw_in_place, for_another_process, pin_software_threads};
 pub use work::{Bytes, Kept, Work};

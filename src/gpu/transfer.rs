@@ -160,6 +160,36 @@ pub fn upload_rows(
     Ok(())
 }
 
+/// Writes the first texels of a staging buffer, tightly packed, to the rectangle of that size at column `column` and row `row`
+/// of `to`, a view of one layer. The rest of `to` keeps what it holds.
+///
+/// # Errors
+/// [`Error::Limit`] when the rectangle leaves the view or the buffer holds less; any error of Vulkan.
+pub fn upload_rectangle(
+    staging: &Arc<Buffer>,
+    to: &Arc<ImageView>,
+    (column, row): (u32, u32),
+    (width, height): (u32, u32),
+) -> Result<(), Error> {
+    check_rectangle("upload", to, (column, width), (row, height))?;
+    let bytes = u64::from(width) * u64::from(height) * texel_bytes(to.image());
+    let from = staging.range(0..bytes)?;
+    let uses = [
+        Use { resource: (&from).into(), access: Access::CopySource, discard: false },
+        Use { resource: to.into(), access: Access::CopyDestination, discard: false },
+    ];
+    let region = vk::BufferImageCopy::default()
+        .image_subresource(subresource(to))
+        .image_offset(vk::Offset3D { x: column as i32, y: row as i32, z: 0 })
+        .image_extent(vk::Extent3D { width, height, depth: 1 });
+    let layout = Access::CopyDestination.info().layout;
+    once(&staging.device, "upload", &uses, |raw, commands| {
+        // SAFETY: recording; the rectangle lies inside the view, which is in that layout by its barrier, and the buffer holds
+        // its texels by its range; both outlive the submission.
+        unsafe { raw.cmd_copy_buffer_to_image(commands, staging.raw, to.image.raw, layout, &[region]) };
+    })
+}
+
 /// Copies the upper left `width` x `height` texels of `from` to column `column` and row `row` of `to`, views of one layer of
 /// one format. The rest of `to` keeps what it holds.
 ///

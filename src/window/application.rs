@@ -72,6 +72,7 @@ impl From<accesskit_winit::Event> for Wake {
 /// [`Error::NoDisplay`] without a display; [`Error::Refused`] where the first worker refuses; any error of the Vulkan
 /// layer, as a lost device.
 pub fn run(options: Options, on_quit: impl FnOnce(Box<dyn Fn() + Send>)) -> Result<(), Error> {
+    crate::gpu::draw_in_place();
     let events = event_loop()?;
     let proxy = events.create_proxy();
     let quit = proxy.clone();
@@ -312,9 +313,9 @@ impl Open {
         let output = self.context.run(input, |context| interface.show(context));
         self.screen.update(&output.textures_delta)?;
         let pixels_per_point = output.pixels_per_point;
-        let primitives = self.context.tessellate(output.shapes, pixels_per_point);
         let laid_out = started.elapsed();
-        let drawn = self.screen.draw(pixels_per_point, &primitives)?;
+        let tessellate = |shapes| self.context.tessellate(shapes, pixels_per_point);
+        let drawn = self.screen.draw(pixels_per_point, output.shapes, tessellate)?;
         self.screen.free(&output.textures_delta);
         if let Some(path) = &self.controls
             && let Some(update) = &output.platform_output.accesskit_update

@@ -11,6 +11,7 @@ use super::interface::{CommandUse, Interface};
 use super::passes_panel::milliseconds;
 use super::program;
 use super::protocol::{Request, Verb};
+use crate::gpu::for_another_process;
 
 /// The benchmark that runs, or ran last.
 #[derive(Default)]
@@ -44,6 +45,7 @@ impl Bench {
         let path = folder.join(format!("window-bench-{}.json", std::process::id()));
         let mut command = Command::new(program::umbrella()?);
         command.args(arguments).arg("--quiet").arg("--json").arg(&path);
+        for_another_process(&mut command);
         let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn()?;
         self.running = Some(Running { child, started: Instant::now(), path });
         Ok(())

@@ -16,6 +16,7 @@ use tempfile::TempPath;
 
 use super::protocol::{Block, Ended, Event, Numbered, Request};
 use crate::file;
+use crate::gpu::for_another_process;
 
 /// Lines of standard error that are kept.
 const LINES: usize = 20;
@@ -45,6 +46,7 @@ impl Client {
         let blocks = exchange.reopen()?;
         let mut command = Command::new(program);
         command.args(arguments).arg("--exchange").arg(exchange.path());
+        for_another_process(&mut command);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
         let (input, output, errors) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
         let (Some(input), Some(output), Some(errors)) = (input, output, errors) else {

@@ -2,7 +2,7 @@
 //! wishes go out.
 
 use std::collections::VecDeque;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use egui::{CentralPanel, Context, RichText, SidePanel, TopBottomPanel};
 
@@ -68,6 +68,8 @@ pub struct Interface {
     pub(super) command_use: CommandUse,
     /// A line for the user: what was copied or written.
     pub(super) note: Option<String>,
+    /// When it was made.
+    pub(super) opened: Instant,
     pub(super) has_keys: bool,
     pub(super) is_plot_paused: bool,
     /// Line under the picture: place and value at the pointer.
@@ -109,6 +111,7 @@ impl Interface {
             frame_text: None,
             command_use: CommandUse::Copy,
             note: None,
+            opened: Instant::now(),
             has_keys: false,
             is_plot_paused: false,
             pointed: String::new(),

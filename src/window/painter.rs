@@ -1,13 +1,15 @@
-//! Draws the interface: its triangles in one pass of the project's own layer, in the interface's own order.
+//! Draws the interface: its triangles in passes of the project's own layer, in the interface's own order, where it has
+//! changed.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet, VecDeque};
 use std::sync::Arc;
 
 use ash::vk;
-use egui::epaint::{ClippedPrimitive, ImageData, ImageDelta, Mesh, Primitive};
-use egui::{TextureFilter, TextureId};
+use egui::epaint::{ClippedPrimitive, ClippedShape, ImageData, ImageDelta, Mesh, Primitive};
+use egui::{ColorImage, TextureFilter, TextureId};
 
-use crate::gpu::transfer::{copy_rectangle, upload_rows};
+use super::damage::{Area, Canvas, Sheet};
+use crate::gpu::transfer::{copy_rectangle, upload_rectangle, upload_rows};
 use crate::gpu::{
     Blend, Buffer, BufferDesc, Compiler, Device, Error, Image, ImageDesc, ImageView, Load, Location, Mode, Pass,
     Recorder, Sampler, ShaderLibrary,
@@ -40,16 +42,24 @@ pub struct Painter {
     target: Option<Target>,
     /// A pass of the target's format: all others share its pipeline.
     model: Option<Pass>,
-    /// What was drawn last.
-    drawn: (Vec<Corner>, Vec<u32>),
-    runs: Vec<Run>,
-    has_new_texels: bool,
+    canvas: Canvas,
+    /// Textures that have changed since the shapes were last taken over.
+    redrawn: HashSet<TextureId>,
+    /// Texels on their way to the window's picture.
+    bytes: Vec<[u8; 4]>,
+    staging: Option<Arc<Buffer>>,
 }
 
 /// A texture of the interface.
 struct Texture {
-    view: Arc<ImageView>,
+    /// Absent where it was only copied to the window so far.
+    view: Option<Arc<ImageView>>,
+    /// Texels that the view does not hold yet.
+    waiting: Option<Arc<ColorImage>>,
+    size: [usize; 2],
     filter: TextureFilter,
+    /// No texel lets anything through.
+    is_opaque: bool,
     /// Draws with it, over what is there; made when it is first drawn with.
     pass: Option<Pass>,
 }
@@ -63,12 +73,20 @@ struct Target {
 }
 
 /// Triangles of one texture inside one rectangle.
-#[derive(Debug, Clone, PartialEq)]
 struct Run {
     texture: TextureId,
-    clip: egui::Rect,
+    area: Area,
     first: u32,
     count: u32,
+}
+
+/// What one frame draws, in the buffers' order.
+#[derive(Default)]
+struct Batch {
+    corners: Vec<Corner>,
+    indices: Vec<u32>,
+    /// The runs of each rectangle, in the interface's order.
+    runs: Vec<VecDeque<Run>>,
 }
 
 impl Painter {
@@ -87,9 +105,10 @@ impl Painter {
             indices: indices(device, 1 << 18)?,
             target: None,
             model: None,
-            drawn: Default::default(),
-            runs: Vec::new(),
-            has_new_texels: false,
+            canvas: Canvas::default(),
+            redrawn: HashSet::new(),
+            bytes: Vec::new(),
+            staging: None,
         })
     }
 
@@ -110,37 +129,35 @@ impl Painter {
     }
 
     fn change(&mut self, id: TextureId, delta: &ImageDelta) -> Result<(), Error> {
-        self.has_new_texels = true;
         let ImageData::Color(image) = &delta.image;
-        let [width, height] = image.size.map(|side| side as u32);
+        let [width, height] = image.size;
         if width == 0 || height == 0 {
             return Ok(());
         }
-        let fits = |view: &ImageView| (view.width(), view.height()) == (width, height);
-        let pixels: &[u8] = bytemuck::cast_slice(&image.pixels);
-        let row_bytes = width as usize * 4;
-        let rows = |first: u32, bytes: &mut [u8]| {
-            let start = first as usize * row_bytes;
-            bytes.copy_from_slice(&pixels[start..start + bytes.len()]);
-        };
-        let device = self.shaders.device().clone();
-        let fresh = |name: &str| -> Result<Arc<ImageView>, Error> {
-            let desc = ImageDesc::new_2d(name, vk::Format::R8G8B8A8_UNORM, width, height);
-            let view = Image::new(&device, desc.usage(vk::ImageUsageFlags::SAMPLED))?.view()?;
-            upload_rows(&device, &view, (width, height), rows)?;
-            Ok(view)
-        };
+        // New letters beside those that are there change nothing.
+        if id != LETTERS {
+            self.redrawn.insert(id);
+        } else if delta.pos.is_none() {
+            self.canvas.forget();
+        }
+        let is_opaque = image.pixels.iter().fold(u8::MAX, |least, pixel| least & pixel.a()) == u8::MAX;
         let filter = delta.options.magnification;
         match (delta.pos, self.textures.get_mut(&id)) {
             (Some([column, row]), Some(texture)) => {
-                let patch = fresh("interface patch")?;
-                copy_rectangle(&device, &patch, &texture.view, (column as u32, row as u32), (width, height))
+                texture.is_opaque &= is_opaque;
+                let device = self.shaders.device().clone();
+                let patch = texels(&device, image)?;
+                let view = self.uploaded(id)?;
+                let Some(view) = view else { return Ok(()) };
+                copy_rectangle(&device, &patch, &view, (column as u32, row as u32), (width as u32, height as u32))
             }
-            (None, Some(texture)) if fits(&texture.view) && texture.filter == filter => {
-                upload_rows(&device, &texture.view, (width, height), rows)
+            (None, Some(texture)) if texture.size == image.size && texture.filter == filter => {
+                (texture.is_opaque, texture.waiting) = (is_opaque, Some(image.clone()));
+                Ok(())
             }
             (None, _) => {
-                let texture = Texture { view: fresh("interface texture")?, filter, pass: None };
+                let waiting = Some(image.clone());
+                let texture = Texture { view: None, waiting, size: image.size, filter, is_opaque, pass: None };
                 self.textures.insert(id, texture);
                 if id == LETTERS
                     && let Some(target) = &mut self.target
@@ -154,58 +171,125 @@ impl Painter {
         }
     }
 
+    /// The view of a texture with all its texels; `None` for one that is not there.
+    fn uploaded(&mut self, id: TextureId) -> Result<Option<Arc<ImageView>>, Error> {
+        let Some(texture) = self.textures.get_mut(&id) else { return Ok(None) };
+        if let Some(image) = texture.waiting.take() {
+            match &texture.view {
+                Some(view) => fill(self.shaders.device(), view, &image)?,
+                None => texture.view = Some(texels(self.shaders.device(), &image)?),
+            }
+        }
+        Ok(texture.view.clone())
+    }
+
+    /// Lays the part of a picture that lies in `area` onto the window's picture, texel by pixel.
+    fn copy(&mut self, sheet: Sheet, area: Area, target: &Arc<ImageView>) -> Result<bool, Error> {
+        let waiting = self.textures.get(&sheet.texture).and_then(|texture| texture.waiting.clone());
+        let (wide, high) = sheet.place.size();
+        let Some(image) = waiting.filter(|image| image.size == [wide as usize, high as usize]) else {
+            return Ok(false);
+        };
+        let is_blue_first = match target.image().desc().format {
+            vk::Format::B8G8R8A8_UNORM => true,
+            vk::Format::R8G8B8A8_UNORM => false,
+            _ => return Ok(false),
+        };
+        let (width, height) = area.size();
+        let rows = (area.top - sheet.place.top) as usize..(area.bottom - sheet.place.top) as usize;
+        let first = (area.left - sheet.place.left) as usize;
+        self.bytes.clear();
+        for row in rows {
+            let start = row * image.size[0] + first;
+            self.bytes.extend(image.pixels[start..start + width as usize].iter().map(|pixel| {
+                let [red, green, blue, alpha] = pixel.to_array();
+                if is_blue_first { [blue, green, red, alpha] } else { [red, green, blue, alpha] }
+            }));
+        }
+        let bytes = bytemuck::cast_slice::<[u8; 4], u8>(&self.bytes);
+        let device = self.shaders.device();
+        let staging = match &self.staging {
+            Some(staging) if staging.size_bytes() >= bytes.len() as u64 => staging.clone(),
+            _ => {
+                let desc = BufferDesc::new("interface staging", bytes.len() as u64).location(Location::Upload);
+                self.staging.insert(Buffer::new(device, desc)?).clone()
+            }
+        };
+        staging.write(0, bytes)?;
+        upload_rectangle(&staging, target, (area.left, area.top), (width, height))?;
+        Ok(true)
+    }
+
     /// The window's picture as it was last drawn.
     pub fn picture(&self) -> Option<Arc<ImageView>> {
         self.target.as_ref().filter(|target| target.is_drawn).map(|target| target.view.clone())
     }
 
-    /// Draws `primitives`, whose places are in points of `pixels_per_point`, into the window's picture, and gives it;
-    /// `None` where it would be what it is.
+    /// Takes the shapes of a frame over, whose places are in points of `pixels_per_point`.
+    pub fn take(&mut self, pixels_per_point: f32, shapes: Vec<ClippedShape>) {
+        let textures = &self.textures;
+        let is_opaque = |id: TextureId| textures.get(&id).is_some_and(|texture| texture.is_opaque);
+        self.canvas.change(shapes, pixels_per_point, &self.redrawn, is_opaque);
+        self.redrawn.clear();
+    }
+
+    /// Draws what has changed into the window's picture, and gives it; `None` where it would be what it is. `tessellate` makes
+    /// triangles of shapes.
     ///
     /// # Errors
     /// Any error of the Vulkan layer.
     pub fn paint(
         &mut self,
         (width, height, format): (u32, u32, vk::Format),
-        pixels_per_point: f32,
-        primitives: &[ClippedPrimitive],
+        tessellate: impl Fn(Vec<ClippedShape>) -> Vec<ClippedPrimitive>,
     ) -> Result<Option<Arc<ImageView>>, Error> {
         let view = self.sized(width, height, format)?;
-        let has_changed = self.fill(primitives, pixels_per_point)?;
-        if !has_changed && !self.has_new_texels && self.target.as_ref().is_some_and(|target| target.is_drawn) {
+        let areas = self.canvas.stale((width, height));
+        if areas.is_empty() {
             return Ok(None);
         }
-        let runs = std::mem::take(&mut self.runs);
-        // The first clears, with or without triangles of its own.
-        let mut groups = vec![(LETTERS, 0..0)];
-        for (index, run) in runs.iter().enumerate() {
-            match groups.last_mut() {
-                Some((texture, range)) if *texture == run.texture => range.end = index + 1,
-                _ => groups.push((run.texture, index..index + 1)),
+        let is_whole = areas == [Area::whole((width, height))];
+        let mut batch = Batch::default();
+        for area in areas {
+            let mut seen = self.canvas.seen_in(area);
+            if let Some(sheet) = seen.picture
+                && (is_whole || !self.copy(sheet, area, &view)?)
+            {
+                seen.shapes.insert(0, self.canvas.shape_of(sheet));
+            }
+            if !is_whole && !seen.is_covered {
+                seen.shapes.insert(0, self.canvas.ground(area));
+            }
+            if !seen.shapes.is_empty() {
+                batch.add(area, tessellate(seen.shapes), self.canvas.pixels_per_point());
             }
         }
+        self.fill(&batch)?;
+        // The first of a whole picture clears, with or without triangles of its own.
+        let mut groups: Vec<(TextureId, Vec<Run>)> = Vec::new();
+        groups.extend(is_whole.then(|| (LETTERS, batch.take(LETTERS))));
+        while let Some(texture) = batch.next_texture() {
+            groups.push((texture, batch.take(texture)));
+        }
         let mut passes = Vec::new();
-        for (texture, range) in groups {
-            passes.extend(self.pass(texture, passes.is_empty(), &view)?.map(|pass| (pass, range)));
+        for (texture, runs) in groups {
+            let is_first = is_whole && passes.is_empty();
+            passes.extend(self.pass(texture, is_first, &view)?.map(|pass| (pass, runs)));
         }
         let screen = Screen { pixels: [width as f32, height as f32] };
         self.recorder.run(Mode::Plain, |frame| {
-            for (pass, range) in &passes {
+            for (pass, runs) in &passes {
                 frame.graphics(pass, |draw| {
                     draw.constants(&screen);
-                    for run in &runs[range.clone()] {
-                        let low = |side: f32| (side * pixels_per_point).round().max(0.0) as u32;
-                        let (left, top) = (low(run.clip.min.x), low(run.clip.min.y));
-                        let (right, bottom) = (low(run.clip.max.x), low(run.clip.max.y));
-                        let size = (right.saturating_sub(left), bottom.saturating_sub(top));
-                        draw.scissor((left, top), size).indices_from(run.first, run.count);
+                    for run in runs {
+                        let corner = (run.area.left, run.area.top);
+                        draw.scissor(corner, run.area.size()).indices_from(run.first, run.count);
                     }
                 })?;
             }
             Ok::<(), Error>(())
         })?;
-        self.runs = runs;
-        self.has_new_texels = false;
+        self.canvas.settle();
         if let Some(target) = &mut self.target {
             target.is_drawn = true;
         }
@@ -225,6 +309,7 @@ impl Painter {
         let desc = ImageDesc::new_2d("interface", format, width, height);
         let view = Image::new(self.shaders.device(), desc.usage(vk::ImageUsageFlags::COLOR_ATTACHMENT))?.view()?;
         self.forget_passes();
+        self.canvas.forget();
         self.target = Some(Target { view: view.clone(), first: None, is_drawn: false });
         Ok(view)
     }
@@ -237,47 +322,26 @@ impl Painter {
         }
     }
 
-    /// Writes corners and indices into the buffers, made larger where they must be; false where all is as it was.
-    fn fill(&mut self, primitives: &[ClippedPrimitive], pixels_per_point: f32) -> Result<bool, Error> {
-        let meshes = primitives.iter().filter_map(|clipped| match &clipped.primitive {
-            Primitive::Mesh(mesh) if !mesh.indices.is_empty() => Some((clipped.clip_rect, mesh)),
-            _ => None,
-        });
-        let (mut all, mut order, mut runs) = (Vec::new(), Vec::new(), Vec::new());
-        for (clip, Mesh { vertices, indices, texture_id }) in meshes {
-            let base = all.len() as u32;
-            all.extend(vertices.iter().map(|vertex| Corner {
-                place: [vertex.pos.x * pixels_per_point, vertex.pos.y * pixels_per_point],
-                texel: [vertex.uv.x, vertex.uv.y],
-                tint: u32::from_le_bytes(vertex.color.to_array()),
-            }));
-            let (first, count) = (order.len() as u32, indices.len() as u32);
-            order.extend(indices.iter().map(|index| base + index));
-            runs.push(Run { texture: *texture_id, clip, first, count });
-        }
-        let bytes_of = bytemuck::cast_slice::<Corner, u8>;
-        if bytes_of(&all) == bytes_of(&self.drawn.0) && order == self.drawn.1 && runs == self.runs {
-            return Ok(false);
-        }
+    /// Writes corners and indices into the buffers, made larger where they must be.
+    fn fill(&mut self, batch: &Batch) -> Result<(), Error> {
         let device = self.shaders.device().clone();
-        let (wanted_corners, wanted_indices) = (bytes_of(&all), bytemuck::cast_slice(&order));
-        if self.corners.size_bytes() < wanted_corners.len() as u64 {
-            self.corners = corners(&device, wanted_corners.len() as u64 * 2)?;
+        let (corners, indices): (&[u8], &[u8]) =
+            (bytemuck::cast_slice(&batch.corners), bytemuck::cast_slice(&batch.indices));
+        if self.corners.size_bytes() < corners.len() as u64 {
+            self.corners = self::corners(&device, corners.len() as u64 * 2)?;
             self.forget_passes();
         }
-        if self.indices.size_bytes() < wanted_indices.len() as u64 {
-            self.indices = self::indices(&device, wanted_indices.len() as u64 * 2)?;
+        if self.indices.size_bytes() < indices.len() as u64 {
+            self.indices = self::indices(&device, indices.len() as u64 * 2)?;
             self.forget_passes();
         }
-        self.corners.write(0, wanted_corners)?;
-        self.indices.write(0, wanted_indices)?;
-        self.drawn = (all, order);
-        self.runs = runs;
-        Ok(true)
+        self.corners.write(0, corners)?;
+        self.indices.write(0, indices)
     }
 
     /// The pass that draws with a texture; `None` for one that is not there.
     fn pass(&mut self, id: TextureId, is_first: bool, target: &Arc<ImageView>) -> Result<Option<Pass>, Error> {
+        let Some(picture) = self.uploaded(id)? else { return Ok(None) };
         let Some(texture) = self.textures.get(&id) else { return Ok(None) };
         let made = if is_first { self.target.as_ref().and_then(|t| t.first.clone()) } else { texture.pass.clone() };
         if made.is_some() {
@@ -290,7 +354,7 @@ impl Painter {
                 .rebind()
                 .vertices(&self.corners)
                 .indices(&self.indices)
-                .with("picture", &texture.view)
+                .with("picture", &picture)
                 .with("picture_sampler", sampler)
                 .color(0, target, load)
                 .build(&self.shaders)?,
@@ -298,7 +362,7 @@ impl Painter {
                 .vertices::<Corner>(&self.corners)
                 .indices(&self.indices)
                 .constants::<Screen>()
-                .with("picture", &texture.view)
+                .with("picture", &picture)
                 .with("picture_sampler", sampler)
                 .color(target, load, Blend::Premultiplied)
                 .build(&self.shaders)?,
@@ -316,8 +380,60 @@ impl Painter {
     }
 }
 
+impl Batch {
+    /// Adds what is seen in a rectangle.
+    fn add(&mut self, area: Area, primitives: Vec<ClippedPrimitive>, pixels_per_point: f32) {
+        let mut runs = VecDeque::new();
+        for ClippedPrimitive { clip_rect, primitive } in primitives {
+            let Primitive::Mesh(Mesh { vertices, indices, texture_id }) = primitive else { continue };
+            let clip = Area::of_clip(clip_rect, pixels_per_point).and_then(|clip| clip.common(area));
+            let Some(clip) = clip.filter(|_| !indices.is_empty()) else { continue };
+            let base = self.corners.len() as u32;
+            self.corners.extend(vertices.iter().map(|vertex| Corner {
+                place: [vertex.pos.x * pixels_per_point, vertex.pos.y * pixels_per_point],
+                texel: [vertex.uv.x, vertex.uv.y],
+                tint: u32::from_le_bytes(vertex.color.to_array()),
+            }));
+            let (first, count) = (self.indices.len() as u32, indices.len() as u32);
+            self.indices.extend(indices.iter().map(|index| base + index));
+            runs.push_back(Run { texture: texture_id, area: clip, first, count });
+        }
+        self.runs.push(runs);
+    }
+
+    /// The texture that some rectangle is to be drawn with next.
+    fn next_texture(&self) -> Option<TextureId> {
+        self.runs.iter().find_map(|runs| runs.front()).map(|run| run.texture)
+    }
+
+    /// The next runs of all rectangles, as far as they are drawn with that texture: none lies over another's.
+    fn take(&mut self, texture: TextureId) -> Vec<Run> {
+        let count = |runs: &VecDeque<Run>| runs.iter().take_while(|run| run.texture == texture).count();
+        self.runs.iter_mut().flat_map(|runs| runs.drain(..count(runs))).collect()
+    }
+}
+
 /// The texture of the interface's letters and fills.
 const LETTERS: TextureId = TextureId::Managed(0);
+
+/// An image of these texels.
+fn texels(device: &Arc<Device>, image: &ColorImage) -> Result<Arc<ImageView>, Error> {
+    let [width, height] = image.size.map(|side| side as u32);
+    let desc = ImageDesc::new_2d("interface texture", vk::Format::R8G8B8A8_UNORM, width, height);
+    let view = Image::new(device, desc.usage(vk::ImageUsageFlags::SAMPLED))?.view()?;
+    fill(device, &view, image)?;
+    Ok(view)
+}
+
+/// Gives an image of that size these texels.
+fn fill(device: &Arc<Device>, view: &Arc<ImageView>, image: &ColorImage) -> Result<(), Error> {
+    let [width, height] = image.size.map(|side| side as u32);
+    let pixels: &[u8] = bytemuck::cast_slice(&image.pixels);
+    upload_rows(device, view, (width, height), |first, bytes| {
+        let start = first as usize * width as usize * 4;
+        bytes.copy_from_slice(&pixels[start..start + bytes.len()]);
+    })
+}
 
 fn corners(device: &Arc<Device>, size_bytes: u64) -> Result<Arc<Buffer>, Error> {
     filled(device, BufferDesc::new("interface corners", size_bytes).usage(vk::BufferUsageFlags::VERTEX_BUFFER))

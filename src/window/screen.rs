@@ -3,7 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::{ClippedPrimitive, TexturesDelta};
+use egui::TexturesDelta;
+use egui::epaint::{ClippedPrimitive, ClippedShape};
 use winit::window::Window;
 
 use super::painter::Painter;
@@ -85,11 +86,17 @@ impl Screen {
         self.painter.update(&textures.set)
     }
 
-    /// Draws a frame of the interface and shows it.
+    /// Draws a frame of the interface, of which `tessellate` makes triangles, and shows it.
     ///
     /// # Errors
     /// Any error of the Vulkan layer, as a lost device.
-    pub fn draw(&mut self, pixels_per_point: f32, primitives: &[ClippedPrimitive]) -> Result<Drawn, Error> {
+    pub fn draw(
+        &mut self,
+        pixels_per_point: f32,
+        shapes: Vec<ClippedShape>,
+        tessellate: impl Fn(Vec<ClippedShape>) -> Vec<ClippedPrimitive>,
+    ) -> Result<Drawn, Error> {
+        self.painter.take(pixels_per_point, shapes);
         // Of a window that changes while it is drawn to, the second picture is the right one; a display that never
         // settles gets its next chance with the next frame.
         for _ in 0..3 {
@@ -100,15 +107,14 @@ impl Screen {
             let started = Instant::now();
             let (width, height) = swapchain.extent();
             let format = swapchain.picture_format();
-            let picture =
-                match (self.painter.paint((width, height, format), pixels_per_point, primitives)?, &self.shown) {
-                    (Some(picture), _) => picture,
-                    (None, Some(_)) => return Ok(Drawn::Unchanged),
-                    (None, None) => self.painter.picture().ok_or_else(|| Error::Pass {
-                        pass: "interface".into(),
-                        problem: "it has drawn nothing yet".into(),
-                    })?,
-                };
+            let picture = match (self.painter.paint((width, height, format), &tessellate)?, &self.shown) {
+                (Some(picture), _) => picture,
+                (None, Some(_)) => return Ok(Drawn::Unchanged),
+                (None, None) => self.painter.picture().ok_or_else(|| Error::Pass {
+                    pass: "interface".into(),
+                    problem: "it has drawn nothing yet".into(),
+                })?,
+            };
             let painted = started.elapsed();
             match swapchain.present(&picture)? {
                 Presented::Shown => {

@@ -8,8 +8,8 @@ use super::protocol::{
     SideTimes,
 };
 
-/// Points of the plots that are kept: minutes of frames.
-const HISTORY: usize = 4096;
+/// Points of the plots that are kept: the minutes that they show, at the pace of a display.
+const HISTORY: usize = 3 * 60 * 60;
 /// Lines of warnings and messages that are kept.
 const LINES: usize = 500;
 

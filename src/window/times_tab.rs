@@ -27,28 +27,32 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
         Some(now) => data.insert_temp(ui.id().with("held"), now),
         None => data.remove::<Instant>(ui.id().with("held")),
     });
+    let times = (face.opened, now);
     ui.columns(2, |columns| {
         let sides: Vec<String> = match face.session.side_count() {
             1 => vec!["frame".into()],
             _ => vec!["A".into(), "B".into()],
         };
-        plot(&mut columns[0], &face.session.frames, &sides, now);
+        plot(&mut columns[0], &face.session.frames, &sides, times);
         let built = face.session.side_built(0);
         let names: Vec<String> =
             built.map(|side| side.passes.iter().map(|pass| pass.name.clone()).collect()).unwrap_or_default();
         if face.session.passes.is_empty() {
             columns[1].weak("Turn times on above the passes to see them here.");
         } else {
-            plot(&mut columns[1], &face.session.passes, &names, now);
+            plot(&mut columns[1], &face.session.passes, &names, times);
         }
     });
 }
 
-/// Lines of the points' values, one a name, from 0 to the largest that is seen.
-fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], now: Instant) {
+/// Lines of the points' values, one a name, from 0 to the largest that is seen. Columns of time are counted from `since`.
+fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], (since, now): (Instant, Instant)) {
     let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::hover());
     let rect = response.rect;
     painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    // The lines move by whole pixels, so that most frames draw nothing here.
+    let columns = (rect.width() * ui.ctx().pixels_per_point()).max(1.0);
+    let now = on_a_column(since, now, SPAN.div_f32(columns));
     let age = |point: &Point| now.saturating_duration_since(point.at);
     let seen: Vec<&Point> = points.iter().filter(|point| point.at <= now && age(point) < SPAN).collect();
     let most = seen.iter().flat_map(|point| &point.values_ms).copied().fold(0.0, f64::max);
@@ -62,6 +66,7 @@ fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], now: Instant) {
     for index in 0..names.len() {
         let line: Vec<Pos2> =
             seen.iter().filter_map(|point| Some(place(point, *point.values_ms.get(index)?))).collect();
+        let line = by_columns(&line, ui.ctx().pixels_per_point());
         let stroke = Stroke::new(1.5, colour(index, ui.visuals().dark_mode));
         match line.as_slice() {
             [] => {}
@@ -86,6 +91,28 @@ fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], now: Instant) {
     }
 }
 
+/// The last moment up to `now` that lies whole columns of time behind `since`.
+fn on_a_column(since: Instant, now: Instant, column: Duration) -> Instant {
+    let behind = now.saturating_duration_since(since).as_nanos() % column.as_nanos().max(1);
+    now.checked_sub(Duration::from_nanos(behind as u64)).unwrap_or(now)
+}
+
+/// The line with the lowest and the highest of the points that lie in one column of pixels, in their order: no more can
+/// be seen.
+fn by_columns(line: &[Pos2], pixels_per_point: f32) -> Vec<Pos2> {
+    let column = |point: &Pos2| (point.x * pixels_per_point).floor();
+    let extremes = |points: &[Pos2]| -> Vec<Pos2> {
+        let at = |order: fn(&f32, &f32) -> std::cmp::Ordering| {
+            (0..points.len()).max_by(|&a, &b| order(&points[a].y, &points[b].y)).unwrap_or(0)
+        };
+        let (lowest, highest) = (at(f32::total_cmp), at(|a, b| b.total_cmp(a)));
+        let mut ends = vec![lowest.min(highest), lowest.max(highest)];
+        ends.dedup();
+        ends.into_iter().map(|index| points[index]).collect()
+    };
+    line.chunk_by(|a, b| column(a) == column(b)).flat_map(extremes).collect()
+}
+
 fn legend(painter: &egui::Painter, rect: Rect, names: &[String], font: egui::FontId, is_dark: bool) {
     let mut x = rect.left() + 76.0;
     for (index, name) in names.iter().enumerate() {
@@ -102,4 +129,26 @@ fn legend(painter: &egui::Painter, rect: Rect, names: &[String], font: egui::Fon
 fn colour(index: usize, is_dark: bool) -> Color32 {
     let hue = (index as f32 * 0.618_034 + 0.58) % 1.0;
     egui::ecolor::Hsva::new(hue, 0.65, if is_dark { 0.95 } else { 0.6 }, 1.0).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_keeps_the_extremes_of_each_column_in_their_order() {
+        let point = |x: f32, y: f32| Pos2::new(x, y);
+        let line = [point(0.1, 5.0), point(0.2, 9.0), point(0.3, 1.0), point(0.9, 4.0), point(1.5, 2.0)];
+        assert_eq!(by_columns(&line, 1.0), [point(0.2, 9.0), point(0.3, 1.0), point(1.5, 2.0)]);
+        assert_eq!(by_columns(&line, 0.1).len(), 2);
+        assert!(by_columns(&[], 1.0).is_empty());
+    }
+
+    #[test]
+    fn plots_stand_still_between_two_columns_of_time() {
+        let start = Instant::now();
+        let at = |ms: u64| on_a_column(start, start + Duration::from_millis(ms), Duration::from_millis(300));
+        assert_eq!((at(299), at(310), at(910)), (start, at(590), at(1190)));
+        assert!(at(610) > at(310));
+    }
 }

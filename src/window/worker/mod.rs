@@ -60,6 +60,7 @@ const AHEAD: u64 = 2;
 /// # Errors
 /// Of a device that cannot be opened or is lost, and of a file that is not there.
 pub fn run<S: Study>(start: Start) -> Result<(), Error> {
+    process::give_way();
     let outbox = Outbox::new();
     let inbox = Inbox::open(outbox.clone()).map_err(|error| starting(&error))?;
     let exchange = Exchange::open(&start.exchange).map_err(|error| starting(&error))?;

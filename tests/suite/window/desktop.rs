@@ -121,6 +121,102 @@ fn events_of_a_user_do_what_they_say() {
     });
 }
 
+#[test]
+fn the_divider_is_dragged_and_parts_the_two_pictures() {
+    beside_others(|| {
+        let display = Display::start();
+        let scene = small("caustics").replace("64x48", "320x240");
+        let variants = ["level-map", "volumetric"];
+        let mut window = Window::open(&display, &format!("caustics {scene} --variant {}", variants.join(",")));
+        window.wait_for_frame(0);
+        let pictures = variants.map(|variant| {
+            let file = window.folder.path().join(format!("{variant}.png"));
+            let render = fumarole(&format!("caustics render {scene} --variant {variant}"));
+            render.on_test_device().arg("--image").arg(&file).run().succeeded();
+            read_png(&file).unwrap()
+        });
+        assert!(pictures[0] != pictures[1], "nothing to be told apart");
+        let before = window.wait("the camera", |window| camera(window));
+        window.click("Divider");
+        let mut at = window.middle("divider");
+        for by in [-100_i16, 170] {
+            window.drag(1, at, (at.0 + by, at.1 + 30));
+            let wanted = at.0 + by;
+            at = window.wait("the divider where it was dragged to", |window| {
+                let [left, top, right, bottom] = window.try_rectangle("divider")?;
+                let middle = ((left + right) / 2, (top + bottom) / 2);
+                (middle.0.abs_diff(wanted) <= 2).then_some(middle)
+            });
+            let [_, top, _, bottom] = window.rectangle("divider");
+            let area = window.rectangle("pictures");
+            let left = ((area[0] + area[2]) / 2 - 160) as u32;
+            let top = ((top + bottom) / 2 - 120) as u32;
+            let cut = at.0 as u32 - left;
+            wait("A left of the divider and B right of it", || {
+                let screen = display.screenshot();
+                // The line itself, and a pixel of rounding, lie between.
+                let parts = [(&pictures[0], 0..cut - 4), (&pictures[1], cut + 4..320)];
+                let is_there = |x: u32, y: u32| {
+                    parts.iter().all(|(picture, columns)| {
+                        let mut rows = (0..240).flat_map(|row| columns.clone().map(move |column| (column, row)));
+                        let near = |(column, row)| {
+                            let (a, b) = (pixel(&screen, x + column, y + row), pixel(picture, column, row));
+                            (0..3).all(|channel| a[channel].abs_diff(b[channel]) <= 1)
+                        };
+                        rows.all(near)
+                    })
+                };
+                (left - 1..=left + 1).any(|x| (top - 2..=top + 2).any(|y| is_there(x, y))).then_some(())
+            });
+        }
+        assert_eq!(camera(&window), Some(before), "the camera moved with the divider");
+        window.close().succeeded();
+    });
+}
+
+/// Numbers of a one-channel target as `render --dump` writes them.
+fn dumped(paper: &str, scene: &str, target: &str) -> Vec<f32> {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, picture) = (folder.path().join("dump.npy"), folder.path().join("picture.png"));
+    let render = fumarole(&format!("{paper} render {scene}")).on_test_device().arg("--image").arg(picture);
+    render.arg("--dump").arg(format!("{target}={}", file.display())).run().succeeded();
+    let bytes = std::fs::read(&file).unwrap();
+    let header = bytes.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    bytemuck::pod_collect_to_vec(&bytes[header..])
+}
+
+#[test]
+fn a_target_lies_on_the_screen_in_the_colours_of_its_values() {
+    beside_others(|| {
+        let display = Display::start();
+        let scene = small("caustics");
+        let values = dumped("caustics", scene, "underwater-depth");
+        assert_eq!(values.len(), 64 * 48, "one channel of the picture's size");
+        let finite = || values.iter().copied().filter(|value| value.is_finite());
+        let (low, high) = (finite().fold(f32::INFINITY, f32::min), finite().fold(f32::NEG_INFINITY, f32::max));
+        assert!(low < high, "nothing to be told apart");
+        let grey = |value: &f32| {
+            let share = f64::from(value - low) / f64::from(high - low);
+            let level = (share * 255.0).round() as u8;
+            [level, level, level, 255]
+        };
+        let wanted = Rgba8::new(64, 48, values.iter().flat_map(grey).collect()).unwrap();
+        let mut window = Window::open(&display, &format!("caustics {scene}"));
+        window.wait_for_frame(0);
+        display.key(F4);
+        window.wait("no drawer", |window| (!window.has("Hold")).then_some(()));
+        window.click("underwater");
+        window.click("thumbnail underwater-depth");
+        window.wait("the target", |window| window.shows("underwater-depth").then_some(()));
+        window.click("all");
+        window.click("viridis");
+        window.click("grey");
+        let area = window.rectangle("underwater-depth");
+        wait("the target's values in grey", || shows(&display.screenshot(), &wanted, area).then_some(()));
+        window.close().succeeded();
+    });
+}
+
 fn camera(window: &Window<'_>) -> Option<String> {
     let controls = window.controls();
     let field = controls.iter().find(|control| control["label"] == "camera")?;
@@ -185,6 +281,82 @@ fn a_window_ends_after_the_frames_that_were_asked_for() {
         let program = fumarole(&format!("view lava {} --validate --exit-after 3", small("lava")));
         let program = program.env("DISPLAY", display.name()).without("WAYLAND_DISPLAY");
         program.arg("--device").arg(device()).run().succeeded();
+    });
+}
+
+#[test]
+fn every_way_of_presenting_shows_frames() {
+    beside_others(|| {
+        let display = Display::start();
+        for mode in ["fifo", "fifo-relaxed", "mailbox", "immediate"] {
+            let scene = small("terrain");
+            let program = fumarole(&format!("view terrain {scene} --validate --exit-after 2 --present-mode {mode}"));
+            let program = program.env("DISPLAY", display.name()).without("WAYLAND_DISPLAY");
+            program.arg("--device").arg(device()).run().succeeded();
+        }
+    });
+}
+
+#[test]
+fn text_is_as_large_as_the_display_says_and_the_picture_stays_texel_by_pixel() {
+    beside_others(|| {
+        let display = Display::start();
+        let scene = format!("terrain {}", small("terrain"));
+        let mut heights = Vec::new();
+        for scale in ["1", "2"] {
+            let mut window = Window::open_with(&display, &scene, |program| {
+                program.arg("--device").arg(device()).env("WINIT_X11_SCALE_FACTOR", scale)
+            });
+            window.resize(1500, 900);
+            window.wait_for_frame(0);
+            let [_, top, _, bottom] = window.rectangle("Copy as command");
+            heights.push(f64::from(bottom - top));
+            let file = window.folder.path().join("rendered.png");
+            let render = fumarole(&format!("terrain render {}", small("terrain"))).on_test_device();
+            render.arg("--image").arg(&file).run().succeeded();
+            let rendered = read_png(&file).unwrap();
+            let area = window.rectangle("picture");
+            wait("the picture on the screen", || shows(&display.screenshot(), &rendered, area).then_some(()));
+            window.close().succeeded();
+        }
+        assert!((heights[1] / heights[0] - 2.0).abs() < 0.15, "{heights:?}");
+    });
+}
+
+/// What a record says of what was measured, and not of when.
+fn configuration(record: &serde_json::Value) -> Vec<serde_json::Value> {
+    let parts = ["paper", "variant", "preset", "config", "width", "height", "seed", "warmup", "frames", "repeat"];
+    let runs = record["runs"].as_array().unwrap();
+    let passes = |run: &serde_json::Value| {
+        let passes = run["passes"].as_array().unwrap().iter();
+        passes.map(|pass| serde_json::json!([pass["name"], pass["calls"], pass["shader_compiler"]])).collect::<Vec<_>>()
+    };
+    runs.iter().map(|run| serde_json::json!([parts.map(|part| run[part].clone()), passes(run)])).collect()
+}
+
+#[test]
+fn a_benchmark_from_the_window_is_the_one_of_the_shell() {
+    beside_others(|| {
+        let display = Display::start();
+        let mut window = Window::open(&display, &format!("terrain {}", small("terrain")));
+        window.wait_for_frame(0);
+        window.click("Bench");
+        window.click("Run bench");
+        let record = window.wait("the record", |window| {
+            let folder = std::fs::read_dir(window.folder.path().join("fumarole-out")).ok()?;
+            let file = folder.filter_map(Result::ok).find(|file| file.path().extension().is_some_and(|e| e == "json"));
+            serde_json::from_slice::<serde_json::Value>(&std::fs::read(file?.path()).ok()?).ok()
+        });
+        let words = record["command"].as_array().unwrap().iter().map(|word| word.as_str().unwrap());
+        let words: Vec<&str> = words.skip(1).collect();
+        let ending = words.iter().position(|word| *word == "--quiet").unwrap();
+        let file = window.folder.path().join("shell.json");
+        let shell = words[..ending].iter().fold(fumarole(""), |program, word| program.arg(word));
+        shell.arg("--quiet").arg("--json").arg(&file).run().succeeded();
+        let of_shell: serde_json::Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
+        assert_eq!(configuration(&record), configuration(&of_shell));
+        assert_eq!(record["environment"]["host"], of_shell["environment"]["host"], "as many threads");
+        window.close().succeeded();
     });
 }
 

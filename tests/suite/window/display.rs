@@ -264,11 +264,16 @@ impl<'a> Window<'a> {
 
     /// Left, top, right and bottom of a control on the screen.
     pub fn rectangle(&mut self, label: &str) -> [i16; 4] {
-        let control = self.wait(label, |window| window.find(label));
+        self.wait(label, |window| window.try_rectangle(label))
+    }
+
+    /// As [`Window::rectangle`], where it is there now.
+    pub fn try_rectangle(&self, label: &str) -> Option<[i16; 4]> {
+        let control = self.find(label)?;
         let origin = self.display.connection.translate_coordinates(self.id, self.display.root, 0, 0).unwrap();
         let origin = origin.reply().unwrap();
         let side = |index: usize| control["rectangle_px"][index].as_f64().unwrap() as i16;
-        [side(0) + origin.dst_x, side(1) + origin.dst_y, side(2) + origin.dst_x, side(3) + origin.dst_y]
+        Some([side(0) + origin.dst_x, side(1) + origin.dst_y, side(2) + origin.dst_x, side(3) + origin.dst_y])
     }
 
     pub fn click(&mut self, label: &str) {

@@ -46,7 +46,7 @@ fn parameters() -> Vec<ParameterInfo> {
     ]
 }
 
-fn ready() -> Event {
+pub fn ready() -> Event {
     let preset = PresetInfo { name: "figure-1".into(), help: "The first figure".into(), variant: None };
     Event::Ready(Ready {
         paper: "caustics".into(),
@@ -75,7 +75,7 @@ fn side_setup(variant: &str) -> SideSetup {
     }
 }
 
-fn setup(variants: &[&str]) -> Event {
+pub fn setup(variants: &[&str]) -> Event {
     let sides = variants.iter().map(|variant| side_setup(variant)).collect();
     Event::Setup(Setup { heeds: 0, preset: None, sides })
 }
@@ -97,7 +97,7 @@ fn pass(name: &str, writes: usize) -> PassInfo {
     }
 }
 
-fn built(sides: usize) -> Event {
+pub fn built(sides: usize) -> Event {
     let target = |index: usize| TargetInfo {
         name: format!("target-{index}"),
         resource: format!("target-{index}"),
@@ -106,6 +106,7 @@ fn built(sides: usize) -> Event {
         format: "R32_SFLOAT".into(),
         is_depth: false,
         is_srgb: false,
+        holds: "height in metres".into(),
     };
     let side = SideBuilt {
         size: [8, 4],
@@ -117,7 +118,7 @@ fn built(sides: usize) -> Event {
     Event::Built(Built { heeds: 0, sides: vec![side; sides] })
 }
 
-fn frame(number: u32, sides: usize) -> Event {
+pub fn frame(number: u32, sides: usize) -> Event {
     let bytes: Vec<u8> = (0..8 * 4 * 4).map(|byte| byte as u8).collect();
     let block = Block { offset: 0, len: bytes.len() as u64, bytes };
     let picture = Picture { width: 8, height: 4, block };
@@ -202,6 +203,7 @@ fn a_pass_that_is_clicked_brings_its_targets() {
     harness.query_all_by_label("target-1").last().unwrap().click();
     let target = TargetChoice { side: 0, name: "target-1".into(), layer: 0, first_row: 0 };
     assert_eq!(asked(&mut harness), [Request::Target(Some(target))]);
+    assert!(harness.query_by_label("height in metres").is_some(), "what a texel holds is not shown");
     assert_eq!(press(&mut harness, egui::Key::T), [Request::Target(None)]);
 }
 

@@ -1,11 +1,13 @@
 //! The window and its worker.
 
+mod accessibility;
 mod client;
 mod desktop;
 mod display;
 mod drop;
 mod headless;
 mod interface;
+mod painting;
 mod scene;
 mod wayland;
 mod worker;
