@@ -1,5 +1,6 @@
 //! The window as its user feels it, on an Xvfb of its own: `cargo bench --bench window -- [interface] [latency] [idle]
 //! [soak SECONDS]`; without a word the first three. No validation layer. The worker draws the whole time but for `idle`.
+//! Each is held against its bar, and one that is missed ends the run with exit code 1.
 
 #[path = "../tests/suite/common.rs"]
 #[expect(dead_code, reason = "the harness is that of the tests")]
@@ -14,6 +15,7 @@ mod cli {
 mod display;
 
 use std::fs;
+use std::process::ExitCode;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -26,27 +28,50 @@ use x11rb::protocol::xproto::{ConnectionExt, ImageFormat};
 const SPACE: u32 = 0x20;
 const F1: u32 = 0xffbe;
 
-/// A frame of seconds, which a window must not wait for.
-const HEAVY: &str = "gas --variant traced --size 320x200 --steps 80";
-/// A frame that is there soon, so that the interface has something new to show all the time.
-const LIGHT: &str = "caustics --size 640x400";
+/// A frame of more than five seconds on lavapipe with two cores, which a window must not wait for.
+const HEAVY: &str = "gas --variant traced --size 800x500 --steps 80";
+/// Shortest frame of the worker that `latency` is measured beside, milliseconds.
+const LEAST_FRAME_MS: f64 = 5000.0;
+/// From a key to the screen, at most, milliseconds.
+const MOST_LATENCY_MS: f64 = 100.0;
+/// A frame of the interface in the middle of all, at most, milliseconds.
+const MOST_OWN_MS: f64 = 8.0;
+/// Processor time at rest in 10 s, at most, hundredths of a second: 1 % of a core.
+const MOST_TICKS: u64 = 10;
+/// When `soak` first looks at the memory, and then again and again.
+const FIRST_LOOK: Duration = Duration::from_secs(60);
+/// Memory that a process may hold more at the end of `soak` than after its first minute, kB.
+const MOST_GROWN_KB: i64 = 2 << 10;
+/// A frame that is there soon, so that the interface has something new to show all the time, texel by pixel.
+const LIGHT: &str = "caustics --size 600x375";
+/// As [`LIGHT`], of a picture that is made to fit.
+const LARGE: &str = "caustics --size 800x500";
 
-fn main() {
+fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let asked = |name: &str| words.is_empty() || words.iter().any(|word| word == name);
+    let mut missed = vec![];
     if asked("interface") {
-        interface();
+        missed.extend(interface("a picture texel by pixel", LIGHT));
+        missed.extend(interface("a picture that is made to fit", LARGE));
     }
     if asked("latency") {
-        latency();
+        missed.extend(latency());
     }
     if asked("idle") {
-        idle();
+        missed.extend(idle());
     }
     if let Some(at) = words.iter().position(|word| word == "soak") {
         let seconds = words.get(at + 1).and_then(|text| text.parse().ok()).expect("soak SECONDS");
-        soak(Duration::from_secs(seconds));
+        missed.extend(soak(Duration::from_secs(seconds)));
     }
+    missed.iter().for_each(|bar| eprintln!("window: {bar}"));
+    if missed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// What is said of a bar that is missed.
+fn held(is_held: bool, bar: String) -> Option<String> {
+    (!is_held).then_some(bar)
 }
 
 fn open<'a>(display: &'a Display, scene: &str) -> Window<'a> {
@@ -95,9 +120,9 @@ fn words(window: &Window<'_>) -> Vec<String> {
     window.controls().into_iter().flat_map(texts).collect()
 }
 
-fn interface() {
+fn interface(what: &str, scene: &str) -> Option<String> {
     let display = Display::start();
-    let window = open(&display, LIGHT);
+    let window = open(&display, scene);
     display.key(SPACE);
     let started = Instant::now();
     let mut samples = vec![];
@@ -110,11 +135,13 @@ fn interface() {
         }
         sleep(Duration::from_millis(20));
     }
-    tell("interface", "ms of the window's own drawing at 1280x800 while it plays", samples);
+    let middle =
+        tell("interface", &format!("ms of the window's own drawing at 1280x800 while {what} plays"), samples).0;
     window.close().succeeded();
+    held(middle <= MOST_OWN_MS, format!("the interface takes more than {MOST_OWN_MS} ms a frame with {what}"))
 }
 
-fn latency() {
+fn latency() -> Option<String> {
     let display = Display::start();
     let mut window = open(&display, HEAVY);
     display.key(F1);
@@ -132,11 +159,17 @@ fn latency() {
         samples.push(pressed.elapsed().as_secs_f64() * 1e3);
         sleep(Duration::from_millis(400 + 37 * number));
     }
-    tell("latency", &format!("ms from a key to the screen while the worker draws, {}", frame(&window)), samples);
+    let beside = frame(&window);
+    let most = tell("latency", &format!("ms from a key to the screen while the worker draws, {beside}"), samples).1;
     window.close().succeeded();
+    let frame_ms = beside.strip_suffix(" ms").and_then(|text| text.rsplit(' ').next()?.parse::<f64>().ok());
+    if frame_ms.is_none_or(|ms| ms < LEAST_FRAME_MS) {
+        return Some(format!("the worker's frames are shorter than {LEAST_FRAME_MS} ms here: {beside}"));
+    }
+    held(most <= MOST_LATENCY_MS, format!("more than {MOST_LATENCY_MS} ms from a key to the screen"))
 }
 
-fn idle() {
+fn idle() -> Option<String> {
     let display = Display::start();
     let window = open(&display, LIGHT);
     sleep(Duration::from_secs(3));
@@ -146,33 +179,43 @@ fn idle() {
     let of_worker = ticks(worker(process_id(&window))) - worker_ticks;
     println!("idle: {of_window} ticks of the window and {of_worker} of its worker in 10 s, of 1000 a core");
     window.close().succeeded();
+    held(of_window + of_worker <= MOST_TICKS, "more than 1 % of a core at rest".to_owned())
 }
 
-fn soak(time: Duration) {
+fn soak(time: Duration) -> Option<String> {
     let display = Display::start();
     let mut window = open(&display, LIGHT);
     display.key(SPACE);
     let started = Instant::now();
-    let mut next = Duration::from_secs(10);
+    let mut next = FIRST_LOOK;
     let mut step = 0;
+    let mut looks: Vec<[u64; 2]> = vec![];
     while started.elapsed() < time {
         let middle = window.middle("picture");
         step += 1;
         window.drag(1, middle, (middle.0 + if step % 2 == 0 { 70 } else { -70 }, middle.1 + step % 7 - 3));
         if started.elapsed() >= next {
-            let (own, of_worker) = (resident_kb(process_id(&window)), resident_kb(worker(process_id(&window))));
+            let both = [process_id(&window), worker(process_id(&window))].map(resident_kb);
+            let [own, of_worker] = both;
             println!("soak: {:4} s, {own} kB the window, {of_worker} kB its worker, {step} drags", next.as_secs());
-            next += Duration::from_secs(60);
+            looks.push(both);
+            next += FIRST_LOOK;
         }
     }
     window.close().succeeded();
+    let (Some(first), Some(last)) = (looks.first(), looks.last()) else { panic!("soak for minutes") };
+    let grown = [0, 1].map(|process| last[process] as i64 - first[process] as i64);
+    println!("soak: grown by {} kB the window and {} kB its worker since the first minute", grown[0], grown[1]);
+    held(grown.into_iter().all(|kb| kb <= MOST_GROWN_KB), format!("memory grows by more than {MOST_GROWN_KB} kB"))
 }
 
-fn tell(name: &str, what: &str, mut samples: Vec<f64>) {
+/// Prints the samples, and gives their median and the largest.
+fn tell(name: &str, what: &str, mut samples: Vec<f64>) -> (f64, f64) {
     samples.sort_by(f64::total_cmp);
-    let (Some(least), Some(most)) = (samples.first(), samples.last()) else { panic!("{name}: nothing was measured") };
+    let (Some(&least), Some(&most)) = (samples.first(), samples.last()) else { panic!("{name}: nothing was measured") };
     let median = median(&samples).unwrap_or_default();
     println!("{name}: median {median:.1}, least {least:.1}, most {most:.1} of {} {what}", samples.len());
+    (median, most)
 }
 
 /// The process that draws the paper for a window.
