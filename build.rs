@@ -59,28 +59,46 @@ fn describe_build() {
     }
 }
 
+/// Writes each binary to a file of its own and the table that includes them: as lists of numbers in Rust they would take the
+/// compiler ten times as long as their reading.
 fn embed_shaders() -> Result<(), String> {
     let shaders = compile_dir(Path::new("shaders")).map_err(|error| error.to_string())?;
     check_exceptions(&shaders, NAGA_EXCEPTIONS).map_err(|error| error.to_string())?;
     let folder = env::var_os("OUT_DIR").ok_or("cargo sets no OUT_DIR; build with cargo")?;
-    let path = Path::new(&folder).join("shaders.rs");
-    fs::write(&path, write_table(&shaders))
-        .map_err(|error| format!("writing {}: {error}; free space or clean", path.display()))
-}
-
-/// The Rust source of the table of embedded shaders.
-fn write_table(shaders: &[CompiledShader]) -> String {
-    let mut table = "/// Every shader, sorted by name.\npub static EMBEDDED: &[EmbeddedShader] = &[\n".to_owned();
-    for CompiledShader { name, stage, glslang, naga } in shaders {
+    let folder = Path::new(&folder);
+    let (mut binaries, mut table) = (String::new(), String::new());
+    for (index, CompiledShader { name, stage, glslang, naga }) in shaders.iter().enumerate() {
+        binaries += &embed(folder, &format!("GLSLANG_{index}"), glslang)?;
         let naga = match naga {
-            Ok(words) => format!("Ok(&{words:?})"),
+            Ok(words) => {
+                binaries += &embed(folder, &format!("NAGA_{index}"), words)?;
+                format!("Ok(&NAGA_{index})")
+            }
             Err(reason) => format!("Err({reason:?})"),
         };
         let _infallible = writeln!(
             table,
-            "EmbeddedShader {{ name: {name:?}, stage: Stage::{stage:?}, glslang: &{glslang:?}, naga: {naga} }},"
+            "EmbeddedShader {{ name: {name:?}, stage: Stage::{stage:?}, glslang: &GLSLANG_{index}, naga: {naga} }},"
         );
     }
-    table.push_str("];\n");
-    table
+    let table = format!(
+        "{binaries}/// Every shader, sorted by name.\npub static EMBEDDED: &[EmbeddedShader] = &[\n{table}];\n"
+    );
+    write(&folder.join("shaders.rs"), table.as_bytes())
+}
+
+/// Writes SPIR-V words as a file of that name, in the target's order of bytes, and gives the Rust source of their static.
+fn embed(folder: &Path, name: &str, words: &[u32]) -> Result<String, String> {
+    let is_big = env::var("CARGO_CFG_TARGET_ENDIAN").is_ok_and(|endian| endian == "big");
+    let order = if is_big { u32::to_be_bytes } else { u32::to_le_bytes };
+    let bytes: Vec<u8> = words.iter().copied().flat_map(order).collect();
+    write(&folder.join(format!("{name}.spv")), &bytes)?;
+    Ok(format!(
+        "static {name}: [u32; {}] = bytemuck::must_cast(*include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{name}.spv\")));\n",
+        words.len()
+    ))
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    fs::write(path, bytes).map_err(|error| format!("writing {}: {error}; free space or clean", path.display()))
 }
