@@ -67,21 +67,39 @@ enum Command {
     Ab(ab::AbArgs),
 }
 
-/// The command with every paper below it, and what runs each.
-struct Papers {
-    command: clap::Command,
-    run: Vec<(&'static str, Run)>,
+/// The command lines of the listed papers, in the list's order.
+struct Papers(Vec<Paper>);
+
+/// A paper's command line.
+struct Paper {
+    name: &'static str,
+    /// Its verbs and their options.
+    command: fn() -> clap::Command,
+    /// Runs one of its verbs.
+    run: fn(&ArgMatches) -> Result<(), Failure>,
 }
 
-/// Runs a paper's verb.
-type Run = fn(&ArgMatches) -> Result<(), Failure>;
+impl Paper {
+    fn of<S: Study>() -> Paper {
+        Paper { name: S::PAPER, command: declared::command::<S>, run: declared::run::<S> }
+    }
+
+    /// Runs the paper with `arguments`, the first of which is the program's name, and gives the exit code.
+    fn run_with(&self, arguments: impl IntoIterator<Item = OsString>) -> u8 {
+        let command = (self.command)().version(env!("CARGO_PKG_VERSION")).propagate_version(true);
+        spelling::learn(&command);
+        match command.try_get_matches_from::<_, OsString>(arguments) {
+            Ok(matches) => code((self.run)(&matches)),
+            Err(error) => outcome::usage(&error),
+        }
+    }
+}
 
 impl Visitor for Papers {
     type Error = Infallible;
 
     fn visit<S: Study>(&mut self) -> Result<(), Infallible> {
-        self.command = std::mem::take(&mut self.command).subcommand(declared::command::<S>());
-        self.run.push((S::PAPER, declared::run::<S>));
+        self.0.push(Paper::of::<S>());
         Ok(())
     }
 }
@@ -91,31 +109,37 @@ impl Visitor for Papers {
 /// # Errors
 /// Help that was asked for, and what the parser refuses.
 pub fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
-    all_papers().command.try_get_matches_from(arguments)
+    umbrella_command(&listed()).try_get_matches_from(arguments)
 }
 
-fn all_papers() -> Papers {
-    let mut papers = Papers { command: Umbrella::command(), run: Vec::new() };
+fn listed() -> Vec<Paper> {
+    let mut papers = Papers(Vec::new());
     let Ok(()) = papers::each(&mut papers);
-    papers
+    papers.0
+}
+
+/// The command with every paper below it.
+fn umbrella_command(papers: &[Paper]) -> clap::Command {
+    Umbrella::command().subcommands(papers.iter().map(|paper| (paper.command)()))
 }
 
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
     gpu::pin_software_threads();
-    let papers = all_papers();
-    spelling::learn(&papers.command);
+    let papers = listed();
+    let command = umbrella_command(&papers);
+    spelling::learn(&command);
     let arguments = std::env::args_os().collect();
     #[cfg(feature = "window")]
     let arguments: Vec<OsString> = view::reordered(arguments);
-    let matches = match papers.command.try_get_matches_from::<Vec<OsString>, _>(arguments) {
+    let matches = match command.try_get_matches_from::<Vec<OsString>, _>(arguments) {
         Ok(matches) => matches,
         Err(error) => return ExitCode::from(outcome::usage(&error)),
     };
     if let Some((name, matches)) = matches.subcommand()
-        && let Some((_, run)) = papers.run.iter().find(|(paper, _)| *paper == name)
+        && let Some(paper) = papers.iter().find(|paper| paper.name == name)
     {
-        return end(run(matches));
+        return end((paper.run)(matches));
     }
     let parsed = match Umbrella::from_arg_matches(&matches) {
         Ok(parsed) => parsed,
@@ -136,20 +160,20 @@ pub fn umbrella() -> ExitCode {
     })
 }
 
-/// Runs a paper's own binary.
+/// Runs the own binary of a listed paper.
 pub fn binary<S: Study>() -> ExitCode {
     gpu::pin_software_threads();
-    ExitCode::from(paper_from::<S>(std::env::args_os()))
+    // Found by its name: were `Paper::of::<S>` named here, each binary would compile the whole paper once more.
+    let Some(paper) = listed().into_iter().find(|paper| paper.name == S::PAPER) else {
+        outcome::say(&format!("{} is not in the list of papers; add it there (src/papers/mod.rs)", S::PAPER));
+        return ExitCode::FAILURE;
+    };
+    ExitCode::from(paper.run_with(std::env::args_os()))
 }
 
 /// Runs a paper with `arguments`, the first of which is the program's name, and gives the exit code.
 pub fn paper_from<S: Study>(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let command = declared::command::<S>().version(env!("CARGO_PKG_VERSION")).propagate_version(true);
-    spelling::learn(&command);
-    match command.try_get_matches_from(arguments) {
-        Ok(matches) => code(declared::run::<S>(&matches)),
-        Err(error) => outcome::usage(&error),
-    }
+    Paper::of::<S>().run_with(arguments)
 }
 
 fn end(result: Result<(), Failure>) -> ExitCode {
