@@ -9,6 +9,7 @@ layout(push_constant, std430) uniform Band {
     uint calls; // their number
     uint first_triangle; // of those that are drawn, among all
     uint triangle_count; // of those that are drawn
+    uint picture_row; // the first row of the first band
 } band;
 
 // The list of a pixel.

@@ -24,6 +24,6 @@ void main() {
         fragment_count = 0u;
         section_count = 0u;
         most_lost_pixels = max(most_lost_pixels, lost_pixels);
-        lost_pixels *= min(band.first_row, 1u);
+        lost_pixels *= min(band.list_row - band.picture_row, 1u);
     }
 }

@@ -164,6 +164,7 @@ pub fn draw<S: Study>(
     }
     outcome::foretell(&output, &study.estimate(&machine.device, &scene, variant), &machine);
     let mut built = patiently(arguments.quiet, "making the first frame", || build(&machine, &study, &scene, variant))?;
+    built.paper.keep_rows(rows.clone());
     let targets = built.paper.targets();
     for dump in &arguments.dump {
         if !targets.iter().any(|t| t.name == dump.target) {

@@ -1,5 +1,6 @@
 //! A paper's method as the measured loop sees it: frames to record, a picture, targets to dump.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::gpu::bindings::Resource;
@@ -55,6 +56,10 @@ pub trait Paper {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)
     }
+
+    /// Tells which rows of the picture are looked at from now on, some of those that it has: a paper that makes each row
+    /// without the others leaves the rest out, whose pixels then hold anything.
+    fn keep_rows(&mut self, _rows: Range<u32>) {}
 
     /// True when every buffer had the capacity for all that the frames so far made. If not, their pictures have gaps:
     /// the paper has enlarged its buffers, and the frames must be recorded again.

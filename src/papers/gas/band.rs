@@ -1,5 +1,7 @@
 //! Bands of rows, in which a picture is done whose lists no buffer of the device holds at once.
 
+use std::ops::Range;
+
 use bytemuck::Zeroable;
 
 use crate::gpu::{Error, Frame, Pass};
@@ -18,6 +20,7 @@ host_block! {
         calls: u32,
         first_triangle: u32,
         triangle_count: u32,
+        picture_row: u32,
     }
 }
 
@@ -27,21 +30,26 @@ pub struct Band {
     width: u32,
     first_row: u32,
     end_row: u32,
+    /// The first row of the frame's first band.
+    picture_row: u32,
 }
 
 impl Band {
-    /// All bands of a picture of `width` x `height` pixels, `rows` rows each.
-    pub fn all(width: u32, height: u32, rows: u32) -> impl Iterator<Item = Band> {
-        ranges(0, height, rows).map(move |(first_row, end_row)| Band { width, first_row, end_row })
+    /// The bands of some `rows` of a picture of `width` pixels a row, at most `at_once` rows each.
+    pub fn all(width: u32, rows: &Range<u32>, at_once: u32) -> impl Iterator<Item = Band> {
+        let picture_row = rows.start;
+        ranges(rows.start, rows.end, at_once)
+            .map(move |(first_row, end_row)| Band { width, first_row, end_row, picture_row })
     }
 
     pub fn is_first(self) -> bool {
-        self.first_row == 0
+        self.first_row == self.picture_row
     }
 
     pub fn constants(self) -> BandConstants {
-        let Band { first_row, end_row, .. } = self;
-        BandConstants { list_row: first_row, first_row, end_row, call: 0, calls: 1, ..BandConstants::zeroed() }
+        let Band { first_row, end_row, picture_row, .. } = self;
+        let list_row = first_row;
+        BandConstants { list_row, first_row, end_row, picture_row, call: 0, calls: 1, ..BandConstants::zeroed() }
     }
 
     /// For so many triangles of a piece, before which come others.
@@ -123,9 +131,12 @@ mod tests {
     #[test]
     fn every_row_is_in_one_dispatch_of_one_band() {
         for (height, rows) in [(1, 1), (768, 768), (4096, 512), (16384, 33), (5, 9)] {
-            let bands = Band::all(16, height, rows);
-            let parts = bands.flat_map(|b| ranges(b.first_row, b.end_row, DISPATCH_ROWS));
-            assert!(parts.flat_map(|(first, end)| first..end).eq(0..height), "{height} in {rows}");
+            for picture in [0..height, height / 3..height / 2 + 1] {
+                let bands: Vec<Band> = Band::all(16, &picture, rows).collect();
+                assert!(bands.iter().map(|b| b.is_first()).eq((0..bands.len()).map(|number| number == 0)));
+                let parts = bands.iter().flat_map(|b| ranges(b.first_row, b.end_row, DISPATCH_ROWS));
+                assert!(parts.flat_map(|(first, end)| first..end).eq(picture), "{height} in {rows}");
+            }
         }
     }
 }

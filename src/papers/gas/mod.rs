@@ -38,6 +38,7 @@ mod tiles;
 mod view;
 mod volume;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use self::a_buffer::ABuffer;
@@ -80,6 +81,8 @@ pub struct Gas {
     parameters: Parameters,
     scene: SceneBuffers,
     passes: Passes,
+    /// Those of the picture that are drawn.
+    rows: Range<u32>,
     calls: Calls,
     /// Dispatches of `fragments` by tiles.
     tile_calls: u32,
@@ -175,13 +178,14 @@ impl Gas {
         let lacks_geometry_stage = parameters.lists == Lists::Linked
             && parameters.geometry_stage
             && !shaders.device().physical().has(Feature::GeometryShader);
-        let calls = Calls::ONCE;
+        let (rows, calls) = (0..parameters.height, Calls::ONCE);
         Ok(Gas {
             label,
             variant,
             parameters,
             scene,
             passes,
+            rows,
             calls,
             tile_calls: 1,
             lost_pixels: 0,
@@ -249,7 +253,7 @@ impl Paper for Gas {
             has_attenuations: passes.light_attenuation.is_some(),
         };
         self.scene.write(&self.parameters, self.parameters.scene_frame(number), gas, capacity)?;
-        for band in Band::all(self.parameters.width, self.parameters.height, capacity.rows) {
+        for band in Band::all(self.parameters.width, &self.rows, capacity.rows) {
             passes.empty_lists.record(frame, band)?;
             match &passes.surfaces {
                 Surfaces::Linked(fragments) => fragments.record(frame, band)?,
@@ -277,6 +281,10 @@ impl Paper for Gas {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         self.passes.view.record(frame)
+    }
+
+    fn keep_rows(&mut self, rows: Range<u32>) {
+        self.rows = rows;
     }
 
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {

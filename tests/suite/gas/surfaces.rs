@@ -1,7 +1,9 @@
 //! Surfaces that intersect, surface-defined gases, bands of rows, and devices without geometry stages.
 
+use std::ops::Range;
 use std::sync::Arc;
 
+use fumarole::gpu::transfer::read_image;
 use fumarole::gpu::{Compiler, Device, Error, Feature, PhysicalDevice, ShaderLibrary};
 use fumarole::gpu::{Mode, Recorder};
 use fumarole::measure::Paper;
@@ -9,7 +11,7 @@ use fumarole::papers::gas::model::{DensityFunction, Object, SolidTexture};
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::rays::Rays;
 use fumarole::papers::gas::scenes::Preset;
-use fumarole::papers::gas::{Gas, Parameters, Variant};
+use fumarole::papers::gas::{Gas, Lists, Parameters, Variant};
 use fumarole::scene::{Camera, Light, Mesh, shapes};
 use glam::{DVec3, Mat4, Quat, UVec2, Vec2, Vec3};
 
@@ -148,6 +150,47 @@ fn a_picture_in_bands_is_the_picture_at_once() {
             let banded = Drawing::of(device, variant, &bound, &objects);
             assert!((1..7).contains(&banded.demand.rows), "{:?}", banded.demand);
             assert!(banded.radiance == whole.radiance, "{variant:?}");
+        }
+    });
+}
+
+/// Rows alone have the pixels of the whole, and no row's lists but theirs are made.
+#[test]
+fn some_rows_are_those_of_the_picture() {
+    gpu_test(|device| {
+        let (parameters, objects) = small(Preset::Fig6);
+        let row_bytes = 4 * parameters.width as usize;
+        for (lists, list_bytes) in [(Lists::Linked, None), (Lists::Tiles, None), (Lists::Nearest(8), Some(40_000))] {
+            let parameters = Parameters { lists, list_bytes, ..parameters.clone() };
+            let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+            let mut recorder = Recorder::new(device).unwrap();
+            let mut drawn = |rows: Option<Range<u32>>| {
+                let mut gas = Gas::new(&shaders, "test", Variant::Table, &parameters, &objects, None).unwrap();
+                rows.into_iter().for_each(|rows| gas.keep_rows(rows));
+                loop {
+                    recorder.run(Mode::Plain, |frame| gas.record_picture(frame, 0)).unwrap();
+                    if gas.settle(&shaders).unwrap() {
+                        break;
+                    }
+                }
+                let picture = read_image(device, gas.picture()).unwrap();
+                (picture, gas.demand(&shaders).unwrap().fragments, gas.lost_pixels())
+            };
+            let (whole, all_fragments, all_lost) = drawn(None);
+            let third = parameters.height / 3;
+            let (mut most_fragments, mut lost) = (0, 0);
+            for rows in [0..third, third..third + 1, third + 1..parameters.height] {
+                let (picture, fragments, lost_pixels) = drawn(Some(rows.clone()));
+                let kept = rows.start as usize * row_bytes..rows.end as usize * row_bytes;
+                assert!(picture[kept.clone()] == whole[kept], "{lists:?} {rows:?}");
+                assert!(fragments <= all_fragments, "{lists:?} {rows:?}: {fragments} of {all_fragments}");
+                if rows.len() == 1 && list_bytes.is_none() {
+                    assert!(8 * fragments < all_fragments, "{lists:?}: {fragments} of {all_fragments}");
+                }
+                most_fragments = most_fragments.max(fragments);
+                lost += lost_pixels.unwrap_or_default();
+            }
+            assert!(most_fragments > 0 && lost == all_lost.unwrap_or_default(), "{lists:?}: {lost} of {all_lost:?}");
         }
     });
 }
