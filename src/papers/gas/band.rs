@@ -38,8 +38,12 @@ impl Band {
     /// The bands of some `rows` of a picture of `width` pixels a row, at most `at_once` rows each.
     pub fn all(width: u32, rows: &Range<u32>, at_once: u32) -> impl Iterator<Item = Band> {
         let picture_row = rows.start;
-        ranges(rows.start, rows.end, at_once)
-            .map(move |(first_row, end_row)| Band { width, first_row, end_row, picture_row })
+        ranges(rows.start, rows.end, at_once).map(move |(first_row, end_row)| Band {
+            width,
+            first_row,
+            end_row,
+            picture_row,
+        })
     }
 
     pub fn is_first(self) -> bool {
