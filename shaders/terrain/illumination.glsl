@@ -26,10 +26,9 @@ vec3 sky(vec3 direction) {
     return mix(light.haze_color, vec3(0.16, 0.34, 0.68), pow(up, 0.5));
 }
 
-// The draped picture, its corners on the map's, between its texels' middles.
-vec3 draped(vec2 place) {
+// The draped picture at a fraction of its sides, between its texels' middles.
+vec3 draped(vec2 fraction) {
     vec2 size = vec2(textureSize(drape, 0));
-    vec2 fraction = (place - vec2(light.drape_first_column, 0.0)) / light.drape_cells;
     vec2 texel = clamp(fraction * size - 0.5, vec2(0.0), size - 1.0);
     ivec2 a = ivec2(texel);
     ivec2 b = min(a + 1, ivec2(size) - 1);
@@ -56,8 +55,11 @@ vec4 color_of(ivec2 pixel) {
     if (surface != 0) {
         float height = (facing.w - light.lowest_m) / max(light.highest_m - light.lowest_m, 1.0e-6);
         vec3 albedo = albedo_at(surface, facing.xyz, height);
-        if (light.is_draped != 0 && surface == 2 && map == 0) {
-            albedo = draped(hit.yz);
+        vec2 fraction = (hit.yz - light.drape_corner) / light.drape_cells;
+        // A picture with a place of its own ends at its border; the other has its corners on the map's.
+        bool is_over = light.draping == DRAPED || all(equal(clamp(fraction, vec2(0.0), vec2(1.0)), fraction));
+        if (light.draping != UNDRAPED && is_over && surface == 2 && map == 0) {
+            albedo = draped(fraction);
         }
         color = lit_color(albedo, facing.xyz, sunlit, hit.x * length(direction));
     }

@@ -1,5 +1,9 @@
 // The sun, the sky and the haze.
 
+const int UNDRAPED = 0;
+const int DRAPED = 1; // the picture's corners on the map's
+const int PLACED = 2; // where it lies
+
 layout(set = 0, binding = 0, std140) uniform Light {
     vec3 corner_direction; // to the middle of pixel (0, 0), world, for 1 m of depth
     float near_m; // near plane of what is rasterised
@@ -11,10 +15,10 @@ layout(set = 0, binding = 0, std140) uniform Light {
     float lowest_m; // above the base
     vec3 haze_color;
     float highest_m;
-    vec2 drape_cells; // columns and rows of the first map's cells
-    float drape_first_column; // where the draped picture begins
-    int is_draped;
+    vec2 drape_cells; // columns and rows of the first map that the draped picture covers
+    vec2 drape_corner; // column and row of its north-west corner
     vec3 eye; // world, metres
+    int draping;
 } light;
 
 vec3 view_direction(vec2 pixel) {

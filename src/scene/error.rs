@@ -26,6 +26,7 @@ pub enum Error {
 pub enum Asset {
     Mesh,
     HeightMap,
+    WorldFile,
 }
 
 /// A fault in the contents of a mesh or a height map, with its place.
@@ -83,6 +84,7 @@ impl fmt::Display for Asset {
         formatter.write_str(match self {
             Self::Mesh => "mesh",
             Self::HeightMap => "height map",
+            Self::WorldFile => "world file",
         })
     }
 }

@@ -3,13 +3,14 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::world_file;
 use crate::{content, file};
 
 /// Endings of the files that a raster may be read with.
 const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
 
 /// SHA-256 of a file in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
-/// projection of a raster), that of all their digests in order.
+/// projection of a raster, world file of a picture), that of all their digests in order.
 ///
 /// # Errors
 /// A file cannot be read.
@@ -33,6 +34,10 @@ fn companions(path: &Path) -> Vec<PathBuf> {
         // A name that is percent-encoded is none of a plain file and stays out; the document itself names it.
         let folder = path.parent().unwrap_or(Path::new(""));
         return uris.filter_map(|uri| file::below(folder, Path::new(uri)).ok()).filter(|file| file.is_file()).collect();
+    }
+    if ending == "png" {
+        let beside = world_file::ENDINGS.map(|ending| path.with_extension(ending));
+        return beside.into_iter().find(|file| file.is_file()).into_iter().collect();
     }
     let is_raster = BESIDE_A_RASTER.iter().any(|known| ending == *known);
     let beside = BESIDE_A_RASTER.iter().filter(|_| is_raster).map(|ending| path.with_extension(ending));
@@ -62,6 +67,10 @@ mod tests {
         assert_eq!(alone, content::sha256(b"raster"));
         write("b.hdr", "header");
         assert_ne!(source_sha256(&raster).unwrap(), alone);
+        let picture = write("d.png", "picture");
+        assert_eq!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
+        write("d.pgw", "place");
+        assert_ne!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
         write("c.obj", "mesh");
         assert_eq!(source_sha256(&folder.path().join("c.obj")).unwrap(), content::sha256(b"mesh"));
     }

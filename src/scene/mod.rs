@@ -25,12 +25,13 @@ pub mod shapes;
 mod source;
 mod tags;
 mod vertex_order;
+pub mod world_file;
 
 pub use bounds::Bounds;
 pub use camera::Camera;
 pub use divide::divided;
 pub use error::{Asset, Error, Fault, Place};
-pub use height_map::{Geographic, HeightMap, HeightMapSource, Samples, Suspect, Voids, volcano};
+pub use height_map::{Coordinates, Geographic, HeightMap, HeightMapSource, Samples, Suspect, Voids, volcano};
 pub use identity::source_sha256;
 pub use light::Light;
 pub use loading::MeshOptions;

@@ -3,6 +3,7 @@
 use bytemuck::Zeroable;
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
+use super::drape::Draping;
 use super::ground::{Ground, REPEATED};
 use super::interpolation::OVERSHOOT;
 use super::parameters::{Interpolation, Normals, Parameters};
@@ -125,15 +126,14 @@ host_block! {
         pub haze_color: Vec3,
         /// The highest height above the base.
         pub highest_m: f32,
-        /// Columns and rows of the first map's cells.
+        /// Columns and rows of the first map that the draped picture covers.
         pub drape_cells: Vec2,
-        /// The column of the first map at which the draped picture begins.
-        pub drape_first_column: f32,
-        /// 1 where a picture lies over the first map.
-        pub is_draped: i32,
+        /// Column and row of the first map at which its north-west corner lies.
+        pub drape_corner: Vec2,
         /// World, metres.
         pub eye: Vec3,
-        _pad: f32,
+        /// 0 without a picture; 1 with one whose corners lie on the first map's, 2 with one in a place of its own.
+        pub draping: i32,
     }
 }
 
@@ -239,6 +239,13 @@ impl LightBlock {
             .first()
             .map_or((Shape::new(2, 2), 0), |ground| (ground.shape, if ground.closes { REPEATED } else { 0 }));
         let columns = if repeated > 0 { shape.width - 2 * repeated } else { shape.width - 1 };
+        let (corner, cells) = match scene.draping {
+            Some(Draping::Placed { corner, cells }) => (corner, cells),
+            Some(Draping::WholeMap) | None => {
+                let half_cell = if repeated > 0 { 0.5 } else { 0.0 };
+                (Vec2::new(-half_cell, 0.0), UVec2::new(columns, shape.height - 1).as_vec2())
+            }
+        };
         LightBlock {
             corner_direction: rays.corner.as_vec3(),
             near_m,
@@ -250,11 +257,14 @@ impl LightBlock {
             lowest_m: lowest_m as f32,
             haze_color: HAZE,
             highest_m: highest_m.max(lowest_m + rounding_m) as f32,
-            drape_cells: UVec2::new(columns, shape.height - 1).as_vec2(),
-            drape_first_column: if repeated > 0 { repeated as f32 - 0.5 } else { 0.0 },
-            is_draped: scene.is_draped.into(),
+            drape_cells: cells,
+            drape_corner: corner + Vec2::new(repeated as f32, 0.0),
             eye: rays.eye.as_vec3(),
-            _pad: 0.0,
+            draping: match scene.draping {
+                None => 0,
+                Some(Draping::WholeMap) => 1,
+                Some(Draping::Placed { .. }) => 2,
+            },
         }
     }
 }

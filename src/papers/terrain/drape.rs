@@ -4,12 +4,22 @@ use glam::{UVec2, Vec2, Vec3};
 
 use crate::measure::ParameterError;
 
-/// A picture over the first map, its corners on the map's.
+/// A picture over the first map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drape {
     width: u32,
     height: u32,
     texels: Vec<[u8; 4]>,
+    draping: Draping,
+}
+
+/// The place of a draped picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Draping {
+    /// Its corners on the map's.
+    WholeMap,
+    /// In columns and rows of the map's samples: its north-west corner, and from it to the south-east one.
+    Placed { corner: Vec2, cells: Vec2 },
 }
 
 impl Drape {
@@ -21,12 +31,21 @@ impl Drape {
         let is_whole = width > 0 && height > 0 && texels.len() as u64 == u64::from(width) * u64::from(height);
         let value = format!("{width}x{height}");
         ParameterError::check(is_whole, "drape", value, "its texels do not fill a picture of that size")?;
-        Ok(Drape { width, height, texels })
+        Ok(Drape { width, height, texels, draping: Draping::WholeMap })
     }
 
     /// A single white texel.
     pub fn white() -> Self {
-        Drape { width: 1, height: 1, texels: vec![[255; 4]] }
+        Drape { width: 1, height: 1, texels: vec![[255; 4]], draping: Draping::WholeMap }
+    }
+
+    /// The picture at a place of its own, of a positive size: around it the ground keeps its colour.
+    pub fn placed(self, corner: Vec2, cells: Vec2) -> Self {
+        Drape { draping: Draping::Placed { corner, cells }, ..self }
+    }
+
+    pub fn draping(&self) -> Draping {
+        self.draping
     }
 
     pub fn size(&self) -> (u32, u32) {
@@ -39,8 +58,12 @@ impl Drape {
         &bytemuck::cast_slice(rows)[..bytes]
     }
 
-    /// Its colour at a place on the map, 0 to 1 from the west and from the north, linear.
-    pub fn color(&self, uv: Vec2) -> Vec3 {
+    /// Its colour at a fraction of its sides, 0 to 1 from the west and from the north, linear; nothing beside a picture with
+    /// a place of its own, and the border's beside another.
+    pub fn color(&self, uv: Vec2) -> Option<Vec3> {
+        if self.draping != Draping::WholeMap && uv.clamp(Vec2::ZERO, Vec2::ONE) != uv {
+            return None;
+        }
         let size = UVec2::new(self.width, self.height);
         let texel = (uv * size.as_vec2() - 0.5).clamp(Vec2::ZERO, size.as_vec2() - 1.0);
         let (a, t) = (texel.as_uvec2(), texel.fract());
@@ -50,7 +73,7 @@ impl Drape {
             Vec3::from_array([texel[0], texel[1], texel[2]].map(decode))
         };
         let (north, south) = (at(a.x, a.y).lerp(at(b.x, a.y), t.x), at(a.x, b.y).lerp(at(b.x, b.y), t.x));
-        north.lerp(south, t.y)
+        Some(north.lerp(south, t.y))
     }
 }
 

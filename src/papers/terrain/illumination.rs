@@ -105,11 +105,10 @@ pub fn color_of(
         haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt())
     } else {
         let height = (facing.w - light.lowest_m) / (light.highest_m - light.lowest_m).max(1e-6);
-        let albedo = match drape {
-            Some(drape) if hit.surface == Surface::Terrain && hit.map == 0 => drape
-                .color((Vec2::from_array(hit.place) - Vec2::new(light.drape_first_column, 0.0)) / light.drape_cells),
-            _ => albedo_at(hit.surface, normal, height),
-        };
+        let draped = drape
+            .filter(|_| hit.surface == Surface::Terrain && hit.map == 0)
+            .and_then(|drape| drape.color((Vec2::from_array(hit.place) - light.drape_corner) / light.drape_cells));
+        let albedo = draped.unwrap_or_else(|| albedo_at(hit.surface, normal, height));
         let lit = sunlit * normal.dot(light.to_sun).max(0.0);
         let open = light.sky_strength * (0.5 + 0.5 * normal.y);
         let seen = albedo * (SUNLIGHT * lit + SKYLIGHT * open);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 
 use super::blocks::{LightBlock, TerrainBlock};
-use super::drape::Drape;
+use super::drape::{Drape, Draping};
 use super::geometric_transformation::SceneView;
 use super::ground::{Ground, Origin};
 use super::hit::NO_DEPTH;
@@ -54,8 +54,8 @@ pub struct Scene {
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
     pub range_m: (f64, f64),
-    /// A picture lies over the first map.
-    pub is_draped: bool,
+    /// The place of a picture over the first map, if there is one.
+    pub draping: Option<Draping>,
 }
 
 impl Scene {
@@ -76,7 +76,7 @@ impl Scene {
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
-            is_draped: inputs.drape.is_some(),
+            draping: inputs.drape.map(Drape::draping),
             maps: placed.iter().zip(&grounds).map(closed).collect(),
             grounds,
         }

@@ -1,7 +1,7 @@
 //! A user's configuration of the `terrain` paper: its declaration, its scene, its measured runs.
 
 use std::ffi::OsStr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -28,7 +28,7 @@ use crate::papers::terrain::{
     View, WRITTEN,
 };
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};
+use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano, world_file};
 
 /// A user's configuration.
 #[derive(Debug, Clone)]
@@ -183,6 +183,41 @@ impl Setup {
     }
 }
 
+/// The picture, where its world file says or with its corners on the map's.
+fn load_drape(path: &Path, map: &HeightMap) -> Result<Drape, Error> {
+    let picture = read_png(path)?;
+    let drape = Drape::new(picture.width(), picture.height(), picture.pixels().as_chunks().0.to_vec())?;
+    let Some((world_file, coordinates)) = world_file::beside(path)? else { return Ok(drape) };
+    let Some(of_map) = map.coordinates() else {
+        let message = format!(
+            "{} places {}, but the first map has no coordinates; take a map that has, or move that file away to lay the \
+             picture's corners on the map's",
+            world_file.display(),
+            path.display()
+        );
+        return Err(Error::Input(message));
+    };
+    let (corners, map_corners) =
+        (coordinates.corners(picture.width(), picture.height()), of_map.corners(map.width(), map.height()));
+    // The same meridian may have two names.
+    let apart_deg = (map_corners[0] + map_corners[1] - corners[0] - corners[1]).x / 2.0;
+    let turns = if map.geographic().is_some() { (apart_deg / 360.0).round() } else { 0.0 };
+    let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
+    let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
+    if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
+        let span = |[a, b]: [DVec2; 2]| format!("{} to {} east, {} to {} north", a.x, b.x, b.y, a.y);
+        let message = format!(
+            "{} places {} beside the first map: it lies at {}, the map at {}; both have to be in the same coordinates",
+            world_file.display(),
+            path.display(),
+            span(corners),
+            span(map_corners)
+        );
+        return Err(Error::Input(message));
+    }
+    Ok(drape.placed(first.as_vec2(), (last - first).as_vec2()))
+}
+
 impl Study for Setup {
     const PAPER: &'static str = "terrain";
     const NEEDS: &'static [Feature] = &NEEDS;
@@ -201,16 +236,9 @@ impl Study for Setup {
             maps = maps.into_iter().map(|map| map.with_voids(Voids::Hole, base_m)).collect::<Result<_, _>>()?;
         }
         let input = |(map, placement)| MapInput { map: Arc::new(map), placement };
-        let drape = self.drape.as_ref().map(|path| -> Result<Drape, Error> {
-            let picture = read_png(path)?;
-            let texels = picture.pixels().as_chunks().0.to_vec();
-            Ok(Drape::new(picture.width(), picture.height(), texels)?)
-        });
-        let mut scene = Scene {
-            maps: maps.into_iter().zip(self.placements()).map(input).collect(),
-            objects: Vec::new(),
-            drape: drape.transpose()?,
-        };
+        let drape = self.drape.as_ref().zip(maps.first()).map(|(path, map)| load_drape(path, map)).transpose()?;
+        let mut scene =
+            Scene { maps: maps.into_iter().zip(self.placements()).map(input).collect(), objects: Vec::new(), drape };
         scene.objects = self.stand(&scene.maps)?;
         Ok(scene)
     }
@@ -379,7 +407,10 @@ impl Study for Setup {
             parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("drape", field!(Setup.drape))
                 .placeholder("FILE.png")
-                .help("Picture over the first map in place of the colour ramp, PNG, north up")
+                .help(
+                    "Picture over the first map in place of the colour ramp, PNG, north up: where a world file beside it \
+                     (.pgw or .wld) says, in the map's own coordinates, or without one its corners on the map's",
+                )
                 .cost(Cost::Buffers),
         ];
         let numbers =

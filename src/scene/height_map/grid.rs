@@ -1,6 +1,6 @@
 use super::map::check_size;
 use super::void_samples::Watch;
-use super::{Geographic, HeightMap, Samples, voids};
+use super::{Coordinates, Geographic, HeightMap, Samples, voids};
 use crate::scene::error::{Fault, Place};
 use glam::DVec2;
 
@@ -21,8 +21,8 @@ pub(super) struct Grid<T> {
 pub(super) enum Placement {
     /// The source does not say: 1 m.
     Unknown,
-    /// Metres between columns and rows.
-    Metres(DVec2),
+    /// Metres between columns and rows, and the coordinates that the source has.
+    Metres(DVec2, Option<Coordinates>),
     Degrees(Geographic),
 }
 
@@ -75,7 +75,9 @@ impl<T: Copy + Into<f64>> Grid<T> {
         let map = HeightMap::new(self.width, self.height, samples)
             .and_then(|map| match self.placement {
                 Placement::Unknown => Ok(map),
-                Placement::Metres(spacing_m) => map.with_spacing_m(spacing_m),
+                Placement::Metres(spacing_m, coordinates) => {
+                    map.with_coordinates(coordinates).with_spacing_m(spacing_m)
+                }
                 Placement::Degrees(place) => {
                     let spacing_m = place.spacing_m(map.height());
                     map.with_geographic(place).with_spacing_m(spacing_m)

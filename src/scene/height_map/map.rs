@@ -1,5 +1,5 @@
-use super::Geographic;
 use super::void_samples::{Suspect, VoidSamples, Voids};
+use super::{Coordinates, Geographic};
 use crate::scene::Error;
 use glam::DVec2;
 
@@ -15,6 +15,7 @@ pub struct HeightMap {
     range_m: (f32, f32),
     spacing_m: DVec2,
     geographic: Option<Geographic>,
+    coordinates: Option<Coordinates>,
     voids: Option<VoidSamples>,
     suspect: Option<Suspect>,
 }
@@ -57,6 +58,7 @@ impl HeightMap {
             range_m,
             spacing_m: DVec2::ONE,
             geographic: None,
+            coordinates: None,
             voids: None,
             suspect: None,
         })
@@ -98,6 +100,11 @@ impl HeightMap {
     /// Placement of the map on the Earth, if its source says so in degrees.
     pub fn geographic(&self) -> Option<Geographic> {
         self.geographic
+    }
+
+    /// Map coordinates of the samples, if the source has any.
+    pub fn coordinates(&self) -> Option<Coordinates> {
+        self.coordinates
     }
 
     /// Number of samples that the source left void.
@@ -195,11 +202,17 @@ impl HeightMap {
             Samples::Float(heights) => Samples::Float(places().map(|place| heights[place]).collect()),
         };
         let voids = self.voids.as_ref().map(VoidSamples::counted);
-        Self { width: self.width + 4, samples, geographic: None, voids, ..*self }
+        Self { width: self.width + 4, samples, geographic: None, coordinates: None, voids, ..*self }
     }
 
     pub(super) fn with_geographic(self, geographic: Geographic) -> Self {
-        Self { geographic: Some(geographic), ..self }
+        let Geographic { west_deg, north_deg, step_deg } = geographic;
+        let coordinates = Coordinates { north_west: DVec2::new(west_deg, north_deg), step: step_deg };
+        Self { geographic: Some(geographic), ..self.with_coordinates(Some(coordinates)) }
+    }
+
+    pub(super) fn with_coordinates(self, coordinates: Option<Coordinates>) -> Self {
+        Self { coordinates, ..self }
     }
 
     pub(super) fn with_void_samples(self, places: &[u32]) -> Self {

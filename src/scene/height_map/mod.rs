@@ -3,6 +3,7 @@
 //! Readers keep integral sources in 16-bit steps. Voids are recognised, counted, and filled until somebody asks for another
 //! height.
 
+mod coordinates;
 mod formats;
 mod geographic;
 mod grid;
@@ -12,6 +13,7 @@ mod void_samples;
 mod voids;
 mod volcano;
 
+pub use coordinates::Coordinates;
 pub use geographic::Geographic;
 pub use map::{HeightMap, Samples};
 pub use source::HeightMapSource;

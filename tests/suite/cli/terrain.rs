@@ -46,6 +46,42 @@ fn table_1_is_written_with_growth_beside_the_paper_s() {
     assert!(ended.stdout.contains("growth"), "{}", ended.stdout);
 }
 
+/// A picture lies where its world file says in the map's coordinates, also where the map names its meridian otherwise; the
+/// file is part of the input's identity.
+#[test]
+fn a_drape_lies_where_its_world_file_says() {
+    let out = folder();
+    file(&out, "land.asc", "ncols 3\nnrows 3\nxllcenter 10\nyllcenter 40\ncellsize 0.05\n1 1 1\n1 1 1\n1 1 1\n");
+    let picture = fumarole::image::Rgba8::new(2, 2, [220, 30, 30, 255].repeat(4)).unwrap();
+    fumarole::image::write_png(&out.path().join("photo.png"), &picture).unwrap();
+    let draw = |options: &str, image: &str| {
+        let scene = "render --quiet --view top --haze 0 --map land.asc --variant cpu --image";
+        small(scene).args(image).args(options).inside(out.path()).run()
+    };
+    let drawn = |options: &str| {
+        draw(options, "land.png").succeeded();
+        read_png(&out.path().join("land.png")).unwrap()
+    };
+    let (bare, whole) = (drawn(""), drawn("--drape photo.png"));
+    assert!(bare != whole);
+    // Two texels of a quarter of a map each, from a middle of the first: the west half, a whole turn further.
+    file(&out, "photo.pgw", "0.025\n0\n0\n-0.05\n370.0125\n40.075\n");
+    let half = drawn("--drape photo.png");
+    let row = |picture: &fumarole::image::Rgba8| picture.pixels()[24 * 64 * 4..25 * 64 * 4].to_vec();
+    let (bare, whole, half) = (row(&bare), row(&whole), row(&half));
+    assert!(half[..31 * 4] == whole[..31 * 4] && half[33 * 4..] == bare[33 * 4..]);
+    for (world_file, expected) in [
+        ("0.025\n0\n0\n-0.05\n50\n40\n", ["beside the first map", "same coordinates"]),
+        ("0.025\n0\n0\n0.05\n10\n40\n", ["photo.pgw", "north up"]),
+    ] {
+        file(&out, "photo.pgw", world_file);
+        draw("--drape photo.png", "none.png").refused(2, &expected);
+    }
+    file(&out, "photo.pgw", "1\n0\n0\n-1\n0\n0\n");
+    let scene = "render --quiet --resolution 64 --variant cpu --drape photo.png --image none.png";
+    small(scene).inside(out.path()).run().refused(2, &["photo.pgw", "no coordinates"]);
+}
+
 #[test]
 fn the_mesh_of_a_map_that_is_too_large_is_a_row_without_times() {
     let out = folder();

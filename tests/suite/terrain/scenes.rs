@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fumarole::papers::terrain::{Drape, Inputs, Lod, MapInput, Parameters, Placement, Sun, Surface, Variant, View};
 use fumarole::scene::{Camera, Mesh, Samples, shapes};
-use glam::{DVec2, Mat4, Vec3};
+use glam::{DVec2, Mat4, Vec2, Vec3};
 
 use super::drawing::Drawing;
 use super::maps::{alone, map, volcano};
@@ -202,5 +202,38 @@ fn a_drape_lies_with_its_corners_on_the_maps() {
             }
         }
         assert!(Drape::new(8, 8, vec![[0; 4]; 63]).is_err());
+    });
+}
+
+/// A picture with a place of its own covers that and nothing else.
+#[test]
+fn a_placed_drape_ends_at_its_border() {
+    gpu_test(|device| {
+        let maps = alone(table(0.0));
+        let parameters = Parameters { haze_per_km: Some(0.0), ..small(View::Top, Lod::Exact) };
+        // The east half green, the west half red; the south-west corner lies beside the map.
+        let texels = (0..32).map(|i| if i % 8 < 4 { [200, 40, 40, 255] } else { [40, 200, 40, 255] }).collect();
+        let (corner, cells) = (Vec2::new(-3.0, 12.5), Vec2::new(11.0, 30.0));
+        let drape = Drape::new(8, 4, texels).unwrap().placed(corner, cells);
+        for variant in VARIANTS {
+            let bare = Drawing::with(device, variant, &parameters, &Inputs { maps: &maps, ..Inputs::default() });
+            let inputs = Inputs { maps: &maps, drape: Some(&drape), ..Inputs::default() };
+            let drawing = Drawing::with(device, variant, &parameters, &inputs);
+            let (mut inside, mut outside) = (0, 0);
+            let pixels = drawing.picture.pixels().chunks_exact(4).zip(bare.picture.pixels().chunks_exact(4));
+            for (hit, (pixel, bare)) in drawing.hits.iter().zip(pixels) {
+                let fraction = (Vec2::from_array(hit.place) - corner) / cells;
+                let is_near_an_edge =
+                    [fraction.x, fraction.x - 0.5, fraction.x - 1.0, fraction.y].iter().any(|f| f.abs() < 0.1);
+                if hit.surface != Surface::Terrain || fraction.cmplt(Vec2::ZERO).any() || fraction.x > 1.0 {
+                    assert_eq!(pixel, bare, "{variant:?} at {:?}", hit.place);
+                    outside += 1;
+                } else if !is_near_an_edge {
+                    assert_eq!(pixel[1] > pixel[0], fraction.x > 0.5, "{variant:?}: {pixel:?} at {:?}", hit.place);
+                    inside += 1;
+                }
+            }
+            assert!(inside > 100 && outside > 100, "{variant:?}: {inside} inside, {outside} outside");
+        }
     });
 }

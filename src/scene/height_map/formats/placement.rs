@@ -2,8 +2,8 @@
 
 use super::read_text;
 use crate::scene::error::Asset;
-use crate::scene::height_map::Geographic;
 use crate::scene::height_map::grid::Placement;
+use crate::scene::height_map::{Coordinates, Geographic};
 use crate::scene::{Error, file};
 use glam::DVec2;
 use std::path::Path;
@@ -43,7 +43,10 @@ impl MapCoordinates {
             _ => Unit::Metres(1.0),
         };
         match (unit.unwrap_or_else(guess), corner) {
-            (Unit::Metres(metres), _) => Placement::Metres(self.step * metres),
+            (Unit::Metres(metres), _) => {
+                let coordinates = self.north_west.map(|north_west| Coordinates { north_west, step: self.step });
+                Placement::Metres(self.step * metres, coordinates)
+            }
             (Unit::Degrees, Some(corner)) => {
                 Placement::Degrees(Geographic { west_deg: corner.x, north_deg: corner.y, step_deg: self.step })
             }
@@ -113,12 +116,14 @@ mod tests {
         assert!(matches!(degrees.placed(None), Placement::Degrees(place) if place.north_deg == 40.0));
         let whole_earth = MapCoordinates { width: 36, height: 18, ..grid(-175.0, 85.0, 10.0) };
         assert!(matches!(whole_earth.placed(Some(Unit::Degrees)), Placement::Degrees(_)));
-        assert_eq!(degrees.placed(Some(Unit::Metres(2.0))), Placement::Metres(DVec2::splat(1.0 / 60.0)));
+        let own = |grid: &MapCoordinates| grid.north_west.map(|north_west| Coordinates { north_west, step: grid.step });
+        let doubled = Placement::Metres(DVec2::splat(1.0 / 60.0), own(&degrees));
+        assert_eq!(degrees.placed(Some(Unit::Metres(2.0))), doubled);
         for metres in [grid(500_000.0, 4_000_000.0, 30.0), grid(0.0, 50.0, 1.0), grid(10.0, 90.0, 20.0)] {
-            assert_eq!(metres.placed(None), Placement::Metres(metres.step));
+            assert_eq!(metres.placed(None), Placement::Metres(metres.step, own(&metres)));
         }
         assert_eq!(grid(900.0, 0.0, 0.01).placed(Some(Unit::Degrees)), Placement::Unknown);
         let nowhere = MapCoordinates { north_west: None, ..grid(0.0, 0.0, 0.01) };
-        assert_eq!(nowhere.placed(None), Placement::Metres(nowhere.step));
+        assert_eq!(nowhere.placed(None), Placement::Metres(nowhere.step, None));
     }
 }
