@@ -205,7 +205,10 @@ fn load_drape(path: &Path, map: &HeightMap) -> Result<Drape, Error> {
     let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
     let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
     if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
-        let span = |[a, b]: [DVec2; 2]| format!("{} to {} east, {} to {} north", a.x, b.x, b.y, a.y);
+        let shown = |number: f64| (number * 1e6).round() / 1e6;
+        let span = |[a, b]: [DVec2; 2]| {
+            format!("{} to {} east, {} to {} north", shown(a.x), shown(b.x), shown(b.y), shown(a.y))
+        };
         let message = format!(
             "{} places {} beside the first map: it lies at {}, the map at {}; both have to be in the same coordinates",
             world_file.display(),

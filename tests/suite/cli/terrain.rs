@@ -55,8 +55,8 @@ fn a_drape_lies_where_its_world_file_says() {
     let picture = fumarole::image::Rgba8::new(2, 2, [220, 30, 30, 255].repeat(4)).unwrap();
     fumarole::image::write_png(&out.path().join("photo.png"), &picture).unwrap();
     let draw = |options: &str, image: &str| {
-        let scene = "render --quiet --view top --haze 0 --map land.asc --variant cpu --image";
-        small(scene).args(image).args(options).inside(out.path()).run()
+        let scene = "render --quiet --camera top --haze 0 --map land.asc --variant cpu";
+        small(scene).args("--image").args(image).args(options).inside(out.path()).run()
     };
     let drawn = |options: &str| {
         draw(options, "land.png").succeeded();
@@ -78,8 +78,10 @@ fn a_drape_lies_where_its_world_file_says() {
         draw("--drape photo.png", "none.png").refused(2, &expected);
     }
     file(&out, "photo.pgw", "1\n0\n0\n-1\n0\n0\n");
-    let scene = "render --quiet --resolution 64 --variant cpu --drape photo.png --image none.png";
-    small(scene).inside(out.path()).run().refused(2, &["photo.pgw", "no coordinates"]);
+    small("render --quiet --resolution 64 --variant cpu --drape photo.png --image none.png")
+        .inside(out.path())
+        .run()
+        .refused(2, &["photo.pgw", "no coordinates"]);
 }
 
 #[test]
