@@ -37,6 +37,8 @@ pub(crate) struct Commands {
     pub submission: SubmissionId,
     /// Number of the frame that the next submission is the last of.
     pub ends_frame: Option<u64>,
+    /// Number of the replay for the performance query that the next submission holds.
+    pub counter_pass: Option<u32>,
     phase: Phase,
     barriers: Barriers,
     held: Vec<Held>,
@@ -56,6 +58,7 @@ impl Commands {
             fence: vk::Fence::null(),
             submission: SubmissionId::new(),
             ends_frame: None,
+            counter_pass: None,
             phase: Phase::Idle,
             barriers: Barriers::default(),
             held: Vec::new(),
@@ -86,6 +89,7 @@ impl Commands {
             self.settle().context("waiting for", "an earlier submission")?;
         }
         self.abandon();
+        self.counter_pass = None;
         let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: nothing is in flight by `phase`, so neither the pool's one buffer nor the fence is pending; `&mut self`
         // is the only user of both.
@@ -151,6 +155,11 @@ impl Commands {
         {
             boundary.frame_id = frame;
             submit = submit.push_next(&mut boundary);
+        }
+        let mut counted = vk::PerformanceQuerySubmitInfoKHR::default();
+        if let Some(replay) = self.counter_pass.take() {
+            counted.counter_pass_index = replay;
+            submit = submit.push_next(&mut counted);
         }
         let submits = [submit];
         let raw = &self.device.raw;

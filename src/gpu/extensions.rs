@@ -88,39 +88,6 @@ pub(super) fn supported(instance: &Instance, raw: vk::PhysicalDevice) -> Result<
     Ok(listed)
 }
 
-/// Names of the counters of the queue family that is used, `None` for a device without the extension.
-pub(super) fn performance_counters(
-    instance: &Instance,
-    raw: vk::PhysicalDevice,
-    extensions: &[Extension],
-    queue: Option<(u32, u32)>,
-) -> Result<Option<Vec<String>>, Error> {
-    let (true, Some((family, _))) = (extensions.contains(&Extension::PerformanceQuery), queue) else {
-        return Ok(None);
-    };
-    let calls = khr::performance_query::Instance::new(&instance.entry, &instance.raw);
-    let listing = "listing the performance counters of";
-    // SAFETY: `raw` comes from this instance and offers the extension; the family is one of its own.
-    let count = unsafe { calls.enumerate_physical_device_queue_family_performance_query_counters_len(raw, family) }
-        .context(listing, "a device")?;
-    let mut counters = vec![vk::PerformanceCounterKHR::default(); count];
-    let mut descriptions = vec![vk::PerformanceCounterDescriptionKHR::default(); count];
-    // SAFETY: as above, with room for as many as there are.
-    unsafe {
-        calls.enumerate_physical_device_queue_family_performance_query_counters(
-            raw,
-            family,
-            &mut counters,
-            &mut descriptions,
-        )
-    }
-    .context(listing, "a device")?;
-    let name = |one: &vk::PerformanceCounterDescriptionKHR<'_>| {
-        one.name_as_c_str().map_or_else(|_| String::new(), |name| name.to_string_lossy().into_owned())
-    };
-    Ok(Some(descriptions.iter().map(name).collect()))
-}
-
 /// The device's clock, read at a moment of the host's.
 pub(crate) struct Calibration {
     calls: ext::calibrated_timestamps::Device,

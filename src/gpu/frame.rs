@@ -148,6 +148,7 @@ impl Frame<'_> {
         passes.push(PassSample {
             info: info.clone(),
             calls: 0,
+            recordings: 0,
             submission: self.submission,
             gpu_ms: None,
             host_ms: None,
@@ -298,9 +299,18 @@ impl Frame<'_> {
     ) -> Result<(), Error> {
         self.check_open()?;
         self.admit(pass.info())?;
+        let is_counted = self.recorder.performance.as_ref().is_some_and(|pool| pool.counts(pass.info().name));
+        if is_counted {
+            self.wait_for(pass)?;
+            self.recorder.begin_performance();
+        }
         self.failed = Some(pass.info().name);
         self.record(pass, body)?;
         self.failed = None;
+        if is_counted {
+            self.recorder.end_performance();
+            self.wait_for(pass)?;
+        }
         Ok(())
     }
 
@@ -336,6 +346,7 @@ impl Frame<'_> {
         }
         r.close_label();
         r.sample.passes[at].calls += recorded?.0;
+        r.sample.passes[at].recordings += 1;
         if mode == Mode::Timestamped {
             r.timestamp(at);
         }

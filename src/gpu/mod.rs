@@ -33,6 +33,7 @@
 //! | read or write mapped memory that the device uses, or read what was not made visible | the same hold, with readers of its own | [`Buffer::read`], [`Buffer::write`] |
 //! | submit from two threads at once | the queue has a lock; command pools belong to one recorder each | [`Device`] |
 //! | free what the device may still read after a failed wait | it is kept until the device is idle or lost, and otherwise leaked on purpose | `commands` |
+//! | count with the device's own counters without their lock, or round part of a command buffer | the counting holds the lock from before the first replay, and the counted pass is a submission of its own | [`Counting`], [`Frame`] |
 //! | mix objects of two devices, or of two instances | each knows its own | [`Error::Foreign`] |
 //! | bind to a pass attachments of other formats | formats are compared with the first pass's | [`pass::RebindBuilder::build`] |
 //! | end a name early by a zero in it | zeros are left out | [`Device`] |
@@ -66,6 +67,7 @@ pub mod pass;
 mod pass_builder;
 mod pass_check;
 mod pass_info;
+mod performance;
 pub mod physical;
 pub mod pipeline;
 mod portability;
@@ -100,6 +102,7 @@ pub use image::{Image, ImageDesc, ImageView, Sampler};
 pub use instance::Instance;
 pub use pass::Pass;
 pub use pass_info::{Binary, PassInfo, PassKind};
+pub use performance::{CounterValue, Counting, PerformanceCounter, PerformanceReadings};
 pub use physical::{Feature, PhysicalDevice};
 pub use pipeline::Topology;
 pub use recorder::Recorder;

@@ -7,6 +7,7 @@ use ash::vk;
 use super::error::{Context, Error};
 use super::extensions::{self, Extension};
 use super::instance::{Instance, version_text};
+use super::performance::{self, PerformanceCounter};
 use super::portability;
 
 /// The kinds of device, in the order of preference.
@@ -136,7 +137,7 @@ pub struct PhysicalDevice {
     pub portability_lacks: Option<Vec<&'static str>>,
     features: Vec<Feature>,
     extensions: Vec<Extension>,
-    performance_counters: Option<Vec<String>>,
+    performance_counters: Option<Vec<PerformanceCounter>>,
     /// Opened, it keeps what its compiler tells of pipelines.
     is_profiled: bool,
     /// `fullDrawIndexUint32`: every 32-bit index is one.
@@ -232,7 +233,7 @@ impl PhysicalDevice {
             memory,
             queue,
             portability_lacks: portability::lacks(instance, raw)?,
-            performance_counters: extensions::performance_counters(instance, raw, &extensions, queue)?,
+            performance_counters: performance::counters(instance, raw, &extensions, queue)?,
             extensions,
             is_profiled: false,
             features: supported_features(instance, raw, properties.api_version, queue),
@@ -278,8 +279,8 @@ impl PhysicalDevice {
         self.extensions.contains(&extension)
     }
 
-    /// Names of the device's own counters; absent where it has none.
-    pub fn performance_counters(&self) -> Option<&[String]> {
+    /// The device's own counters; absent where it has none.
+    pub fn performance_counters(&self) -> Option<&[PerformanceCounter]> {
         self.performance_counters.as_deref()
     }
 

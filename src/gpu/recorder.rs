@@ -16,6 +16,7 @@ use super::extensions::Calibration;
 use super::frame::{End, Frame};
 use super::pass::{Body, Inner, Pass};
 use super::pass_info::PassInfo;
+use super::performance::PerformancePool;
 use super::physical::Feature;
 use super::query::{Counter, QueryPool};
 use super::sample::{Counts, FrameSample, Mode, Span, Track};
@@ -32,6 +33,8 @@ pub struct Recorder {
     pub(super) samples_passed: Option<QueryPool>,
     pub(super) graphics_counts: Option<QueryPool>,
     pub(super) compute_counts: Option<QueryPool>,
+    /// Queries of the device's own counters, while a pass is counted with them.
+    pub(super) performance: Option<PerformancePool>,
     pub(super) timestamp_mask: u64,
     pub(super) period_ns: f64,
     calibration: Option<Calibration>,
@@ -74,6 +77,7 @@ impl Recorder {
             samples_passed: pool(Feature::PreciseOcclusion, Counter::Samples, COUNTERS)?,
             graphics_counts: pool(Feature::PipelineStatistics, Counter::Graphics, COUNTERS)?,
             compute_counts: pool(Feature::PipelineStatistics, Counter::Compute, COUNTERS)?,
+            performance: None,
             timestamp_mask: if bits >= 64 { u64::MAX } else { (1 << bits) - 1 },
             period_ns: f64::from(physical.limits.timestamp_period),
             calibration: Calibration::new(device),
@@ -347,6 +351,21 @@ impl Recorder {
         }
     }
 
+    /// Begins to count the pass of that name with the device's own counters, as the first command of a submission.
+    pub(super) fn begin_performance(&mut self) {
+        let commands = self.commands.buffer;
+        self.commands.counter_pass = self.performance.as_mut().and_then(|pool| pool.begin(commands));
+    }
+
+    /// Ends it, as the last command, once all that was recorded before has finished.
+    pub(super) fn end_performance(&mut self) {
+        let commands = self.commands.buffer;
+        if let Some(pool) = &mut self.performance {
+            barrier::full(&self.commands.device, commands);
+            pool.end(commands);
+        }
+    }
+
     pub(super) fn open_label(&mut self, info: &PassInfo) {
         let name = info.name;
         let Some(debug) = &self.commands.device.debug else { return };
@@ -374,6 +393,7 @@ impl Drop for Recorder {
             let pools =
                 [&mut self.timestamps, &mut self.samples_passed, &mut self.graphics_counts, &mut self.compute_counts];
             pools.into_iter().for_each(|pool| mem::forget(pool.take()));
+            mem::forget(self.performance.take());
         }
     }
 }

@@ -51,6 +51,8 @@ pub struct PassSample {
     pub info: Arc<PassInfo>,
     /// Draws or dispatches; for host work, executions.
     pub calls: u32,
+    /// Times that it was recorded, each with any number of calls; 0 of host work.
+    pub recordings: u32,
     /// The submission of the frame that it was first part of.
     pub submission: u32,
     /// GPU time in milliseconds, in a timestamped frame.

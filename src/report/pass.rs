@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Number;
 
 use super::record::Summary;
 
@@ -135,8 +136,11 @@ pub struct Profile {
     pub pass: String,
     /// What each compiler's binaries take.
     pub compilers: Vec<CompiledPass>,
-    /// Names of the device's own counters (`VK_KHR_performance_query`), which are not read; absent where it has none.
+    /// Names of the device's own counters (`VK_KHR_performance_query`); absent where it has none.
     pub performance_counters: Option<Vec<String>>,
+    /// Reason why none of them were read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counters_unread: Option<String>,
 }
 
 /// A pass with one compiler's binaries.
@@ -152,6 +156,41 @@ pub struct CompiledPass {
     pub binaries: Vec<ShaderBinary>,
     /// What the driver's compiler made of them; absent where the device does not tell.
     pub stages: Option<Vec<CompiledStage>>,
+    /// The device's own counters of the pass in frame 0; absent where it has none.
+    #[serde(default)]
+    pub counters: Option<CounterReadings>,
+}
+
+/// Counters of a device (`VK_KHR_performance_query`) of one pass in one frame, which was replayed for them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CounterReadings {
+    /// Times that the frame was replayed: the device does not count everything at once.
+    pub replays: u32,
+    /// Times that the frame records the pass.
+    pub recordings: u32,
+    /// In the device's order.
+    pub counters: Vec<CounterReading>,
+    /// Names of those that would have taken more replays.
+    pub left_out: Vec<String>,
+}
+
+/// One counter of a device.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CounterReading {
+    /// The driver's name for it.
+    pub name: String,
+    /// The driver's group of counters.
+    pub category: String,
+    /// The driver's words on it.
+    pub description: String,
+    /// Unit of the value; `"1"` of plain numbers.
+    pub unit: String,
+    /// Smallest thing that it can be told to count: command buffer, render pass or command.
+    pub scope: String,
+    /// True where the value is the mean over the pass's recordings, not their sum.
+    pub is_mean: bool,
+    /// Absent where the device gave no number.
+    pub value: Option<Number>,
 }
 
 /// One stage as the driver compiled it (`VK_KHR_pipeline_executable_properties`).

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::record::{Pass, Profile, Run, Summary};
+use super::record::{CounterReadings, Pass, Profile, Run, Summary};
 use super::table::{Align, Style, Table};
 use super::text::one_line;
 
@@ -27,12 +27,7 @@ pub fn profile(run: &Run, style: Style) -> String {
         }
     }
     compiled_stages(&mut text, profile);
-    match &profile.performance_counters {
-        None => text.push_str("performance counters (VK_KHR_performance_query): the device has none\n"),
-        Some(names) => {
-            let _ = writeln!(text, "performance counters that the device has: {}", one_line(&names.join(", ")));
-        }
-    }
+    counters(&mut text, profile, style);
     text
 }
 
@@ -130,6 +125,48 @@ fn binaries(profile: &Profile) -> Table {
     table
 }
 
+/// The device's own counters, each compiler's beside the other's.
+fn counters(text: &mut String, profile: &Profile, style: Style) {
+    let Some(names) = &profile.performance_counters else {
+        text.push_str("performance counters (VK_KHR_performance_query): the device has none\n");
+        return;
+    };
+    if let Some(reason) = &profile.counters_unread {
+        let _ = writeln!(text, "performance counters that the device has, not read: {}", one_line(reason));
+    }
+    let Some(shown) = profile.compilers.iter().find_map(|compiled| compiled.counters.as_ref()) else {
+        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let _ = writeln!(text, "performance counters that the device has: {}", one_line(&names));
+        return;
+    };
+    let _ = writeln!(
+        text,
+        "performance counters (VK_KHR_performance_query) of frame 0, replayed {} times; the pass is recorded {} times in it",
+        shown.replays, shown.recordings
+    );
+    text.push_str(&counter_table(profile, shown).render(style));
+    if !shown.left_out.is_empty() {
+        let _ = writeln!(text, "left out, for they take too many replays: {}", one_line(&shown.left_out.join(", ")));
+    }
+}
+
+fn counter_table(profile: &Profile, shown: &CounterReadings) -> Table {
+    let mut columns =
+        vec![("counter", Align::Left), ("group", Align::Left), ("scope", Align::Left), ("unit", Align::Left)];
+    columns.extend(profile.compilers.iter().map(|compiled| (compiled.compiler.as_str(), Align::Right)));
+    let mut table = Table::new(&columns);
+    for (index, counter) in shown.counters.iter().enumerate() {
+        let unit = if counter.is_mean { format!("{}, mean", counter.unit) } else { counter.unit.clone() };
+        let mut row = vec![counter.name.clone(), counter.category.clone(), counter.scope.clone(), unit];
+        row.extend(profile.compilers.iter().map(|compiled| {
+            let of_compiler = compiled.counters.as_ref().and_then(|readings| readings.counters.get(index));
+            of_compiler.and_then(|counter| counter.value.as_ref()).map_or_else(|| "-".to_owned(), ToString::to_string)
+        }));
+        table.push(row);
+    }
+    table
+}
+
 fn compiled_stages(text: &mut String, profile: &Profile) {
     for compiled in &profile.compilers {
         let Some(stages) = &compiled.stages else {
@@ -164,7 +201,7 @@ mod tests {
     use super::*;
     use crate::measure::statistics::summarize;
     use crate::report::example;
-    use crate::report::record::{CompiledPass, CompiledStage, StageStatistic};
+    use crate::report::record::{CompiledPass, CompiledStage, CounterReading, StageStatistic};
 
     #[test]
     fn a_profile_tells_all_that_is_known_and_what_is_not() {
@@ -176,6 +213,7 @@ mod tests {
             gpu_ms: summarize(&[1.0, 2.0]),
             binaries: run.passes[1].shaders.clone(),
             stages,
+            counters: None,
         };
         let stage = CompiledStage {
             name: "vertex".to_owned(),
@@ -185,8 +223,12 @@ mod tests {
             texts: BTreeMap::from([("SASS".to_owned(), "MOV\nEXIT".to_owned())]),
         };
         let [glslang, naga] = [compiled("glslang", None), compiled("naga", None)];
-        run.profile =
-            Some(Profile { pass: "splat".to_owned(), compilers: vec![glslang, naga], performance_counters: None });
+        run.profile = Some(Profile {
+            pass: "splat".to_owned(),
+            compilers: vec![glslang, naga],
+            performance_counters: None,
+            counters_unread: None,
+        });
         let text = profile(&run, Style::default());
         for part in [
             "gas slices: splat",
@@ -206,6 +248,30 @@ mod tests {
         told.performance_counters = Some(vec!["cycles".to_owned()]);
         let text = profile(&run, Style::default());
         for part in ["subgroups of 32; Register Count 24", "SASS: 2 lines", "that the device has: cycles"] {
+            assert!(text.contains(part), "{part} in\n{text}");
+        }
+        let told = run.profile.as_mut().unwrap();
+        told.counters_unread = Some("the lock is taken".to_owned());
+        assert!(profile(&run, Style::default()).contains("not read: the lock is taken"));
+        let told = run.profile.as_mut().unwrap();
+        told.counters_unread = None;
+        let reading = |name: &str, unit: &str, is_mean, value: Option<serde_json::Number>| CounterReading {
+            name: name.to_owned(),
+            category: "shader".to_owned(),
+            description: String::new(),
+            unit: unit.to_owned(),
+            scope: "command".to_owned(),
+            is_mean,
+            value,
+        };
+        told.compilers[0].counters = Some(CounterReadings {
+            replays: 3,
+            recordings: 2,
+            counters: vec![reading("cycles", "cycles", false, Some(u64::MAX.into())), reading("busy", "%", true, None)],
+            left_out: vec!["rare".to_owned()],
+        });
+        let text = profile(&run, Style::default());
+        for part in ["replayed 3 times", "recorded 2 times", "18446744073709551615", "%, mean", "replays: rare"] {
             assert!(text.contains(part), "{part} in\n{text}");
         }
     }

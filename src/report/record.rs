@@ -11,7 +11,8 @@ use serde_json::{Map, Value};
 
 pub use super::limits::Limits;
 pub use super::pass::{
-    Bytes, BytesAtMost, CompiledPass, CompiledStage, Pass, PassKind, Profile, ShaderBinary, StageStatistic, Statistics,
+    Bytes, BytesAtMost, CompiledPass, CompiledStage, CounterReading, CounterReadings, Pass, PassKind, Profile,
+    ShaderBinary, StageStatistic, Statistics,
 };
 
 /// The value of [`Record::schema`] that this program writes and reads.

@@ -155,6 +155,11 @@ pub fn born(kind: &str) {
     change(kind, 1);
 }
 
+/// Counts an object that was ended.
+pub fn died(kind: &str) {
+    change(kind, -1);
+}
+
 unsafe fn wait_idle(device: usize) {
     let index = RESULTS.iter().position(|&name| name == "vkDeviceWaitIdle").unwrap_or_default();
     let next = NEXT_RESULTS[index].load(Ordering::Acquire);
@@ -222,6 +227,7 @@ fn report() {
             let _infallible = writeln!(text, "alive {kind} {count}");
         }
     }
+    text.push_str(&crate::lend::report());
     // A test that finds no report fails.
     let _ = fs::write(path, text);
 }

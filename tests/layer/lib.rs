@@ -1,16 +1,20 @@
-//! A Vulkan layer for the tests: it makes calls fail, hides features, lowers limits and counts what is alive. The tests
+//! A Vulkan layer for the tests: it makes calls fail, hides features, lowers limits, plays extensions and counts what is
+//! alive. The tests
 //! give its folder to the loader and say by environment variables what it does:
 //!
 //! | variable | meaning |
 //! | --- | --- |
 //! | `FUMAROLE_LAYER_FAIL` | `17:host`, `17:device` or `17:lost`: the 17th call that returns a result fails so |
 //! | `FUMAROLE_LAYER_LACKS` | features by the names of `fumarole devices`, comma-separated |
+//! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary` |
+//! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
 //! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher |
 //! | `FUMAROLE_LAYER_REPORT` | file that tells, when an instance is destroyed, of the calls and of what is alive |
 //!
 //! After a lost device, every submission and wait of the process fails the same way.
 
 mod calls;
+mod lend;
 mod mask;
 
 use std::ffi::{CStr, c_char, c_void};
@@ -108,6 +112,7 @@ unsafe extern "system" fn create_instance(
             calls::born("Instance");
             calls::resolve(&|name| next_instance_proc(*instance, name));
             mask::resolve(&|name| next_instance_proc(*instance, name));
+            lend::resolve(&|name| next_instance_proc(*instance, name));
         }
         result
     }
@@ -142,10 +147,23 @@ unsafe extern "system" fn create_device(
             }
             masked.enabled_extension_count = 0;
         }
+        let mut known = Vec::new();
+        for index in 0..masked.enabled_extension_count as usize {
+            let name = *masked.pp_enabled_extension_names.add(index);
+            if !lend::is_lent(name) {
+                known.push(name);
+            }
+        }
+        (masked.enabled_extension_count, masked.pp_enabled_extension_names) = (known.len() as u32, known.as_ptr());
+        let mut chain = masked.p_next;
+        let restore = lend::without_features(&mut chain);
+        masked.p_next = chain;
         let result = create(physical, &masked, allocator, device);
+        restore();
         if result == vk::Result::SUCCESS {
             calls::born("Device");
             calls::resolve(&|name| next_device_proc(*device, name));
+            lend::resolve(&|name| next_device_proc(*device, name));
         }
         result
     }
@@ -174,7 +192,7 @@ fn own(name: &str) -> vk::PFN_vkVoidFunction {
         "vkGetDeviceProcAddr" => get_device_proc_addr as *const c_void,
         "vkCreateInstance" => create_instance as *const c_void,
         "vkCreateDevice" => create_device as *const c_void,
-        other => mask::hook(other).or_else(|| calls::hook(other))?,
+        other => mask::hook(other).or_else(|| lend::hook(other)).or_else(|| calls::hook(other))?,
     };
     // SAFETY: each is a function of the signature that its name has in Vulkan.
     Some(unsafe { transmute::<*const c_void, unsafe extern "system" fn()>(function) })
@@ -188,12 +206,17 @@ unsafe extern "system" fn get_instance_proc_addr(
     let name = unsafe { CStr::from_ptr(name) };
     // What the driver lacks stays lacking.
     let next = next_instance_proc(instance, name);
-    own(&name.to_string_lossy()).filter(|_| next.is_some() || instance == vk::Instance::null()).or(next)
+    let is_there =
+        || next.is_some() || instance == vk::Instance::null() || lend::whole(&name.to_string_lossy()).is_some();
+    own(&name.to_string_lossy()).filter(|_| is_there()).or(next)
 }
 
 unsafe extern "system" fn get_device_proc_addr(device: vk::Device, name: *const c_char) -> vk::PFN_vkVoidFunction {
     // SAFETY: the name ends in a zero.
     let name = unsafe { CStr::from_ptr(name) };
+    if lend::whole(&name.to_string_lossy()).is_some() {
+        return own(&name.to_string_lossy());
+    }
     let next = next_device_proc(device, name)?;
     Some(own(&name.to_string_lossy()).unwrap_or(next))
 }

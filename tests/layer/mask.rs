@@ -127,7 +127,7 @@ fn mask_format(format: vk::Format, properties: &mut vk::FormatProperties) {
 ///
 /// # Safety
 /// The chain is Vulkan's, and `T` has this type.
-unsafe fn change_in_chain<T>(mut chain: *mut c_void, s_type: vk::StructureType, change: impl Fn(&mut T)) {
+pub unsafe fn change_in_chain<T>(mut chain: *mut c_void, s_type: vk::StructureType, mut change: impl FnMut(&mut T)) {
     // SAFETY: see above; every structure of a chain begins as this one does.
     unsafe {
         while let Some(found) = chain.cast::<vk::BaseOutStructure<'_>>().as_mut() {
@@ -163,6 +163,7 @@ unsafe extern "system" fn features2(physical: vk::PhysicalDevice, found: *mut vk
         next::<vk::PFN_vkGetPhysicalDeviceFeatures2>(1)(physical, found.cast());
         mask_features(&mut (*found).features);
         let chain = (*found).p_next;
+        crate::lend::features(chain);
         change_in_chain(
             chain,
             vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,

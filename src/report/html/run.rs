@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::bars::drawings;
 use super::title;
-use crate::report::record::{Limits, Pass, Run, Summary};
+use crate::report::record::{Limits, Pass, Profile, Run, Summary};
 
 /// Heading, bars, the table of passes and all else that the record has of the run.
 pub(super) fn run(run: &Run, id: &str) -> Markup {
@@ -130,6 +130,49 @@ fn profile(run: &Run) -> Markup {
             } } } }
         } }
         @for reason in profile.compilers.iter().filter_map(|compiled| compiled.fallback.as_ref()) { p { (reason) } }
+        (stages(profile))
+        (counters(profile))
+    }
+}
+
+/// What the driver's compiler told of the stages.
+fn stages(profile: &Profile) -> Markup {
+    let told = profile.compilers.iter().flat_map(|compiled| {
+        compiled.stages.iter().flatten().map(|stage| (compiled.compiler.as_str(), stage)).collect::<Vec<_>>()
+    });
+    html! {
+        @for (compiler, stage) in told { details {
+            summary { (compiler) ", " (stage.name) ": subgroups of " (stage.subgroup_size)
+                @for value in &stage.statistics { ", " (value.name) " " (value.value) }
+            }
+            p { (stage.description) }
+            @for (name, listing) in &stage.texts { h5 { (name) } pre { (listing) } }
+        } }
+    }
+}
+
+/// The device's own counters.
+fn counters(profile: &Profile) -> Markup {
+    let Some(shown) = profile.compilers.iter().find_map(|compiled| compiled.counters.as_ref()) else { return html! {} };
+    html! {
+        h4 { "The device's counters of the pass in frame 0" }
+        div.wide tabindex="0" role="region" aria-label="device counters" { table.sortable {
+            thead { tr {
+                @for name in ["counter", "group", "scope", "unit"] { th { button type="button" { (name) } } }
+                @for compiled in &profile.compilers { th.number { button type="button" { (compiled.compiler) } } }
+            } }
+            tbody { @for (index, counter) in shown.counters.iter().enumerate() { tr {
+                td title=(counter.description) { (counter.name) }
+                td { (counter.category) }
+                td { (counter.scope) }
+                td { (counter.unit) @if counter.is_mean { ", mean" } }
+                @for compiled in &profile.compilers {
+                    @let value = compiled.counters.as_ref().and_then(|readings| readings.counters.get(index)?.value.as_ref());
+                    td.number data-value=[value] { @if let Some(value) = value { (value) } }
+                }
+            } } }
+        } }
+        @if !shown.left_out.is_empty() { p { "Left out, for they take too many replays: " (shown.left_out.join(", ")) } }
     }
 }
 

@@ -71,7 +71,7 @@ impl Paper {
 
 /// # Panics
 /// Where the library is not installed: a test never passes for want of it.
-fn library(name: &str) -> PathBuf {
+pub fn library(name: &str) -> PathBuf {
     let folders = env::var(FOLDER_VARIABLE).into_iter().chain(FOLDERS.map(str::to_owned));
     let mut paths = folders.map(|folder| Path::new(&folder).join(name));
     let found = paths.find(|path| path.exists());
@@ -89,7 +89,7 @@ pub fn driver_manifest(folder: &TempDir) -> PathBuf {
 }
 
 /// Writes a manifest of the layer in `library` into a folder for `VK_LAYER_PATH`.
-fn layer_manifest(folder: &TempDir, library: &Path) {
+pub fn layer_manifest(folder: &TempDir, library: &Path) {
     let extension = |name: &str, version: &str| serde_json::json!({ "name": name, "spec_version": version });
     let layer = serde_json::json!({
         "name": "VK_LAYER_KHRONOS_validation",

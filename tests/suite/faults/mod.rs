@@ -1,7 +1,8 @@
-//! Devices that lack something and calls that fail: the programs run with `tests/layer` before the driver.
+//! Devices that lack something or have more, and calls that fail: the programs run with `tests/layer` before the driver.
 
 mod calls;
 mod files;
+mod lent;
 mod masks;
 
 use std::fs;
@@ -10,6 +11,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use crate::cli::program::{self, Ended, Program, file};
+use crate::drivers::layer_manifest;
 
 /// A paper's program and the smallest scene with every pass.
 pub struct Paper {
@@ -60,9 +62,12 @@ fn library() -> PathBuf {
     library
 }
 
-/// A folder with the layer's manifest, and its report.
+/// A folder with the layer's manifest, and its report; another with that of the Khronos layer. The loader (1.3.239) takes
+/// layers in the order in which it finds their manifests, whatever the order of their names: the folder that is searched
+/// first holds the layer that is next to the program.
 pub struct Layer {
     folder: TempDir,
+    above: TempDir,
 }
 
 impl Layer {
@@ -78,7 +83,9 @@ impl Layer {
         });
         let manifest = serde_json::json!({ "file_format_version": "1.2.0", "layer": layer });
         file(&folder, "test_layer.json", manifest.to_string());
-        Layer { folder }
+        let above = program::folder();
+        layer_manifest(&above, Path::new("libVkLayer_khronos_validation.so"));
+        Layer { folder, above }
     }
 
     fn report_path(&self) -> PathBuf {
@@ -87,10 +94,13 @@ impl Layer {
 
     /// Runs with the layer next to the driver, `validated` with the Khronos layer above it.
     pub fn before(&self, program: Program, validated: bool) -> Program {
-        let above = if validated { format!("{VALIDATION}:{LAYER}") } else { LAYER.to_owned() };
-        let program = if validated { program.args("--validate") } else { program };
-        let program = program.env("VK_INSTANCE_LAYERS", above).env("VK_ADD_LAYER_PATH", self.folder.path());
-        program.env("FUMAROLE_LAYER_REPORT", self.report_path())
+        let program = program.env("FUMAROLE_LAYER_REPORT", self.report_path());
+        if !validated {
+            return program.env("VK_INSTANCE_LAYERS", LAYER).env("VK_ADD_LAYER_PATH", self.folder.path());
+        }
+        let folders = std::env::join_paths([self.above.path(), self.folder.path()]).unwrap();
+        let program = program.env("VK_LAYER_PATH", folders).env("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}"));
+        program.args("--validate")
     }
 
     /// The calls that were counted, the name of the one that failed, and what was alive at the end.
@@ -108,6 +118,8 @@ impl Layer {
             calls: field("calls ").unwrap().parse().unwrap(),
             failed: field("failed "),
             alive: alive.map(str::to_owned).collect(),
+            misuses: text.lines().filter_map(|line| line.strip_prefix("misuse ")).map(str::to_owned).collect(),
+            frames: field("frames ").unwrap().parse().unwrap(),
         }
     }
 }
@@ -117,4 +129,8 @@ pub struct Report {
     pub failed: Option<String>,
     /// Kinds and numbers of objects.
     pub alive: Vec<String>,
+    /// What a played extension forbids.
+    pub misuses: Vec<String>,
+    /// Frames whose end was told by `VK_EXT_frame_boundary`.
+    pub frames: u64,
 }
