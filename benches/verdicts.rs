@@ -1,27 +1,42 @@
 //! How often the verdicts of `compare` and `ab` are right: seeded trials of 12 quantities each, a frame and 11 passes,
-//! on frame times that are autocorrelated and heavy-tailed. Prints counts; takes the number of trials as its argument.
+//! on frame times that are autocorrelated and heavy-tailed. Prints counts, and fails where a bound is missed; takes the
+//! number of trials as its argument.
 
 #[path = "../src/measure/compare/synthetic.rs"]
 mod synthetic;
+
+use std::process::ExitCode;
 
 use fumarole::measure::compare::{Evidence, Gate, LOOKS, Rules, Verdict, decide, gate};
 use synthetic::Noise;
 
 const MEMBERS: usize = 12;
 
-fn main() {
+fn main() -> ExitCode {
     let trials = std::env::args().skip(1).find_map(|text| text.parse().ok()).unwrap_or(2000);
     println!("{trials} trials a line, {MEMBERS} quantities, 150 frames a process, frame noise 1 %");
+    let mut misses = Vec::new();
+    let mut bound = |what: &str, keeps: bool| misses.extend((!keeps).then(|| what.to_owned()));
     for (processes, spread) in [(10, 0.01), (10, 0.03), (5, 0.01), (20, 0.01)] {
-        processes_alike(trials, processes, spread);
+        let [same, wrong] = processes_alike(trials, processes, spread);
+        bound("false verdicts of compare in at most 6.5 %", wrong <= 0.065);
+        if (processes, spread) == (10, 0.01) {
+            bound("the frame SAME in at least 95 %", same >= 0.95);
+        }
     }
     for (processes, spread) in [(10, 0.01), (10, 0.02), (10, 0.03), (20, 0.03)] {
-        slower(trials, processes, spread);
+        let found = slower(trials, processes, spread);
+        bound("a pass that is 10 % slower is SLOWER in at least 95 %", found >= 0.95);
     }
     for drift in [0.0, 0.05] {
-        blocks(trials, drift, 1.0);
-        blocks(trials, drift, 1.1);
+        for factor in [1.0, 1.1] {
+            bound("false verdicts of ab in at most 6.5 %", blocks(trials, drift, factor) <= 0.065);
+        }
     }
+    for what in &misses {
+        println!("MISSED: {what}");
+    }
+    if misses.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 fn percent(count: usize, trials: usize) -> String {
@@ -32,8 +47,12 @@ fn is_difference(verdict: &Verdict) -> bool {
     matches!(verdict, Verdict::Faster | Verdict::Slower)
 }
 
+fn part(count: usize, trials: usize) -> f64 {
+    count as f64 / trials as f64
+}
+
 /// Two equal sides: how often the frame is SAME, and any quantity falsely FASTER or SLOWER.
-fn processes_alike(trials: usize, processes: usize, spread: f64) {
+fn processes_alike(trials: usize, processes: usize, spread: f64) -> [f64; 2] {
     let (mut same, mut wrong) = (0, 0);
     for seed in 0..trials {
         let verdicts = family(seed as u64, processes, spread, 1.0).1;
@@ -46,10 +65,11 @@ fn processes_alike(trials: usize, processes: usize, spread: f64) {
         percent(same, trials),
         percent(wrong, trials)
     );
+    [part(same, trials), part(wrong, trials)]
 }
 
-/// One quantity 10 % slower: how often it is SLOWER, and its standing against a limit of 5 %.
-fn slower(trials: usize, processes: usize, spread: f64) {
+/// One quantity 10 % slower: how often it is SLOWER, and, printed, its standing against a limit of 5 %.
+fn slower(trials: usize, processes: usize, spread: f64) -> f64 {
     let (mut found, mut failed, mut undecided) = (0, 0, 0);
     for seed in 0..trials {
         let (evidence, verdicts) = family(seed as u64, processes, spread, 1.1);
@@ -65,6 +85,7 @@ fn slower(trials: usize, processes: usize, spread: f64) {
         percent(failed, trials),
         percent(undecided, trials)
     );
+    part(found, trials)
 }
 
 /// A family with its second member `factor` times as slow on side B.
@@ -81,8 +102,9 @@ fn family(seed: u64, processes: usize, spread: f64, factor: f64) -> (Vec<Evidenc
     (evidence, verdicts)
 }
 
-/// Sides in turn under drift over a block and steps of the clock rate, until decided or the last look.
-fn blocks(trials: usize, drift: f64, factor: f64) {
+/// Sides in turn under drift over a block and steps of the clock rate, until decided or the last look: how often a
+/// quantity is falsely FASTER or SLOWER.
+fn blocks(trials: usize, drift: f64, factor: f64) -> f64 {
     let (mut same, mut wrong, mut found, mut used) = (0, 0, 0, 0);
     for seed in 0..trials {
         let mut noise = Noise::new(seed as u64);
@@ -122,6 +144,7 @@ fn blocks(trials: usize, drift: f64, factor: f64) {
         percent(wrong, trials),
         used as f64 / trials as f64
     );
+    part(wrong, trials)
 }
 
 /// The machine's speed in each block's four processes: a ramp over the block, and in one block of ten a step of 5 %.

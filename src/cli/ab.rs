@@ -145,7 +145,8 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
         return arguments.leave(shard, own.start, &records);
     }
     let Some(mut comparison) = comparison else {
-        return Err(Failure::Running("interrupted before two blocks were measured; nothing can be said".to_owned()));
+        let end = if interrupted.load(Ordering::Relaxed) { "interrupted" } else { "the --budget was over" };
+        return Err(Failure::Running(format!("{end} before two blocks were measured; nothing can be said")));
     };
     for ((file, side), name) in files.iter().zip(&records).zip([&mut comparison.a, &mut comparison.b]) {
         if let Some(joined) = joined(side) {

@@ -195,6 +195,7 @@ mod tests {
         assert_eq!(value(&rows, 2, "gpu_median_ms"), "2");
         assert_eq!(value(&rows, 2, "primitives"), "");
         assert_eq!(value(&rows, 2, "bytes_written"), "2048");
+        assert_eq!(value(&rows, 2, "limit_copy_gb_s"), "6.5");
         assert_eq!(value(&rows, 2, "frame_median_ms"), "5");
     }
 

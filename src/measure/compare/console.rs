@@ -74,12 +74,13 @@ fn differences(comparison: &Comparison) -> Vec<String> {
         format!("{what}: A {}, B {}", values(&difference.a), values(&difference.b))
     };
     let mut lines: Vec<String> = vec![];
-    for (prefix, plural) in [("SPIR-V of ", "shaders"), ("shader_compiler of ", "shader compilers")] {
+    let kinds = [("SPIR-V of ", "shaders"), ("shader_compiler of ", "shader compilers"), ("picture of ", "pictures")];
+    for (prefix, plural) in kinds {
         let same_kind: Vec<&Difference> =
             comparison.differences.iter().filter(|difference| difference.what.starts_with(prefix)).collect();
         if same_kind.len() >= MANY {
             lines.push(format!("{plural}: {} differ", same_kind.len()));
-        } else if prefix == "SPIR-V of " {
+        } else if prefix != "shader_compiler of " {
             lines.extend(same_kind.iter().map(|difference| format!("{} differs", difference.what)));
         } else {
             lines.extend(same_kind.iter().map(|difference| line(&difference.what, difference)));
@@ -123,7 +124,8 @@ fn headline(run: &RunComparison, comparison: &Comparison, style: Style) -> Strin
     if let (Some(a), Some(b), Some(ratio)) = (a_median_ms, b_median_ms, ratio) {
         let (a_count, b_count) = (processes(run.a_processes), processes(run.b_processes));
         let interval = interval(&run.frame);
-        let _ = write!(text, ": frame B / A {ratio:.4} {interval}, A {a:.3} ms ({a_count}), B {b:.3} ms ({b_count})");
+        let (ratio, a, b) = (digits(ratio, 4), digits(a, 3), digits(b, 3));
+        let _ = write!(text, ": frame B / A {ratio} {interval}, A {a} ms ({a_count}), B {b} ms ({b_count})");
     }
     if let Some(limit) = comparison.fail_above {
         let gates = || run.passes.iter().map(|pass| (pass.name.as_str(), &pass.time)).chain([("frame", &run.frame)]);
@@ -171,7 +173,7 @@ fn passes(run: &RunComparison) -> Table {
     ]);
     for pass in &run.passes {
         let time = &pass.time;
-        let number = |value: Option<f64>, digits: usize| value.map_or("-".to_owned(), |v| format!("{v:.digits$}"));
+        let number = |value: Option<f64>, count: usize| value.map_or("-".to_owned(), |value| digits(value, count));
         table.push(vec![
             pass.name.clone(),
             match pass.clock {
@@ -182,7 +184,7 @@ fn passes(run: &RunComparison) -> Table {
             .to_owned(),
             number(time.a_median_ms, 3),
             number(time.b_median_ms, 3),
-            time.share.map_or("-".to_owned(), |share| format!("{:.1} %", 100.0 * share)),
+            time.share.map_or("-".to_owned(), |share| format!("{} %", digits(100.0 * share, 1))),
             number(time.ratio, 4),
             interval(time),
             match &time.reason {
@@ -198,7 +200,12 @@ fn passes(run: &RunComparison) -> Table {
 }
 
 fn interval(quantity: &Quantity) -> String {
-    quantity.interval.map_or_else(|| "-".to_owned(), |[low, high]| format!("[{low:.4}, {high:.4}]"))
+    quantity.interval.map_or_else(|| "-".to_owned(), |[low, high]| format!("[{}, {}]", digits(low, 4), digits(high, 4)))
+}
+
+/// A number with so many digits behind the point; beyond a billion, as no time of a frame is, by its power of ten.
+fn digits(value: f64, count: usize) -> String {
+    if value.abs() < 1e9 { format!("{value:.count$}") } else { format!("{value:.count$e}") }
 }
 
 fn legend(comparison: &Comparison) -> String {

@@ -319,6 +319,22 @@ pub fn difference_of_machines(a: &Environment, b: &Environment) -> Option<[Strin
 /// Everything beside the work that a time may depend on, by its path in the record.
 fn all_conditions(record: &Record) -> Vec<(String, String)> {
     let mut conditions = conditions(&record.environment);
+    let (device, host, build) = (&record.environment.device, &record.environment.host, &record.environment.build);
+    let some = |value: &Option<String>| value.clone().unwrap_or_else(|| "unknown".to_owned());
+    // None of these keeps parts of one measurement apart, but each may be what a difference comes from.
+    let others = [
+        ("device.driver", some(&device.driver)),
+        ("device.uuid", some(&device.uuid)),
+        ("device.api_version", device.api_version.clone()),
+        ("host.kernel", some(&host.kernel)),
+        ("loader", some(&record.environment.loader)),
+        ("build.rustc", some(&build.rustc)),
+    ];
+    conditions.extend(others.map(|(name, value)| (name.to_owned(), value)));
+    for run in &record.runs {
+        let picture = run.image.iter().map(|image| image.sha256.clone());
+        conditions.extend(picture.map(|sha256| (format!("picture of {} {}", run.paper, run.variant), sha256)));
+    }
     for (run, pass) in record.runs.iter().flat_map(|run| run.passes.iter().map(move |pass| (run, pass))) {
         let place = format!("{} {} {}", run.paper, run.variant, pass.name);
         if let Some(compiler) = &pass.shader_compiler {

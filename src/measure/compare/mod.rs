@@ -324,6 +324,11 @@ fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
     side.iter().map(|samples| median(samples).filter(|median| *median > 0.0).map(f64::ln)).collect()
 }
 
+/// Of times near the ends of what a number holds a ratio may be none.
+fn finite(ratio: f64) -> Option<f64> {
+    Some(ratio).filter(|ratio| ratio.is_finite())
+}
+
 fn geometric_mean(side: &[Vec<f64>]) -> Option<f64> {
     let logs = log_medians(side).filter(|logs| !logs.is_empty())?;
     Some((logs.iter().sum::<f64>() / logs.len() as f64).exp())
@@ -334,7 +339,7 @@ fn compare_run(a: &Configuration, b: &Configuration, options: &Options) -> RunCo
     let frame = times(&|run| run.frame_ms.as_ref().map(|time| time.samples.clone()));
     let passes = pass_times(a, b);
     let of_frame = |pass: &Times| {
-        let share = |pass, frame| Some(geometric_mean(pass)? / geometric_mean(frame)?);
+        let share = |pass, frame| finite(geometric_mean(pass)? / geometric_mean(frame)?);
         let shares = [share(&pass.a, &frame.a), share(&pass.b, &frame.b)];
         shares.into_iter().flatten().max_by(f64::total_cmp)
     };
@@ -409,7 +414,7 @@ fn judge(family: &[&Times], shares: &[Option<f64>], options: &Options) -> Vec<Qu
     for ((index, evidence), verdict) in known.iter().zip(decide(&evidence, options.rules)) {
         let [low, high] = evidence.interval(options.rules.error).map(f64::exp);
         let quantity = &mut quantities[*index];
-        quantity.ratio = Some(evidence.estimate().exp());
+        quantity.ratio = finite(evidence.estimate().exp());
         quantity.interval = (low > 0.0 && high.is_finite()).then_some([low, high]);
         quantity.verdict = verdict;
         quantity.reason = (verdict == Verdict::Unclear).then(|| {
@@ -456,7 +461,7 @@ fn unmeasured(times: &Times, share: Option<f64>) -> Quantity {
     Quantity {
         a_median_ms,
         b_median_ms,
-        ratio: a_median_ms.zip(b_median_ms).map(|(a, b)| b / a),
+        ratio: a_median_ms.zip(b_median_ms).and_then(|(a, b)| finite(b / a)),
         interval: None,
         share,
         counts: false,

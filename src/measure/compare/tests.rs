@@ -4,7 +4,7 @@ use super::synthetic::Noise;
 use super::*;
 use crate::measure::statistics::summarize;
 use crate::report::example;
-use crate::report::record::{DeviceKind, InputFile, Pass, PassKind, ShaderBinary, Validation};
+use crate::report::record::{DeviceKind, ImageFile, InputFile, Pass, PassKind, ShaderBinary, Validation};
 use crate::report::table::Style;
 
 const FRAMES: usize = 150;
@@ -273,6 +273,33 @@ fn what_cannot_be_told_is_unclear_and_says_what_would_decide() {
     assert!(comparison.is_unclear() && !comparison.has_regression());
 }
 
+/// Times that no device gives, as a record edited by hand may hold them.
+#[test]
+fn extreme_times_have_no_verdict_but_sane_words() {
+    let times = [1e308, 1e-310, 0.0, 5.0];
+    for (a, b) in times.iter().flat_map(|a| times.map(|b| (*a, b))) {
+        let of = |name: &str, ms: f64| {
+            let runs = (0..3).map(|process| {
+                let near = ms * (1.0 - 0.001 * f64::from(process));
+                Run { process, ..with_passes(&[near; 4], &[ms; 4], &[5.0; 4]) }
+            });
+            vec![input(name, runs.collect())]
+        };
+        let comparison = compared(&of("a.json", a), &of("b.json", b), Some(0.05));
+        for quantity in comparison.quantities() {
+            let numbers = [quantity.ratio, quantity.share].into_iter().flatten();
+            assert!(
+                numbers.chain(quantity.interval.into_iter().flatten()).all(f64::is_finite),
+                "{a} {b}: {quantity:?}"
+            );
+        }
+        for text in [render(&comparison, Style::default()), markdown(&comparison)] {
+            assert!(!text.contains("NaN") && !text.contains("inf"), "{a} {b}: {text}");
+            assert!(text.lines().all(|line| line.len() < 400), "{a} {b}: {text}");
+        }
+    }
+}
+
 #[test]
 fn files_count_by_their_content() {
     let with_file = |path: &str, sha256: &str| {
@@ -294,17 +321,31 @@ fn what_differs_beside_the_times_is_listed_first() {
     b[0].name = "b.json".to_owned();
     b[0].record.environment.device.driver_version = Some("Mesa 25".to_owned());
     b[0].record.environment.device.kind = DeviceKind::Discrete;
+    b[0].record.environment.device.driver = Some("another".to_owned());
+    b[0].record.environment.host.kernel = Some("7.0".to_owned());
+    let picture = |sha256: &str| Some(ImageFile { path: "a.png".to_owned(), sha256: sha256.to_owned() });
+    b[0].record.runs[0].image = picture("2");
     let shader = |sha256: &str| {
         vec![ShaderBinary { name: "s.comp".to_owned(), sha256: sha256.to_owned(), bytes: None, instructions: None }]
     };
     let mut a = a;
+    a[0].record.runs[0].image = picture("1");
     a[0].record.runs[0].passes[1].shaders = shader("1");
     b[0].record.runs[0].passes[1].shaders = shader("2");
     let comparison = compared(&a, &b, None);
     let whats: Vec<&str> = comparison.differences.iter().map(|difference| difference.what.as_str()).collect();
-    assert_eq!(whats, ["SPIR-V of gas slices splat: s.comp", "device.driver_version", "device.type"]);
+    let expected = [
+        "SPIR-V of gas slices splat: s.comp",
+        "device.driver",
+        "device.driver_version",
+        "device.type",
+        "host.kernel",
+        "picture of gas slices",
+    ];
+    assert_eq!(whats, expected);
     let text = render(&comparison, Style::default());
-    let first: Vec<&str> = text.lines().take(4).collect();
+    assert!(text.contains("picture of gas slices differs"), "{text}");
+    let first: Vec<&str> = text.lines().take(8).collect();
     assert_eq!(first[0], "what is compared");
     assert!(first[1..].iter().any(|line| line.contains("device.type: A cpu, B discrete")), "{text}");
 }

@@ -208,6 +208,21 @@ impl Gas {
         self.passes.lists.demand(shaders)
     }
 
+    /// Fragments that the lists hold, by the slots that `demand` found them to want: linked lists fill every slot, in the
+    /// band of any frame that has the most of them; the others reserve more slots than they fill, and those of the last
+    /// band of the last frame are counted.
+    ///
+    /// # Errors
+    /// [`Error::ReadBeforeWrite`] before the first frame; what Vulkan answers.
+    pub fn kept_fragments(&self, shaders: &ShaderLibrary, demand: Capacity) -> Result<u64, Error> {
+        match self.parameters.lists {
+            Lists::Linked => Ok(demand.fragments.into()),
+            Lists::Tiles | Lists::Nearest(_) => {
+                Ok(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum())
+            }
+        }
+    }
+
     /// The sorted fragments of each pixel of the last frame, without the sections; of its last band, if there are
     /// several.
     ///

@@ -268,7 +268,8 @@ impl Study for Setup {
             };
             let surfaces_ms = gpu_ms(&LIST_PASSES);
             let mut results = entries([
-                ("fragments", json!(demand.fragments)),
+                ("fragments", json!(built.paper.kept_fragments(&machine.shaders, demand)?)),
+                ("fragment_slots", json!(demand.fragments)),
                 ("sections", json!(demand.sections)),
                 ("rows", json!(demand.rows)),
                 ("samples", json!(built.paper.evaluations(&machine.shaders)?)),
@@ -382,6 +383,10 @@ impl Study for Setup {
     }
 
     fn resolve(&mut self, given: &Given) -> Result<(), Error> {
+        if let Some((_, twice)) = self.lists.iter().enumerate().find(|(at, lists)| self.lists[..*at].contains(lists)) {
+            let message = format!("`lists`: {} stands there twice; name each way once", twice.text());
+            return Err(Error::Input(message));
+        }
         self.given = given.clone();
         self.apply(given);
         Ok(())

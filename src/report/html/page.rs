@@ -107,10 +107,16 @@ fn record(source: &Source, index: usize) -> Markup {
     }
 }
 
+/// The command as a shell takes it; a word that none can hold stands as it is.
+fn shell_words(command: &[String]) -> String {
+    let quoted = |word: &String| shlex::try_quote(word).map_or_else(|_| word.clone(), |quoted| quoted.into_owned());
+    command.iter().map(quoted).collect::<Vec<_>>().join(" ")
+}
+
 fn environment(record: &Record) -> Markup {
     let (device, host, build) = (&record.environment.device, &record.environment.host, &record.environment.build);
     let text = |value: &Option<String>| value.clone().unwrap_or_default();
-    let command = record.command.join(" ");
+    let command = shell_words(&record.command);
     let rows = [
         ("device", format!("{} ({})", device.name, device.kind.name())),
         ("driver", format!("{} {}", text(&device.driver), text(&device.driver_version))),
@@ -120,6 +126,10 @@ fn environment(record: &Record) -> Markup {
         ("LP_NUM_THREADS", host.lp_num_threads.map_or_else(String::new, |threads| threads.to_string())),
         ("layers", record.environment.layers.join(", ")),
         ("program", format!("{} {} {}", build.version, text(&build.git_commit), text(&build.profile))),
+        ("CPU governor", text(&host.cpu_governor)),
+        ("loader", text(&record.environment.loader)),
+        ("compiler of the program", text(&build.rustc)),
+        ("SHA-256 of the program", text(&build.executable_sha256)),
         ("measured", record.environment.date.clone()),
     ];
     html! {

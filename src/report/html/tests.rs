@@ -31,6 +31,15 @@ fn the_pages_numbers_are_the_records() {
 }
 
 #[test]
+fn the_command_can_be_copied_into_a_shell() {
+    let mut contents = contents();
+    contents.records[0].record.command = ["fumarole", "ab", "--b", "--seed 2", "it's"].map(str::to_owned).to_vec();
+    let text = page(&contents);
+    // The quotation marks are escaped as HTML has it.
+    assert!(text.contains("fumarole ab --b '--seed 2' &quot;it's&quot;"), "{text}");
+}
+
+#[test]
 fn nothing_is_loaded_and_only_the_pages_own_script_runs() {
     let text = page(&contents());
     for attribute in ["http://", "https://", "src=\"//", "@import", "url("] {

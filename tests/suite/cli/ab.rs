@@ -48,3 +48,29 @@ fn a_side_may_be_another_program_and_failures_name_the_side() {
     common(ab("--out").arg(out.path()).arg("--a").arg("--planes 0")).run().refused(2, &["planes"]);
     assert!(!out.path().join("ab-a.json").exists(), "nothing was measured");
 }
+
+/// Nothing is as far from 1 as this margin: the first look that can decide at its part of the error is the one after 10
+/// blocks, and no block follows.
+#[test]
+fn it_ends_with_the_look_that_decides() {
+    let out = folder();
+    let program = fumarole("ab --quiet --margin 100% --min-share 60% --json --out").arg(out.path());
+    let report = common(program).run().succeeded().json();
+    let run = &report["runs"][0];
+    assert_eq!((&run["a_processes"], &run["frame"]["verdict"]), (&20.into(), &"SAME".into()), "{report}");
+    assert_eq!(report["confidence"], 0.9875, "a quarter of the error");
+    assert_eq!(read_json(&out.path().join("ab-b.json"))["runs"].as_array().unwrap().len(), 20);
+}
+
+#[test]
+fn no_block_begins_after_the_budget() {
+    let out = folder();
+    let started = std::time::Instant::now();
+    let ended = common(fumarole("ab --quiet --budget 1 --out").arg(out.path())).run();
+    assert!(started.elapsed().as_secs() < 60, "{:?}", started.elapsed());
+    // On a slow machine the first block takes all of it.
+    match ended.status.code() {
+        Some(0) => assert!(ended.stdout.contains("UNCLEAR: frame"), "{}", ended.stdout),
+        _ => ended.refused(1, &["--budget", "two blocks"]),
+    }
+}

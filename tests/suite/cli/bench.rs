@@ -161,6 +161,11 @@ fn every_file_is_written_and_well_formed() {
         assert_eq!(row[column("pass")], pass["name"].as_str().unwrap());
         let median = row[column("gpu_median_ms")].parse::<f64>().ok();
         assert_eq!(median, pass["gpu_ms"]["median"].as_f64());
+        let environment = &record["environment"];
+        assert_eq!(row[column("date")], environment["date"].as_str().unwrap());
+        assert_eq!(row[column("driver_version")], environment["device"]["driver_version"].as_str().unwrap());
+        assert_eq!(row[column("lp_num_threads")], environment["host"]["lp_num_threads"].to_string());
+        assert_eq!(row[column("shader_compiler")], pass["shader_compiler"].as_str().unwrap_or_default());
     }
 
     let trace = read_json(&path("trace"));
@@ -207,6 +212,8 @@ fn assert_timeline(spans: &[&Value]) {
         assert!(on("wait").iter().any(|wait| is_within(&wait)), "{span}");
         assert!(span["args"]["calls"].as_u64().unwrap() > 0 && !span["args"]["section"].is_null(), "{span}");
         assert!(span["args"]["bytes_read"].as_u64().is_some(), "{span}");
+        let is_counted = |name: &str| span["args"][name].as_u64().is_some_and(|count| count > 0);
+        assert!(["vertices", "compute_invocations"].into_iter().any(is_counted), "{span}");
     }
 }
 

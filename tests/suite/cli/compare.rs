@@ -19,7 +19,7 @@ fn measured() -> &'static Value {
 
 /// The record as `processes` processes would have measured it, every time multiplied by `factor`, the processes
 /// differing by a few tenths of a percent.
-fn record_of(processes: u32, factor: f64) -> Value {
+pub fn record_of(processes: u32, factor: f64) -> Value {
     let mut record = measured().clone();
     let mut runs = Vec::new();
     for process in 0..processes {
@@ -190,4 +190,38 @@ fn markdown_has_tables_for_a_pull_request() {
     assert!(text.starts_with("**What is compared**"), "{text}");
     assert!(text.contains("| --- | --- | ---: |") && text.contains("± 1 %"), "{text}");
     assert_eq!(compare(&a, &b).args("--margin 200%").run().status.code(), Some(2));
+}
+
+/// Records edited by hand: every way to read them ends in a verdict or in one line.
+#[test]
+fn odd_records_are_compared_or_refused() {
+    let out = folder();
+    let a = file(&out, "a.json", record_of(3, 1.0).to_string());
+    type Edit = fn(&mut Value);
+    let edits: [(&str, i32, Edit); 8] = [
+        ("huge", 4, |run| run["frame_ms"]["samples"] = vec![1e308; 20].into()),
+        ("zero", 4, |run| run["frame_ms"]["samples"] = vec![0.0; 20].into()),
+        ("no frame", 4, |run| run["frame_ms"] = Value::Null),
+        ("no sample", 4, |run| run["frame_ms"]["samples"] = Value::Array(vec![])),
+        ("no pass", 4, |run| run["passes"] = Value::Array(vec![])),
+        ("negative", 2, |run| run["frame_ms"]["samples"][3] = (-1.0).into()),
+        ("text", 2, |run| run["frame_ms"]["samples"][3] = "5".into()),
+        ("no number", 2, |run| run["frame_ms"]["samples"][3] = Value::Null),
+    ];
+    for (what, code, edit) in edits {
+        let mut record = record_of(3, 1.0);
+        record["runs"].as_array_mut().unwrap().iter_mut().for_each(edit);
+        let b = file(&out, "b.json", record.to_string());
+        let ended = compare(&a, &b).args("--fail-above 5% --fail-unclear --fail-missing").run();
+        assert_eq!(ended.status.code(), Some(code), "{what}: {}{}", ended.stdout, ended.stderr);
+        if code == 2 {
+            ended.refused(2, &["b.json"]);
+        } else {
+            assert!(!ended.stdout.contains("inf") && !ended.stdout.contains("NaN"), "{what}: {}", ended.stdout);
+            compare(&a, &b).arg("--json").run().succeeded().json();
+        }
+    }
+    // A number that JSON does not have.
+    let b = file(&out, "b.json", record_of(3, 1.0).to_string().replacen("\"process\":0", "\"process\":NaN", 1));
+    compare(&a, &b).run().refused(2, &["b.json", "no JSON"]);
 }

@@ -96,3 +96,23 @@ fn an_unknown_target_is_refused_with_those_that_are_known() {
     program.tiny().run().refused(2, &["illumination-map", "diffuse-map"]);
     assert!(!out.path().join("x.npy").exists());
 }
+
+/// The position map of level water has a sentinel where no surface is: it is masked, and heights keep the whole ramp.
+#[test]
+fn a_picture_of_values_masks_sentinels_and_tells_its_ramp() {
+    let out = folder();
+    let dump = "render --variant level-map --dump position-map=heights.png --dump position-map=heights.npy";
+    let ended = caustics(dump).inside(out.path()).tiny().run().succeeded();
+    let told = ended.stderr.lines().find_map(|line| line.strip_prefix("wrote heights.png (")?.strip_suffix(')'));
+    let told = told.unwrap_or_else(|| panic!("{}", ended.stderr));
+    assert!(told.contains("drawn from black to white") && told.contains("in magenta"), "{told}");
+    let path = out.path().join("heights.png");
+    let bytes = std::fs::read(&path).unwrap();
+    let comment = [b"tEXtComment\0", told.as_bytes()].concat();
+    assert!(bytes.windows(comment.len()).any(|part| part == comment), "the file's comment is {told}");
+    let picture = read_png(&path).unwrap();
+    let mut shades: Vec<&[u8]> = picture.pixels().chunks_exact(4).collect();
+    shades.sort_unstable();
+    shades.dedup();
+    assert!(shades.len() > 16, "{} shades of {told}", shades.len());
+}

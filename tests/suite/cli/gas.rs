@@ -328,6 +328,14 @@ fn ways_to_the_lists_are_measured_in_turn() {
     assert!(matches!(lost[..], [None, None, Some(1..)]), "{lost:?}");
     let warnings = runs[2]["warnings"].to_string();
     assert!(warnings.contains(&format!("k:4: {} of 1395 pixels lose", lost[2].unwrap())), "{warnings}");
+    let found: Vec<u64> = runs.iter().map(|run| run["results"]["fragments"].as_u64().unwrap()).collect();
+    let slots = |run: &serde_json::Value| run["results"]["fragment_slots"].as_u64().unwrap();
+    assert_eq!(slots(&runs[0]), found[0], "linked lists fill their slots");
+    assert_eq!(slots(&runs[2]), 4 * 45 * 31);
+    // Behind what hides all, tiles and the k-buffer keep less; neither keeps what it only reserves.
+    assert!(found[1] <= found[0] && found[2] <= found[1] && found[2] > 0, "{found:?}");
+    assert!(found[1] <= slots(&runs[1]) && found[2] < slots(&runs[2]), "{found:?}");
+    small("bench --lists tiles,k:4,tiles").run().refused(2, &["--lists", "tiles", "twice"]);
     small("render --lists linked,tiles --image never.png").run().refused(2, &["give one"]);
     small("render --lists k:0 --image never.png").run().misused(&["k:1 to k:32"]);
 }

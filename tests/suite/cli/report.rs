@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use super::compare::record_of;
 use super::program::{ONCE, caustics, file, folder, fumarole};
 
 #[test]
@@ -51,4 +52,24 @@ fn verdicts_come_first_and_nothing_to_show_is_refused() {
     fumarole("report").arg(empty.path()).run().refused(2, &["no record"]);
     fumarole("report").arg(out.path().join("none.json")).arg("--output").arg(&page).run().refused(2, &["none.json"]);
     assert_eq!(fumarole("report").run().status.code(), Some(2));
+}
+
+#[test]
+fn two_records_a_side_are_joined_for_their_verdicts() {
+    let out = folder();
+    let side = |name: &str, factor: f64| {
+        let paths = [0, 1].map(|number| {
+            let mut record = record_of(3, factor * (1.0 + 0.001 * f64::from(number)));
+            record["runs"].as_array_mut().unwrap().retain(|run| run["variant"] == "level-map");
+            file(&out, &format!("{name}{number}.json"), record.to_string()).to_str().unwrap().to_owned()
+        });
+        paths.join(",")
+    };
+    let page = out.path().join("page.html");
+    let program = fumarole("report --quiet").arg("--a").arg(side("a", 1.0)).arg("--b").arg(side("b", 1.5));
+    program.arg("--output").arg(&page).run().succeeded();
+    let text = fs::read_to_string(&page).unwrap();
+    let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part}"));
+    assert!(place("SLOWER: frame B / A 1.5") < place("<h3>caustics level-map: 96 × 64</h3><p class=\"frame\">"));
+    assert!(text.contains("6 processes"), "of two records of three each");
 }
