@@ -168,3 +168,19 @@ fn measure_quick<S: Study>(
     measured.traces.extend(traces);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::example;
+
+    #[test]
+    fn the_end_names_slowest_passes_files_and_what_to_try() {
+        let output = OutputArgs { json: Some("out/fumarole.json".into()), ..AllArgs::plain().output };
+        let lines = summary(&example::full(), &output, Some(Path::new("out/report.html")));
+        assert_eq!(lines[0], "1 papers in 1 variants; the slowest pass of each");
+        assert_eq!(lines[1], "  gas slices: splat, 2.0 ms, 25 % of limit (vertices)");
+        assert_eq!(lines[2], "files: out/fumarole.json, out/report.html, fumarole-out/gas.png");
+        assert!(lines[3].starts_with("next: fumarole PAPER bench"), "{lines:?}");
+    }
+}

@@ -219,6 +219,18 @@ mod tests {
     }
 
     #[test]
+    fn a_warning_of_several_runs_stands_once_at_the_end_with_their_number() {
+        let mut full = example::full();
+        let mut other = full.runs[0].clone();
+        other.warnings.push("another doubt".to_owned());
+        full.runs.push(other);
+        let text = record(&full, Style::default());
+        let warnings: Vec<&str> = text.lines().filter(|line| line.starts_with("warning: ")).collect();
+        assert_eq!(warnings, ["warning: LP_NUM_THREADS is not set (2 of 2 runs)", "warning: another doubt"]);
+        assert!(text.ends_with("warning: another doubt\n"), "{text}");
+    }
+
+    #[test]
     fn what_was_not_measured_is_not_shown_as_zero() {
         let text = record(&example::minimal(), Style::default());
         assert!(text.contains("frame: not measured"), "{text}");

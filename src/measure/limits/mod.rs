@@ -140,3 +140,21 @@ fn rate(
     let times = times(recorder, record)?;
     Ok(times.into_iter().map(|(load, ms)| amount * f64::from(load) / ms * 1e-6).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::statistics::summarize;
+
+    #[test]
+    fn limits_whose_samples_scatter_are_doubted_by_name() {
+        let limits = |rates: &[f64]| Limits {
+            samples: summarize(rates).into_iter().map(|rates| ("copy_gb_s".to_owned(), rates)).collect(),
+            ..Limits::default()
+        };
+        assert_eq!(warning(&limits(&[9.9, 10.0, 10.1, 10.0, 10.2])), None);
+        let doubt = warning(&limits(&[2.7, 18.3, 5.0, 10.0, 14.0])).unwrap();
+        assert!(doubt.contains("scatter: copy_gb_s"), "{doubt}");
+        assert_eq!(warning(&Limits::default()), None);
+    }
+}

@@ -267,3 +267,15 @@ fn shaders_of_the_other_compiler_are_named_in_the_record() {
         .collect();
     assert!(compilers.contains("naga"), "{compilers:?}");
 }
+
+#[test]
+fn the_drivers_threads_are_the_cores_unless_the_user_sets_them() {
+    let program = || caustics("bench --json --quiet --variant level-map").tiny().args(ONCE);
+    let record = program().without("LP_NUM_THREADS").run().succeeded().json();
+    let cores = std::thread::available_parallelism().unwrap().get();
+    assert_eq!(record["environment"]["host"]["lp_num_threads"], cores);
+    let warnings = record["runs"][0]["warnings"].to_string();
+    assert!(!warnings.contains("LP_NUM_THREADS"), "{warnings}");
+    let record = program().env("LP_NUM_THREADS", "1").run().succeeded().json();
+    assert_eq!(record["environment"]["host"]["lp_num_threads"], 1);
+}
