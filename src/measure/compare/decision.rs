@@ -90,7 +90,9 @@ pub fn gate(family: &[&Evidence], limit: f64, error: f64) -> Vec<Gate> {
 pub fn needed(evidence: &Evidence, rules: Rules, count: usize, members: usize, most: usize) -> Option<usize> {
     (count + 1..=most).find(|&more| {
         let foretold = evidence.scaled(more as f64 / count as f64);
-        is_same(&foretold, rules) || foretold.p_different() <= rules.error / members as f64
+        let least = evidence.least_p(more);
+        (least <= rules.error && is_same(&foretold, rules))
+            || (2.0 * least).max(foretold.p_different()) <= rules.error / members as f64
     })
 }
 
@@ -165,5 +167,11 @@ mod tests {
         assert!(needed(&few, rules, 5, 12, 1000).unwrap() <= count, "nothing differs");
         let margin = Evidence::Welch { estimate: 0.02_f64.ln_1p(), error: 0.5, freedom: 8.0 };
         assert_eq!(needed(&margin, rules, 5, 1, 1000), None);
+        // Ranks of few blocks are never certain, however clear the difference: 2 / 2^n <= 0.0125 / 6.
+        let clear = Evidence::signed_ranks(&[2.0, 2.001]).unwrap();
+        let look = Rules { error: 0.0125, ..rules };
+        assert_eq!(needed(&clear, look, 2, 6, 1000), Some(10));
+        let alike = Evidence::signed_ranks(&[0.0001, -0.0001]).unwrap();
+        assert_eq!(needed(&alike, look, 2, 6, 1000), Some(7), "1 / 2^n <= 0.0125");
     }
 }

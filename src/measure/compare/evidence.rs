@@ -98,6 +98,14 @@ impl Evidence {
         }
     }
 
+    /// Least probability that so many processes a side, or blocks, can give to one side: of ranks there are finitely many.
+    pub(super) fn least_p(&self, count: usize) -> f64 {
+        match self {
+            Evidence::Welch { .. } => 0.0,
+            Evidence::SignedRanks { .. } => 0.5_f64.powi(i32::try_from(count).unwrap_or(i32::MAX)),
+        }
+    }
+
     /// The same evidence as `factor` times as many processes or blocks would give it, to foretell how many are needed.
     pub(super) fn scaled(&self, factor: f64) -> Self {
         match self {
