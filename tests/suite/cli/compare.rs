@@ -225,3 +225,31 @@ fn odd_records_are_compared_or_refused() {
     let b = file(&out, "b.json", record_of(3, 1.0).to_string().replacen("\"process\":0", "\"process\":NaN", 1));
     compare(&a, &b).run().refused(2, &["b.json", "no JSON"]);
 }
+
+/// What the first program of the schema did not write is absent, and no reason to refuse.
+#[test]
+fn older_records_are_read() {
+    let out = folder();
+    let mut older = record_of(3, 1.0);
+    let strip = |value: &mut Value, fields: &[&str]| {
+        let object = value.as_object_mut().unwrap();
+        fields.iter().for_each(|field| drop(object.remove(*field)));
+    };
+    strip(&mut older["environment"]["host"], &["cpu_governor", "variables"]);
+    strip(&mut older["environment"]["build"], &["executable_sha256"]);
+    for run in older["runs"].as_array_mut().unwrap() {
+        strip(run, &["inputs", "loading", "started"]);
+        for pass in run["passes"].as_array_mut().unwrap() {
+            pass["bytes"] = Value::Null;
+            strip(pass, &["shaders", "floor_ms", "bound", "floors"]);
+        }
+    }
+    super::program::assert_schema(&older);
+    let (a, b) = (file(&out, "a.json", older.to_string()), file(&out, "b.json", record_of(3, 1.0).to_string()));
+    let ended = compare(&a, &b).run().succeeded();
+    assert_eq!(ended.stdout.matches("SAME:").count(), 2, "{}", ended.stdout);
+    assert!(ended.stdout.contains("do not say when each process ran"), "{}", ended.stdout);
+    let page = out.path().join("page.html");
+    fumarole("report --quiet").arg(&a).arg("--output").arg(&page).run().succeeded();
+    assert!(fs::read_to_string(page).unwrap().contains("caustics level-map"));
+}
