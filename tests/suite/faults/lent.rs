@@ -140,3 +140,27 @@ fn the_end_of_every_frame_is_told() {
     assert_eq!(five - two, 2 * 3 * 3, "plain, timestamped and bracketed frames of two variants");
     assert_eq!(frames(2, ""), 0);
 }
+
+/// Calls of the last part of a run, which is that of the counters, fail in turn.
+#[test]
+fn a_count_that_fails_leaves_neither_lock_nor_queries() {
+    let layer = Layer::new();
+    let run = |failing: &str| {
+        let program = caustics("bench --variant level-map --profile caustics-map --quiet --json").tiny().args(ONCE);
+        let program = layer.before(program, false).env("FUMAROLE_LAYER_LENDS", "performance-query");
+        program.env("FUMAROLE_LAYER_FAIL", failing).run()
+    };
+    let calls = layer.report(&run("0:host").succeeded()).calls;
+    for part in 1..=12 {
+        let failing = format!("{}:{}", calls - calls * part / 40, ["host", "device", "lost"][part % 3]);
+        let ended = run(&failing);
+        let report = layer.report(&ended);
+        assert_clean(&report);
+        let is_harmless = report.failed.as_deref() == Some("vkSetDebugUtilsObjectNameEXT") && part % 3 != 2;
+        if is_harmless {
+            ended.succeeded();
+        } else {
+            ended.refused(1, &[]);
+        }
+    }
+}
