@@ -322,8 +322,6 @@ fn ways_to_the_lists_are_measured_in_turn() {
     let tiles = ["tiles-empty", "tiles-count", "tiles-sum", "tiles-fill", "tiles-pixels"];
     assert_eq!(names(&runs[1]), [&["empty-lists"], &tiles[..], &["fragments", "sort", "resolve"]].concat());
     assert_eq!(names(&runs[2]), names(&runs[1]));
-    let kept = |run: &serde_json::Value| run["results"]["fragments"].as_u64().unwrap();
-    assert_eq!(kept(&runs[2]), 4 * 45 * 31);
     let lost: Vec<_> = runs.iter().map(|run| run["results"]["lost_pixels"].as_u64()).collect();
     assert!(matches!(lost[..], [None, None, Some(1..)]), "{lost:?}");
     let warnings = runs[2]["warnings"].to_string();
