@@ -217,9 +217,7 @@ impl Gas {
     pub fn kept_fragments(&self, shaders: &ShaderLibrary, demand: Capacity) -> Result<u64, Error> {
         match self.parameters.lists {
             Lists::Linked => Ok(demand.fragments.into()),
-            Lists::Tiles | Lists::Nearest(_) => {
-                Ok(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum())
-            }
+            Lists::Tiles | Lists::Nearest(_) => Ok(self.fragments(shaders)?.iter().map(|list| list.len() as u64).sum()),
         }
     }
 
