@@ -227,9 +227,7 @@ unsafe fn next<F: Copy>(name: &str) -> F {
 
 /// The hook before a command, if it has one; the whole command for one that the driver lacks.
 pub fn hook(name: &str) -> Option<*const c_void> {
-    if lent().next().is_none() {
-        return None;
-    }
+    lent().next()?;
     Some(match name {
         "vkEnumerateDeviceExtensionProperties" => extensions as *const c_void,
         "vkCreateQueryPool" => create_pool as *const c_void,
