@@ -86,9 +86,12 @@ fn divide(ui: &Ui, face: &mut Interface, shown: Rect) -> Divider {
     let response = ui.interact(handle, ui.id().with("divider"), Sense::drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Slider, true, "divider"));
     let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-    if response.dragged() && shown.width() > 0.0 {
-        let moved = (share + response.drag_delta().x / shown.width()).clamp(0.0, 1.0);
-        face.picture_view.divider = Some(moved);
+    // Where the pointer is, also where its last move comes with its release: steps that are added up lose that one.
+    if (response.dragged() || response.drag_stopped())
+        && shown.width() > 0.0
+        && let Some(pointer) = response.interact_pointer_pos()
+    {
+        face.picture_view.divider = Some(((pointer.x - shown.left()) / shown.width()).clamp(0.0, 1.0));
     }
     let share = face.picture_view.divider.unwrap_or(0.5);
     Divider { x: shown.left() + shown.width() * share, is_moved: response.dragged() }

@@ -121,6 +121,59 @@ fn events_of_a_user_do_what_they_say() {
     });
 }
 
+#[test]
+fn the_divider_is_dragged_and_parts_the_two_pictures() {
+    beside_others(|| {
+        let display = Display::start();
+        let scene = small("caustics").replace("64x48", "320x240");
+        let variants = ["level-map", "volumetric"];
+        let mut window = Window::open(&display, &format!("caustics {scene} --variant {}", variants.join(",")));
+        window.wait_for_frame(0);
+        let pictures = variants.map(|variant| {
+            let file = window.folder.path().join(format!("{variant}.png"));
+            let render = fumarole(&format!("caustics render {scene} --variant {variant}"));
+            render.on_test_device().arg("--image").arg(&file).run().succeeded();
+            read_png(&file).unwrap()
+        });
+        assert!(pictures[0] != pictures[1], "nothing to be told apart");
+        let before = window.wait("the camera", |window| camera(window));
+        window.click("Divider");
+        let mut at = window.middle("divider");
+        for by in [-100_i16, 170] {
+            window.drag(1, at, (at.0 + by, at.1 + 30));
+            let wanted = at.0 + by;
+            at = window.wait("the divider where it was dragged to", |window| {
+                let [left, top, right, bottom] = window.try_rectangle("divider")?;
+                let middle = ((left + right) / 2, (top + bottom) / 2);
+                (middle.0.abs_diff(wanted) <= 2).then_some(middle)
+            });
+            let [_, top, _, bottom] = window.rectangle("divider");
+            let area = window.rectangle("pictures");
+            let left = ((area[0] + area[2]) / 2 - 160) as u32;
+            let top = ((top + bottom) / 2 - 120) as u32;
+            let cut = at.0 as u32 - left;
+            wait("A left of the divider and B right of it", || {
+                let screen = display.screenshot();
+                // The line itself, and a pixel of rounding, lie between.
+                let parts = [(&pictures[0], 0..cut - 4), (&pictures[1], cut + 4..320)];
+                let is_there = |x: u32, y: u32| {
+                    parts.iter().all(|(picture, columns)| {
+                        let mut rows = (0..240).flat_map(|row| columns.clone().map(move |column| (column, row)));
+                        let near = |(column, row)| {
+                            let (a, b) = (pixel(&screen, x + column, y + row), pixel(picture, column, row));
+                            (0..3).all(|channel| a[channel].abs_diff(b[channel]) <= 1)
+                        };
+                        rows.all(near)
+                    })
+                };
+                (left - 1..=left + 1).any(|x| (top - 2..=top + 2).any(|y| is_there(x, y))).then_some(())
+            });
+        }
+        assert_eq!(camera(&window), Some(before), "the camera moved with the divider");
+        window.close().succeeded();
+    });
+}
+
 fn camera(window: &Window<'_>) -> Option<String> {
     let controls = window.controls();
     let field = controls.iter().find(|control| control["label"] == "camera")?;
