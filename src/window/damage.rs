@@ -387,8 +387,9 @@ mod tests {
     fn picture(id: u64) -> ClippedShape {
         let rect = Rect::from_min_size(Pos2::new(100.0, 100.0), Vec2::new(320.0, 200.0));
         let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-        let shape = Shape::image(TextureId::Managed(id), rect, uv, Color32::WHITE);
-        ClippedShape { clip_rect: Rect::EVERYTHING, shape }
+        // As a widget paints it; `Shape::image` makes triangles.
+        let shape = RectShape::filled(rect, 0.0, Color32::WHITE).with_texture(TextureId::Managed(id), uv);
+        ClippedShape { clip_rect: Rect::EVERYTHING, shape: shape.into() }
     }
 
     /// The rectangles to draw when one list of shapes follows another.
