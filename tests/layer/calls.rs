@@ -228,6 +228,7 @@ fn report() {
         }
     }
     text.push_str(&crate::lend::report());
+    text.push_str(&crate::labels::report());
     // A test that finds no report fails.
     let _ = fs::write(path, text);
 }

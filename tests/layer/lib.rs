@@ -1,6 +1,5 @@
-//! A Vulkan layer for the tests: it makes calls fail, hides features, lowers limits, plays extensions and counts what is
-//! alive. The tests
-//! give its folder to the loader and say by environment variables what it does:
+//! A Vulkan layer for the tests: it makes calls fail, hides features, lowers limits, plays extensions, reads labels and
+//! counts what is alive. The tests give its folder to the loader and say by environment variables what it does:
 //!
 //! | variable | meaning |
 //! | --- | --- |
@@ -9,13 +8,16 @@
 //! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
 //! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher |
-//! | `FUMAROLE_LAYER_REPORT` | file that tells, when an instance is destroyed, of the calls and of what is alive |
+//! | `FUMAROLE_LAYER_PRESENTS` | `acquire@3=out-of-date,present@5=surface-lost,...`: ends of calls to a window's swapchain |
+//! | `FUMAROLE_LAYER_REPORT` | file that tells, when an instance is destroyed, of the calls, of labels and of what is alive |
 //!
 //! After a lost device, every submission and wait of the process fails the same way.
 
 mod calls;
+mod labels;
 mod lend;
 mod mask;
+mod presents;
 
 use std::ffi::{CStr, c_char, c_void};
 use std::mem::transmute;
@@ -113,6 +115,7 @@ unsafe extern "system" fn create_instance(
             calls::resolve(&|name| next_instance_proc(*instance, name));
             mask::resolve(&|name| next_instance_proc(*instance, name));
             lend::resolve(&|name| next_instance_proc(*instance, name));
+            labels::resolve(&|name| next_instance_proc(*instance, name));
         }
         result
     }
@@ -164,6 +167,8 @@ unsafe extern "system" fn create_device(
             calls::born("Device");
             calls::resolve(&|name| next_device_proc(*device, name));
             lend::resolve(&|name| next_device_proc(*device, name));
+            labels::resolve(&|name| next_device_proc(*device, name));
+            presents::resolve(&|name| next_device_proc(*device, name));
         }
         result
     }
@@ -192,7 +197,11 @@ fn own(name: &str) -> vk::PFN_vkVoidFunction {
         "vkGetDeviceProcAddr" => get_device_proc_addr as *const c_void,
         "vkCreateInstance" => create_instance as *const c_void,
         "vkCreateDevice" => create_device as *const c_void,
-        other => mask::hook(other).or_else(|| lend::hook(other)).or_else(|| calls::hook(other))?,
+        other => mask::hook(other)
+            .or_else(|| lend::hook(other))
+            .or_else(|| labels::hook(other))
+            .or_else(|| presents::hook(other))
+            .or_else(|| calls::hook(other))?,
     };
     // SAFETY: each is a function of the signature that its name has in Vulkan.
     Some(unsafe { transmute::<*const c_void, unsafe extern "system" fn()>(function) })

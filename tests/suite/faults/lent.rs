@@ -71,6 +71,36 @@ fn assert_counted(program: Program, kind: &str) -> u64 {
 }
 
 #[test]
+fn labels_and_pipelines_carry_pass_and_section() {
+    let programs = [
+        caustics("bench --variant level-map").tiny(),
+        lava("bench --size 32x24 --particles 100 --radius 0.3 --density 8x4x4 --splats 10x5").on_test_device(),
+        gas("bench --size 24x16 --steps 4 --variant table").on_test_device(),
+    ];
+    for program in programs {
+        let layer = Layer::new();
+        let ended = layer.before(program.args(ONCE).args("--quiet --json"), false).run().succeeded();
+        let report = layer.report(&ended);
+        assert_clean(&report);
+        let record = ended.json();
+        let passes = record["runs"][0]["passes"].as_array().unwrap().iter();
+        let label = |pass: &Value| match pass["section"].as_str() {
+            Some(section) => format!("{} ({section})", pass["name"].as_str().unwrap()),
+            None => pass["name"].as_str().unwrap().to_owned(),
+        };
+        let mut sections = 0;
+        for pass in passes.filter(|pass| pass["kind"] != "host") {
+            sections += u32::from(pass["section"].is_string());
+            let label = label(pass);
+            assert!(report.labels.contains(&label), "{label} of {:?}", report.labels);
+            let is_drawn = ["graphics", "compute"].contains(&pass["kind"].as_str().unwrap());
+            assert!(!is_drawn || report.pipelines.contains(&label), "{label} of {:?}", report.pipelines);
+        }
+        assert!(sections >= 3);
+    }
+}
+
+#[test]
 fn counters_of_the_device_are_those_of_the_pass() {
     let program = caustics("bench --variant level-map --profile caustics-map").tiny();
     assert!(assert_counted(program, "graphics") >= 1);

@@ -113,13 +113,15 @@ impl Layer {
             .unwrap_or_else(|error| panic!("no report: {error}: {}: {}", ended.status, ended.stderr));
         fs::remove_file(path).unwrap();
         let field = |name: &str| text.lines().find_map(|line| line.strip_prefix(name)).map(str::to_owned);
-        let alive = text.lines().filter_map(|line| line.strip_prefix("alive "));
+        let fields = |name: &str| text.lines().filter_map(|line| line.strip_prefix(name)).map(str::to_owned).collect();
         Report {
             calls: field("calls ").unwrap().parse().unwrap(),
             failed: field("failed "),
-            alive: alive.map(str::to_owned).collect(),
-            misuses: text.lines().filter_map(|line| line.strip_prefix("misuse ")).map(str::to_owned).collect(),
+            alive: fields("alive "),
+            misuses: fields("misuse "),
             frames: field("frames ").unwrap().parse().unwrap(),
+            labels: fields("label "),
+            pipelines: fields("pipeline "),
         }
     }
 }
@@ -133,4 +135,8 @@ pub struct Report {
     pub misuses: Vec<String>,
     /// Frames whose end was told by `VK_EXT_frame_boundary`.
     pub frames: u64,
+    /// Labels round commands, in the order of their first use.
+    pub labels: Vec<String>,
+    /// Names of pipelines.
+    pub pipelines: Vec<String>,
 }
