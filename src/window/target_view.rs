@@ -203,10 +203,11 @@ fn show_controls(ui: &mut Ui, view: &mut TargetView, values: &TargetValues, info
         }
         ui.add(DragValue::new(&mut view.exposure).range(-20.0..=20.0).speed(0.05).prefix("exposure ").suffix(" stops"));
         if channel != Channel::Colour {
-            ComboBox::from_id_salt("ramp").selected_text(ramp.as_str()).show_ui(ui, |ui| {
+            let combo = ComboBox::from_id_salt("ramp").selected_text(ramp.as_str()).show_ui(ui, |ui| {
                 let fitting = Ramp::ALL.into_iter().filter(|ramp| *ramp != Ramp::Labels || is_whole);
                 fitting.for_each(|one| drop(ui.selectable_value(&mut ramp, one, one.as_str())));
             });
+            combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, true, "ramp"));
         }
         if info.is_depth {
             ui.checkbox(&mut view.is_linear_depth, "linear depth")

@@ -42,7 +42,7 @@ fn distance(screen: &Rgba8, picture: &Rgba8, (left, top): (u32, u32)) -> u8 {
 }
 
 /// Whether the picture lies somewhere in the rectangle of the screen, to 1 of 255.
-fn shows(screen: &Rgba8, picture: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
+pub fn shows(screen: &Rgba8, picture: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
     let clamp = |side: i16| u32::try_from(side).unwrap_or(0);
     let lefts = clamp(left)..=(clamp(right).min(screen.width()) - picture.width());
     let tops = || clamp(top)..=(clamp(bottom).min(screen.height()) - picture.height());
@@ -103,6 +103,21 @@ fn events_of_a_user_do_what_they_say() {
         window.click("caustics-map");
         window.click("thumbnail caustics-map");
         window.wait("the target", |window| window.shows("caustics-map").then_some(()));
+        // Its colours: a ramp with hues, and one without.
+        let hues = |window: &Window<'_>| {
+            let [left, top, right, bottom] = window.try_image("caustics-map")?;
+            let screen = display.screenshot();
+            let rows =
+                (top.max(0)..bottom.min(screen.height() as i16)).flat_map(|y| (left..right).map(move |x| (x, y)));
+            Some(
+                rows.filter(|&(x, y)| pixel(&screen, x as u32, y as u32).windows(2).any(|two| two[0] != two[1]))
+                    .count(),
+            )
+        };
+        window.wait("a target with hues", |window| hues(window).filter(|&count| count > 500));
+        window.click("ramp");
+        window.click("grey");
+        window.wait("a target in grey", |window| hues(window).filter(|&count| count < 50));
         display.key('t' as u32);
         window.wait("the picture", |window| window.shows("picture").then_some(()));
         // The camera.

@@ -269,7 +269,16 @@ impl<'a> Window<'a> {
 
     /// As [`Window::rectangle`], where it is there now.
     pub fn try_rectangle(&self, label: &str) -> Option<[i16; 4]> {
-        let control = self.find(label)?;
+        self.place(&self.find(label)?)
+    }
+
+    /// Where the image of that name is shown now.
+    pub fn try_image(&self, name: &str) -> Option<[i16; 4]> {
+        let images = |control: &Value| control["role"] == "Image" && control["label"] == name;
+        self.place(&self.controls().into_iter().find(images)?)
+    }
+
+    fn place(&self, control: &Value) -> Option<[i16; 4]> {
         let origin = self.display.connection.translate_coordinates(self.id, self.display.root, 0, 0).unwrap();
         let origin = origin.reply().unwrap();
         let side = |index: usize| control["rectangle_px"][index].as_f64().unwrap() as i16;

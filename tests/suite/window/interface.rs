@@ -365,6 +365,34 @@ fn a_question_mark_lists_the_keys() {
 }
 
 #[test]
+fn messages_of_the_validation_are_counted_and_read_as_they_come() {
+    let mut harness = harness();
+    assert!(harness.query_by_label("Messages").is_some(), "none so far");
+    for (number, id) in ["VUID-first", "VUID-second"].into_iter().enumerate() {
+        harness.state_mut().take(Event::Validation(vec![format!("error: {id}: of a pass")]));
+        harness.run();
+        let tab = format!("Messages ({})", number + 1);
+        harness.get_by_label(&tab).click();
+        harness.run();
+        assert!(harness.query_by_label_contains(id).is_some(), "{id} is not shown");
+    }
+}
+
+#[test]
+fn a_key_makes_it_light_dark_and_as_the_display_is() {
+    let mut harness = harness();
+    harness.input_mut().system_theme = Some(egui::Theme::Light);
+    let mut themes = Vec::new();
+    for _ in 0..3 {
+        press(&mut harness, egui::Key::L);
+        themes.push((harness.ctx.theme(), harness.ctx.style().visuals.panel_fill.intensity()));
+    }
+    let [light, dark, system] = themes[..] else { panic!("{themes:?}") };
+    assert_eq!([light.0, dark.0, system.0], [egui::Theme::Light, egui::Theme::Dark, egui::Theme::Light], "{themes:?}");
+    assert!(light.1 > 0.8 && dark.1 < 0.2 && system.1 == light.1, "{themes:?}");
+}
+
+#[test]
 fn a_dropped_file_goes_to_the_parameter_that_takes_it() {
     let mut harness = harness();
     let file = egui::DroppedFile { path: Some("/tmp/bunny.obj".into()), ..Default::default() };

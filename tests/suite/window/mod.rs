@@ -8,6 +8,7 @@ mod drop;
 mod headless;
 mod interface;
 mod painting;
+mod presents;
 mod scene;
 mod wayland;
 mod worker;

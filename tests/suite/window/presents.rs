@@ -1,0 +1,64 @@
+//! A display that changes under the window: acquisitions and presents end as real displays now and then let them end, by the
+//! tests' layer, under validation.
+
+use fumarole::image::read_png;
+
+use super::desktop::shows;
+use super::display::{Display, Window, wait};
+use super::scene::small;
+use crate::cli::program::{device, fumarole};
+use crate::common::beside_others;
+use crate::faults::Layer;
+
+const ENDINGS: [(&str, &str); 7] = [
+    ("acquire@2", "surface-lost"),
+    ("acquire@5", "out-of-date"),
+    ("acquire@7", "suboptimal"),
+    ("acquire@9", "timeout"),
+    ("present@8", "surface-lost"),
+    ("present@10", "out-of-date"),
+    ("present@12", "suboptimal"),
+];
+
+#[test]
+fn the_window_goes_on_whatever_its_display_does() {
+    beside_others(|| {
+        let display = Display::start();
+        let layer = Layer::new();
+        let scene = small("caustics");
+        let endings = ENDINGS.map(|(call, ending)| format!("{call}={ending}")).join(",");
+        let program = layer.before(fumarole(&format!("view caustics {scene}")).on_test_device(), true);
+        let mut window = Window::start(&display, program.env("FUMAROLE_LAYER_PRESENTS", endings));
+        window.wait_for_frame(0);
+        const LAST: u32 = 16;
+        for frame in 1..=LAST {
+            display.key('.' as u32);
+            window.wait_for_frame(frame);
+        }
+        let file = window.folder.path().join("rendered.png");
+        let render = fumarole(&format!("caustics render {scene} --frame {LAST}")).arg("--device").arg(device());
+        render.arg("--image").arg(&file).run().succeeded();
+        let (rendered, area) = (read_png(&file).unwrap(), window.rectangle("picture"));
+        wait("the picture on the screen", || shows(&display.screenshot(), &rendered, area).then_some(()));
+        let ended = window.close().succeeded();
+        for (call, _) in ENDINGS {
+            assert!(ended.stderr.contains(&format!("layer: {call}=")), "{call}: {}", ended.stderr);
+        }
+    });
+}
+
+#[test]
+fn a_device_that_is_lost_while_presenting_ends_the_window_in_a_line() {
+    beside_others(|| {
+        let display = Display::start();
+        let layer = Layer::new();
+        let folder = tempfile::tempdir().unwrap();
+        let program = fumarole(&format!("view terrain {}", small("terrain"))).on_test_device();
+        let program = layer.before(program, false).env("FUMAROLE_LAYER_PRESENTS", "present@2=device-lost");
+        let program = program.env("DISPLAY", display.name()).without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
+        let ended = program.env("XDG_STATE_HOME", folder.path()).inside(folder.path()).run();
+        let said: Vec<&str> = ended.stderr.lines().filter(|line| !line.starts_with("layer: ")).collect();
+        assert_eq!((ended.status.code(), said.len()), (Some(1), 1), "{}", ended.stderr);
+        assert!(said[0].starts_with("error: ") && said[0].contains("device"), "{}", ended.stderr);
+    });
+}
