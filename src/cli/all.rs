@@ -34,14 +34,14 @@ pub struct AllArgs {
 }
 
 impl AllArgs {
-    /// The arguments of `fumarole all` without options.
+    /// The arguments of `fumarole` alone: of `fumarole all --report`.
     pub fn plain() -> Self {
         #[derive(Parser)]
         struct Plain {
             #[command(flatten)]
             arguments: AllArgs,
         }
-        Plain::parse_from(["fumarole"]).arguments
+        Plain::parse_from(["fumarole", "--report"]).arguments
     }
 }
 
