@@ -5,14 +5,15 @@ use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use fumarole::scene::{HeightMapSource, MeshSource};
+use fumarole::papers::burning;
+use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, world_file};
 use fumarole::{cli, image, report, shader_build};
 
 /// A reader.
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 14] = [
+pub const ALL: [(&str, Target); 16] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -24,6 +25,8 @@ pub const ALL: [(&str, Target); 14] = [
     ("tif", |data| height_map(&[("a.tif", data)])),
     ("map-png", |data| height_map(&[("a.png", data)])),
     ("png", picture),
+    ("world", world),
+    ("materials", materials),
     ("record", record),
     ("include", include),
     ("arguments", arguments),
@@ -96,6 +99,29 @@ fn picture(data: &[u8]) {
     match image::read_png(&written(&[("c.png", data)])) {
         Ok(picture) => assert!(picture.pixels().len() == 4 * picture.width() as usize * picture.height() as usize),
         Err(error) => is_one_line(&error),
+    }
+}
+
+/// The world file beside a picture.
+fn world(data: &[u8]) {
+    written(&[("d.pgw", data)]);
+    match world_file::beside(&written(&[("d.png", &[])])) {
+        Ok(found) => {
+            let coordinates = found.expect("it lies there").1;
+            assert!(coordinates.step.min_element() > 0.0 && coordinates.north_west.is_finite());
+        }
+        Err(error) => is_one_line(&error),
+    }
+}
+
+/// Materials of two parts that have a colour each.
+fn materials(data: &[u8]) {
+    const MESH: &str = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 0 0 1\nv 1 1 0 0 0 1\ng one\nf 1 2 3\ng other\nf 4 3 2\n";
+    let options = MeshOptions { keeps_tags: true, ..MeshOptions::default() };
+    let source = MeshSource::File(written(&[("e.obj", MESH.as_bytes())]));
+    let mesh = source.load_with(&options).expect("the mesh is one");
+    if let Err(error) = burning::materials::load(&written(&[("e.toml", data)]), &mesh) {
+        is_one_line(&error);
     }
 }
 
