@@ -4,7 +4,8 @@ use ash::vk;
 
 use super::{rate, times};
 use crate::gpu::{
-    Blend, Buffer, BufferDesc, Draw, Error, Image, ImageDesc, Load, Pass, Recorder, ShaderLibrary, Topology, transfer,
+    Blend, Buffer, BufferDesc, Draw, Error, Image, ImageDesc, Load, Mode, Pass, Recorder, ShaderLibrary, Topology,
+    transfer,
 };
 use crate::host_block;
 
@@ -14,10 +15,10 @@ const FLOPS_PER_ITERATION: f64 = 64.0;
 const ITERATIONS: u32 = 64;
 /// A side of the target of fill and blend rates: a few megabytes, as a picture has.
 const SIDE: u32 = 1024;
-/// Invocations, vertices and triangles of a load of one.
-const INVOCATIONS: u32 = 1 << 16;
-const VERTICES: u32 = 3 << 14;
-const TRIANGLES: u32 = 1 << 14;
+/// Invocations of a dispatch, vertices and triangles of a draw: so many that what a call costs is nothing beside them.
+const INVOCATIONS: u32 = 1 << 20;
+const VERTICES: u32 = 3 << 17;
+const TRIANGLES: u32 = 1 << 17;
 
 host_block! {
     struct MultiplyAdd {
@@ -149,15 +150,15 @@ pub fn fill(
             .color(&target, load, blend)
             .build(shaders)
     };
-    // Blending reads what is there.
-    let first = pass(Load::Clear([0.0; 4]))?;
-    let next = if blend == Blend::Replace { pass(Load::Discard)? } else { pass(Load::Keep)? };
+    let covered = |draw: &mut Draw<'_>| {
+        draw.vertices(3);
+    };
+    // Blending reads what is there, and what a clear takes is not the blend's.
+    let cleared = pass(Load::Clear([0.0; 4]))?;
+    recorder.run(Mode::Plain, |frame| frame.graphics(&cleared, covered))?;
+    let measured = if blend == Blend::Replace { pass(Load::Discard)? } else { pass(Load::Keep)? };
     rate(recorder, f64::from(SIDE) * f64::from(SIDE), |frame, load| {
-        (0..load).try_for_each(|number| {
-            frame.graphics(if number == 0 { &first } else { &next }, |draw| {
-                draw.vertices(3);
-            })
-        })
+        (0..load).try_for_each(|_| frame.graphics(&measured, covered))
     })
 }
 
