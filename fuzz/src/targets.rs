@@ -6,14 +6,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use fumarole::papers::burning;
-use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, world_file};
+use fumarole::scene::{HeightMapSource, MeshOptions, MeshSource, load_voxels, world_file};
 use fumarole::{cli, image, report, shader_build};
 
 /// A reader.
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 16] = [
+pub const ALL: [(&str, Target); 18] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -24,6 +24,8 @@ pub const ALL: [(&str, Target); 16] = [
     ("hgt", hgt),
     ("tif", |data| height_map(&[("a.tif", data)])),
     ("map-png", |data| height_map(&[("a.png", data)])),
+    ("nrrd", |data| volume(&[("a.nrrd", data)])),
+    ("nhdr", nhdr),
     ("png", picture),
     ("world", world),
     ("materials", materials),
@@ -88,6 +90,25 @@ fn hgt(data: &[u8]) {
 fn esri(data: &[u8]) {
     let (header, samples) = parted(data);
     height_map(&[("b.hdr", header), ("b.bil", samples)]);
+}
+
+fn volume(files: &[(&str, &[u8])]) {
+    let path = written(files);
+    for component in [0, 1] {
+        match load_voxels(&path, component) {
+            Ok(grid) => {
+                assert!(grid.samples().len() as u64 == grid.size().map(u64::from).iter().product::<u64>());
+                assert!(grid.steps().iter().all(|step| step.is_finite()));
+            }
+            Err(error) => is_one_line(&error),
+        }
+    }
+}
+
+/// The header up to the first zero byte, and the samples.
+fn nhdr(data: &[u8]) {
+    let (header, samples) = parted(data);
+    volume(&[("b.nhdr", header), ("b.raw", samples)]);
 }
 
 fn parted(data: &[u8]) -> (&[u8], &[u8]) {

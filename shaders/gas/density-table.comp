@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants DENSITY=functions,trilinear,tricubic
+
 // Section "Calculation of the shadow table": "a table of the same dimensions containing functional values is first
 // computed". Entries lie on the box around the volume, the first and the last of an axis on its faces.
 
@@ -9,7 +11,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/counts.glsl"
 #include "gas/loops.glsl"
 #include "gas/volume.glsl"
-#include "gas/density.glsl"
+#include "gas/density-{DENSITY}.glsl"
+#include "gas/volume-density.glsl"
 
 layout(set = 0, binding = 15, std430) buffer DensityTables {
     float density_tables[]; // a table a volume; x runs fastest

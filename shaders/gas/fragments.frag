@@ -6,7 +6,7 @@
 #include "gas/footprint.glsl"
 #include "gas/loops.glsl"
 #include "gas/volume.glsl"
-#include "gas/density.glsl"
+#include "gas/density-functions.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
 #include "gas/fragment.glsl"

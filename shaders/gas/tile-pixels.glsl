@@ -7,7 +7,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gas/tiles.glsl"
 #include "gas/volume.glsl"
 #include "gas/loops.glsl"
-#include "gas/density.glsl"
+#include "gas/density-functions.glsl"
 #include "gas/lists.glsl"
 #include "gas/counters.glsl"
 #include "gas/fragment.glsl"

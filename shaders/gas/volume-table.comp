@@ -1,5 +1,7 @@
 #version 450
 
+#pragma variants DENSITY=functions,trilinear,tricubic
+
 // The gas of each pixel, shadows from the table.
 
 #include "gas/frame.glsl"
@@ -7,7 +9,8 @@
 #include "gas/band.glsl"
 #include "gas/progress.glsl"
 #include "gas/volume.glsl"
-#include "gas/density.glsl"
+#include "gas/density-{DENSITY}.glsl"
+#include "gas/volume-density.glsl"
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-table.glsl"

@@ -2,7 +2,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// Why a mesh, a height map or a camera cannot be used. Every message is one line.
+/// Why a mesh, a height map, a volume or a camera cannot be used. Every message is one line.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("cannot read {}: {source}; name a file that can be read", path.display())]
@@ -26,10 +26,11 @@ pub enum Error {
 pub enum Asset {
     Mesh,
     HeightMap,
+    Volume,
     WorldFile,
 }
 
-/// A fault in the contents of a mesh or a height map, with its place.
+/// A fault in the contents of a mesh, a height map or a volume, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{place}{reason}")]
 pub struct Fault {
@@ -84,6 +85,7 @@ impl fmt::Display for Asset {
         formatter.write_str(match self {
             Self::Mesh => "mesh",
             Self::HeightMap => "height map",
+            Self::Volume => "volume",
             Self::WorldFile => "world file",
         })
     }

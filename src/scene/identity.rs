@@ -3,14 +3,14 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::world_file;
+use super::{voxels, world_file};
 use crate::{content, file};
 
 /// Endings of the files that a raster may be read with.
 const BESIDE_A_RASTER: [&str; 10] = ["hdr", "HDR", "prj", "PRJ", "bil", "BIL", "dem", "DEM", "bsq", "BSQ"];
 
 /// SHA-256 of a file in lower-case hexadecimal; where others are read with it (buffers of a glTF document, header and
-/// projection of a raster, world file of a picture), that of all their digests in order.
+/// projection of a raster, world file of a picture, samples of a volume), that of all their digests in order.
 ///
 /// # Errors
 /// A file cannot be read.
@@ -38,6 +38,10 @@ fn companions(path: &Path) -> Vec<PathBuf> {
     if ending == "png" {
         let beside = world_file::ENDINGS.map(|ending| path.with_extension(ending));
         return beside.into_iter().find(|file| file.is_file()).into_iter().collect();
+    }
+    let samples = voxels::companions(path);
+    if !samples.is_empty() {
+        return samples;
     }
     let is_raster = BESIDE_A_RASTER.iter().any(|known| ending == *known);
     let beside = BESIDE_A_RASTER.iter().filter(|_| is_raster).map(|ending| path.with_extension(ending));
@@ -71,6 +75,11 @@ mod tests {
         assert_eq!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
         write("d.pgw", "place");
         assert_ne!(source_sha256(&picture).unwrap(), content::sha256(b"picture"));
+        let volume = write("e.nhdr", "NRRD0004\ndata file: e.raw\n");
+        write("e.raw", "one");
+        let first = source_sha256(&volume).unwrap();
+        write("e.raw", "two");
+        assert_ne!(source_sha256(&volume).unwrap(), first);
         write("c.obj", "mesh");
         assert_eq!(source_sha256(&folder.path().join("c.obj")).unwrap(), content::sha256(b"mesh"));
     }

@@ -2,8 +2,9 @@
 //!
 //! The world is right handed with +Y up. A [`MeshSource`] is what a user types (a built-in shape or
 //! a file); [`MeshSource::load`] turns it into a checked [`Mesh`] or an [`Error`] that names the
-//! file and the place in it. So does a [`HeightMapSource`] with a [`HeightMap`].
+//! file and the place in it. So do a [`HeightMapSource`] with a [`HeightMap`] and [`load_voxels`] with a [`VoxelGrid`].
 
+mod binary;
 mod bounds;
 mod camera;
 mod creases;
@@ -25,6 +26,7 @@ pub mod shapes;
 mod source;
 mod tags;
 mod vertex_order;
+mod voxels;
 pub mod world_file;
 
 pub use bounds::Bounds;
@@ -39,3 +41,4 @@ pub use mesh::Mesh;
 pub use mesh_cache::folder as mesh_cache_folder;
 pub use source::{MeshSource, promised_triangles};
 pub use tags::Tags;
+pub use voxels::{VoxelGrid, load as load_voxels};

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::capacity::Capacity;
+use super::grid::Grid;
 use super::model::{DensityFunction, Object, Shape, SolidTexture, Swirl, Volume};
 use super::parameters::Parameters;
 use crate::host_block;
@@ -78,6 +79,20 @@ host_block! {
         hypertexture_softness: f32,
         phase_weights: [f32; 2],
         phase_g: [f32; 2],
+    }
+}
+
+host_block! {
+    /// The grid of a volume, as `density-grid.glsl` describes it.
+    pub struct GridBlock {
+        to_column: [f32; 3],
+        columns: u32,
+        to_row: [f32; 3],
+        rows: u32,
+        to_layer: [f32; 3],
+        layers: u32,
+        middle: [f32; 3],
+        first: u32,
     }
 }
 
@@ -333,6 +348,8 @@ impl VolumeBlock {
                 ..swirled(3, swirl)
             },
             DensityFunction::Steam { swirl } => swirled(4, swirl),
+            // A shader of its own reads grids.
+            DensityFunction::Grid(_) => block,
             DensityFunction::Hypertexture { amplitude, softness } => VolumeBlock {
                 density_function: 5,
                 hypertexture_amplitude: amplitude,
@@ -340,6 +357,17 @@ impl VolumeBlock {
                 ..block
             },
         }
+    }
+}
+
+impl GridBlock {
+    /// A grid whose samples stand from `first` on.
+    pub fn new(grid: &Grid, first: u32) -> Self {
+        let rows = grid.samples_per_metre().transpose();
+        let [to_column, to_row, to_layer] = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec3().to_array());
+        let [columns, rows, layers] = grid.size;
+        let middle = grid.size.map(|count| (count - 1) as f32 / 2.0);
+        GridBlock { to_column, columns, to_row, rows, to_layer, layers, middle, first }
     }
 }
 

@@ -29,14 +29,14 @@ impl DensityTable {
     pub fn new(context: &Context<'_>, scene: &SceneBuffers) -> Result<Self, Error> {
         let volume_count = context.parameters.volumes.len() as u32;
         let densities = context.table("density-table", volume_count.into())?;
-        let pass = Pass::compute("density-table", "Shadow table", "gas/density-table.comp")
+        let shader = format!("gas/density-table-{}.comp", context.parameters.density_shader());
+        let pass = Pass::compute("density-table", "Shadow table", &shader)
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
-            .with("Offsets", &scene.offsets)
             .with("DensityTables", &densities)
-            .constants::<TableConstants>()
-            .build(context.shaders)?;
+            .constants::<TableConstants>();
+        let pass = scene.densities(pass).build(context.shaders)?;
         Ok(DensityTable { densities, pass, size: context.parameters.table_size, volume_count })
     }
 

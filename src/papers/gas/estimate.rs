@@ -4,6 +4,7 @@ use super::blocks::{
     ColorBlock, LinkBlock, ObjectBlock, PixelBlock, SectionBlock, SurfaceBlock, TriangleBlock, VertexBlock,
 };
 use super::capacity::{BufferLimit, Capacity};
+use super::grid::Filter;
 use super::model::Object;
 use super::parameters::{Parameters, Variant};
 use super::progress::StateBlock;
@@ -41,7 +42,13 @@ impl Parameters {
         let of_pixel = NUMBER + bytes_of::<PixelBlock>() + bytes_of::<StateBlock>();
         let optional = |is_made: bool, bytes: f64| if is_made { bytes } else { 0.0 };
 
-        let octaves = 1.0 + OCTAVE * f64::from(self.octaves());
+        let grids = self.volume_grids();
+        let samples: usize = grids.iter().flatten().map(|grid| grid.samples.len()).sum();
+        let samples_of_point = match self.filter {
+            Filter::Trilinear => 8.0,
+            Filter::Tricubic => 64.0,
+        };
+        let octaves = if grids.is_some() { samples_of_point } else { 1.0 + OCTAVE * f64::from(self.octaves()) };
         let steps = pixels * f64::from(self.steps) * volumes;
         // A traced shadow takes up to half of the steps through a volume, and at least those of the sections' ends.
         let shadow_steps = match variant {
@@ -59,6 +66,7 @@ impl Parameters {
                 ("object", tiles::bytes(self, capacity)),
                 ("size", optional(has_volume, bytes_of::<SectionBlock>() * sections)),
                 ("light", optional(shadows, NUMBER * fragments * lights)),
+                ("volume-file", NUMBER * samples as f64),
                 ("table", NUMBER * table * volumes * (1.0 + lights)),
                 ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
                 ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),

@@ -29,11 +29,11 @@ impl LightAttenuation {
     ) -> Result<Self, Error> {
         let count = u64::from(lists.capacity.fragments) * context.parameters.lights.len() as u64;
         let attenuations = context.storage::<f32>("light-attenuations", count)?;
-        let (shader, name, buffer) = match shadow_sums {
-            Some(sums) => ("gas/light-attenuation-table.comp", "ShadowTables", sums),
-            None => ("gas/light-attenuation-traced.comp", "Offsets", &scene.offsets),
+        let shader = match shadow_sums {
+            Some(_) => "gas/light-attenuation-table.comp".to_owned(),
+            None => format!("gas/light-attenuation-traced-{}.comp", context.parameters.density_shader()),
         };
-        let pass = Pass::compute("light-attenuation", "Shadowing of the gas", shader)
+        let pass = Pass::compute("light-attenuation", "Shadowing of the gas", &shader)
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
@@ -44,11 +44,14 @@ impl LightAttenuation {
             .with("Colors", &lists.colors)
             .with("Sections", sections)
             .with("Attenuations", &attenuations)
-            .with(name, buffer)
             .with("Progress", &lists.progress.states)
             .with("Unfinished", &lists.progress.unfinished)
-            .constants::<BandConstants>()
-            .build(context.shaders)?;
+            .constants::<BandConstants>();
+        let pass = match shadow_sums {
+            Some(sums) => pass.with("ShadowTables", sums),
+            None => scene.densities(pass),
+        };
+        let pass = pass.build(context.shaders)?;
         Ok(LightAttenuation { attenuations, pass })
     }
 

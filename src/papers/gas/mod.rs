@@ -20,6 +20,8 @@ mod empty_lists;
 mod estimate;
 pub mod experiments;
 mod fragments;
+pub mod grid;
+mod grid_buffers;
 #[cfg(test)]
 mod layouts;
 mod light_attenuation;

@@ -39,6 +39,8 @@ pub enum DensityFunction {
         /// Fraction of the radius over which it turns dense, above 0.
         softness: f32,
     },
+    /// (sample x opaque)^power: the grid of that index, from a file.
+    Grid(usize),
 }
 
 /// Motion of a point through the solid texture as the frames go on: along a helix.

@@ -8,9 +8,11 @@ use super::blocks::{CountsBlock, FrameBlock, GasUse, LightBlock, ObjectBlock, Vo
 use super::blue_noise;
 use super::capacity::Capacity;
 use super::context::Context;
+use super::grid_buffers::GridBuffers;
 use super::model::Object;
 use super::parameters::{Jitter, Parameters};
 use super::pieces::{Piece, pieces};
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, BufferDesc, Error, Location};
 
@@ -28,6 +30,8 @@ pub struct SceneBuffers {
     pub lights: Arc<Buffer>,
     /// The random table of the fog's front, floats.
     pub offsets: Arc<Buffer>,
+    /// The grids of the volumes, where they are of files.
+    grids: Option<GridBuffers>,
     /// The mask of blue noise, if it is used: ranks.
     pub jitter: Arc<Buffer>,
     /// Triangles of all objects with their vertices, at least one.
@@ -64,7 +68,9 @@ impl SceneBuffers {
                 BufferDesc::new(context.name(what), bytes as u64).usage(usage).location(Location::Upload),
             )
         };
+        let grids = parameters.volume_grids().map(|grids| GridBuffers::new(context, &grids)).transpose()?;
         Ok(SceneBuffers {
+            grids,
             frame: mapped("frame", size_of::<FrameBlock>(), vk::BufferUsageFlags::UNIFORM_BUFFER)?,
             counts: mapped("counts", size_of::<CountsBlock>(), STORAGE)?,
             volumes: storage("volumes", bytemuck::cast_slice(&volumes))?,
@@ -75,6 +81,14 @@ impl SceneBuffers {
             objects: mapped("objects", size_of::<ObjectBlock>() * objects.len().max(1), STORAGE)?,
             objects_without_meshes: objects.iter().map(Object::without_mesh).collect(),
         })
+    }
+
+    /// A pass with what its shader takes densities from.
+    pub fn densities(&self, pass: PassBuilder) -> PassBuilder {
+        match &self.grids {
+            Some(grids) => pass.with("Grids", &grids.grids).with("Samples", &grids.samples),
+            None => pass.with("Offsets", &self.offsets),
+        }
     }
 
     /// Writes the frame and the objects of the scene's frame `number`; the device is idle.

@@ -1,5 +1,8 @@
 //! A user's set-up of the `gas` paper: its scene, its measured runs, its declaration to the command line.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use glam::Vec3;
 use serde_json::{Map, Value, json};
 
@@ -7,6 +10,7 @@ use super::axes;
 use super::capacity::BufferLimit;
 use super::experiments::{self, Options};
 use super::parameters::placed_object::PlacedObject;
+use super::parameters::volume_file::{Placed, Reading, Unfit, Upright, VolumeFile};
 use super::parameters::volumes::{self, Placement};
 use super::parameters::{default_volume, validate_object};
 use crate::field;
@@ -52,6 +56,12 @@ pub struct Setup {
     pub preset: Option<String>,
     /// Volumes beside the scene's.
     placements: Vec<Placement>,
+    /// Volumes of files, in place of the scene's.
+    volume_files: Vec<VolumeFile>,
+    /// What their densities are made by.
+    reading: Reading,
+    /// The scene's own first volume, or the one that stands for it.
+    first_volume: model::Volume,
     /// The numbers for all volumes, in the [templates](volumes::templates).
     gases: Vec<model::Volume>,
     /// Directions of parallel light and positions of point lights; the scene's where there are neither.
@@ -78,6 +88,9 @@ impl Setup {
             crease_deg: CREASE_DEG,
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
+            volume_files: Vec::new(),
+            reading: Reading { component: 0, range: None, unfit: Unfit::Refuse, upright: Upright::Z },
+            first_volume: default_volume(),
             gases: volumes::templates(),
             parallel_lights: Vec::new(),
             point_lights: Vec::new(),
@@ -127,6 +140,21 @@ impl Setup {
             half_extent_m,
             ..first
         }));
+        self.first_volume = first;
+        if !self.volume_files.is_empty() {
+            let of_file = |index| model::Volume {
+                shape: model::Shape::Box,
+                falloff: 0.0,
+                texture: model::SolidTexture {
+                    function: model::DensityFunction::Grid(index),
+                    opaque: 1.0,
+                    power: 1.0,
+                    ..first.texture
+                },
+                ..first
+            };
+            *all = (0..self.volume_files.len()).map(of_file).collect();
+        }
         volumes::declared().iter().filter(|p| given.has(p.name)).for_each(|p| p.copy(&self.gases, all));
         // As bright at the origin as the scenes' own light, wherever it stands.
         let parallel =
@@ -139,6 +167,21 @@ impl Setup {
         if !lights.is_empty() {
             self.parameters.lights = lights;
         }
+    }
+}
+
+impl Setup {
+    /// The numbers with the volumes of files where they stand.
+    fn parameters_in(&self, scene: &Scene) -> Cow<'_, Parameters> {
+        if scene.files.is_empty() {
+            return Cow::Borrowed(&self.parameters);
+        }
+        let mut parameters = self.parameters.clone();
+        for (volume, file) in parameters.volumes.iter_mut().zip(&scene.files) {
+            (volume.center, volume.half_extent_m) = (file.center, file.grid.half_extent_m().as_vec3());
+        }
+        parameters.grids = scene.files.iter().map(|file| Arc::clone(&file.grid)).collect();
+        Cow::Owned(parameters)
     }
 }
 
@@ -158,6 +201,8 @@ pub(super) const LIST_PASSES: [&str; 8] =
 pub struct Scene {
     /// Surfaces of the scene and of the user.
     pub objects: Vec<Object>,
+    /// Volumes of the user's files.
+    pub files: Vec<Placed>,
 }
 
 impl Study for Setup {
@@ -179,24 +224,29 @@ impl Study for Setup {
         self.divide_surfaces(&mut objects);
         objects.extend(self.layers());
         objects.iter().try_for_each(validate_object)?;
-        Ok(Scene { objects })
+        let load = |file: &VolumeFile| file.load(&self.reading, &self.first_volume);
+        let files = self.volume_files.iter().map(load).collect::<Result<_, _>>()?;
+        let scene = Scene { objects, files };
+        volumes::check(&self.parameters_in(&scene).volumes)?;
+        Ok(scene)
     }
 
-    fn reconfigure(&self, _: &Scene, paper: &mut Gas, changed: &Given) -> Result<bool, Error> {
+    fn reconfigure(&self, scene: &Scene, paper: &mut Gas, changed: &Given) -> Result<bool, Error> {
         if !changed.is_within(&WRITTEN) {
             return Ok(false);
         }
         self.parameters.validate()?;
-        paper.set_written(&self.parameters);
+        paper.set_written(&self.parameters_in(scene));
         Ok(true)
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Gas, gpu::Error> {
-        Gas::new(shaders, label, variant, &self.parameters, &scene.objects, None)
+        Gas::new(shaders, label, variant, &self.parameters_in(scene), &scene.objects, None)
     }
 
     fn estimate(&self, device: &Device, scene: &Scene, variant: Variant) -> Estimate {
-        self.parameters.estimate(variant, &scene.objects, BufferLimit::new(device, &self.parameters))
+        let limit = BufferLimit::new(device, &self.parameters);
+        self.parameters_in(scene).estimate(variant, &scene.objects, limit)
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
@@ -217,7 +267,7 @@ impl Study for Setup {
     }
 
     fn config(&self, scene: &Scene, _: &Gas) -> Map<String, Value> {
-        let p = &self.parameters;
+        let p = &self.parameters_in(scene);
         let triangles: usize = scene.objects.iter().map(|o| o.mesh.triangle_count()).sum();
         let volumes: Vec<Value> = p
             .volumes
@@ -326,6 +376,40 @@ impl Study for Setup {
                 .cost(Cost::Buffers)
                 .unrecorded(),
         ];
+        let files = [
+            Parameter::new("volume-file", field!(Setup.volume_files))
+                .help(
+                    "NRRD file (.nrrd, .nhdr) whose samples are densities: a volume in place of the scene's, in the box \
+                     of its first one as far as its own proportions let it; @X,Y,Z[,DEGREES[,SIDE]]: the middle of its \
+                     box's lower side in metres, its turn about the vertical, its box's longest side in metres; up to 8",
+                )
+                .cost(Cost::Buffers)
+                .everyday()
+                .excludes(&["volume", "density", "texture-scale"]),
+            Parameter::new("volume-range", field!(Setup.reading.range))
+                .placeholder("A,B")
+                .help(
+                    "Of files: values of density 0 and of density 1, between which it is linear and beyond which it is cut \
+                     off; `opaque` and `power` go on from there",
+                )
+                .default_text("0 and the file's largest value")
+                .cost(Cost::Buffers)
+                .everyday()
+                .requires("volume-file"),
+            Parameter::new("volume-unfit", field!(Setup.reading.unfit))
+                .help("Of files: what a value does that is no density, which NaN is, infinity, and without a range what is negative")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+            Parameter::new("volume-component", field!(Setup.reading.component))
+                .help("Of files with several values a sample: which of them is the density, from 0")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+            Parameter::new("volume-up", field!(Setup.reading.upright))
+                .help("Of files: their upright axis")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+        ];
+        let files = files.into_iter().map(|p| p.group("Gases"));
         let lights = [
             Parameter::new("light", field!(Setup.parallel_lights))
                 .help("Direction of light from infinity; takes the place of the scene's lights")
@@ -341,7 +425,7 @@ impl Study for Setup {
         let gases = volumes::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.gases, |s| &mut s.gases));
         let numbers =
             Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
-        objects.into_iter().chain(gases).chain(numbers).chain(lights).collect()
+        objects.into_iter().chain(files).chain(gases).chain(numbers).chain(lights).collect()
     }
 
     fn options() -> Vec<Parameter<Options>> {

@@ -30,17 +30,17 @@ impl VolumeMarch {
         shadow_sums: Option<&Arc<Buffer>>,
     ) -> Result<Self, Error> {
         let sections = context.storage::<SectionBlock>("sections", lists.capacity.sections.into())?;
-        let shader = match variant {
-            Variant::NoVolume | Variant::None | Variant::Surfaces => "gas/volume-none.comp",
-            Variant::Traced => "gas/volume-traced.comp",
-            Variant::Table => "gas/volume-table.comp",
+        let shadows = match variant {
+            Variant::NoVolume | Variant::None | Variant::Surfaces => "none",
+            Variant::Traced => "traced",
+            Variant::Table => "table",
         };
-        let mut pass = Pass::compute("volume", "Volume rendering", shader)
+        let shader = format!("gas/volume-{shadows}-{}.comp", context.parameters.density_shader());
+        let mut pass = Pass::compute("volume", "Volume rendering", &shader)
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Lights", &scene.lights)
-            .with("Offsets", &scene.offsets)
             .with("Jitter", &scene.jitter)
             .with("Heads", &lists.heads)
             .with("Links", &lists.links)
@@ -49,6 +49,7 @@ impl VolumeMarch {
             .with("Progress", &lists.progress.states)
             .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>();
+        pass = scene.densities(pass);
         if let Some(sums) = shadow_sums {
             pass = pass.with("ShadowTables", sums);
         }

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 use super::program::{
-    ONCE, Program, assert_schema, burning, caustics, entries, file, folder, fumarole, lava, read_json, terrain,
+    ONCE, Program, assert_schema, burning, caustics, entries, file, folder, fumarole, gas, lava, read_json, terrain,
 };
 
 /// Retitles the terminal, clears it, and turns the text about.
@@ -86,13 +86,15 @@ impl Concat for [&OsStr] {
 type Reader = (fn() -> Program, &'static str);
 
 /// Every option that reads a file.
-fn readers() -> [Reader; 8] {
+fn readers() -> [Reader; 10] {
     [
         (|| caustics("render --mesh"), "obj"),
         (|| caustics("render --mesh"), "gltf"),
         (|| terrain("render --map"), "asc"),
         (|| terrain("render --map"), "png"),
         (|| terrain("render --drape"), "png"),
+        (|| gas("render --volume-file"), "nrrd"),
+        (|| gas("render --volume-file"), "nhdr"),
         (|| lava("render --rock"), "png"),
         (|| burning("render --mesh box --texture"), "png"),
         (|| fumarole("compare"), "json"),

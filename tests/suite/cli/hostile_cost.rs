@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
-use super::program::{Program, burning, caustics, folder, fumarole, terrain};
+use super::program::{Program, burning, caustics, folder, fumarole, gas, terrain};
 use crate::common::beside_others;
 
 /// A program that is refused `bytes` under `name`, within the rule.
@@ -86,6 +86,26 @@ fn headers_that_promise() {
                   property uchar z\nelement face 9000000\nproperty list uchar uchar vertex_indices\nend_header\n";
     refused(mesh, "empty.ply", &[header.as_bytes(), &[0; 9_000_003]].concat(), &["leaves them empty"]);
     refused(|| terrain("render --map"), "grid.asc", b"ncols 16384\nnrows 16384\n1 2 3", &["cut off"]);
+}
+
+#[test]
+fn volumes_that_promise() {
+    let volume = || gas("render --volume-file");
+    let header = |sizes: &str, more: &str| {
+        format!("NRRD0004\ntype: double\ndimension: 3\nsizes: {sizes}\nendian: little\nencoding: raw\n{more}\n")
+    };
+    refused(volume, "large.nrrd", header("60000 60000 60000", "").as_bytes(), &["more than a file has"]);
+    refused(volume, "cut.nrrd", header("1000 1000 100", "").as_bytes(), &["cut off"]);
+    let lines = [header("2 2 2", "line skip: 18446744073709551615\n").as_bytes(), &vec![b'\n'; 30_000_000]].concat();
+    refused(volume, "lines.nrrd", &lines, &["lines to skip"]);
+    let long = format!("NRRD0004\n{}", "a".repeat(20_000_000));
+    refused(volume, "long.nrrd", long.as_bytes(), &["1 MiB"]);
+    let keys = format!("NRRD0004\n{}", (0..90_000).map(|i| format!("k{i}: 1\n")).collect::<String>());
+    refused(volume, "keys.nrrd", keys.as_bytes(), &["no field dimension"]);
+    let samples = [header("200 200 100", "").into_bytes(), f64::NAN.to_le_bytes().repeat(4_000_000)].concat();
+    refused(volume, "nan.nrrd", &samples, &["sample (0, 0, 0) is NaN", "volume-unfit"]);
+    let samples = [header("200 200 100", "").into_bytes(), (-1_f64).to_le_bytes().repeat(4_000_000)].concat();
+    refused(volume, "negative.nrrd", &samples, &["sample (0, 0, 0) is -1", "volume-range"]);
 }
 
 /// A grey PNG of zeros without its end.

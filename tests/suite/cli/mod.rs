@@ -14,6 +14,7 @@ mod devices;
 mod dumps;
 mod experiment;
 mod gas;
+mod gas_volumes;
 mod hostile;
 mod hostile_cost;
 mod interruption;

@@ -60,7 +60,7 @@ pub fn gases() -> Vec<Volume> {
 }
 
 /// Differences of every pixel's colour from the oracle's, over the background.
-fn differences(drawing: &Drawing, parameters: &Parameters, is_shadowed: bool, sampling: Sampling) -> Vec<DVec3> {
+pub fn differences(drawing: &Drawing, parameters: &Parameters, is_shadowed: bool, sampling: Sampling) -> Vec<DVec3> {
     let rays = Rays::new(parameters, FRAME);
     let mut seen = 0.0;
     let difference = |pixel: u32| {
@@ -73,7 +73,7 @@ fn differences(drawing: &Drawing, parameters: &Parameters, is_shadowed: bool, sa
     differences
 }
 
-fn worst(differences: &[DVec3]) -> f64 {
+pub fn worst(differences: &[DVec3]) -> f64 {
     differences.iter().map(|d| d.abs().max_element()).fold(0.0, f64::max)
 }
 

@@ -2,6 +2,7 @@
 
 mod density;
 mod drawing;
+mod files;
 mod lists;
 mod long;
 mod march;

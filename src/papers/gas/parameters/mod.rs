@@ -2,12 +2,16 @@
 
 mod lists;
 pub mod placed_object;
+pub mod volume_file;
 pub mod volumes;
+
+use std::sync::Arc;
 
 use glam::Vec3;
 
 pub use lists::Lists;
 
+use super::grid::{Filter, Grid};
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
 use crate::field;
 use crate::measure::parameter::{self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Size};
@@ -73,6 +77,10 @@ pub const MAX_LIGHTS: usize = 4;
 pub struct Parameters {
     /// 0 to 8.
     pub volumes: Vec<Volume>,
+    /// Those of files, which the volumes take their densities from.
+    pub grids: Vec<Arc<Grid>>,
+    /// Interpolation between their samples.
+    pub filter: Filter,
     /// 1 to 4.
     pub lights: Vec<Light>,
     /// Light from all around, which also stands for higher orders of scattering in gases of high albedo; linear RGB, 0
@@ -120,6 +128,8 @@ impl Default for Parameters {
     fn default() -> Self {
         Parameters {
             volumes: vec![default_volume()],
+            grids: Vec::new(),
+            filter: Filter::Trilinear,
             lights: vec![default_light()],
             ambient: Vec3::splat(0.1),
             background: Vec3::ZERO,
@@ -197,6 +207,27 @@ impl Parameters {
         scales.take_while(|&scale| scale > self.pixel_size).count() as u32
     }
 
+    /// The grid of each volume, where they are of files.
+    pub fn volume_grids(&self) -> Option<Vec<Arc<Grid>>> {
+        let grid = |volume: &Volume| match volume.texture.function {
+            DensityFunction::Grid(index) => {
+                Some(self.grids.get(index).cloned().unwrap_or_else(|| Arc::new(Grid::empty())))
+            }
+            _ => None,
+        };
+        let grids: Vec<_> = self.volumes.iter().filter_map(grid).collect();
+        (!grids.is_empty()).then_some(grids)
+    }
+
+    /// The shaders' name of what the volumes' densities are taken from.
+    pub(super) fn density_shader(&self) -> &'static str {
+        match self.filter {
+            _ if self.volume_grids().is_none() => "functions",
+            Filter::Trilinear => "trilinear",
+            Filter::Tricubic => "tricubic",
+        }
+    }
+
     /// Mixes the seed into the 32 bits that the lattice's hash takes.
     pub fn noise_seed(&self) -> u32 {
         (self.seed ^ (self.seed >> 32)) as u32
@@ -212,6 +243,11 @@ impl Parameters {
                 .default_text("the scene's, 40")
                 .cost(Cost::Buffers)
                 .everyday(),
+            Parameter::new("volume-filter", field!(Parameters.filter))
+                .group("Gases")
+                .help("Of files: interpolation between samples")
+                .cost(Cost::Pipelines)
+                .requires("volume-file"),
             Parameter::new("samples", field!(Parameters.samples))
                 .range(Range::from(1.0).to(64.0))
                 .help("Samples in each increment along the viewer's ray, each of its own part; the paper's is one")
@@ -293,6 +329,9 @@ impl Parameters {
         parameter::check(&Self::declared(), self)?;
         let volumes = self.volumes.len();
         ParameterError::check(volumes <= MAX_VOLUMES, "volume", volumes, "a scene has at most 8 volumes")?;
+        let grids = self.volumes.iter().filter(|v| matches!(v.texture.function, DensityFunction::Grid(_))).count();
+        let are_alike = grids == 0 || grids == volumes;
+        ParameterError::check(are_alike, "volume", volumes, "are all of files or all of functions")?;
         let lights = self.lights.len();
         ParameterError::check((1..=MAX_LIGHTS).contains(&lights), "light", lights, "a scene has 1 to 4 lights")?;
         volumes::check(&self.volumes)?;

@@ -153,6 +153,16 @@ macro_rules! number {
     };
 }
 
+/// Grids are given by their files.
+fn function(volume: &mut Volume) -> Option<&mut DensityFunction> {
+    Some(&mut volume.texture.function).filter(|function| !matches!(function, DensityFunction::Grid(_)))
+}
+
+fn scale(volume: &mut Volume) -> Option<&mut f32> {
+    let is_function = function(volume).is_some();
+    is_function.then_some(&mut volume.texture.scale_per_m)
+}
+
 fn clouds(volume: &mut Volume) -> Option<&mut f32> {
     match &mut volume.texture.function {
         DensityFunction::Clouds { frequency } => Some(frequency),
@@ -216,7 +226,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
     let scene = "the scene's";
     let figure = "the figure's";
     let parameters = vec![
-        Parameter::new("density", number!(|v| Some(&mut v.texture.function)))
+        Parameter::new("density", number!(function))
             .help("Density function of all volumes")
             .default_text(scene)
             .everyday(),
@@ -228,7 +238,7 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
             .range(Range::above(0.0).to(100.0))
             .help("Exponent of all volumes' density")
             .default_text(scene),
-        Parameter::new("texture-scale", number!(|v| Some(&mut v.texture.scale_per_m)))
+        Parameter::new("texture-scale", number!(scale))
             .range(Range::from(1e-4).to(1e4))
             .unit("texture units a metre")
             .help("Scale of all volumes' solid texture")
@@ -353,6 +363,7 @@ pub fn check_used(given: &Given, volumes: &Vec<Volume>) -> Result<(), Error> {
         "down" | "swirl-frames" | "ellipse" => "fog or steam: give `density` fog or steam",
         "full-fog" | "front" => "fog: give `density` fog",
         "hypertexture" => "hypertexture: give `density` hypertexture",
+        "density" | "texture-scale" if !volumes.is_empty() => "density functions: leave out `volume-file`",
         _ => "volume: give `volume`",
     };
     Err(Error::Input(format!("`{name}`: the scene has no {missing}")))

@@ -1,11 +1,14 @@
 //! Densities at points of the world, in double precision, from the text's functions.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::grid;
 use super::noise::{noise, turbulence};
 use crate::papers::gas::blocks::{OFFSET_SIZE, offsets};
+use crate::papers::gas::grid::{Filter, Grid};
 use crate::papers::gas::model::{DensityFunction, Shape, SolidTexture, Swirl, Volume};
 use crate::papers::gas::parameters::Parameters;
 
@@ -15,6 +18,8 @@ pub struct Medium {
     offsets: [f32; OFFSET_SIZE],
     pixel_size: f64,
     frame: f64,
+    grids: Vec<Arc<Grid>>,
+    filter: Filter,
 }
 
 impl Medium {
@@ -25,6 +30,8 @@ impl Medium {
             offsets: offsets(parameters.seed),
             pixel_size: f64::from(parameters.pixel_size),
             frame: f64::from(number),
+            grids: parameters.grids.clone(),
+            filter: parameters.filter,
         }
     }
 
@@ -91,6 +98,10 @@ impl Medium {
                 let point = p + DVec3::splat(self.turbulence(p)) + DVec3::new(x, -fallen, z);
                 let height = (world.y - (center.y - half.y)) / (2.0 * half.y);
                 (self.turbulence(point) * opaque).powf(power) * (1.0 - height).clamp(0.0, 1.0)
+            }
+            DensityFunction::Grid(index) => {
+                let value = |grid: &Arc<Grid>| grid::value(grid, self.filter, world - center).clamp(0.0, 1.0);
+                (self.grids.get(index).map_or(0.0, value) * opaque).powf(power)
             }
             DensityFunction::Hypertexture { amplitude, softness } => {
                 let radius = ((world - center) / half).length() * (1.0 + f64::from(amplitude) * self.turbulence(p));

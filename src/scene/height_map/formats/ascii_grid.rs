@@ -1,6 +1,6 @@
-use super::binary::allocate;
 use super::placement::{MapCoordinates, Unit};
 use crate::scene::HeightMap;
+use crate::scene::binary::allocate;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;

@@ -1,5 +1,5 @@
-use super::binary::{ByteOrder, Rows};
 use crate::scene::HeightMap;
+use crate::scene::binary::{ByteOrder, Rows};
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::Geographic;
 use crate::scene::height_map::grid::{Grid, Placement};

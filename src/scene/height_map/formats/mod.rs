@@ -2,7 +2,6 @@
 //! allocates; it gives a valid map or names the field that is wrong.
 
 mod ascii_grid;
-mod binary;
 mod esri;
 mod geotiff;
 mod hgt;

@@ -1,5 +1,5 @@
+use crate::scene::binary::ByteOrder;
 use crate::scene::error::{Fault, Place};
-use crate::scene::height_map::formats::binary::ByteOrder;
 use glam::DVec2;
 use std::collections::HashMap;
 use std::str::FromStr;

@@ -1,8 +1,8 @@
 mod header;
 
-use super::binary::{Rows, skip};
 use super::placement::{self, MapCoordinates, Unit};
 use super::{malformed, read_text};
+use crate::scene::binary::{Rows, skip};
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;

@@ -1,0 +1,47 @@
+//! What a volume is read from.
+
+use std::path::{Path, PathBuf};
+
+use super::{VoxelGrid, nrrd};
+use crate::file;
+use crate::scene::Error;
+use crate::scene::error::{Asset, Fault};
+
+const KNOWN_ENDINGS: &str = ".nrrd, .nhdr";
+
+/// Reads a volume, told apart by the file's ending; of samples of several values the component of that number, from 0.
+///
+/// # Errors
+/// A file that cannot be read, of an unknown format, or malformed, with the field that is wrong.
+pub fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
+    match ending(path).as_str() {
+        "nrrd" | "nhdr" => nrrd::load(path, component),
+        ending => {
+            let (path, ending, known) = (path.to_owned(), ending.to_owned(), KNOWN_ENDINGS.to_owned());
+            Err(Error::UnknownEnding { path, asset: Asset::Volume, ending, known })
+        }
+    }
+}
+
+/// The files that are read with one: the samples that its header names.
+pub fn companions(path: &Path) -> Vec<PathBuf> {
+    let found = match ending(path).as_str() {
+        "nrrd" | "nhdr" => nrrd::data_path(path),
+        _ => Ok(None),
+    };
+    found.ok().flatten().into_iter().collect()
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+pub(super) fn malformed(path: &Path, fault: Fault) -> Error {
+    Error::Malformed { path: path.to_owned(), asset: Asset::Volume, fault }
+}
+
+/// The file of the samples that a header names, in the header's folder or below.
+pub(super) fn beside(header: &Path, name: &str) -> Result<PathBuf, Error> {
+    let folder = header.parent().unwrap_or(Path::new(""));
+    file::below(folder, Path::new(name)).map_err(|source| Error::Read { path: folder.join(name), source })
+}

@@ -1,0 +1,131 @@
+//! `gas --volume-file` through the binary: where the samples are seen, the record, and what is refused.
+
+use std::path::{Path, PathBuf};
+
+use fumarole::image::read_png;
+
+use super::program::{ONCE, Program, assert_schema, file, folder, gas, read_json, sha256};
+
+const SMALL: &str = "--size 45x31 --steps 12 --table 8 --camera 0,1.5,6,0,1.5,0 --tau 20";
+
+fn small(verb: &str, volume: &Path, place: &str) -> Program {
+    let mut value = volume.as_os_str().to_owned();
+    value.push(place);
+    gas(verb).args(SMALL).on_test_device().arg("--volume-file").arg(value)
+}
+
+/// A grid of 6 x 6 x 6 floats, of which the half that is low in x is 1, as far as it is high in y and z.
+fn corner(folder: &tempfile::TempDir, name: &str, fields: &str, other: f32) -> PathBuf {
+    let header =
+        format!("NRRD0004\ntype: float\ndimension: 3\nsizes: 6 6 6\nendian: little\nencoding: raw\n{fields}\n");
+    let is_in = |i: usize| i % 6 < 3 && i / 6 % 6 >= 3 && i / 36 >= 3;
+    let samples = (0..216).flat_map(|i| if is_in(i) { 1.0_f32 } else { other }.to_le_bytes());
+    file(folder, name, header.into_bytes().into_iter().chain(samples).collect::<Vec<u8>>())
+}
+
+/// Column and row of the middle of what the volume changes, over the picture's size.
+fn middle(folder: &Path, program: Program, plain: &Path) -> [f64; 2] {
+    let path = folder.join("volume.png");
+    program.args("--quiet --variant none --image").arg(&path).run().succeeded();
+    let [drawn, plain] = [&path, plain].map(|path| read_png(path).unwrap());
+    let (mut sum, mut place) = (0.0, [0.0; 2]);
+    for (i, (a, b)) in drawn.pixels().chunks_exact(4).zip(plain.pixels().chunks_exact(4)).enumerate() {
+        let change = f64::from(a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap());
+        sum += change;
+        place[0] += change * ((i % 45) as f64 + 0.5) / 45.0;
+        place[1] += change * ((i / 45) as f64 + 0.5) / 31.0;
+    }
+    assert!(sum > 1000.0, "the volume is not seen: {sum}");
+    place.map(|p| p / sum)
+}
+
+#[test]
+fn directions_of_a_file_are_those_of_the_picture() {
+    let out = folder();
+    let plain = out.path().join("plain.png");
+    gas("render --quiet --variant no-volume --image").arg(&plain).args(SMALL).on_test_device().run().succeeded();
+    let place = "@0,0.5,0,0,2";
+    let plain_file = corner(&out, "plain.nrrd", "", 0.0);
+    let seen = |path: &Path, place: &str, options: &str| {
+        middle(out.path(), small("render", path, place).args(options), &plain)
+    };
+    // Without directions low x is left, and high z is up.
+    let [column, row] = seen(&plain_file, place, "");
+    assert!(column < 0.47 && row < 0.45, "{column} {row}");
+    // A turn by 180 degrees.
+    let [turned, same] = seen(&plain_file, "@0,0.5,0,180,2", "");
+    assert!(turned > 0.53 && (same - row).abs() < 0.05, "{turned} {same}");
+    // With y up, high y is.
+    let [_, upright] = seen(&plain_file, place, "--volume-up y");
+    assert!(upright < 0.45, "{upright}");
+    // A patient who faces us has the right, which is high x here, to our left, so that low x is to our right.
+    let patient = corner(&out, "patient.nrrd", "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n", 0.0);
+    let [column, row] = seen(&patient, place, "");
+    assert!(column > 0.53 && row < 0.45, "{column} {row}");
+    // Samples that go down.
+    let down = corner(&out, "down.nrrd", "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,-1)\n", 0.0);
+    let [column, row] = seen(&down, place, "--volume-filter tricubic");
+    assert!(column < 0.47 && row > 0.55, "{column} {row}");
+}
+
+#[test]
+fn a_file_is_recorded_and_fills_every_variant() {
+    let out = folder();
+    let path = corner(&out, "a.nrrd", "", 0.0);
+    let json = out.path().join("a.json");
+    let program = gas("bench --quiet --variant all --json").arg(&json).args(SMALL).on_test_device();
+    program.arg("--volume-file").arg(&path).arg("--volume-file").arg(&path).args(ONCE).run().succeeded();
+    let record = read_json(&json);
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    assert_eq!(runs.len(), 5);
+    for run in runs {
+        assert_eq!(run["config"]["volume_file"][0], path.to_str().unwrap());
+        assert_eq!(run["config"]["volume_filter"], "trilinear");
+        assert_eq!(run["config"]["volumes"].as_array().unwrap().len(), 2);
+        // Of the steam's frustum: 1.5 x 2.1 x 1.5 m from 0.85 m on.
+        assert_eq!(run["config"]["volumes"][0]["half_extent"], serde_json::json!([0.75, 0.75, 0.75]));
+        assert_eq!(run["inputs"][0]["sha256"], sha256(&path).as_str());
+        let names: Vec<_> = run["memory"]["by_resource"].as_array().unwrap().iter().map(|r| &r["name"]).collect();
+        assert!(names.iter().any(|name| *name == "grid-samples"), "{names:?}");
+    }
+}
+
+#[test]
+fn files_and_values_that_cannot_be_are_refused() {
+    let out = folder();
+    let good = corner(&out, "good.nrrd", "", 0.0);
+    let nan = corner(&out, "nan.nrrd", "", f32::NAN);
+    let negative = corner(&out, "negative.nrrd", "", -1.0);
+    let zero = corner(&out, "zero.nrrd", "", 1.0);
+    for (path, options, parts) in [
+        (&nan, "", &["nan.nrrd", "sample (0, 0, 0) is NaN", "--volume-unfit clamp"][..]),
+        (&nan, "--volume-range 0,1", &["sample (0, 0, 0) is NaN"]),
+        (&negative, "", &["negative.nrrd", "sample (0, 0, 0) is -1, below density 0", "--volume-range"]),
+        (&good, "--volume-range 2,2", &["has no width"]),
+        (&good, "--volume-component 1", &["no component 1"]),
+        (&good, "--preset fig-4 --frequency 2", &["--frequency"]),
+    ] {
+        small("render --image never.png", path, "").args(options).run().refused(2, parts);
+    }
+    small("render --image never.png", Path::new("no-such.nrrd"), "")
+        .run()
+        .refused(2, &["no-such.nrrd", "No such file"]);
+    small("render --image never.png", Path::new("a.xyz"), "").run().refused(2, &["unknown file ending", ".nrrd"]);
+    small("render --image never.png", &good, "@0,0,0,0,0").run().misused(&["longest side"]);
+    small("render --image never.png", &good, "@0,0,0,0,1e30").run().refused(2, &["half extents"]);
+    for options in ["--density fog", "--texture-scale 2", "--volume box,0,0,0,1,1,1"] {
+        small("render --image never.png", &good, "").args(options).run().misused(&["--volume-file"]);
+    }
+    for options in ["--volume-range 0,1", "--volume-filter tricubic", "--volume-unfit clamp", "--volume-up y"] {
+        gas("render --image never.png").args(options).run().misused(&["--volume-file"]);
+    }
+    for (path, options) in [
+        (&nan, "--volume-unfit clamp"),
+        (&negative, "--volume-unfit clamp"),
+        (&negative, "--volume-range -1,1"),
+        (&zero, "--volume-range 3,0 --opaque 2 --power 2 --falloff 0.5"),
+    ] {
+        small("render --quiet --image seen.png", path, "").args(options).inside(out.path()).run().succeeded();
+    }
+}
