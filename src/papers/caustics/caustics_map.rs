@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::coverage::Coverage;
 use super::culled_map::CulledMap;
+use super::hit_map::HitMap;
 use super::illumination_volumes::IlluminationVolumes;
 use super::intersections::{Intersections, Scope};
 use super::planes::Cell;
@@ -11,7 +12,7 @@ use super::receiver::LitReceiver;
 use super::resources::{BLACK, CAUSTICS, Context};
 use super::shadow_map::ShadowMap;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Blend, Error, Frame, ImageView};
+use crate::gpu::{Blend, Buffer, Error, Frame, ImageView};
 
 /// The pass.
 pub struct CausticsMap {
@@ -31,6 +32,8 @@ enum Drawing {
     },
     /// Those alone that may light it.
     Culled(Box<CulledMap>),
+    /// Each where its light lands.
+    Hit(Box<HitMap>),
 }
 
 impl CausticsMap {
@@ -73,11 +76,37 @@ impl CausticsMap {
         Ok(CausticsMap { drawing: Drawing::Culled(Box::new(culled)), coverage, map })
     }
 
+    /// That of the variant `hit`, which has no samples that a coverage could multiply.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn hit(
+        context: Context<'_>,
+        lit: &LitReceiver,
+        volumes: &IlluminationVolumes,
+        water: &WaterSurface,
+        position_map: &Arc<ImageView>,
+        shadows: Option<&ShadowMap>,
+    ) -> Result<Self, Error> {
+        let map = context.map("caustics-map", CAUSTICS)?;
+        let scope = Scope { context, volumes, water, position_map: Some(position_map), shadows };
+        let hit = HitMap::new(scope, lit, position_map, &map)?;
+        Ok(CausticsMap { drawing: Drawing::Hit(Box::new(hit)), coverage: None, map })
+    }
+
+    /// Where the rays of the water's vertices land, in the variant `hit`.
+    pub fn landings(&self) -> Option<&Arc<Buffer>> {
+        match &self.drawing {
+            Drawing::Hit(hit) => Some(&hit.landings),
+            Drawing::All { .. } | Drawing::Culled(_) => None,
+        }
+    }
+
     /// The triangles with nothing shaded, where all of them are drawn.
     pub fn floor(&self) -> Option<&Intersections> {
         match &self.drawing {
             Drawing::All { floor, .. } => Some(floor),
-            Drawing::Culled(_) => None,
+            Drawing::Culled(_) | Drawing::Hit(_) => None,
         }
     }
 
@@ -95,6 +124,7 @@ impl CausticsMap {
         match &self.drawing {
             Drawing::All { intersections, .. } => intersections.record(frame, lit, planes, volumes)?,
             Drawing::Culled(culled) => culled.record(frame, lit.absorption_per_m)?,
+            Drawing::Hit(hit) => hit.record(frame, lit.absorption_per_m)?,
         }
         self.coverage.as_ref().map_or(Ok(()), |coverage| coverage.record(frame))
     }

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::intersections::{OptionConstants, Options, Scope};
 use super::planes;
+use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
 use super::resources::BLACK;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Pass};
@@ -25,15 +26,6 @@ host_block! {
         lower: f32,
         upper: f32,
         _pad: f32,
-    }
-}
-
-host_block! {
-    struct LevelConstants {
-        from: u32,
-        from_size: u32,
-        to: u32,
-        to_size: u32,
     }
 }
 
@@ -66,8 +58,7 @@ host_block! {
 
 /// Passes of one receiver under one light.
 pub struct CulledMap {
-    levels: Vec<LevelConstants>,
-    position_pyramid: Pass,
+    position_pyramid: PositionPyramid,
     cull_bounds: Pass,
     cull: Pass,
     cull_count: Pass,
@@ -104,8 +95,7 @@ impl CulledMap {
         let cells =
             context.upload("plane-cells", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::cast_slice(&cells))?;
 
-        let levels = pyramid_levels(context.parameters.map_size);
-        let entries = levels.iter().map(|level| u64::from(level.to_size).pow(2)).sum::<u64>();
+        let position_pyramid = PositionPyramid::new(context, position_map)?;
         let triangles = water.grid.triangle_count();
         let words = triangles.div_ceil(WORD);
         let all_words = u64::from(words) * uniform.len() as u64;
@@ -124,7 +114,6 @@ impl CulledMap {
                 .map_err(|error| error.set_by("planes"))
         };
         let none = vk::BufferUsageFlags::empty();
-        let pyramid = buffer("position-pyramid", 8 * entries, none)?;
         let bounds = buffer("culled-bounds", 32 * u64::from(words), none)?;
         let kept = buffer("culled-kept", 4 * all_words, none)?;
         let before = buffer("culled-before", 4 * all_words, none)?;
@@ -163,12 +152,6 @@ impl CulledMap {
             caustics_map = caustics_map.with("shadow_map", &shadows.map);
         }
         Ok(CulledMap {
-            position_pyramid: Pass::compute("position-pyramid", "6.1", "caustics/position-pyramid.comp")
-                .constants::<LevelConstants>()
-                .with("position_map", position_map)
-                .with("nearest", context.nearest)
-                .with("pyramid", &pyramid)
-                .build(shaders)?,
             cull_bounds: kernel("cull-bounds", "caustics/cull-bounds.comp")
                 .with("rays", &volumes.rays)
                 .with("indices", &water.indices)
@@ -178,7 +161,7 @@ impl CulledMap {
                 .with("rays", &volumes.rays)
                 .with("indices", &water.indices)
                 .with("bounds", &bounds)
-                .with("pyramid", &pyramid)
+                .with("pyramid", &position_pyramid.heights)
                 .with("cells", &cells)
                 .with("kept", &kept)
                 .build(shaders)?,
@@ -205,7 +188,7 @@ impl CulledMap {
                 first_height: uniform.first().map_or(0.0, height),
                 last_height: uniform.last().map_or(0.0, height),
                 map_size: context.parameters.map_size,
-                levels: levels.len() as u32,
+                levels: position_pyramid.level_count(),
                 triangles,
                 words,
                 planes: uniform.len() as u32,
@@ -221,7 +204,7 @@ impl CulledMap {
                 vertices,
             },
             options: options.map(|options| options.of_receiver(lit, volumes)),
-            levels,
+            position_pyramid,
         })
     }
 
@@ -230,11 +213,7 @@ impl CulledMap {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
-        for level in &self.levels {
-            frame.compute(&self.position_pyramid, |dispatch| {
-                dispatch.constants(level).threads(level.to_size, level.to_size, 1);
-            })?;
-        }
+        self.position_pyramid.record(frame)?;
         let CullConstants { words, planes, blocks, .. } = self.constants;
         let steps = [
             (&self.cull_bounds, [words, 1]),
@@ -256,18 +235,4 @@ impl CulledMap {
             .indices_indirect();
         })
     }
-}
-
-/// The levels of the pyramid over a map, the finest first, down to one entry.
-fn pyramid_levels(map_size: u32) -> Vec<LevelConstants> {
-    let mut levels = vec![LevelConstants { from: 0, from_size: map_size, to: 0, to_size: map_size }];
-    while let Some(&LevelConstants { to, to_size, .. }) = levels.last().filter(|level| level.to_size > 1) {
-        levels.push(LevelConstants {
-            from: to,
-            from_size: to_size,
-            to: to + to_size * to_size,
-            to_size: to_size.div_ceil(2),
-        });
-    }
-    levels
 }

@@ -1,9 +1,11 @@
 //! Sizes that follow from the parameters and the receivers.
 
+use super::bounding_box::{Axes, ReceiverBox};
 use super::parameters::{Parameters, Variant};
 use super::receiver::ReceiverInput;
-use super::water::cells;
+use super::water::{Grid, cells};
 use crate::measure::estimate::Estimate;
+use crate::scene::{Bounds, Light};
 
 /// Bytes of a number, and of a texel of light.
 const NUMBER: f64 = 4.0;
@@ -21,7 +23,10 @@ impl Parameters {
         let (vertices, triangles) = (vertices as f64, triangles as f64);
         let lights = self.lights.len() as f64;
         let lit = if variant == Variant::Stencil { 0.0 } else { lights * receivers.len() as f64 };
-        let (columns, rows) = cells(self.water_triangles);
+        let (columns, rows) = match variant {
+            Variant::Hit => self.refined_cells(receivers),
+            _ => cells(self.water_triangles),
+        };
         let water_vertices = (f64::from(columns) + 1.0) * (f64::from(rows) + 1.0);
         let water_triangles = 2.0 * f64::from(columns) * f64::from(rows);
         let pixels = f64::from(self.width) * f64::from(self.height);
@@ -37,6 +42,7 @@ impl Parameters {
         // What lies on every plane follows the planes and its own size: a refusal names both.
         let by_planes = match variant {
             Variant::Volumetric => "map-size` or `planes",
+            Variant::Hit => "water-triangles",
             _ => "water-triangles` or `planes",
         };
         let (of_map, of_planes, of_pixel) = match variant {
@@ -48,23 +54,36 @@ impl Parameters {
                 planes * water_triangles * (3.0 * NUMBER + 2.0 / 8.0) + water_triangles,
                 NUMBER + LIGHT + NUMBER,
             ),
+            // The pyramid, and two words of light a texel; where the water's vertices land, and which triangles straddle.
+            Variant::Hit => (
+                maps + 2.0 * NUMBER * texels * 7.0 / 3.0,
+                4.0 * NUMBER * water_vertices + NUMBER * water_triangles,
+                NUMBER + LIGHT + NUMBER,
+            ),
             Variant::Volumetric => ((3.0 * NUMBER + LIGHT) * texels, LIGHT * texels * planes, NUMBER + LIGHT + NUMBER),
             // Positions, normals and albedo of what is seen, and stencils beside the depth.
             Variant::Stencil => (0.0, 0.0, 2.0 * NUMBER + LIGHT + NUMBER + 4.0 * NUMBER + 2.0 * LIGHT),
         };
-        let drawn = if self.coverage > 1 { NUMBER * texels * coverage } else { 0.0 };
+        let drawn = if self.coverage > 1 && variant != Variant::Hit { NUMBER * texels * coverage } else { 0.0 };
         let shadow_maps = if self.shadows { lights.min(lit) * 3.0 * NUMBER * texels } else { 0.0 };
 
         let draws = match variant {
-            Variant::Culled | Variant::Stencil => lit,
+            Variant::Culled | Variant::Hit | Variant::Stencil => lit,
             _ => lit * planes,
         };
         let passes = if variant == Variant::Volumetric { 2.0 * lit * planes } else { 0.0 };
-        let pairs = water_triangles * if variant == Variant::Stencil { 4.0 * lights } else { lit * planes };
+        let pairs = water_triangles
+            * match variant {
+                Variant::Stencil => 4.0 * lights,
+                Variant::Hit => lit,
+                _ => lit * planes,
+            };
         // Triangles that lie over one another fold the light some times; the sides of the volumes cross many pixels.
         let shaded = match variant {
             Variant::Stencil => 0.05 * water_triangles * lights * pixels,
             Variant::Volumetric => lit * texels * planes * (8.0 + 2.0 * coverage),
+            // The water's triangles cover the map some times, and a ray takes some steps.
+            Variant::Hit => lit * (texels * 16.0 + water_vertices * 32.0),
             _ => lit * texels * (8.0 + 2.0 * planes * coverage),
         };
         Estimate {
@@ -88,5 +107,20 @@ impl Parameters {
                 ("mesh", VERTEX * vertices * lit.max(1.0)),
             ],
         }
+    }
+
+    /// Cells along x and z of the water that the variant `hit` refines.
+    fn refined_cells(&self, receivers: &[ReceiverInput]) -> (u32, u32) {
+        let points = receivers.iter().flat_map(|r| r.mesh.positions.iter().copied());
+        let center = Bounds::of_points(points).center().as_dvec3();
+        let index = f64::from(self.refraction_index);
+        let of_light = |light: &Light| {
+            let axes = Axes::aligned_with(light, center, index);
+            let around = move |r: &ReceiverInput| ReceiverBox::around(axes, &r.mesh.positions);
+            receivers.iter().map(around).zip(std::iter::repeat(*light)).collect::<Vec<_>>()
+        };
+        let boxes: Vec<_> = self.lights.iter().flat_map(of_light).collect();
+        let Grid { columns, rows, .. } = Grid::over(&boxes, self).refined(&boxes, self);
+        (columns, rows)
     }
 }

@@ -9,6 +9,7 @@ use super::combine::Combine;
 use super::depth_profile::DepthProfile;
 use super::diffuse_map::DiffuseMap;
 use super::illumination_volumes::IlluminationVolumes;
+use super::parameters::Variant;
 use super::position_diffuse_map::PositionDiffuseMap;
 use super::position_map::PositionMap;
 use super::read_positions::ReadPositions;
@@ -20,7 +21,7 @@ use super::underwater::Underwater;
 use super::water_surface::WaterSurface;
 use crate::gpu::{Error, ImageView};
 
-/// Passes of the variants `level-map`, `level-map-smart` and `culled`.
+/// Passes of the variants `level-map`, `level-map-smart`, `culled` and `hit`.
 pub struct LevelMap {
     /// Shared by all receivers.
     pub slicing: Slicing,
@@ -31,7 +32,8 @@ pub struct LevelMap {
 /// First pass, by the way in which boxes are sliced.
 pub enum Slicing {
     Uniform(ReferencePlanes),
-    Smart(BoundingBox),
+    /// Later, by the depth profile, or not at all.
+    Boxes(BoundingBox),
 }
 
 /// Passes of one receiver under one light.
@@ -68,14 +70,17 @@ impl LevelMap {
     #[expect(clippy::too_many_arguments, reason = "everything that the passes are made of, named once")]
     pub fn new(
         context: Context<'_>,
-        slicing: Slicing,
-        is_culled: bool,
+        variant: Variant,
         lit_receivers: &[LitReceiver],
         water: &WaterSurface,
         volumes: &[IlluminationVolumes],
         shadow_maps: &[ShadowMap],
         underwater: &Underwater,
     ) -> Result<Self, Error> {
+        let slicing = match variant {
+            Variant::LevelMapSmart | Variant::Hit => Slicing::Boxes(BoundingBox::new()),
+            _ => Slicing::Uniform(ReferencePlanes::new(context.parameters)),
+        };
         let passes = |lit: &LitReceiver| {
             let volumes = &volumes[lit.light];
             let maps = if context.parameters.mrt {
@@ -85,18 +90,18 @@ impl LevelMap {
                 let diffuse_map = DiffuseMap::new(context, lit, &position_map.depth)?;
                 ReceiverMaps::TwoPasses(position_map, diffuse_map)
             };
-            let smart = match slicing {
-                Slicing::Uniform(_) => None,
-                Slicing::Smart(_) => Some(SmartSlicing {
+            let smart = match variant {
+                Variant::LevelMapSmart => Some(SmartSlicing {
                     read_positions: ReadPositions::new(context, maps.position())?,
                     depth_profile: DepthProfile::new(context.parameters),
                 }),
+                _ => None,
             };
             let shadows = shadow_maps.get(lit.light);
-            let caustics_map = if is_culled {
-                CausticsMap::culled(context, lit, volumes, water, maps.position(), shadows)?
-            } else {
-                CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?
+            let caustics_map = match variant {
+                Variant::Culled => CausticsMap::culled(context, lit, volumes, water, maps.position(), shadows)?,
+                Variant::Hit => CausticsMap::hit(context, lit, volumes, water, maps.position(), shadows)?,
+                _ => CausticsMap::new(context, volumes, water, Some(maps.position()), shadows)?,
             };
             let combine = Combine::new(context, volumes, &caustics_map.map, maps.diffuse())?;
             let cast = Cast::new(context, lit, &combine.map, maps.position(), underwater)?;

@@ -21,6 +21,7 @@ mod depth_profile;
 mod diffuse_map;
 mod estimate;
 pub mod experiments;
+mod hit_map;
 mod illumination_volumes;
 mod intersections;
 #[cfg(test)]
@@ -32,6 +33,7 @@ pub mod parameters;
 mod planes;
 mod position_diffuse_map;
 mod position_map;
+mod position_pyramid;
 mod read_positions;
 mod receiver;
 mod receivers;
@@ -56,13 +58,13 @@ use std::sync::Arc;
 use ash::vk;
 use glam::{DVec2, DVec3};
 
-use self::bounding_box::{Axes, BoundingBox};
+use self::bounding_box::Axes;
+use self::hit_map::LANDING_FLOATS;
 use self::illumination_volumes::{IlluminationVolumes, RAY_FLOATS};
 use self::intersections::Intersections;
-use self::level_map::{LevelMap, ReceiverMaps, Slicing, SmartSlicing};
+use self::level_map::{LevelMap, ReceiverMaps, ReceiverPasses, Slicing, SmartSlicing};
 use self::receiver::{LitReceiver, Receiver};
 use self::receivers::Receivers;
-use self::reference_planes::ReferencePlanes;
 use self::resources::{Context, DEPTH, DEPTH_STENCIL};
 use self::shadow_map::ShadowMap;
 use self::stencil_volumes::StencilVolumes;
@@ -93,6 +95,8 @@ const AVERAGED: u32 = 4;
 /// The paper under one variant.
 pub struct Caustics {
     parameters: Parameters,
+    /// The map's light is not sampled at texel centres.
+    is_hit: bool,
     water_surface: WaterSurface,
     /// One for each light.
     illumination_volumes: Vec<IlluminationVolumes>,
@@ -143,7 +147,11 @@ impl Caustics {
             .collect();
         let boxes: Vec<_> = lit_receivers.iter().map(|lit| (lit.aligned, parameters.lights[lit.light])).collect();
         let middle = DVec2::new(center.x, center.z);
-        let water_surface = WaterSurface::new(context, Grid::over(&boxes, parameters), middle)?;
+        let mut grid = Grid::over(&boxes, parameters);
+        if variant == Variant::Hit {
+            grid = grid.refined(&boxes, parameters);
+        }
+        let water_surface = WaterSurface::new(context, grid, middle)?;
         let lights = parameters.lights.iter().zip(axes);
         let illumination_volumes = lights
             .map(|(light, axes)| IlluminationVolumes::new(context, &water_surface, light, axes))
@@ -157,24 +165,9 @@ impl Caustics {
         let shadow_maps = (0..shadowed).filter_map(|light| ShadowMap::new(context, &lit_receivers, light).transpose());
         let shadow_maps = shadow_maps.collect::<Result<Vec<_>, _>>()?;
         let technique = match variant {
-            Variant::LevelMap | Variant::LevelMapSmart | Variant::Culled => {
-                let slicing = if variant == Variant::LevelMapSmart {
-                    Slicing::Smart(BoundingBox::new())
-                } else {
-                    Slicing::Uniform(ReferencePlanes::new(parameters))
-                };
-                let is_culled = variant == Variant::Culled;
-                Technique::LevelMap(LevelMap::new(
-                    context,
-                    slicing,
-                    is_culled,
-                    &lit_receivers,
-                    water,
-                    volumes,
-                    &shadow_maps,
-                    &underwater,
-                )?)
-            }
+            Variant::LevelMap | Variant::LevelMapSmart | Variant::Culled | Variant::Hit => Technique::LevelMap(
+                LevelMap::new(context, variant, &lit_receivers, water, volumes, &shadow_maps, &underwater)?,
+            ),
             Variant::Volumetric => Technique::Volumetric(Volumetric::new(
                 context,
                 &lit_receivers,
@@ -194,6 +187,7 @@ impl Caustics {
         let parameters = parameters.clone();
         Ok(Caustics {
             parameters,
+            is_hit: variant == Variant::Hit,
             water_surface,
             illumination_volumes,
             lit_receivers,
@@ -231,7 +225,7 @@ impl Caustics {
     }
 
     /// Draws the last frame's caustics maps with an empty fragment stage, as pass `caustics-map-floor`: what their
-    /// vertices and rasterisation cost alone. It spoils the maps. The stencil method and culling have none.
+    /// vertices and rasterisation cost alone. It spoils the maps. The stencil method, culling and `hit` have none.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -256,7 +250,7 @@ impl Caustics {
     }
 
     /// The planes of each receiver under each light, as the last recorded frame placed them; none for the stencil
-    /// method.
+    /// method and for `hit`.
     pub fn plane_counts(&self) -> Vec<usize> {
         self.lit_receivers.iter().map(|lit| lit.cells.len()).collect()
     }
@@ -281,7 +275,7 @@ impl Caustics {
     /// The warning when maps are sampled at texel centres under water that folds its light strongly.
     fn steep_water(&self) -> Option<String> {
         let slope = self.parameters.mean_slope();
-        let is_sampled = !self.lit_receivers.is_empty() && self.parameters.coverage < AVERAGED;
+        let is_sampled = !self.lit_receivers.is_empty() && !self.is_hit && self.parameters.coverage < AVERAGED;
         (is_sampled && slope > STEEP).then(|| {
             format!(
                 "water of slope {slope:.2} (root of the mean square) folds its light: a caustics map that is sampled at texel \
@@ -295,6 +289,17 @@ impl Caustics {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }
 
+    /// Where the rays of light `light` land on each receiver, in the variant `hit`.
+    fn landings(&self, light: usize) -> Vec<Target> {
+        let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique else { return Vec::new() };
+        let of_light = self.lit_receivers.iter().zip(receivers).filter(|(lit, _)| lit.light == light);
+        let named = |(lit, passes): (&LitReceiver, &ReceiverPasses)| {
+            let landings = passes.caustics_map.landings()?;
+            Some(Target::table(numbered("landings", &[lit.light, lit.index]), landings, LANDING_FLOATS))
+        };
+        of_light.filter_map(named).collect()
+    }
+
     /// The maps of each receiver under light `light` that `--dump` knows.
     fn map_targets(&self, light: usize) -> Vec<Target> {
         let maps: Vec<_> = match &self.technique {
@@ -302,11 +307,12 @@ impl Caustics {
             Technique::Volumetric(variant) => variant.receivers.iter().map(|r| r.targets()).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
+        let landings = self.landings(light);
         let of_light = self.lit_receivers.iter().zip(maps).filter(|(lit, _)| lit.light == light);
         let named = |(lit, maps): (&LitReceiver, [(&str, &Arc<ImageView>); 4])| {
             maps.map(|(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view).of(holds(name)))
         };
-        of_light.flat_map(named).collect()
+        of_light.flat_map(named).chain(landings).collect()
     }
 }
 
@@ -334,7 +340,7 @@ impl Paper for Caustics {
             Technique::LevelMap(LevelMap { slicing, receivers }) => {
                 match slicing {
                     Slicing::Uniform(reference_planes) => reference_planes.record(frame, lit_receivers),
-                    Slicing::Smart(bounding_box) => bounding_box.record(frame, lit_receivers),
+                    Slicing::Boxes(bounding_box) => bounding_box.record(frame, lit_receivers),
                 }
                 for (lit, passes) in lit_receivers.iter().zip(receivers.iter()) {
                     match &passes.maps {

@@ -1,6 +1,7 @@
 //! Numbers that a user can set, under the thesis's own words.
 
 use std::f32::consts::PI;
+use std::f64::consts::TAU;
 
 use glam::Vec3;
 
@@ -21,6 +22,8 @@ pub enum Variant {
     LevelMapSmart,
     /// Section 6.1: the level map's picture, of those pairs of triangle and plane alone that may light it.
     Culled,
+    /// Section 6.3: each triangle of the refined water once, where its light lands.
+    Hit,
     /// Section 5.2.1, after Iwasaki et al.: a slice image for every plane.
     Volumetric,
     /// Section 3.2, after Iwasaki et al.: illumination volumes counted in the stencil buffer. It knows no occlusion.
@@ -28,14 +31,21 @@ pub enum Variant {
 }
 
 impl crate::measure::Variant for Variant {
-    const ALL: &'static [Variant] =
-        &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Volumetric, Variant::Stencil];
+    const ALL: &'static [Variant] = &[
+        Variant::LevelMap,
+        Variant::LevelMapSmart,
+        Variant::Culled,
+        Variant::Hit,
+        Variant::Volumetric,
+        Variant::Stencil,
+    ];
 
     fn as_str(self) -> &'static str {
         match self {
             Variant::LevelMap => "level-map",
             Variant::LevelMapSmart => "level-map-smart",
             Variant::Culled => "culled",
+            Variant::Hit => "hit",
             Variant::Volumetric => "volumetric",
             Variant::Stencil => "stencil",
         }
@@ -413,6 +423,13 @@ impl Parameters {
     pub fn mean_slope(&self) -> f64 {
         let of_waves = || waves(self).iter().map(|w| (w.amplitude_m * w.vector.length()).powi(2) / 2.0).sum::<f64>();
         self.water_map.as_ref().map_or_else(|| of_waves().sqrt(), WaterMap::mean_slope)
+    }
+
+    /// Shortest length in metres over which the water repeats, or that a map of it resolves.
+    pub fn shortest_wave_m(&self) -> f64 {
+        let of_waves = || waves(self).iter().map(|w| TAU / w.vector.length()).fold(f64::INFINITY, f64::min);
+        let of_map = |map: &WaterMap| 4.0 * map.heights().spacing_m().min_element();
+        self.water_map.as_ref().map_or_else(of_waves, of_map)
     }
 
     /// Width over height of the picture.

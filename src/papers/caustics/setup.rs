@@ -242,7 +242,7 @@ impl Study for Setup {
     const ABOUT: &'static str = "Refractive water caustics with level maps (Tipprasert), pass by pass";
     // The stencil method takes seconds a frame without a GPU.
     const BENCHED: &'static [Variant] =
-        &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Volumetric];
+        &[Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Hit, Variant::Volumetric];
     const RENDERED: Variant = Variant::LevelMap;
     const SHARED: &'static [&'static str] = &["5-1", "5-3", "appendix"];
 

@@ -14,6 +14,10 @@ pub const LEVEL_M: f64 = 0.0;
 /// The fraction of a footprint's extent that the mesh reaches beyond it on every side.
 const MARGIN: f64 = 0.1;
 const GRAVITY_M_S2: f64 = 9.81;
+/// Of a cell's side, in refined water.
+const MOST_HALVINGS: f64 = 3.0;
+/// Of a refined cell's side.
+const LONGEST_TEXELS: f64 = 6.0;
 
 /// One sine wave of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,6 +92,23 @@ impl Grid {
         let (columns, rows) = cells(parameters.water_triangles);
         let cell = (high - low) / DVec2::new(f64::from(columns), f64::from(rows));
         Grid { corner: low, cell, columns, rows }
+    }
+
+    /// The same mesh with cells halved along each side until linear triangles show the light to a quarter of a texel or
+    /// so, and none is longer than six texels; eight times along a side at most (section 6.3).
+    pub fn refined(self, boxes: &[(ReceiverBox, Light)], parameters: &Parameters) -> Self {
+        let texel_m = |b: &ReceiverBox| (b.extent.x * b.extent.z).sqrt() / f64::from(parameters.map_size);
+        let texel_m = boxes.iter().map(|(b, _)| texel_m(b)).fold(f64::INFINITY, f64::min);
+        let depth_m = boxes.iter().flat_map(|(b, _)| b.corners()).map(|p| LEVEL_M - p.y).fold(0.0, f64::max);
+        // A ray is turned by (1 - 1/n) of the slope; between vertices it strays by an eighth of its second derivative.
+        let turn = parameters.mean_slope() * (1.0 - 1.0 / f64::from(parameters.refraction_index));
+        let bend = turn * (TAU / parameters.shortest_wave_m()).powi(2) * depth_m;
+        let strays = if bend > 0.0 { (2.0 * texel_m / bend).sqrt() } else { f64::INFINITY };
+        let finest_m = strays.min(LONGEST_TEXELS * texel_m).max(f64::MIN_POSITIVE);
+        let halvings = |cell: f64| ((cell / finest_m).log2() - 0.2).ceil().clamp(0.0, MOST_HALVINGS) as u32;
+        let (along_x, along_z) = (halvings(self.cell.x), halvings(self.cell.y));
+        let parts = DVec2::new(f64::from(1 << along_x), f64::from(1 << along_z));
+        Grid { cell: self.cell / parts, columns: self.columns << along_x, rows: self.rows << along_z, ..self }
     }
 
     pub fn vertex_count(&self) -> u32 {

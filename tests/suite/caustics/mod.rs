@@ -4,6 +4,7 @@
 mod culled;
 mod drawing;
 mod extremes;
+mod hit;
 mod laws;
 mod level_map;
 mod options;

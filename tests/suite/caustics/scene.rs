@@ -34,6 +34,11 @@ pub fn sphere() -> ReceiverInput {
     sunk(&shapes::sphere(32, 32))
 }
 
+/// A sphere that is round to a tenth of a millimetre.
+pub fn round_sphere() -> ReceiverInput {
+    sunk(&Mesh { name: "round sphere".to_owned(), ..shapes::sphere(200, 200) })
+}
+
 /// A square floor that faces up.
 pub fn floor() -> ReceiverInput {
     sunk(&shapes::plane(Vec2::splat(2.0), UVec2::ONE))

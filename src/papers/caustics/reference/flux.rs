@@ -48,7 +48,7 @@ fn flux(volume: &IlluminationVolume) -> f64 {
 }
 
 /// The part of a convex polygon inside |x| <= half.x, |y| <= half.y.
-fn clip(polygon: &[DVec2], half: DVec2) -> Vec<DVec2> {
+pub(super) fn clip(polygon: &[DVec2], half: DVec2) -> Vec<DVec2> {
     let sides = [(DVec2::X, half.x), (DVec2::NEG_X, half.x), (DVec2::Y, half.y), (DVec2::NEG_Y, half.y)];
     sides.iter().fold(polygon.to_vec(), |kept, &(axis, limit)| {
         let mut inside = Vec::with_capacity(kept.len() + 1);
@@ -66,7 +66,7 @@ fn clip(polygon: &[DVec2], half: DVec2) -> Vec<DVec2> {
     })
 }
 
-fn area(polygon: &[DVec2]) -> f64 {
+pub(super) fn area(polygon: &[DVec2]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     let double_area: f64 = polygon.iter().zip(next).map(|(p, q)| p.perp_dot(*q)).sum();
     double_area.abs() / 2.0

@@ -18,6 +18,7 @@ mod caustics_map;
 #[cfg(test)]
 mod fixtures;
 mod flux;
+mod landed;
 mod illumination;
 mod light;
 mod photons;
@@ -30,8 +31,9 @@ mod water;
 pub use caustics_map::{CausticsMap, cast, caustics_map, combine, volumetric};
 pub use flux::{flat_water_intensity, flux_in_map, flux_reaching_box, flux_through_water};
 pub use illumination::{IlluminationVolume, Intersection, illumination_volumes, intensity, intersection_triangle};
+pub use landed::{LandedTriangle, landed_map};
 pub use light::{AIR, Medium, ReferenceLight, refract};
-pub use photons::{Photons, correlation};
+pub use photons::{GRAZING, Photons, correlation};
 pub use planes::{Cell, depth_profile, keep_occupied, place_planes, smart_planes, smart_sub_boxes, uniform_epsilon};
 pub use position_map::{PositionMap, ReceiverTriangle, diffuse, diffuse_map, position_map};
 pub use receiver_box::{ReceiverBox, align_box};

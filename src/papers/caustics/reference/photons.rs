@@ -1,7 +1,7 @@
 //! Light traced as photons through the exact water onto a plane: the truth that a caustics map approaches.
 
 use crate::papers::caustics::reference::{AIR, Medium, ReceiverBox, ReferenceLight, WaterVertex, refract};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// Photons over a rectangle of the water, evenly stratified in x and z.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +28,27 @@ impl Photons {
         plane: f64,
         resolution: usize,
     ) -> Vec<f64> {
+        let hit = |origin: DVec3, ray: DVec3| {
+            let distance_m = (plane - origin.y) / ray.y;
+            (ray.y < 0.0 && distance_m > 0.0).then_some((distance_m, DVec3::Y))
+        };
+        self.landed(surface, light, medium, receiver, hit, resolution)
+    }
+
+    /// The same on a receiver: `hit` gives the distance to the first place where a ray from a point, in box space, meets
+    /// it and the normal there; what lands on a side that the light's box does not see is none of the map's.
+    ///
+    /// A texel of a slanting surface holds more of it than of a plane across the beam: its flux is taken per area
+    /// perpendicular to the beam, down to beams that graze it by [`GRAZING`].
+    pub fn landed(
+        &self,
+        surface: impl Fn(f64, f64) -> WaterVertex,
+        light: ReferenceLight,
+        medium: Medium,
+        receiver: &ReceiverBox,
+        hit: impl Fn(DVec3, DVec3) -> Option<(f64, DVec3)>,
+        resolution: usize,
+    ) -> Vec<f64> {
         let mut map = vec![0.0; resolution * resolution];
         let texel_area_m2 = receiver.texel_area_m2(map.len());
         let strata = DVec2::new(f64::from(self.strata[0]), f64::from(self.strata[1]));
@@ -42,21 +63,23 @@ impl Photons {
             // A stratum's piece of surface is its base over the normal's rise.
             let flux = cell.x * cell.y * -incident.dot(vertex.normal) / vertex.normal.y;
             let (origin, ray) = (receiver.to_box(vertex.position), receiver.direction_to_box(refracted));
-            let distance_m = (plane - origin.y) / ray.y;
-            if ray.y >= 0.0 || distance_m <= 0.0 {
-                continue;
-            }
-            let hit = origin + ray * distance_m;
-            let column = (hit.x / receiver.width + 0.5) * resolution as f64;
-            let row = (hit.z / receiver.depth + 0.5) * resolution as f64;
+            let Some((distance_m, normal)) = hit(origin, ray).filter(|(_, normal)| normal.y > 0.0) else { continue };
+            let place = origin + ray * distance_m;
+            let column = (place.x / receiver.width + 0.5) * resolution as f64;
+            let row = (place.z / receiver.depth + 0.5) * resolution as f64;
             if column >= 0.0 && row >= 0.0 && (column as usize) < resolution && (row as usize) < resolution {
                 let transmitted = (-medium.absorption_per_m * distance_m).exp();
-                map[row as usize * resolution + column as usize] += flux * transmitted / (-ray.y * texel_area_m2);
+                let turned = (normal.dot(-ray) / (normal.y * -ray.y)).max(GRAZING);
+                map[row as usize * resolution + column as usize] +=
+                    flux * transmitted / (-ray.y * turned * texel_area_m2);
             }
         }
         map
     }
 }
+
+/// Least share of a beam's width, of that on a plane across it, that it may light of a slanting surface's map.
+pub const GRAZING: f64 = 0.25;
 
 /// Pearson's correlation of two maps.
 pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
@@ -77,7 +100,6 @@ mod tests {
     use super::*;
     use crate::papers::caustics::reference::fixtures::{OBLIQUE, WATER, horizontal};
     use crate::papers::caustics::reference::{flat_water_intensity, wave_vertex};
-    use glam::DVec3;
 
     #[test]
     fn flat_water_has_one_intensity() {

@@ -1,0 +1,18 @@
+#version 450
+
+// The caustics map from the light that landed on its texels (section 6.3).
+
+layout(std430, set = 0, binding = 0) readonly buffer Sums {
+    uint list[]; // low and high word of each texel, in units of 2^-18
+} sums;
+
+layout(push_constant) uniform HitMap {
+    uint map_size; // texels a side
+} map;
+
+layout(location = 0) out float caustics;
+
+void main() {
+    uint at = 2u * (uint(gl_FragCoord.y) * map.map_size + uint(gl_FragCoord.x));
+    caustics = float(sums.list[at]) / 262144.0 + float(sums.list[at + 1u]) * 16384.0;
+}

@@ -1,0 +1,213 @@
+//! The variant `hit` against photons, its passes against their oracle.
+
+use std::slice::from_ref;
+
+use fumarole::papers::caustics::reference::{LandedTriangle, Photons, correlation, landed_map};
+use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaveParameters};
+use fumarole::scene::Light;
+use glam::{DVec2, DVec3};
+
+use super::drawing::Drawing;
+use super::oracle::{Oracle, waves_surface};
+use super::scene::{FLAT, OBLIQUE, OVERHEAD, POINT, bowl, floor, parameters, round_sphere, teapot, tilted_plane};
+use crate::common::gpu_test;
+
+/// Slope 0.34, root of the mean square.
+const STEEP: WaveParameters = WaveParameters { count: 12, amplitude_m: 0.21, wavelength_m: 1.2 };
+
+const SPHERE_RADIUS_M: f64 = 1.0;
+
+/// Distance to a receiver and its normal there, in box space.
+fn hit_of(receiver: &ReceiverInput, oracle: &Oracle) -> impl Fn(DVec3, DVec3) -> Option<(f64, DVec3)> + use<> {
+    let is_sphere = receiver.mesh.name == "round sphere";
+    // The floor of the pool, or the sphere that stands on it; both are in the middle of their boxes.
+    let normal = oracle.receiver.direction_to_box(DVec3::Y);
+    move |origin: DVec3, ray: DVec3| {
+        if is_sphere {
+            let towards = -origin.dot(ray);
+            let inside = towards * towards - origin.length_squared() + SPHERE_RADIUS_M * SPHERE_RADIUS_M;
+            let distance_m = towards - (inside >= 0.0).then(|| inside.sqrt())?;
+            Some((distance_m, origin + ray * distance_m))
+        } else {
+            let distance_m = -origin.dot(normal) / ray.dot(normal);
+            (distance_m > 0.0 && ray.dot(normal) < 0.0).then_some((distance_m, normal))
+        }
+    }
+}
+
+/// Two independent maps by photons, `a_side` strata a side each, on the texels that hold the receiver.
+fn truth(
+    parameters: &Parameters,
+    light: &Light,
+    receiver: &ReceiverInput,
+    drawing: &Drawing,
+    a_side: u32,
+) -> [Vec<f64>; 2] {
+    let oracle = Oracle::of(parameters, light, receiver, &drawing.grid);
+    let (low, high) = (drawing.grid.corner, drawing.grid.corner + drawing.grid.extent_m());
+    let surface = waves_surface(parameters);
+    let (size, hit) = (parameters.map_size as usize, hit_of(receiver, &oracle));
+    [0.25, 0.75].map(|place| {
+        let photons = Photons { low, high, strata: [a_side, a_side], place: DVec2::splat(place) };
+        let map = photons.landed(&surface, oracle.light, oracle.medium, &oracle.receiver, &hit, size);
+        let texels = map.into_iter().zip(drawing.target("position-map"));
+        texels.map(|(intensity, &height)| if height < -1e29 { 0.0 } else { intensity }).collect()
+    })
+}
+
+struct Judged {
+    correlation: f64,
+    /// Of the truth's greatest.
+    greatest: f64,
+    flux: f64,
+    /// Correlation of two halves of the truth.
+    halves: f64,
+}
+
+fn judge(drawing: &Drawing, [one, other]: &[Vec<f64>; 2]) -> Judged {
+    let map: Vec<f64> = drawing.target("caustics-map").iter().copied().map(f64::from).collect();
+    let both: Vec<f64> = one.iter().zip(other).map(|(a, b)| (a + b) / 2.0).collect();
+    let greatest = |map: &[f64]| map.iter().copied().fold(0.0, f64::max);
+    Judged {
+        correlation: correlation(&map, &both),
+        greatest: greatest(&map) / greatest(&both),
+        flux: map.iter().sum::<f64>() / both.iter().sum::<f64>(),
+        halves: correlation(one, other),
+    }
+}
+
+#[test]
+fn hit_lights_planes_and_spheres_as_photons_do() {
+    gpu_test(|device| {
+        let map_size = std::env::var("HIT_MAP").map_or(128, |text| text.parse().unwrap());
+        let a_side = std::env::var("HIT_PHOTONS").map_or(2000, |text| text.parse().unwrap());
+        let triangles = std::env::var("HIT_TRIANGLES").map_or(10_000, |text| text.parse().unwrap());
+        let default = Parameters::default().waves;
+        for (waves, light) in [(default, OVERHEAD), (STEEP, OVERHEAD), (default, OBLIQUE), (STEEP, OBLIQUE)] {
+            let parameters = Parameters { waves, map_size, water_triangles: triangles, ..parameters(light) };
+            for receiver in [floor(), round_sphere()] {
+                let name = format!("{} under {light:?}, slope {:.3}", receiver.mesh.name, parameters.mean_slope());
+                let drawing = Drawing::of(device, Variant::Hit, &parameters, from_ref(&receiver));
+                drawing.assert_finite();
+                let truth = truth(&parameters, &light, &receiver, &drawing, a_side);
+                let Judged { correlation, greatest, flux, halves } = judge(&drawing, &truth);
+                println!(
+                    "{name}, {} triangles: correlation {correlation:.4} (halves {halves:.5}), greatest {greatest:.3}, \
+                     flux {flux:.4}",
+                    drawing.grid.triangle_count()
+                );
+                assert!(correlation > 0.98, "{name}: {correlation}");
+                assert!((1.0 / 1.3..1.3).contains(&greatest), "{name}: {greatest}");
+                assert!((flux - 1.0).abs() < 0.005, "{name}: {flux}");
+            }
+        }
+    });
+}
+
+/// Nothing of the light is lost where the ways of adding it up meet: edges, borders, slopes.
+#[test]
+fn hit_and_the_level_map_agree_under_flat_water() {
+    gpu_test(|device| {
+        for light in [OVERHEAD, OBLIQUE] {
+            for receiver in [floor(), round_sphere(), tilted_plane(), bowl(), teapot()] {
+                let parameters = Parameters { waves: FLAT, absorption_per_m: 0.0, planes: 31, ..parameters(light) };
+                let [level, hit] = [Variant::LevelMap, Variant::Hit]
+                    .map(|variant| Drawing::of(device, variant, &parameters, from_ref(&receiver)));
+                let pairs = level.target("caustics-map").iter().zip(hit.target("caustics-map"));
+                let lit = pairs.clone().filter(|(level, _)| **level > 0.0).count();
+                let off = pairs.clone().filter(|(level, hit)| (*level - *hit).abs() > 0.02 * level.max(0.5)).count();
+                let sums = pairs.fold((0.0, 0.0), |(a, b), (l, h)| (a + f64::from(*l), b + f64::from(*h)));
+                println!("{} under {light:?}: {off} of {lit} differ, flux {:.4}", receiver.mesh.name, sums.1 / sums.0);
+                assert!(lit > 1000 && off * 10 < lit, "{} under {light:?}: {off} of {lit}", receiver.mesh.name);
+                assert!((sums.1 / sums.0 - 1.0).abs() < 0.01, "{} under {light:?}", receiver.mesh.name);
+            }
+        }
+    });
+}
+
+/// The rays of the water's vertices land where exact rays meet the floor and the sphere.
+#[test]
+fn rays_land_where_exact_ones_do() {
+    gpu_test(|device| {
+        for (waves, light) in [(STEEP, OVERHEAD), (Parameters::default().waves, OBLIQUE), (STEEP, POINT)] {
+            let parameters = Parameters { waves, ..parameters(light) };
+            let size = f64::from(parameters.map_size);
+            for receiver in [floor(), round_sphere()] {
+                let drawing = Drawing::of(device, Variant::Hit, &parameters, from_ref(&receiver));
+                let oracle = Oracle::of(&parameters, &light, &receiver, &drawing.grid);
+                let hit = hit_of(&receiver, &oracle);
+                let (mut landed, mut off, mut missed) = (0, 0, 0);
+                for (vertex, found) in oracle.water.iter().zip(drawing.target("landings").chunks_exact(4)) {
+                    let incident = oracle.light.direction_at(vertex.position);
+                    let index = oracle.medium.refraction_index;
+                    let refracted = fumarole::papers::caustics::reference::refract(incident, vertex.normal, 1.0, index);
+                    let Some(refracted) = refracted else { continue };
+                    let origin = oracle.receiver.to_box(vertex.position);
+                    let ray = oracle.receiver.direction_to_box(refracted);
+                    // Away from edges, where the surface of texels ends before the receiver's.
+                    let Some((distance_m, normal)) = hit(origin, ray).filter(|(_, n)| n.y > 0.6) else { continue };
+                    let place = origin + ray * distance_m;
+                    let extent = DVec2::new(oracle.receiver.width, oracle.receiver.depth);
+                    let texel = (DVec2::new(place.x, place.z) / extent + 0.5) * size;
+                    let is_inside = texel.min_element() > 3.0 && texel.max_element() < size - 3.0;
+                    let turned = normal.dot(-ray) / (normal.y * -ray.y);
+                    if !is_inside || (light != OVERHEAD && receiver.mesh.name != "round sphere") {
+                        continue;
+                    }
+                    landed += 1;
+                    missed += usize::from(found[3] < 0.0);
+                    let found_at = DVec2::new(f64::from(found[0]), f64::from(found[1]));
+                    let weight = (-oracle.medium.absorption_per_m * distance_m).exp() / (-ray.y * turned);
+                    let is_off = found_at.distance(texel) > 0.1 || (f64::from(found[3]) / weight - 1.0).abs() > 0.02;
+                    off += usize::from(found[3] >= 0.0 && is_off);
+                }
+                println!("{} under {light:?}: {landed} land, {missed} missed, {off} off", receiver.mesh.name);
+                if light == OVERHEAD || receiver.mesh.name == "round sphere" {
+                    assert!(landed > 1000 && missed == 0 && off * 100 < landed, "{missed} {off} of {landed}");
+                }
+            }
+        }
+    });
+}
+
+/// On the floor under light from overhead, where every triangle lands whole: the map by the areas that they cover.
+#[test]
+fn triangles_cover_texels_by_area() {
+    gpu_test(|device| {
+        let parameters = Parameters { waves: STEEP, map_size: 64, water_triangles: 600, ..parameters(OVERHEAD) };
+        let drawing = Drawing::of(device, Variant::Hit, &parameters, &[floor()]);
+        let oracle = Oracle::of(&parameters, &OVERHEAD, &floor(), &drawing.grid);
+        let texels = drawing.target("caustics-map");
+        let texel_area_m2 = oracle.receiver.texel_area_m2(texels.len());
+        let landings: Vec<&[f32]> = drawing.target("landings").chunks_exact(4).collect();
+        let triangles = drawing.grid.indices();
+        let landed = triangles.chunks_exact(3).map(|corners| {
+            let corners = [0, 1, 2].map(|i| corners[i] as usize);
+            let [a, b, c] = corners.map(|i| oracle.water[i].position);
+            let face = (b - a).cross(c - a) / 2.0;
+            let weight = corners.iter().map(|&i| f64::from(landings[i][3])).sum::<f64>() / 3.0;
+            let places = corners.map(|i| DVec2::new(f64::from(landings[i][0]), f64::from(landings[i][1])));
+            LandedTriangle { corners: places, light: face.y.abs() * weight.max(0.0) / texel_area_m2 }
+        });
+        let expected = landed_map(landed, parameters.map_size as usize);
+        let found: Vec<f64> = texels.iter().copied().map(f64::from).collect();
+        let (flux, exact) = (found.iter().sum::<f64>(), expected.iter().sum::<f64>());
+        let apart = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).sum::<f64>() / exact;
+        println!("flux {:.6}, apart {apart:.6}, correlation {:.6}", flux / exact, correlation(&found, &expected));
+        assert!((flux / exact - 1.0).abs() < 1e-3 && apart < 5e-3 && correlation(&found, &expected) > 0.9999);
+    });
+}
+
+/// The sums are whole numbers: one picture, whatever the order in which they were added.
+#[test]
+fn hit_is_the_same_each_time() {
+    gpu_test(|device| {
+        let parameters = Parameters { shadows: true, lights: vec![OBLIQUE, POINT], ..parameters(OVERHEAD) };
+        let [one, other] = [0, 1].map(|_| Drawing::of(device, Variant::Hit, &parameters, &[teapot(), floor()]));
+        for name in ["caustics-map", "landings", "underwater-color"] {
+            assert!(one.target(name) == other.target(name), "{name}");
+        }
+        assert!(one.map("caustics-map", 1, 1) == other.map("caustics-map", 1, 1));
+        assert!(one.target("caustics-map").iter().any(|&light| light > 0.0));
+    });
+}
