@@ -2,7 +2,7 @@
 #pragma variants SHADOW=off,on
 
 // The triangles of the refined water that do not land whole on one surface (section 6.3): divided down to rays, each of which lands
-// in one texel with its share of the triangle's flux.
+// on a texel's area with its share of the triangle's flux.
 
 layout(local_size_x = 64) in;
 
@@ -12,11 +12,36 @@ layout(local_size_x = 64) in;
 #include "caustics/shadow-{SHADOW}.glsl"
 
 // Rays for each texel of the triangle's place, and at the most; a shader's loops together end at 65,535 on some devices.
-const float RAYS_A_TEXEL = 3.0;
-const uint MOST_RAYS = 256u;
+const float RAYS_A_TEXEL = 4.0;
+const uint MOST_RAYS = 224u;
+// Farther apart in height, neighbouring texels are of two surfaces.
+const float SAME_SURFACE_TEXELS = 8.0;
 // Invocations that share a triangle's rays, and triangles that they take one after the other at the most.
 const uint SHARING = 8u;
 const uint IN_TURN = 16u;
+
+// A ray's light over a texel's area around it, on those texels of it that hold the same surface.
+void spread(vec4 hit, float light) {
+    ivec2 own = ivec2(floor(hit.xy));
+    float height = height_at(own);
+    float reach = SAME_SURFACE_TEXELS * sqrt(plane.texel_area_m2);
+    ivec2 first = ivec2(floor(hit.xy - 0.5));
+    vec2 t = hit.xy - 0.5 - vec2(first);
+    float sum = 0.0;
+    for (int turn = 0; turn < 8; turn++) {
+        // The shares are summed up first, then handed out.
+        ivec2 aside = ivec2(turn & 1, (turn >> 1) & 1);
+        ivec2 texel = first + aside;
+        vec2 share = mix(1.0 - t, t, vec2(aside));
+        bool counts = is_in_map(texel) && (texel == own || abs(height_at(texel) - height) < reach);
+        float weight = counts ? share.x * share.y : 0.0;
+        if (turn < 4) {
+            sum += weight;
+        } else if (weight > 0.0) {
+            add_light(texel, light * weight / sum);
+        }
+    }
+}
 
 void main() {
     uint group = gl_GlobalInvocationID.x / SHARING;
@@ -46,11 +71,11 @@ void main() {
             float secant = a.secant * weights.x + b.secant * weights.y + c.secant * weights.z;
             vec3 incident = a.incident * weights.x + b.incident * weights.y + c.incident * weights.z;
             vec4 hit = first_hit(origin, slope);
-            ivec2 texel = ivec2(floor(hit.xy));
-            if (hit.w > 0.0 && is_in_map(texel)) {
+            ivec2 own = ivec2(floor(hit.xy));
+            if (hit.w > 0.0 && is_in_map(own)) {
                 vec2 landing = (hit.xy - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
-                if (is_receiver(height_at(texel)) && reaches(vec3(landing.x, hit.z + plane.middle, landing.y), origin)) {
-                    add_light(texel, max(-dot(face, incident), 0.0) * landed_weight(hit, origin, slope, secant));
+                if (is_receiver(height_at(own)) && reaches(vec3(landing.x, hit.z + plane.middle, landing.y), origin)) {
+                    spread(hit, max(-dot(face, incident), 0.0) * landed_weight(hit, origin, slope, secant));
                 }
             }
         }
