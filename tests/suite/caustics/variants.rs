@@ -126,7 +126,9 @@ fn both_shader_compilers_draw_one_picture() {
         for &variant in Variant::ALL {
             let [glslang, naga] = [Compiler::Glslang, Compiler::Naga].map(|compiler| {
                 let drawing = Drawing::compiled_by(compiler, device, variant, &parameters, &[teapot()]);
-                let mut compilers = drawing.passes.iter().filter_map(|pass| pass.info.compiler);
+                // Naga knows no atomics.
+                let both = drawing.passes.iter().filter(|pass| !["land", "straddle"].contains(&pass.info.name));
+                let mut compilers = both.filter_map(|pass| pass.info.compiler);
                 assert!(compilers.all(|used| used == compiler));
                 drawing.picture
             });
