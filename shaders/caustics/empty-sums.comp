@@ -9,7 +9,7 @@ layout(std430, set = 0, binding = 0) buffer Sums {
 } sums;
 
 layout(std430, set = 0, binding = 1) buffer Straddling {
-    uint list[];
+    uint count;
 } straddling;
 
 layout(push_constant) uniform Empty {
@@ -22,6 +22,6 @@ void main() {
         sums.list[at] = 0u;
     }
     if (at == 0u) {
-        straddling.list[0] = 0u;
+        straddling.count = 0u;
     }
 }

@@ -6,6 +6,9 @@ layout(std430, set = 0, binding = 0) readonly buffer Sums {
     uint list[]; // low and high word of each texel, in units of 2^-18
 } sums;
 
+layout(set = 0, binding = 1) uniform texture2D position_map;
+layout(set = 0, binding = 2) uniform sampler nearest;
+
 layout(push_constant) uniform HitMap {
     uint map_size; // texels a side
 } map;
@@ -13,6 +16,9 @@ layout(push_constant) uniform HitMap {
 layout(location = 0) out float caustics;
 
 void main() {
+    // A triangle's corner may hang over the receiver's edge.
+    float height = texelFetch(sampler2D(position_map, nearest), ivec2(gl_FragCoord.xy), 0).r;
     uint at = 2u * (uint(gl_FragCoord.y) * map.map_size + uint(gl_FragCoord.x));
-    caustics = float(sums.list[at]) / 262144.0 + float(sums.list[at + 1u]) * 16384.0;
+    float light = float(sums.list[at]) / 262144.0 + float(sums.list[at + 1u]) * 16384.0;
+    caustics = height > -1.0e29 ? light : 0.0;
 }

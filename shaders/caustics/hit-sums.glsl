@@ -6,15 +6,21 @@ layout(std430, set = 0, binding = 6) buffer Sums {
 
 const float UNITS = 262144.0;
 
-void add_light(ivec2 texel, float light) {
+// True where the texel's low word is full, and its high word has to be told so.
+bool add_low(ivec2 texel, float light) {
     uint at = 2u * uint(texel.y * int(plane.map_size) + texel.x);
     // A triangle's light in one texel: 16,383 texels' worth at the most.
     uint units = uint(min(light, 16383.0) * UNITS + 0.5);
-    if (units > 0u) {
-        uint before = atomicAdd(sums.list[at], units);
-        if (before > 0xffffffffu - units) {
-            atomicAdd(sums.list[at + 1u], 1u);
-        }
+    return units > 0u && atomicAdd(sums.list[at], units) > 0xffffffffu - units;
+}
+
+void add_high(ivec2 texel) {
+    atomicAdd(sums.list[2u * uint(texel.y * int(plane.map_size) + texel.x) + 1u], 1u);
+}
+
+void add_light(ivec2 texel, float light) {
+    if (add_low(texel, light)) {
+        add_high(texel);
     }
 }
 

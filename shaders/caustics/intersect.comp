@@ -13,8 +13,93 @@ layout(std430, set = 0, binding = 4) readonly buffer Rays {
 } rays;
 
 layout(std430, set = 0, binding = 5) buffer Landings {
-    vec4 list[]; // place in texels, height, and 1 / cos theta_t e^(-K d) for the surface there; -1 for a miss, -2 without light
+    vec4 list[]; // place in texels, height, and 1 / cos theta_t e^(-K d) for the surface there; -1 for one that does not land whole, -2 without light
 } landings;
+
+// A beam that a surface turns away from farther is left to the planes: what its light is divided by is too small to be known.
+const float GRAZING = 0.25;
+
+// The first place where a ray meets the receiver: texels in x and y, the height in z, and in w 1, or 0 where it meets nothing that
+// the map holds. A receiver is solid below what the light sees of it: what enters by its side is lost.
+vec4 first_hit(vec3 origin, vec2 slope) {
+    float start = origin.y - plane.middle;
+    float top = min(plane.half_height, start);
+    float bottom = -plane.half_height;
+    // Near the ray's place nothing is higher than the highest there, nor lower than the lowest.
+    for (int i = 0; i < 3; i++) {
+        vec2 range = heights_between(place_at(origin, slope, top), place_at(origin, slope, bottom));
+        if (range.x > range.y) {
+            return vec4(0.0);
+        }
+        top = min(top, range.y);
+        bottom = max(bottom, range.x);
+    }
+    if (top < bottom) {
+        return vec4(0.0);
+    }
+    vec2 path = abs(place_at(origin, slope, bottom) - place_at(origin, slope, top));
+    int steps = int(clamp(ceil(max(path.x, path.y)), 1.0, float(HIT_STEPS)));
+    float above = top;
+    float height = top;
+    float found = -1.0e30;
+    for (int i = 0; i <= steps; i++) {
+        // Exactly the lowest at the end, where nothing can be missed.
+        height = i == steps ? bottom : mix(top, bottom, float(i) / float(steps));
+        found = height_at(ivec2(floor(place_at(origin, slope, height))));
+        if (found >= height) {
+            break;
+        }
+        above = height;
+    }
+    if (found < height) {
+        return vec4(0.0);
+    }
+    vec2 end = place_at(origin, slope, height);
+    if (found > above) {
+        // Stepped in at the side: of a slope that goes on rising, or of an edge.
+        vec2 ahead = slope * plane.texels_per_m;
+        ivec2 onward = abs(ahead.x) > abs(ahead.y) ? ivec2(ahead.x > 0.0 ? 1 : -1, 0) : ivec2(0, ahead.y > 0.0 ? 1 : -1);
+        float beyond = height_at(ivec2(floor(end)) + onward);
+        float rise = is_receiver(beyond) ? abs(beyond - found) : 0.0;
+        if (found - above > 1.5 * rise + 2.0 * sqrt(plane.texel_area_m2)) {
+            return vec4(0.0);
+        }
+    }
+    // Over a texel's length the surface is nearly straight.
+    float over = above - surface_at(place_at(origin, slope, above), found, false).height;
+    float under = surface_at(end, found, false).height - height;
+    float fraction = over + under > 1.0e-9 ? clamp(over / (over + under), 0.0, 1.0) : 1.0;
+    float met = mix(above, height, fraction);
+    return vec4(place_at(origin, slope, met), met, 1.0);
+}
+
+// Of the differences on two sides of a texel the mean, or the lesser where an edge lies on one side.
+float difference(float before, float here, float after) {
+    float one = here - before;
+    float other = after - here;
+    if (!is_receiver(before)) {
+        return is_receiver(after) ? other : 0.0;
+    }
+    if (!is_receiver(after)) {
+        return one;
+    }
+    float lesser = min(abs(one), abs(other));
+    float greater = max(abs(one), abs(other));
+    return greater > 4.0 * lesser + sqrt(plane.texel_area_m2) ? (abs(one) < abs(other) ? one : other) : 0.5 * (one + other);
+}
+
+// What light that lands on a map's texel is divided by: a beam of slope s lights 1 / (1 + s . grad h) of the map's area that it
+// lights across V, and I_c is flux per area perpendicular to the beam, whatever the surface's slope (eq. 4-18).
+float turned(vec2 place, vec2 slope) {
+    ivec2 texel = ivec2(floor(place));
+    float here = height_at(texel);
+    if (!is_receiver(here)) {
+        return 1.0;
+    }
+    float along_u = difference(height_at(texel - ivec2(1, 0)), here, height_at(texel + ivec2(1, 0)));
+    float along_w = difference(height_at(texel - ivec2(0, 1)), here, height_at(texel + ivec2(0, 1)));
+    return 1.0 + dot(vec2(along_u, along_w) * plane.texels_per_m, slope);
+}
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -28,10 +113,12 @@ void main() {
         vec4 hit = first_hit(ray.origin, ray.slope);
         landing.w = -1.0;
         if (hit.w > 0.0) {
-            landing = vec4(hit.xyz, landed_weight(hit, ray.origin, ray.slope, ray.secant));
+            float divisor = turned(hit.xy, ray.slope);
             vec2 place = (hit.xy - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
-            if (!reaches(vec3(place.x, hit.z + plane.middle, place.y), ray.origin)) {
-                landing.w = -1.0;
+            landing.xyz = hit.xyz;
+            if (divisor >= GRAZING && reaches(vec3(place.x, hit.z + plane.middle, place.y), ray.origin)) {
+                float descent = max(ray.origin.y - plane.middle - hit.z, 0.0);
+                landing.w = exp(-plane.absorption_per_m * (descent * ray.secant)) * ray.secant / divisor;
             }
         }
     }

@@ -54,10 +54,10 @@ impl Parameters {
                 planes * water_triangles * (3.0 * NUMBER + 2.0 / 8.0) + water_triangles,
                 NUMBER + LIGHT + NUMBER,
             ),
-            // The pyramid, and two words of light a texel; where the water's vertices land, and which triangles straddle.
+            // The pyramid, and two words of light a texel; where the water's vertices land, which triangles straddle, and where.
             Variant::Hit => (
                 maps + 2.0 * NUMBER * texels * 7.0 / 3.0,
-                4.0 * NUMBER * water_vertices + NUMBER * water_triangles,
+                4.0 * NUMBER * water_vertices + 3.0 * NUMBER * water_triangles,
                 NUMBER + LIGHT + NUMBER,
             ),
             Variant::Volumetric => ((3.0 * NUMBER + LIGHT) * texels, LIGHT * texels * planes, NUMBER + LIGHT + NUMBER),

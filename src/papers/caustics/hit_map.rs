@@ -46,7 +46,7 @@ host_block! {
     }
 }
 
-/// Invocations that share the rays of a straddling triangle.
+/// Invocations that share the texels of a straddling triangle.
 const SHARING: u32 = 8;
 /// Triangles that they take one after the other, at the most.
 const IN_TURN: u32 = 16;
@@ -90,7 +90,7 @@ impl HitMap {
         let sums = buffer("landed-light", 4 * u64::from(words), "map-size")?;
         let bytes = 4 * u64::from(LANDING_FLOATS) * u64::from(vertices);
         let landings = buffer("landings", bytes, "water-triangles")?;
-        let straddling = buffer("straddling", 4 * (1 + u64::from(triangles)), "water-triangles")?;
+        let straddling = buffer("straddling", 4 * (1 + 3 * u64::from(triangles)), "water-triangles")?;
 
         let kernel = |name, shader: &str| {
             Pass::compute(name, "6.3", shader)
@@ -130,6 +130,8 @@ impl HitMap {
             caustics_map: Pass::graphics("caustics-map", "6.3", "common/fullscreen.vert", "caustics/hit-map.frag")
                 .constants::<MapConstants>()
                 .with("sums", &sums)
+                .with("position_map", position_map)
+                .with("nearest", context.nearest)
                 .color(map, Load::Discard, Blend::Replace)
                 .build(shaders)?,
             constants: constants(scope, lit, position_pyramid.level_count()),
@@ -151,7 +153,8 @@ impl HitMap {
             dispatch.constants(&EmptyConstants { words }).threads(words, 1, 1);
         })?;
         let sharing = triangles.div_ceil(IN_TURN) * SHARING;
-        for (pass, threads) in [(&self.intersect, vertices), (&self.land, triangles), (&self.straddle, sharing)] {
+        // Two triangles a cell, which are landed together.
+        for (pass, threads) in [(&self.intersect, vertices), (&self.land, triangles / 2), (&self.straddle, sharing)] {
             frame.compute(pass, |dispatch| {
                 dispatch.constants(&constants).threads(threads, 1, 1);
             })?;

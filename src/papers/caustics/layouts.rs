@@ -22,7 +22,9 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["caustics/cull.comp", "caustics/cull-bounds.comp", "caustics/culled.vert"] {
         check_list::<Ray>(shader, "rays");
     }
-    for shader in ["caustics/intersect-off.comp", "caustics/intersect-on.comp", "caustics/land.comp", "caustics/straddle-on.comp"] {
+    for shader in
+        ["caustics/intersect-off.comp", "caustics/intersect-on.comp", "caustics/land.comp", "caustics/straddle-on.comp"]
+    {
         check_list::<Ray>(shader, "rays");
     }
     for shader in ["caustics/stencil-volumes.vert", "caustics/stencil-volumes.frag"] {

@@ -97,6 +97,12 @@ fn the_passes_are_those_of_the_thesis() {
         let drawn = [("cull-compact", 1), ("caustics-map", 1), ("combine", 1), ("cast", 1), ("view", 1)];
         let before = [("reference-planes", 1), ("position-diffuse-map", 1)];
         assert_eq!(culled, with_water(&before, &[&found[..], &drawn[..]].concat()));
+        let hit = Drawing::of(device, Variant::Hit, &parameters, &[sphere()]);
+        let hit: Vec<_> = hit.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();
+        let landed = [("position-pyramid", 8), ("empty-sums", 1), ("intersect", 1), ("land", 1), ("straddle", 1)];
+        let drawn = [("caustics-map", 1), ("combine", 1), ("cast", 1), ("view", 1)];
+        let before = [("bounding-box", 1), ("position-diffuse-map", 1)];
+        assert_eq!(hit, with_water(&before, &[&landed[..], &drawn[..]].concat()));
         let stencil = Drawing::of(device, Variant::Stencil, &parameters, &[sphere()]);
         let two_draws = 2 * stencil.grid.triangle_count();
         let stencil: Vec<_> = stencil.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();

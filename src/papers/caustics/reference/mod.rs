@@ -18,8 +18,8 @@ mod caustics_map;
 #[cfg(test)]
 mod fixtures;
 mod flux;
-mod landed;
 mod illumination;
+mod landed;
 mod light;
 mod photons;
 mod planes;

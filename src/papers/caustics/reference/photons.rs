@@ -79,7 +79,7 @@ impl Photons {
 }
 
 /// Least share of a beam's width, of that on a plane across it, that it may light of a slanting surface's map.
-pub const GRAZING: f64 = 0.25;
+pub const GRAZING: f64 = 0.02;
 
 /// Pearson's correlation of two maps.
 pub fn correlation(a: &[f64], b: &[f64]) -> f64 {
