@@ -141,6 +141,11 @@ impl TriangleTree {
             corners.extend(&mesh.positions);
             triangles.extend(mesh.indices.chunks_exact(3).map(|t| [t[0] + first, t[1] + first, t[2] + first]));
         }
+        TriangleTree::of(corners, &triangles)
+    }
+
+    /// Of triangles by their corners, at least one.
+    pub fn of(corners: Vec<Vec3>, triangles: &[[u32; 3]]) -> Self {
         let item = |&triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
             Item { triangle, low: a.min(b).min(c), high: a.max(b).max(c) }
@@ -154,27 +159,49 @@ impl TriangleTree {
 
     /// Whether a ray of unit direction meets a triangle, on either side; as `first_hit` of `common/triangle-tree.glsl`.
     pub fn is_met(&self, origin: Vec3, direction: Vec3) -> bool {
+        self.find(origin, direction, f32::INFINITY, |_| true).is_some()
+    }
+
+    /// A triangle that is `wanted` and that the segment meets, and where it does, as a fraction of the segment.
+    pub fn met_between(&self, from: Vec3, to: Vec3, wanted: impl Fn(&[u32; 3]) -> bool) -> Option<([u32; 3], f32)> {
+        self.find(from, to - from, 1.0, wanted)
+    }
+
+    /// A triangle that is `wanted` and that the ray meets after `most` times its direction at the latest.
+    fn find(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        most: f32,
+        wanted: impl Fn(&[u32; 3]) -> bool,
+    ) -> Option<([u32; 3], f32)> {
         let inverse = Vec3::select(direction.abs().cmplt(Vec3::splat(1e-9)), Vec3::splat(1e-9), direction).recip();
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {
             let (to_low, to_high) =
                 ((Vec3::from_array(node.low) - origin) * inverse, (Vec3::from_array(node.high) - origin) * inverse);
             let entry = to_low.min(to_high).max_element().max(0.0);
-            let exit = to_low.max(to_high).min_element();
+            let exit = to_low.max(to_high).min_element().min(most);
             if entry > exit + 1e-5 * exit.abs() {
                 at = node.skip as usize;
                 continue;
             }
             let (first, count) = ((node.leaf >> COUNT_BITS) as usize, (node.leaf & ((1 << COUNT_BITS) - 1)) as usize);
-            if self.triangles[first..first + count].iter().any(|triangle| self.meets(triangle, origin, direction)) {
-                return true;
+            let met =
+                self.triangles[first..first + count].iter().filter(|triangle| wanted(triangle)).find_map(|triangle| {
+                    let t = self.meeting(triangle, origin, direction).filter(|&t| t <= most)?;
+                    Some((*triangle, t))
+                });
+            if met.is_some() {
+                return met;
             }
             at += 1;
         }
-        false
+        None
     }
 
-    fn meets(&self, triangle: &[u32; 3], origin: Vec3, direction: Vec3) -> bool {
+    /// Ray parameter t of the ray's meeting with the triangle's plane, if that lies within the triangle and ahead.
+    fn meeting(&self, triangle: &[u32; 3], origin: Vec3, direction: Vec3) -> Option<f32> {
         let [a, b, c] = triangle.map(|corner| self.corners[corner as usize]);
         let (ab, ac) = (b - a, c - a);
         let across = direction.cross(ac);
@@ -182,10 +209,12 @@ impl TriangleTree {
         let turned = (origin - a).cross(ab);
         let weight_b = (origin - a).dot(across) / determinant;
         let weight_c = direction.dot(turned) / determinant;
-        determinant != 0.0
+        let t = ac.dot(turned) / determinant;
+        let is_met = determinant != 0.0
             && weight_b.min(weight_c) >= -EDGE_SLACK
             && weight_b + weight_c <= 1.0 + EDGE_SLACK
-            && ac.dot(turned) / determinant > 0.0
+            && t > 0.0;
+        is_met.then_some(t)
     }
 
     /// Adds the node of `items` and all below it: halves along the longest side of the middles' box.
@@ -256,7 +285,7 @@ mod tests {
             let target = bounds.min + bounds.diagonal() * Vec3::new(random.unit(), random.unit(), random.unit());
             let direction = random.direction();
             let origin = target - 20.0 * direction;
-            let any = tree.triangles.iter().any(|triangle| tree.meets(triangle, origin, direction));
+            let any = tree.triangles.iter().any(|triangle| tree.meeting(triangle, origin, direction).is_some());
             assert_eq!(tree.is_met(origin, direction), any);
             assert!(!tree.is_met(origin, -direction));
             met += i32::from(any);

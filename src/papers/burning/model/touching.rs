@@ -1,14 +1,17 @@
-//! Where separate parts of a mesh touch at rest: a lid lies on its pot, a collar on a neck.
+//! Where separate parts of a mesh touch at rest: a lid lies on its pot, a leg is stuck into a body.
 
 use std::collections::HashMap;
 
 use glam::{IVec3, Vec3};
 
+use crate::papers::triangle_tree::TriangleTree;
+
 /// Farthest that vertices of two parts lie apart where the parts hold each other, in diagonals; at least a mean edge.
 const NEAR: f32 = 0.02;
 
-/// Pairs of vertices of different parts that hold each other: for each vertex the nearest of another part within reach.
-/// None for a mesh in one part.
+/// Pairs of vertices of different parts that hold each other: for each vertex the nearest of another part within reach, and
+/// where an edge of one part, longer by that reach at both ends, passes through a triangle of another, the nearest end and
+/// corner. None for a mesh in one part.
 pub fn touching(positions: &[Vec3], triangles: &[[u32; 3]], mean_edge: f32) -> Vec<[u32; 2]> {
     let roots = roots(positions.len(), triangles);
     if triangles.iter().all(|&[a, ..]| roots[a as usize] == roots[triangles[0][0] as usize]) {
@@ -25,7 +28,7 @@ pub fn touching(positions: &[Vec3], triangles: &[[u32; 3]], mean_edge: f32) -> V
             there.push((root, vertex));
         }
     }
-    let mut pairs = Vec::new();
+    let mut pairs = crossing(positions, triangles, &roots, near);
     for (vertex, &position) in (0..).zip(positions) {
         let root = roots[vertex as usize];
         let middle = cell(position);
@@ -35,6 +38,30 @@ pub fn touching(positions: &[Vec3], triangles: &[[u32; 3]], mean_edge: f32) -> V
         let nearest = others.map(|&(_, other)| other).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         pairs.extend(nearest.filter(|&other| distance(other) <= near).map(|other| [vertex, other]));
     }
+    pairs
+}
+
+/// Vertices where parts pass through each other, or end within `near` of the middle of each other's triangles.
+fn crossing(positions: &[Vec3], triangles: &[[u32; 3]], roots: &[u32], near: f32) -> Vec<[u32; 2]> {
+    let tree = TriangleTree::of(positions.to_vec(), triangles);
+    let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut pairs: Vec<[u32; 2]> = edges
+        .filter_map(|edge| {
+            let [from, to] = edge.map(|end| positions[end as usize]);
+            let beyond = near * (to - from).normalize_or_zero();
+            let [from, to] = [from - beyond, to + beyond];
+            let is_other = |triangle: &[u32; 3]| roots[triangle[0] as usize] != roots[edge[0] as usize];
+            let (triangle, t) = tree.met_between(from, to, is_other)?;
+            let at = from.lerp(to, t);
+            let nearest = |vertices: &[u32]| {
+                let distance = |vertex: u32| positions[vertex as usize].distance(at);
+                vertices.iter().copied().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+            };
+            Some([nearest(&edge)?, nearest(&triangle)?])
+        })
+        .collect();
+    pairs.sort_unstable();
+    pairs.dedup();
     pairs
 }
 
@@ -70,5 +97,18 @@ mod tests {
         let pairs = touching(&positions, &triangles, 0.001);
         assert_eq!(pairs, [[0, 3], [1, 4], [2, 5], [3, 0], [4, 1], [5, 2]]);
         assert!(touching(&positions[..3], &triangles[..1], 0.001).is_empty());
+    }
+
+    #[test]
+    fn parts_hold_each_other_where_they_pass_through_each_other() {
+        // A long needle through the middle of a wide plate, above it, and too far above it: no vertex is near any other.
+        let plate = [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(0.0, 0.0, 1.2)];
+        let needle = [Vec3::new(0.0, 0.0, 0.0), Vec3::new(0.1, 1.0, 0.0), Vec3::new(0.0, 1.0, 0.1)];
+        for (lower_end, holds) in [(-0.4, true), (0.015, true), (0.03, false), (-1.03, false)] {
+            let needle = needle.map(|p| p + Vec3::new(0.0, lower_end, 0.0));
+            let pairs = touching(&[plate, needle].concat(), &[[0, 1, 2], [3, 4, 5]], 0.001);
+            assert_eq!(!pairs.is_empty(), holds, "{lower_end}: {pairs:?}");
+            assert!(pairs.iter().all(|[a, b]| *a == 3 && (0..3).contains(b)), "{lower_end}: its lower end: {pairs:?}");
+        }
     }
 }
