@@ -13,7 +13,7 @@ use fumarole::{cli, image, report, shader_build};
 pub type Target = fn(&[u8]);
 
 /// Readers under the names of their corpora.
-pub const ALL: [(&str, Target); 18] = [
+pub const ALL: [(&str, Target); 24] = [
     ("obj", |data| mesh(&[("a.obj", data)])),
     ("ply", |data| mesh(&[("a.ply", data)])),
     ("stl", |data| mesh(&[("a.stl", data)])),
@@ -26,6 +26,12 @@ pub const ALL: [(&str, Target); 18] = [
     ("map-png", |data| height_map(&[("a.png", data)])),
     ("nrrd", |data| volume(&[("a.nrrd", data)])),
     ("nhdr", nhdr),
+    ("mha", |data| volume(&[("a.mha", data)])),
+    ("mhd", |data| volume(&[("c.mhd", parted(data).0), ("b.raw", parted(data).1)])),
+    ("nii", |data| volume(&[("a.nii", data)])),
+    ("nii-gz", |data| volume(&[("a.nii.gz", data)])),
+    ("nii-pair", pair),
+    ("nvdb", |data| volume(&[("a.nvdb", data)])),
     ("png", picture),
     ("world", world),
     ("materials", materials),
@@ -109,6 +115,12 @@ fn volume(files: &[(&str, &[u8])]) {
 fn nhdr(data: &[u8]) {
     let (header, samples) = parted(data);
     volume(&[("b.nhdr", header), ("b.raw", samples)]);
+}
+
+/// A header of its own length, and the samples.
+fn pair(data: &[u8]) {
+    let (header, samples) = data.split_at(data.len().min(348));
+    volume(&[("d.hdr", header), ("d.img", samples)]);
 }
 
 fn parted(data: &[u8]) -> (&[u8], &[u8]) {

@@ -46,6 +46,11 @@ pub(super) fn allocate<T: Pod>(count: usize) -> Result<Vec<T>, Fault> {
     Ok(values)
 }
 
+/// Bytes of memory that a damaged file of `size_bytes` may take.
+pub(super) fn spare_bytes(size_bytes: u64) -> u64 {
+    size_bytes.saturating_mul(16).saturating_add(64 << 20)
+}
+
 /// Passes over bytes that nobody needs.
 pub(super) fn skip(input: &mut impl Read, count_bytes: u64) -> io::Result<()> {
     let skipped = io::copy(&mut input.take(count_bytes), &mut io::sink())?;

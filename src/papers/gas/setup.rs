@@ -379,7 +379,7 @@ impl Study for Setup {
         let files = [
             Parameter::new("volume-file", field!(Setup.volume_files))
                 .help(
-                    "NRRD file (.nrrd, .nhdr) whose samples are densities: a volume in place of the scene's, in the box \
+                    "NRRD, MetaImage, NIfTI or NanoVDB file whose samples are densities: a volume in place of the scene's, in the box \
                      of its first one as far as its own proportions let it; @X,Y,Z[,DEGREES[,SIDE]]: the middle of its \
                      box's lower side in metres, its turn about the vertical, its box's longest side in metres; up to 8",
                 )
@@ -401,7 +401,7 @@ impl Study for Setup {
                 .cost(Cost::Buffers)
                 .requires("volume-file"),
             Parameter::new("volume-component", field!(Setup.reading.component))
-                .help("Of files with several values a sample: which of them is the density, from 0")
+                .help("Of files with several values a sample, or several grids: which of them is the density, from 0")
                 .cost(Cost::Buffers)
                 .requires("volume-file"),
             Parameter::new("volume-up", field!(Setup.reading.upright))

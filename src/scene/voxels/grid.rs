@@ -46,6 +46,11 @@ impl VoxelGrid {
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
+
+    /// The same, without the rest.
+    pub fn into_samples(self) -> Vec<f32> {
+        self.samples
+    }
 }
 
 /// Passes where three steps span space, none beyond what single precision holds.

@@ -1,7 +1,13 @@
 //! Lines of the text that a file of samples begins with.
 
+use std::collections::HashMap;
+use std::fmt::Display;
 use std::io::{BufRead, Read};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
+use super::source::{beside, malformed};
+use crate::scene::Error;
 use crate::scene::error::{Fault, Place};
 
 /// Headers are a few lines.
@@ -38,4 +44,49 @@ pub(super) fn read(input: &mut impl BufRead, is_last: impl Fn(&str) -> bool) -> 
 /// A text of the file, short enough for a message.
 pub(super) fn shown(text: &str) -> String {
     format!("{:?}", text.chars().take(40).collect::<String>())
+}
+
+/// The fields of a header by their names, with their lines.
+#[derive(Default)]
+pub(super) struct Fields(HashMap<String, (usize, String)>);
+
+impl Fields {
+    /// Takes in a field.
+    ///
+    /// # Errors
+    /// One that is there.
+    pub(super) fn insert(&mut self, line: usize, key: String, value: &str) -> Result<(), Fault> {
+        let Some((before, _)) = self.0.get(&key) else {
+            self.0.insert(key, (line, value.trim().to_owned()));
+            return Ok(());
+        };
+        Err(Fault::new(Place::Line(line), format!("{} stands on line {before} already", shown(&key))))
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<&str> {
+        self.0.get(key).map(|(_, value)| value.as_str())
+    }
+
+    pub(super) fn required(&self, key: &str) -> Result<&str, Fault> {
+        self.get(key).ok_or_else(|| Fault::new(Place::Whole, format!("its header has no field {key}")))
+    }
+
+    pub(super) fn fault(&self, key: &str, reason: impl Display) -> Fault {
+        let place = self.0.get(key).map_or(Place::Whole, |(line, _)| Place::Line(*line));
+        Fault::new(place, format!("{key} {reason}"))
+    }
+
+    pub(super) fn number<T: FromStr>(&self, key: &str, text: &str) -> Result<T, Fault> {
+        text.parse().map_err(|_| self.fault(key, format!("has {}, not a number of its kind", shown(text))))
+    }
+
+    /// The file of the samples by the field of that name, in the header's folder or below.
+    pub(super) fn data_path(&self, key: &str, header: &Path) -> Result<Option<PathBuf>, Error> {
+        let Some(name) = self.get(key) else { return Ok(None) };
+        if name == "LIST" || name.starts_with("LIST ") || name.contains('%') {
+            let fault = self.fault(key, "names several files; save the volume as one file");
+            return Err(malformed(header, fault));
+        }
+        beside(header, name).map(Some)
+    }
 }

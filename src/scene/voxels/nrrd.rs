@@ -1,27 +1,30 @@
 //! NRRD, the format of Teem and 3D Slicer: a header of lines, and samples behind it or in a file of their own.
 
-use std::collections::HashMap;
-use std::io::{BufRead, BufReader, Seek, SeekFrom};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
 use super::VoxelGrid;
 use super::grid::{check_size, check_steps};
-use super::lines::{self, shown};
+use super::header::{Header, Scale, Skip};
+use super::lines::{self, Fields, shown};
 use super::raw::{Kind, Raw};
-use super::source::{beside, malformed};
+use super::source::malformed;
 use crate::scene::binary::ByteOrder;
 use crate::scene::error::{Asset, Fault, Place};
 use crate::scene::{Error, file};
+
+/// The field that names the file of the samples.
+const DATA: &str = "data file";
 
 /// Reads a file with its samples in it, or the one that its header names.
 pub(super) fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
     let (file, size_bytes) = file::open(path, Asset::Volume)?;
     let mut input = BufReader::new(file);
-    let fields = Fields::read(&mut input).map_err(|fault| malformed(path, fault))?;
-    let header = Header::of(&fields).map_err(|fault| malformed(path, fault))?;
-    let Some(data) = fields.data_path(path)? else {
+    let fields = fields(&mut input).map_err(|fault| malformed(path, fault))?;
+    let header = header(&fields).map_err(|fault| malformed(path, fault))?;
+    let Some(data) = fields.data_path(DATA, path)? else {
         return header.grid(input, size_bytes, component).map_err(|fault| malformed(path, fault));
     };
     let (file, size_bytes) = file::open(&data, Asset::Volume)?;
@@ -31,174 +34,99 @@ pub(super) fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
 /// The file of the samples, where they are not in this one.
 pub(super) fn data_path(path: &Path) -> Result<Option<PathBuf>, Error> {
     let (file, _) = file::open(path, Asset::Volume)?;
-    let fields = Fields::read(&mut BufReader::new(file)).map_err(|fault| malformed(path, fault))?;
-    fields.data_path(path)
+    let fields = fields(&mut BufReader::new(file)).map_err(|fault| malformed(path, fault))?;
+    fields.data_path(DATA, path)
 }
 
-/// The fields of a header by their names in lower case, with their lines.
-struct Fields(HashMap<String, (usize, String)>);
-
-impl Fields {
-    /// Reads up to the empty line before the samples, or the end.
-    fn read(input: &mut impl BufRead) -> Result<Self, Fault> {
-        let mut magic = [0; 4];
-        let is_nrrd = input.read_exact(&mut magic).is_ok() && magic == *b"NRRD";
-        if !is_nrrd {
-            return Err(Fault::new(Place::Byte(0), "it does not begin with NRRD; it is damaged or something else"));
-        }
-        let mut fields = HashMap::new();
-        // The rest of the first line is the version.
-        for (line, text) in lines::read(input, str::is_empty)?.into_iter().skip(1) {
-            // Comments, and keys of the user's own.
-            let Some((key, value)) = text.split_once(':').filter(|(_, value)| !value.starts_with('=')) else {
-                continue;
-            };
-            let key = match key.trim().to_lowercase().as_str() {
-                "datafile" => "data file".to_owned(),
-                "byteskip" => "byte skip".to_owned(),
-                "lineskip" => "line skip".to_owned(),
-                key => key.to_owned(),
-            };
-            if key.starts_with('#') {
-                continue;
-            }
-            if let Some((before, _)) = fields.insert(key.clone(), (line, value.trim().to_owned())) {
-                let reason = format!("{} stands on line {before} already", shown(&key));
-                return Err(Fault::new(Place::Line(line), reason));
-            }
-        }
-        Ok(Self(fields))
+/// Reads the fields, by their names in lower case, up to the empty line before the samples, or the end.
+fn fields(input: &mut impl BufRead) -> Result<Fields, Fault> {
+    let mut magic = [0; 4];
+    let is_nrrd = input.read_exact(&mut magic).is_ok() && magic == *b"NRRD";
+    if !is_nrrd {
+        return Err(Fault::new(Place::Byte(0), "it does not begin with NRRD; it is damaged or something else"));
     }
-
-    fn get(&self, key: &str) -> Option<&str> {
-        self.0.get(key).map(|(_, value)| value.as_str())
+    let mut fields = Fields::default();
+    // The rest of the first line is the version.
+    for (line, text) in lines::read(input, str::is_empty)?.into_iter().skip(1) {
+        // Comments, and keys of the user's own.
+        let Some((key, value)) = text.split_once(':').filter(|(_, value)| !value.starts_with('=')) else { continue };
+        let key = match key.trim().to_lowercase().as_str() {
+            comment if comment.starts_with('#') => continue,
+            "datafile" => DATA.to_owned(),
+            "byteskip" => "byte skip".to_owned(),
+            "lineskip" => "line skip".to_owned(),
+            key => key.to_owned(),
+        };
+        fields.insert(line, key, value)?;
     }
-
-    fn required(&self, key: &str) -> Result<&str, Fault> {
-        self.get(key).ok_or_else(|| Fault::new(Place::Whole, format!("its header has no field {key}")))
-    }
-
-    fn fault(&self, key: &str, reason: impl std::fmt::Display) -> Fault {
-        let place = self.0.get(key).map_or(Place::Whole, |(line, _)| Place::Line(*line));
-        Fault::new(place, format!("{key} {reason}"))
-    }
-
-    fn number<T: std::str::FromStr>(&self, key: &str, text: &str) -> Result<T, Fault> {
-        text.parse().map_err(|_| self.fault(key, format!("is {}, not a number of its kind", shown(text))))
-    }
-
-    /// One item for each of the axes.
-    fn each<'a>(&self, key: &str, text: &'a str, axes: usize) -> Result<Vec<&'a str>, Fault> {
-        // A vector's own blanks part nothing.
-        let mut depth = 0;
-        let items: Vec<&str> = text
-            .split(|c: char| {
-                depth += i32::from(c == '(') - i32::from(c == ')');
-                depth == 0 && c.is_whitespace()
-            })
-            .filter(|item| !item.is_empty())
-            .collect();
-        if items.len() == axes {
-            return Ok(items);
-        }
-        Err(self.fault(key, format!("has {} items for {axes} axes", items.len())))
-    }
-
-    fn data_path(&self, header: &Path) -> Result<Option<PathBuf>, Error> {
-        let Some(name) = self.get("data file") else { return Ok(None) };
-        if name == "LIST" || name.starts_with("LIST ") || name.contains('%') {
-            let fault = self.fault("data file", "names several files; save the volume as one file");
-            return Err(malformed(header, fault));
-        }
-        beside(header, name).map(Some)
-    }
+    Ok(fields)
 }
 
-/// What a header says of the samples.
-#[derive(Debug, PartialEq)]
-struct Header {
-    raw: Raw,
-    steps: [DVec3; 3],
-    skip_lines: u64,
-    skip: Skip,
+/// One item for each of the axes.
+fn each<'a>(fields: &Fields, key: &str, text: &'a str, axes: usize) -> Result<Vec<&'a str>, Fault> {
+    // A vector's own blanks part nothing.
+    let mut depth = 0;
+    let items: Vec<&str> = text
+        .split(|c: char| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth == 0 && c.is_whitespace()
+        })
+        .filter(|item| !item.is_empty())
+        .collect();
+    if items.len() == axes {
+        return Ok(items);
+    }
+    Err(fields.fault(key, format!("has {} items for {axes} axes", items.len())))
 }
 
-/// Bytes before the samples, behind the lines that are passed over.
-#[derive(Debug, PartialEq)]
-enum Skip {
-    Bytes(u64),
-    /// The samples are the file's end.
-    ToTheEnd,
-}
-
-impl Header {
-    fn of(fields: &Fields) -> Result<Self, Fault> {
-        let axes: usize = fields.number("dimension", fields.required("dimension")?)?;
-        if !(3..=4).contains(&axes) {
-            return Err(fields.fault("dimension", format!("is {axes}; a volume has 3, or 4 with components")));
-        }
-        let sizes = fields.each("sizes", fields.required("sizes")?, axes)?;
-        let sizes = sizes.into_iter().map(|size| fields.number("sizes", size)).collect::<Result<Vec<u64>, _>>()?;
-        match fields.required("encoding")?.to_lowercase().as_str() {
-            "raw" => {}
-            other => {
-                let reason = format!("is {}; save the volume with encoding raw", shown(other));
-                return Err(fields.fault("encoding", reason));
-            }
-        }
-        let kind = kind(fields)?;
-        let order = match fields.get("endian").map(str::to_lowercase).as_deref() {
-            Some("little") => ByteOrder::Little,
-            Some("big") => ByteOrder::Big,
-            None if kind.bytes() == 1 => ByteOrder::Little,
-            None => return Err(Fault::new(Place::Whole, "its header has no field endian: add little or big")),
-            Some(other) => return Err(fields.fault("endian", format!("is {}, neither little nor big", shown(other)))),
-        };
-        let steps = axis_steps(fields, axes)?;
-        let space: Vec<usize> = (0..axes).filter(|&axis| steps[axis].is_some()).collect();
-        let &[x, y, z] = space.as_slice() else {
-            let count = space.len();
-            let reason = format!("{count} of its {axes} axes lie in space; name 3 by kinds or space directions");
-            return Err(Fault::new(Place::Whole, reason));
-        };
-        let size = check_size([x, y, z].map(|axis| sizes[axis])).map_err(|reason| fields.fault("sizes", reason))?;
-        let component_axis = (0..axes).find(|&axis| steps[axis].is_none());
-        let components = component_axis.map_or(1, |axis| sizes[axis]);
-        if components == 0 {
-            return Err(fields.fault("sizes", "has an axis of no components"));
-        }
-        let together = sizes[..component_axis.unwrap_or(0)].iter().fold(1, |all: u64, &side| all.saturating_mul(side));
-        let raw = Raw { size, kind, order, components, together };
-        raw.bytes()?;
-        let steps = [x, y, z].map(|axis| steps[axis].unwrap_or_default());
-        check_steps(steps)?;
-        let skip = match fields.get("byte skip") {
-            None => Skip::Bytes(0),
-            Some("-1") => Skip::ToTheEnd,
-            Some(text) => Skip::Bytes(fields.number("byte skip", text)?),
-        };
-        let skip_lines = fields.get("line skip").map_or(Ok(0), |text| fields.number("line skip", text))?;
-        Ok(Self { raw, steps, skip_lines, skip })
+fn header(fields: &Fields) -> Result<Header, Fault> {
+    let axes: usize = fields.number("dimension", fields.required("dimension")?)?;
+    if !(3..=4).contains(&axes) {
+        return Err(fields.fault("dimension", format!("is {axes}; a volume has 3, or 4 with components")));
     }
-
-    /// Reads the samples from where the input stands, in a file of so many bytes.
-    fn grid(&self, mut input: impl BufRead + Seek, size_bytes: u64, component: u32) -> Result<VoxelGrid, Fault> {
-        let failed = |error: std::io::Error| Fault::foreign(Place::Whole, &error);
-        self.raw.check_component(component)?;
-        for _ in 0..self.skip_lines {
-            if input.skip_until(b'\n').map_err(failed)? == 0 {
-                return Err(Fault::new(Place::Whole, format!("it has no {} lines to skip", self.skip_lines)));
-            }
+    let sizes = each(fields, "sizes", fields.required("sizes")?, axes)?;
+    let sizes = sizes.into_iter().map(|size| fields.number("sizes", size)).collect::<Result<Vec<u64>, _>>()?;
+    let is_packed = match fields.required("encoding")?.to_lowercase().as_str() {
+        "raw" => false,
+        "gzip" | "gz" => true,
+        other => {
+            let reason = format!("is {}; save the volume with encoding raw or gzip", shown(other));
+            return Err(fields.fault("encoding", reason));
         }
-        let start = input.stream_position().map_err(failed)?;
-        let start = match self.skip {
-            Skip::Bytes(bytes) => start.saturating_add(bytes),
-            Skip::ToTheEnd => size_bytes.saturating_sub(self.raw.bytes()?).max(start),
-        };
-        self.raw.check_bytes(size_bytes.saturating_sub(start))?;
-        input.seek(SeekFrom::Start(start)).map_err(failed)?;
-        VoxelGrid::new(self.raw.size, self.steps, self.raw.read(input, component)?)
+    };
+    let kind = kind(fields)?;
+    let order = match fields.get("endian").map(str::to_lowercase).as_deref() {
+        Some("little") => ByteOrder::Little,
+        Some("big") => ByteOrder::Big,
+        None if kind.bytes() == 1 => ByteOrder::Little,
+        None => return Err(Fault::new(Place::Whole, "its header has no field endian: add little or big")),
+        Some(other) => return Err(fields.fault("endian", format!("is {}, neither little nor big", shown(other)))),
+    };
+    let steps = axis_steps(fields, axes)?;
+    let space: Vec<usize> = (0..axes).filter(|&axis| steps[axis].is_some()).collect();
+    let &[x, y, z] = space.as_slice() else {
+        let count = space.len();
+        let reason = format!("{count} of its {axes} axes lie in space; name 3 by kinds or space directions");
+        return Err(Fault::new(Place::Whole, reason));
+    };
+    let size = check_size([x, y, z].map(|axis| sizes[axis])).map_err(|reason| fields.fault("sizes", reason))?;
+    let component_axis = (0..axes).find(|&axis| steps[axis].is_none());
+    let components = component_axis.map_or(1, |axis| sizes[axis]);
+    if components == 0 {
+        return Err(fields.fault("sizes", "has an axis of no components"));
     }
+    let together = sizes[..component_axis.unwrap_or(0)].iter().fold(1, |all: u64, &side| all.saturating_mul(side));
+    let raw = Raw { size, kind, order, components, together };
+    raw.bytes()?;
+    let steps = [x, y, z].map(|axis| steps[axis].unwrap_or_default());
+    check_steps(steps)?;
+    let skip = match fields.get("byte skip") {
+        None => Skip::Bytes(0),
+        Some("-1") => Skip::ToTheEnd,
+        Some(text) => Skip::Bytes(fields.number("byte skip", text)?),
+    };
+    let skip_lines = fields.get("line skip").map_or(Ok(0), |text| fields.number("line skip", text))?;
+    Ok(Header { raw, steps, skip_lines, skip, is_packed, scale: Scale::PLAIN })
 }
 
 fn kind(fields: &Fields) -> Result<Kind, Fault> {
@@ -242,17 +170,17 @@ fn axis_steps(fields: &Fields, axes: usize) -> Result<Vec<Option<DVec3>>, Fault>
                 .map_err(|_| fields.fault("space directions", format!("has {}, no vector as (1,0,0)", shown(item))))?;
             Ok(Some(DVec3::from(vector) * signs))
         };
-        return fields.each("space directions", text, axes)?.into_iter().map(vector).collect();
+        return each(fields, "space directions", text, axes)?.into_iter().map(vector).collect();
     }
     let spacings = fields.get("spacings").map_or(Ok(vec![None; axes]), |text| {
         let spacing =
             |item: &str| fields.number::<f64>("spacings", item).map(|step| Some(step).filter(|s| !s.is_nan()));
-        fields.each("spacings", text, axes)?.into_iter().map(spacing).collect()
+        each(fields, "spacings", text, axes)?.into_iter().map(spacing).collect()
     })?;
     let is_space: Vec<bool> = match fields.get("kinds") {
         Some(text) => {
             let is_space = |kind: &str| ["space", "domain", "???", "none"].contains(&kind.to_lowercase().as_str());
-            fields.each("kinds", text, axes)?.into_iter().map(is_space).collect()
+            each(fields, "kinds", text, axes)?.into_iter().map(is_space).collect()
         }
         None if axes == 3 => vec![true; axes],
         // The axis of components has no spacing.

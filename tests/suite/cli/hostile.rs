@@ -86,7 +86,7 @@ impl Concat for [&OsStr] {
 type Reader = (fn() -> Program, &'static str);
 
 /// Every option that reads a file.
-fn readers() -> [Reader; 10] {
+fn readers() -> [Reader; 14] {
     [
         (|| caustics("render --mesh"), "obj"),
         (|| caustics("render --mesh"), "gltf"),
@@ -95,6 +95,10 @@ fn readers() -> [Reader; 10] {
         (|| terrain("render --drape"), "png"),
         (|| gas("render --volume-file"), "nrrd"),
         (|| gas("render --volume-file"), "nhdr"),
+        (|| gas("render --volume-file"), "mhd"),
+        (|| gas("render --volume-file"), "nii"),
+        (|| gas("render --volume-file"), "nii.gz"),
+        (|| gas("render --volume-file"), "nvdb"),
         (|| lava("render --rock"), "png"),
         (|| burning("render --mesh box --texture"), "png"),
         (|| fumarole("compare"), "json"),

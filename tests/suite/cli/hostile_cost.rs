@@ -106,6 +106,45 @@ fn volumes_that_promise() {
     refused(volume, "nan.nrrd", &samples, &["sample (0, 0, 0) is NaN", "volume-unfit"]);
     let samples = [header("200 200 100", "").into_bytes(), (-1_f64).to_le_bytes().repeat(4_000_000)].concat();
     refused(volume, "negative.nrrd", &samples, &["sample (0, 0, 0) is -1", "volume-range"]);
+    let meta = |sizes: &str| {
+        format!(
+            "NDims = 3\nDimSize = {sizes}\nElementType = MET_DOUBLE\nCompressedData = True\nElementDataFile = LOCAL\n"
+        )
+    };
+    refused(volume, "large.mha", meta("60000 60000 60000").as_bytes(), &["more than a file has"]);
+    // What is packed the tightest: more than may be unpacked, and as much as may, without its end.
+    let zeros = |count: usize| {
+        let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+        std::io::Write::write_all(&mut packer, &vec![0; count]).unwrap();
+        packer.finish().unwrap()
+    };
+    let packed = zeros(60_000_000);
+    refused(volume, "tight.mha", &[meta("1000 1000 100").as_bytes(), &packed].concat(), &["unpack it first"]);
+    let short = [meta("200 200 200").as_bytes(), &packed[..packed.len() - 8]].concat();
+    refused(volume, "cut.mha", &short, &["cut off"]);
+    let mut scan = vec![0; 352];
+    scan[..4].copy_from_slice(&348_i32.to_le_bytes());
+    scan[40..48].copy_from_slice(&[3, 0, 0xff, 0x7f, 0xff, 0x7f, 0xff, 0x7f]);
+    scan[70] = 2;
+    scan[108..112].copy_from_slice(&352.0_f32.to_le_bytes());
+    [80, 84, 88].iter().for_each(|&at| scan[at..at + 4].copy_from_slice(&1.0_f32.to_le_bytes()));
+    scan[344..347].copy_from_slice(b"n+1");
+    refused(volume, "large.nii", &scan, &["cut off"]);
+    // The samples of a grid whose boxes of tiles are all the same.
+    let mut grid = vec![0; 16 + 176 + 672 + 64 + 64 + 32 * 900_000];
+    let length = (grid.len() - 192) as u64;
+    let mut put = |at: usize, bytes: &[u8]| grid[at..at + bytes.len()].copy_from_slice(bytes);
+    put(0, b"NanoVDB0");
+    put(8, &(32_u32 << 21).to_le_bytes());
+    put(12, &[1]);
+    put(24, &length.to_le_bytes());
+    put(48, &[1]);
+    [0, 32, 64].iter().for_each(|more| put(192 + 384 + more, &1.0_f64.to_le_bytes()));
+    put(192 + 672 + 24, &[64]);
+    let root = 192 + 736;
+    [12, 16, 20].iter().for_each(|at| put(root + at, &500_u32.to_le_bytes()));
+    put(root + 24, &900_000_u32.to_le_bytes());
+    refused(volume, "tiles.nvdb", &grid, &["its nodes overlap"]);
 }
 
 /// A grey PNG of zeros without its end.

@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use fumarole::gpu::Compiler;
 use fumarole::papers::gas::grid::{Filter, Grid};
 use fumarole::papers::gas::model::{DensityFunction, SolidTexture, Volume};
 use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::density::Medium;
+use fumarole::papers::gas::reference::rays::Sampling;
 use fumarole::papers::gas::reference::shadow_table::density_table;
 use fumarole::papers::gas::{Parameters, Variant};
 use fumarole::scene::random::Random;
@@ -14,7 +16,6 @@ use glam::{DVec3, Vec3};
 use super::drawing::Drawing;
 use super::march::{FRAME, differences, parameters, worst};
 use crate::common::gpu_test;
-use fumarole::papers::gas::reference::rays::Sampling;
 
 /// Samples at random from -0.2 to 1.2, on axes that are upright, or not.
 fn grid(seed: u64, size: [u32; 3], is_skewed: bool) -> Grid {
@@ -79,6 +80,21 @@ fn several_grids_are_marched_at_once() {
             let drawing = Drawing::of(device, Variant::Traced, &parameters, &[]);
             let worst = worst(&differences(&drawing, &parameters, true, Sampling::Random));
             assert!(worst < 5e-5, "{filter:?}: {worst}");
+        }
+    });
+}
+
+#[test]
+fn both_compilers_march_the_same() {
+    gpu_test(|device| {
+        for filter in [Filter::Trilinear, Filter::Tricubic] {
+            let parameters = scene(vec![grid(5, [6, 7, 5], true)], filter);
+            for variant in [Variant::Traced, Variant::Table] {
+                let draw = |compiler| Drawing::frame(device, compiler, variant, &parameters, &[], 0).radiance;
+                let [ours, nagas] = [Compiler::Glslang, Compiler::Naga].map(draw);
+                let worst = ours.iter().zip(&nagas).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(worst < 1e-5, "{filter:?}, {variant:?}: {worst}");
+            }
         }
     });
 }

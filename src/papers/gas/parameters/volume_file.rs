@@ -11,7 +11,7 @@ use crate::measure::parameter::{Choice, Shape, Value, one, with_place};
 use crate::measure::{Error, components};
 use crate::papers::gas::grid::Grid;
 use crate::papers::gas::model::Volume;
-use crate::scene::{VoxelGrid, load_voxels};
+use crate::scene::load_voxels;
 
 /// A file with its place. As text: the file, then nothing, or `@` and 3 to 5 numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,15 +90,16 @@ impl VolumeFile {
     /// Those of [`load_voxels`]; [`Error::Input`] for samples that are no densities.
     pub fn load(&self, reading: &Reading, first: &Volume) -> Result<Placed, Error> {
         let voxels = load_voxels(&self.path, reading.component)?;
+        let (size, steps) = (voxels.size(), voxels.steps());
         let samples = reading
-            .densities(&voxels)
+            .densities(size, voxels.into_samples())
             .map_err(|reason| Error::Input(format!("`volume-file` {}: {reason}", self.path.display())))?;
         // The world's up is y, and its z comes towards the one who looks at the front.
         let to_world = match reading.upright {
             Upright::Z => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
             Upright::Y => DMat3::IDENTITY,
         };
-        let plain = Grid { size: voxels.size(), steps_m: voxels.steps().map(|step| to_world * step), samples };
+        let plain = Grid { size, steps_m: steps.map(|step| to_world * step), samples };
         let half = plain.half_extent_m();
         let room = first.half_extent_m.as_dvec3();
         let longest_m = self.stand.and_then(|stand| stand.longest_m);
@@ -113,11 +114,10 @@ impl VolumeFile {
 
 impl Reading {
     /// The samples as parts of the way from density 0 to density 1.
-    fn densities(&self, voxels: &VoxelGrid) -> Result<Vec<f32>, String> {
-        let values = voxels.samples();
+    fn densities(&self, size: [u32; 3], mut values: Vec<f32>) -> Result<Vec<f32>, String> {
         let is_clamped = self.unfit == Unfit::Clamp;
         let place = |index: usize| {
-            let [columns, rows, _] = voxels.size().map(|count| count as usize);
+            let [columns, rows, _] = size.map(|count| count as usize);
             format!("sample ({}, {}, {})", index % columns, index / columns % rows, index / columns / rows)
         };
         if let Some(index) = values.iter().position(|value| !value.is_finite()).filter(|_| !is_clamped) {
@@ -145,11 +145,11 @@ impl Reading {
         // What lies far out of the range would take the precision of what lies in it.
         const MOST: f64 = 1e6;
         let [low, width] = [f64::from(low), f64::from(high) - f64::from(low)];
-        let density = |value: &f32| match ((f64::from(*value) - low) / width).clamp(-MOST, MOST) {
-            density if density.is_nan() => 0.0,
-            density => density as f32,
-        };
-        Ok(values.iter().map(density).collect())
+        for value in &mut values {
+            let density = ((f64::from(*value) - low) / width).clamp(-MOST, MOST);
+            *value = if density.is_nan() { 0.0 } else { density as f32 };
+        }
+        Ok(values)
     }
 }
 

@@ -85,11 +85,6 @@ fn check_compressed(size_bytes: u64, (width, height): (u32, u32), bits: u32) -> 
     Err(format!("its size is {size_bytes} bytes, too few for {width} x {height} samples; it is cut off"))
 }
 
-/// Bytes of memory that a damaged file of `size_bytes` may take.
-fn spare_bytes(size_bytes: u64) -> u64 {
-    (64 << 20) + 16 * size_bytes
-}
-
 /// The text of a small file beside a map, such as its header.
 fn read_text(file: File, path: &Path) -> Result<String, Error> {
     /// Headers and projections are a few lines.

@@ -1,5 +1,6 @@
-use super::{check_compressed, spare_bytes};
+use super::check_compressed;
 use crate::scene::HeightMap;
+use crate::scene::binary::spare_bytes;
 use crate::scene::error::{Fault, Place};
 use crate::scene::height_map::grid::{Grid, Placement};
 use crate::scene::height_map::map::check_size;
