@@ -14,12 +14,13 @@ layout(std430, set = 0, binding = 1) buffer Straddling {
 
 layout(push_constant) uniform Empty {
     uint words; // of the sums
+    uint threads; // which take them in turn
 } empty;
 
 void main() {
     uint at = gl_GlobalInvocationID.x;
-    if (at < empty.words) {
-        sums.list[at] = 0u;
+    for (uint word = at; word < empty.words; word += empty.threads) {
+        sums.list[word] = 0u;
     }
     if (at == 0u) {
         straddling.count = 0u;

@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #include "caustics/water-triangle.glsl"
 #include "caustics/shadow-{SHADOW}.glsl"
 
-// Invocations that share a triangle's texels, and triangles that they take one after the other at the most.
+// Invocations that share a triangle's rows of texels, and triangles that they take one after the other at the most.
 const uint SHARING = 8u;
 const uint IN_TURN = 16u;
 
@@ -54,8 +54,16 @@ void main() {
         vec2 high = max(max(top_a, max(top_b, top_c)), max(end_a, max(end_b, end_c))) + LEAST_WIDTH;
         ivec2 from = ivec2(clamp(low, vec2(0.0), vec2(last)));
         ivec2 to = ivec2(clamp(high, vec2(0.0), vec2(last)));
-        uint width = uint(to.x - from.x) + 1u;
-        uint count = width * (uint(to.y - from.y) + 1u);
+        // Where its way is long, the beam keeps to a strip along it.
+        vec2 start = (top_a + top_b + top_c) / 3.0;
+        vec2 way = (end_a + end_b + end_c) / 3.0 - start;
+        float along = length(way);
+        vec2 across = along > 1.0e-3 ? vec2(-way.y, way.x) / along : vec2(0.0, 1.0);
+        vec3 top_off = abs(vec3(dot(top_a - start, across), dot(top_b - start, across), dot(top_c - start, across)));
+        vec3 end_off = abs(vec3(dot(end_a - start, across), dot(end_b - start, across), dot(end_c - start, across)));
+        vec3 off = max(top_off, end_off);
+        // A texel's corner lies 0.71 from its centre.
+        float half_strip = max(off.x, max(off.y, off.z)) + LEAST_WIDTH + 0.71;
 
         float lowest = min(a.origin.y, min(b.origin.y, c.origin.y)) - plane.middle;
         vec3 origin = (a.origin + b.origin + c.origin) / 3.0;
@@ -63,33 +71,40 @@ void main() {
         float secant = (a.secant + b.secant + c.secant) / 3.0;
         vec3 face = face_of(a, b, c);
         float flux = max(-dot(face, a.incident + b.incident + c.incident) / 3.0, 0.0) * secant;
-        for (uint i = gl_GlobalInvocationID.x % SHARING; i < count; i += SHARING) {
-            ivec2 texel = from + ivec2(int(i % width), int(i / width));
-            float height = height_at(texel);
-            if (!is_receiver(height) || height >= lowest) {
-                continue;
+        for (int y = from.y + int(gl_GlobalInvocationID.x % SHARING); y <= to.y; y += int(SHARING)) {
+            vec2 columns = vec2(from.x, to.x);
+            if (abs(across.x) > 1.0e-3) {
+                float middle = start.x - across.y * (float(y) + 0.5 - start.y) / across.x - 0.5;
+                columns = vec2(max(columns.x, floor(middle - half_strip / abs(across.x))), min(columns.y, ceil(middle + half_strip / abs(across.x))));
             }
-            vec2 p = place_at(a.origin, a.slope, height) - vec2(texel);
-            vec2 q = place_at(b.origin, b.slope, height) - vec2(texel);
-            vec2 r = place_at(c.origin, c.slope, height) - vec2(texel);
-            if (any(lessThan(max(p, max(q, r)), vec2(-LEAST_WIDTH))) || any(greaterThan(min(p, min(q, r)), vec2(1.0 + LEAST_WIDTH)))) {
-                continue;
-            }
-            widen(p, q, r);
-            Row row;
-            row.p = side_in_row(p, q, 0.0, 1.0);
-            row.q = side_in_row(q, r, 0.0, 1.0);
-            row.r = side_in_row(r, p, 0.0, 1.0);
-            float share = (left_of(row, 0.0) - left_of(row, 1.0)) / area_of(p, q, r);
-            vec2 place = vec2(texel) + 0.5;
-            if (share < 1.0e-6 || is_hidden(place, height, slope, straddler.top)) {
-                continue;
-            }
-            float descent = origin.y - plane.middle - height;
-            vec2 across = (place - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
-            vec3 point = vec3(across.x, height + plane.middle, across.y);
-            if (reaches(point, vec3(across - slope * descent, origin.y).xzy)) {
-                add_light(texel, share * flux * exp(-plane.absorption_per_m * (descent * secant)));
+            for (int x = int(columns.x); x <= int(columns.y); x++) {
+                ivec2 texel = ivec2(x, y);
+                float height = height_at(texel);
+                if (!is_receiver(height) || height >= lowest) {
+                    continue;
+                }
+                vec2 p = place_at(a.origin, a.slope, height) - vec2(texel);
+                vec2 q = place_at(b.origin, b.slope, height) - vec2(texel);
+                vec2 r = place_at(c.origin, c.slope, height) - vec2(texel);
+                if (any(lessThan(max(p, max(q, r)), vec2(-LEAST_WIDTH))) || any(greaterThan(min(p, min(q, r)), vec2(1.0 + LEAST_WIDTH)))) {
+                    continue;
+                }
+                widen(p, q, r);
+                Row row;
+                row.p = side_in_row(p, q, 0.0, 1.0);
+                row.q = side_in_row(q, r, 0.0, 1.0);
+                row.r = side_in_row(r, p, 0.0, 1.0);
+                float share = (left_of(row, 0.0) - left_of(row, 1.0)) / area_of(p, q, r);
+                vec2 place = vec2(texel) + 0.5;
+                if (share < 1.0e-6 || is_hidden(place, height, slope, straddler.top)) {
+                    continue;
+                }
+                float descent = origin.y - plane.middle - height;
+                vec2 beside = (place - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
+                vec3 point = vec3(beside.x, height + plane.middle, beside.y);
+                if (reaches(point, vec3(beside - slope * descent, origin.y).xzy)) {
+                    add_light(texel, share * flux * exp(-plane.absorption_per_m * (descent * secant)));
+                }
             }
         }
     }

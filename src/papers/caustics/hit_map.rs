@@ -37,6 +37,7 @@ host_block! {
 host_block! {
     struct EmptyConstants {
         words: u32,
+        threads: u32,
     }
 }
 
@@ -46,6 +47,8 @@ host_block! {
     }
 }
 
+/// Invocations that empty the sums, at the most: fewer workgroups than any device allows.
+const EMPTYING: u32 = 1 << 18;
 /// Invocations that share the texels of a straddling triangle.
 const SHARING: u32 = 8;
 /// Triangles that they take one after the other, at the most.
@@ -150,7 +153,8 @@ impl HitMap {
         let words = 2 * map_size * map_size;
         self.position_pyramid.record(frame)?;
         frame.compute(&self.empty_sums, |dispatch| {
-            dispatch.constants(&EmptyConstants { words }).threads(words, 1, 1);
+            let threads = words.min(EMPTYING);
+            dispatch.constants(&EmptyConstants { words, threads }).threads(threads, 1, 1);
         })?;
         let sharing = triangles.div_ceil(IN_TURN) * SHARING;
         // Two triangles a cell, which are landed together.

@@ -444,7 +444,8 @@ fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -
     let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
     let time_ms = caustics_map.and_then(|p| crate::measure::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);
     if planes == 0 {
-        return Map::new();
+        let landed = paper.lit_receivers.len() as u64 * u64::from(paper.grid().triangle_count());
+        return if paper.is_hit { entries([("landed_triangles", json!(landed))]) } else { Map::new() };
     }
     entries([
         ("planes_drawn", json!(planes)),

@@ -14,10 +14,12 @@ pub const LEVEL_M: f64 = 0.0;
 /// The fraction of a footprint's extent that the mesh reaches beyond it on every side.
 const MARGIN: f64 = 0.1;
 const GRAVITY_M_S2: f64 = 9.81;
-/// Of a cell's side, in refined water.
-const MOST_HALVINGS: f64 = 3.0;
+/// Along a cell's side, in refined water.
+const MOST_PARTS: f64 = 8.0;
 /// Of a refined cell's side.
-const LONGEST_TEXELS: f64 = 6.0;
+const LONGEST_TEXELS: f64 = 8.0;
+/// By which a side may be longer than it is meant to be, of that length.
+const LEEWAY: f64 = 0.25;
 
 /// One sine wave of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,8 +96,8 @@ impl Grid {
         Grid { corner: low, cell, columns, rows }
     }
 
-    /// The same mesh with cells halved along each side until linear triangles show the light to a quarter of a texel or
-    /// so, and none is longer than six texels; eight times along a side at most (section 6.3).
+    /// The same mesh with cells divided along each side until linear triangles show the light to a quarter of a texel or
+    /// so, and none is longer than eight texels or so; by eight along a side at most (section 6.3).
     pub fn refined(self, boxes: &[(ReceiverBox, Light)], parameters: &Parameters) -> Self {
         let texel_m = |b: &ReceiverBox| (b.extent.x * b.extent.z).sqrt() / f64::from(parameters.map_size);
         let texel_m = boxes.iter().map(|(b, _)| texel_m(b)).fold(f64::INFINITY, f64::min);
@@ -105,10 +107,9 @@ impl Grid {
         let bend = turn * (TAU / parameters.shortest_wave_m()).powi(2) * depth_m;
         let strays = if bend > 0.0 { (2.0 * texel_m / bend).sqrt() } else { f64::INFINITY };
         let finest_m = strays.min(LONGEST_TEXELS * texel_m).max(f64::MIN_POSITIVE);
-        let halvings = |cell: f64| ((cell / finest_m).log2() - 0.2).ceil().clamp(0.0, MOST_HALVINGS) as u32;
-        let (along_x, along_z) = (halvings(self.cell.x), halvings(self.cell.y));
-        let parts = DVec2::new(f64::from(1 << along_x), f64::from(1 << along_z));
-        Grid { cell: self.cell / parts, columns: self.columns << along_x, rows: self.rows << along_z, ..self }
+        let parts = (self.cell / finest_m - LEEWAY).ceil().clamp(DVec2::ONE, DVec2::splat(MOST_PARTS));
+        let (along_x, along_z) = (parts.x as u32, parts.y as u32);
+        Grid { cell: self.cell / parts, columns: self.columns * along_x, rows: self.rows * along_z, ..self }
     }
 
     pub fn vertex_count(&self) -> u32 {

@@ -35,14 +35,20 @@ fn hit_of(receiver: &ReceiverInput, oracle: &Oracle) -> impl Fn(DVec3, DVec3) ->
     }
 }
 
-/// Two independent maps by photons on the texels that hold the receiver.
-fn truth(parameters: &Parameters, light: &Light, receiver: &ReceiverInput, drawing: &Drawing) -> [Vec<f64>; 2] {
+/// Two independent maps by photons, of that many strata along each side of the water, on the texels that hold the receiver.
+fn truth(
+    parameters: &Parameters,
+    light: &Light,
+    receiver: &ReceiverInput,
+    drawing: &Drawing,
+    strata: u32,
+) -> [Vec<f64>; 2] {
     let oracle = Oracle::of(parameters, light, receiver, &drawing.grid);
     let (low, high) = (drawing.grid.corner, drawing.grid.corner + drawing.grid.extent_m());
     let surface = waves_surface(parameters);
     let (size, hit) = (parameters.map_size as usize, hit_of(receiver, &oracle));
     [0.25, 0.75].map(|place| {
-        let photons = Photons { low, high, strata: [2000, 2000], place: DVec2::splat(place) };
+        let photons = Photons { low, high, strata: [strata, strata], place: DVec2::splat(place) };
         let map = photons.landed(&surface, oracle.light, oracle.medium, &oracle.receiver, &hit, size);
         let texels = map.into_iter().zip(drawing.target("position-map"));
         texels.map(|(intensity, &height)| if height < -1e29 { 0.0 } else { intensity }).collect()
@@ -82,17 +88,17 @@ fn judge(drawing: &Drawing, [one, other]: &[Vec<f64>; 2]) -> Judged {
     }
 }
 
-#[test]
-fn hit_lights_planes_and_spheres_as_photons_do() {
+/// Draws each receiver under each water and light and sets it against photons.
+fn assert_lit_as_by_photons(map_size: u32, strata: u32, lights: &[Light]) {
     gpu_test(|device| {
-        let default = Parameters::default().waves;
-        for (waves, light) in [(default, OVERHEAD), (STEEP, OVERHEAD), (default, OBLIQUE), (STEEP, OBLIQUE)] {
-            let parameters = Parameters { waves, water_triangles: 10_000, ..parameters(light) };
+        let waters = [Parameters::default().waves, STEEP];
+        for (waves, &light) in lights.iter().flat_map(|light| waters.map(|waves| (waves, light))) {
+            let parameters = Parameters { waves, map_size, water_triangles: 10_000, ..parameters(light) };
             for receiver in [floor(), round_sphere()] {
                 let name = format!("{} under {light:?}, slope {:.3}", receiver.mesh.name, parameters.mean_slope());
                 let drawing = Drawing::of(device, Variant::Hit, &parameters, from_ref(&receiver));
                 drawing.assert_finite();
-                let truth = truth(&parameters, &light, &receiver, &drawing);
+                let truth = truth(&parameters, &light, &receiver, &drawing, strata);
                 let Judged { correlation, greatest, flux, halves } = judge(&drawing, &truth);
                 println!(
                     "{name}, {} triangles: correlation {correlation:.4} (halves {halves:.5}), greatest {greatest:.3}, \
@@ -107,8 +113,19 @@ fn hit_lights_planes_and_spheres_as_photons_do() {
     });
 }
 
-/// Under flat water eq. 4-18 is the same everywhere, on any receiver: on its slopes, at its edges, and where triangles that land
-/// whole meet those that straddle.
+#[test]
+fn hit_lights_planes_and_spheres_as_photons_do() {
+    assert_lit_as_by_photons(128, 2000, &[OVERHEAD, OBLIQUE]);
+}
+
+#[test]
+#[ignore = "minutes: 72 million photons a map"]
+fn hit_lights_maps_of_512_texels_as_photons_do() {
+    assert_lit_as_by_photons(512, 6000, &[OVERHEAD]);
+}
+
+/// Under flat water eq. 4-18 is the same everywhere, on any receiver: on its slopes, at its edges, and where triangles
+/// that land whole meet those that straddle.
 #[test]
 fn hit_lights_every_texel_alike_under_flat_water() {
     gpu_test(|device| {
@@ -130,6 +147,24 @@ fn hit_lights_every_texel_alike_under_flat_water() {
                 assert!(texels.clone().all(|(height, light)| *height > -1e29 || *light == 0.0), "{name}");
             }
         }
+    });
+}
+
+/// More words of light than a row of workgroups has invocations; long ways of beams through many texels.
+#[test]
+fn large_maps_hold_the_light_of_small_ones() {
+    gpu_test(|device| {
+        let [small, large] = [128, 1536].map(|map_size| {
+            let parameters = Parameters { waves: STEEP, map_size, ..parameters(OVERHEAD) };
+            Drawing::of(device, Variant::Hit, &parameters, &[teapot()])
+        });
+        let mean = |drawing: &Drawing| {
+            let map = drawing.target("caustics-map");
+            map.iter().copied().map(f64::from).sum::<f64>() / map.len() as f64
+        };
+        let (small, large) = (mean(&small), mean(&large));
+        println!("{small} {large}");
+        assert!(small > 0.1 && (large / small - 1.0).abs() < 0.03, "{small} {large}");
     });
 }
 

@@ -55,6 +55,32 @@ fn table_5_1_is_written_and_printed_with_its_ratios() {
 }
 
 #[test]
+fn chapter_6_is_set_against_the_level_map() {
+    let out = folder();
+    let program = caustics("experiment 6.3 --counts 9 --mesh sphere --out .").inside(out.path());
+    let ended = program.args(SMALL).args(ONCE).on_test_device().run().succeeded();
+    assert_eq!(entries(out.path()), ["caustics-6.3.csv", "caustics-6.3.json", "caustics-6.3.svg"]);
+    let record = read_json(&out.path().join("caustics-6.3.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let methods: Vec<&str> = runs.iter().map(|run| run["variant"].as_str().unwrap()).collect();
+    assert_eq!(methods, ["level-map", "culled", "hit"]);
+    let pairs = |run: &serde_json::Value| {
+        let passes = run["passes"].as_array().unwrap().iter();
+        let map = passes.clone().find(|pass| pass["name"] == "caustics-map").unwrap();
+        map["statistics"]["primitives"].as_u64().unwrap()
+    };
+    let [all, kept] = [0, 1].map(|i| pairs(&runs[i]));
+    assert_eq!(all, 9 * runs[0]["config"]["water_triangles"].as_u64().unwrap());
+    assert!(kept > 0 && kept * 2 < all, "{kept} of {all}");
+    let landed = &runs[2]["results"]["landed_triangles"];
+    assert_eq!(landed, &runs[2]["config"]["water_triangles"]);
+    for count in [all, kept, landed.as_u64().unwrap()] {
+        assert!(ended.stdout.contains(&format!(" {count} ")), "{count} is not printed:\n{}", ended.stdout);
+    }
+}
+
+#[test]
 fn a_table_without_times_is_written_and_printed() {
     let out = folder();
     let program = caustics("experiment memory --counts 3,5 --mesh box --out .").inside(out.path());

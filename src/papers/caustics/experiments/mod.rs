@@ -1,5 +1,6 @@
 //! The thesis's tables and figures, with its own numbers.
 
+mod drawn;
 mod ratios;
 mod slicing;
 mod sweep;
@@ -7,7 +8,7 @@ mod thesis;
 
 use serde_json::json;
 
-use self::sweep::{ALL_THREE, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome};
+use self::sweep::{ALL_THREE, CHAPTER_6, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome};
 use super::named_mesh::NamedMesh;
 use super::setup::{Setup, sample_meshes};
 use super::{Parameters, Variant};
@@ -94,6 +95,9 @@ pub fn all() -> Vec<Experiment<Setup>> {
             context.publish_table(&machine, &table)
         }),
         single("5-13", "Figure 5-13: the picture by normal and by smart slicing", picture_pairs),
+        sweep("6.3", "Sections 6.1 and 6.3: level map against culled and hit by number of planes", |context| {
+            compare(context, CHAPTER_6).map(drop)
+        }),
         sweep("appendix", "The appendix: three pictures, the curves and the histogram of every mesh given", appendix),
     ]
 }

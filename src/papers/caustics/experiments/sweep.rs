@@ -1,10 +1,11 @@
-//! Tables 5-1 and 5-3 and the appendix's curves: rendering time by number of planes, methods interleaved in one
+//! Tables 5-1 and 5-3, sections 6.1 and 6.3, and the appendix's curves: rendering time by number of planes, methods interleaved in one
 //! process.
 
 use serde_json::json;
 
 use super::super::named_mesh::NamedMesh;
 use super::super::setup::Setup;
+use super::drawn::{self, Drawn};
 use super::ratios::{self, LEAST_SAMPLES, Ratios};
 use super::thesis::{TABLE_5_1, TABLE_5_3};
 use crate::measure::Error;
@@ -40,6 +41,13 @@ pub const NORMAL_AGAINST_SMART: Comparison = Comparison {
     title: "Table 5-3: normal against smart slicing",
     base: Variant::LevelMapSmart,
     others: &[Variant::LevelMap],
+};
+
+/// What chapter 6 proposes.
+pub const CHAPTER_6: Comparison = Comparison {
+    title: "Sections 6.1 and 6.3: culled and hit against the level map",
+    base: Variant::LevelMap,
+    others: &[Variant::Culled, Variant::Hit],
 };
 
 /// The appendix's graphs.
@@ -107,6 +115,8 @@ pub struct Outcome {
     runs: Vec<Run>,
     rows: Vec<Row>,
     ratios: Vec<Ratios>,
+    /// What was drawn, where the comparison is of that.
+    drawn: Vec<Drawn>,
 }
 
 impl Outcome {
@@ -116,7 +126,8 @@ impl Outcome {
         let meshes = NamedMesh::all(meshes);
         let place = |row: sweep::Row| ((row.label, row.x as u32), row.run);
         let (places, mut runs): (Vec<_>, Vec<_>) = rows.into_iter().map(place).unzip();
-        let mut outcome = Outcome { comparison, runs: Vec::new(), rows: Vec::new(), ratios: Vec::new() };
+        let mut outcome =
+            Outcome { comparison, runs: Vec::new(), rows: Vec::new(), ratios: Vec::new(), drawn: Vec::new() };
         let methods = comparison.variants().len();
         for (places, runs) in places.chunks(methods).zip(runs.chunks_mut(methods)) {
             let (name, planes) = &places[0];
@@ -161,6 +172,9 @@ impl Outcome {
                 ratio,
                 thesis,
             });
+        }
+        if self.comparison.others.contains(&Variant::Hit) {
+            self.drawn.extend(runs.iter().map(|run| Drawn::of(&mesh.name, planes, run)));
         }
         self.ratios.push(Ratios::of(&mesh.name, planes, runs));
     }
@@ -210,6 +224,9 @@ impl Outcome {
         }
         text.push('\n');
         text.push_str(&ratios::render(&self.ratios, style));
+        if !self.drawn.is_empty() {
+            text.push_str(&drawn::render(&self.drawn, style));
+        }
         text
     }
 
