@@ -487,7 +487,7 @@ impl Study for Setup {
     /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.
     fn rendered(&self, _: Option<Variant>) -> Variant {
         match self.scene.variant() {
-            Variant::NoVolume if !self.placements.is_empty() => Variant::Table,
+            Variant::NoVolume if !(self.placements.is_empty() && self.volume_files.is_empty()) => Variant::Table,
             variant => variant,
         }
     }

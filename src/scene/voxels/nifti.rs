@@ -61,7 +61,7 @@ fn beside(path: &Path, endings: [&str; 2], what: &str) -> Result<PathBuf, Error>
         }
     }
     let name = path.with_extension("").file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Err(malformed(path, Fault::new(Place::Whole, format!("its {what} is missing; put it beside it as {name}"))))
+    Err(malformed(path, Fault::new(Place::Whole, format!("it lacks its {what}; put that beside it, named {name}"))))
 }
 
 /// The bytes of a header and their order.

@@ -238,7 +238,7 @@ fn a_nifti_file_is_read_as_scanners_write_it() {
         assert_eq!(super::load(&folder.path().join(names[1]), 0).unwrap(), plain);
         assert_eq!(companions(&path), [folder.path().join(names[1])]);
     }
-    assert!(message(&[("a.hdr", &header)]).contains("its samples (.img) is missing; put it beside it as a"));
+    assert!(message(&[("a.hdr", &header)]).contains("it lacks its samples (.img); put that beside it, named a"));
 }
 
 #[test]

@@ -91,6 +91,21 @@ fn a_file_is_recorded_and_fills_every_variant() {
     }
 }
 
+/// Figure 4 has no volumes of its own and is drawn without any, unless there is a file.
+#[test]
+fn a_scene_without_volumes_shows_a_file() {
+    let out = folder();
+    let path = corner(&out, "a.nrrd", "", 0.0);
+    let draw = |name: &str, program: Program| {
+        let path = out.path().join(name);
+        program.args("--quiet --preset fig-4 --size 45x31 --steps 8 --table 8 --image").arg(&path).run().succeeded();
+        std::fs::read(path).unwrap()
+    };
+    let plain = draw("plain.png", gas("render").on_test_device());
+    let filled = draw("filled.png", gas("render").on_test_device().arg("--volume-file").arg(&path).args("--tau 20"));
+    assert!(plain != filled);
+}
+
 #[test]
 fn files_and_values_that_cannot_be_are_refused() {
     let out = folder();
