@@ -12,6 +12,10 @@ layout(std430, set = 0, binding = 1) buffer Straddling {
     uint count;
 } straddling;
 
+layout(std430, set = 0, binding = 2) buffer Unfinished {
+    uint invocations;
+} unfinished;
+
 layout(push_constant) uniform Empty {
     uint words; // of the sums
     uint threads; // which take them in turn
@@ -24,5 +28,6 @@ void main() {
     }
     if (at == 0u) {
         straddling.count = 0u;
+        unfinished.invocations = 0u;
     }
 }

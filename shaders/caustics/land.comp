@@ -15,8 +15,9 @@ layout(std430, set = 0, binding = 5) readonly buffer Landings {
     vec4 list[];
 } landings;
 
-// Texels of a triangle's rectangle beyond which it is listed instead.
-const float MOST_TEXELS = 40000.0;
+// Texels of a triangle's rectangle beyond which it is listed instead: those of two beside each other are at most four times as many,
+// and a driver may end all loops together after 65,535 turns.
+const float MOST_TEXELS = 8000.0;
 
 // True where the surface is at that place, to half a texel.
 bool is_on_surface(vec3 at) {
@@ -107,7 +108,9 @@ void main() {
     ivec2 origin = ivec2(base);
     ivec2 from = max(ivec2(floor(low)), -origin);
     ivec2 to = min(ivec2(floor(high)), ivec2(int(plane.map_size) - 1) - origin);
-    for (int y = from.y; y <= to.y; y++) {
+    bool is_cut = false;
+    int y = from.y;
+    for (; y <= to.y; y++) {
         Row row;
         row.p = side_in_row(one.p, one.q, float(y), one.light);
         row.q = side_in_row(one.q, one.r, float(y), one.light);
@@ -135,5 +138,9 @@ void main() {
                 add_high(texel);
             }
         }
+        is_cut = is_cut || x <= last;
+    }
+    if (is_cut || y <= to.y) {
+        atomicAdd(unfinished.invocations, 1u);
     }
 }

@@ -17,18 +17,23 @@ layout(local_size_x = 64) in;
 const uint SHARING = 8u;
 const uint IN_TURN = 16u;
 
+// Set where the driver leaves a loop before its end.
+bool is_cut = false;
+
 // True where the receiver stands between a texel and the light: a beam ends at the first surface that it meets.
 bool is_hidden(vec2 place, float height, vec2 slope, float top) {
     vec2 back = -slope * plane.texels_per_m;
     vec2 path = abs(back) * (top - height);
     int steps = int(min(max(path.x, path.y), float(HIT_STEPS)));
-    for (int i = 1; i <= steps; i++) {
+    int i = 1;
+    for (; i <= steps; i++) {
         float rise = (top - height) * float(i) / float(steps);
         ivec2 texel = ivec2(floor(place + back * rise));
         if (is_in_map(texel) && height_at(texel) > height + rise) {
             return true;
         }
     }
+    is_cut = is_cut || i <= steps;
     return false;
 }
 
@@ -39,7 +44,8 @@ void main() {
         return;
     }
     float last = float(plane.map_size) - 1.0;
-    for (uint at = group; at < straddling.count; at += groups) {
+    uint at = group;
+    for (; at < straddling.count; at += groups) {
         Straddler straddler = straddling.list[at];
         Ray a = rays.list[indices.list[3u * straddler.triangle]];
         Ray b = rays.list[indices.list[3u * straddler.triangle + 1u]];
@@ -71,13 +77,15 @@ void main() {
         float secant = (a.secant + b.secant + c.secant) / 3.0;
         vec3 face = face_of(a, b, c);
         float flux = max(-dot(face, a.incident + b.incident + c.incident) / 3.0, 0.0) * secant;
-        for (int y = from.y + int(gl_GlobalInvocationID.x % SHARING); y <= to.y; y += int(SHARING)) {
+        int y = from.y + int(gl_GlobalInvocationID.x % SHARING);
+        for (; y <= to.y; y += int(SHARING)) {
             vec2 columns = vec2(from.x, to.x);
             if (abs(across.x) > 1.0e-3) {
                 float middle = start.x - across.y * (float(y) + 0.5 - start.y) / across.x - 0.5;
                 columns = vec2(max(columns.x, floor(middle - half_strip / abs(across.x))), min(columns.y, ceil(middle + half_strip / abs(across.x))));
             }
-            for (int x = int(columns.x); x <= int(columns.y); x++) {
+            int x = int(columns.x);
+            for (; x <= int(columns.y); x++) {
                 ivec2 texel = ivec2(x, y);
                 float height = height_at(texel);
                 if (!is_receiver(height) || height >= lowest) {
@@ -106,6 +114,11 @@ void main() {
                     add_light(texel, share * flux * exp(-plane.absorption_per_m * (descent * secant)));
                 }
             }
+            is_cut = is_cut || x <= int(columns.y);
         }
+        is_cut = is_cut || y <= to.y;
+    }
+    if (is_cut || at < straddling.count) {
+        atomicAdd(unfinished.invocations, 1u);
     }
 }

@@ -12,7 +12,7 @@ use super::receiver::LitReceiver;
 use super::resources::{BLACK, CAUSTICS, Context};
 use super::shadow_map::ShadowMap;
 use super::water_surface::WaterSurface;
-use crate::gpu::{Blend, Buffer, Error, Frame, ImageView};
+use crate::gpu::{Blend, Buffer, Device, Error, Frame, ImageView};
 
 /// The pass.
 pub struct CausticsMap {
@@ -99,6 +99,17 @@ impl CausticsMap {
         match &self.drawing {
             Drawing::Hit(hit) => Some(&hit.landings),
             Drawing::All { .. } | Drawing::Culled(_) => None,
+        }
+    }
+
+    /// Fails where light of the last frame is missing.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] where the driver left a loop before its end; errors of the Vulkan layer.
+    pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
+        match &self.drawing {
+            Drawing::Hit(hit) => hit.check(device),
+            Drawing::All { .. } | Drawing::Culled(_) => Ok(()),
         }
     }
 

@@ -10,7 +10,8 @@ use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
 use super::resources::Context;
 use super::shadow_map::ShadowMap;
-use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Load, Pass};
+use crate::gpu::transfer::{read_buffer, upload};
+use crate::gpu::{Blend, Buffer, BufferDesc, Device, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 
 host_block! {
@@ -66,6 +67,8 @@ pub struct HitMap {
     straddle: Pass,
     caustics_map: Pass,
     constants: HitConstants,
+    /// Invocations whose loops the driver left early.
+    unfinished: Arc<Buffer>,
     /// Where the rays of the water's vertices land.
     pub landings: Arc<Buffer>,
 }
@@ -95,6 +98,13 @@ impl HitMap {
         let landings = buffer("landings", bytes, "water-triangles")?;
         let straddling = buffer("straddling", 4 * (1 + 3 * u64::from(triangles)), "water-triangles")?;
 
+        let unfinished = upload(
+            context.device(),
+            &context.name("unfinished"),
+            vk::BufferUsageFlags::STORAGE_BUFFER,
+            bytemuck::bytes_of(&0_u32),
+        )?;
+
         let kernel = |name, shader: &str| {
             Pass::compute(name, "6.3", shader)
                 .constants::<HitConstants>()
@@ -111,7 +121,8 @@ impl HitMap {
         let mut straddle = kernel("straddle", straddle)
             .with("sums", &sums)
             .with("indices", &water.indices)
-            .with("straddling", &straddling);
+            .with("straddling", &straddling)
+            .with("unfinished", &unfinished);
         if let Some(shadows) = shadows {
             intersect = intersect.with("shadow_map", &shadows.map);
             straddle = straddle.with("shadow_map", &shadows.map);
@@ -121,6 +132,7 @@ impl HitMap {
                 .constants::<EmptyConstants>()
                 .with("sums", &sums)
                 .with("straddling", &straddling)
+                .with("unfinished", &unfinished)
                 .build(shaders)?,
             intersect: intersect.build(shaders)?,
             land: kernel("land", "caustics/land.comp")
@@ -128,6 +140,7 @@ impl HitMap {
                 .with("indices", &water.indices)
                 .with("straddling", &straddling)
                 .with("landings", &landings)
+                .with("unfinished", &unfinished)
                 .build(shaders)?,
             straddle: straddle.build(shaders)?,
             caustics_map: Pass::graphics("caustics-map", "6.3", "common/fullscreen.vert", "caustics/hit-map.frag")
@@ -139,8 +152,26 @@ impl HitMap {
                 .build(shaders)?,
             constants: constants(scope, lit, position_pyramid.level_count()),
             position_pyramid,
+            unfinished,
             landings,
         })
+    }
+
+    /// Fails where light of the last frame is missing, since the driver left loops before their end.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] for such a loop; errors of the Vulkan layer.
+    pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
+        let invocations: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(device, &self.unfinished)?);
+        if invocations.iter().all(|&count| count == 0) {
+            return Ok(());
+        }
+        let problem = format!(
+            "{} invocations left light out: this driver leaves a shader's loops early, as after 65,535 iterations together; \
+             take more `water-triangles`, a smaller `map-size` or variant culled",
+            invocations[0]
+        );
+        Err(Error::Pass { pass: "straddle".into(), problem })
     }
 
     /// Finds where the light lands and adds it up; it has passed water of that absorption.

@@ -67,7 +67,6 @@ pub struct SmartSlicing {
 impl LevelMap {
     /// # Errors
     /// Errors of the Vulkan layer.
-    #[expect(clippy::too_many_arguments, reason = "everything that the passes are made of, named once")]
     pub fn new(
         context: Context<'_>,
         variant: Variant,

@@ -427,8 +427,11 @@ impl Paper for Caustics {
         Some(self.parameters.camera)
     }
 
-    /// Fails where a ray of the picture did not end.
+    /// Fails where light of a map is missing, or a ray of the picture did not end.
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        if let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique {
+            receivers.iter().try_for_each(|passes| passes.caustics_map.check(shaders.device()))?;
+        }
         if std::mem::take(&mut self.is_viewed) {
             self.view.check(shaders.device())?;
         }

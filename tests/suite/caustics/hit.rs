@@ -10,6 +10,7 @@ use glam::{DVec2, DVec3};
 use super::drawing::Drawing;
 use super::oracle::{Oracle, waves_surface};
 use super::scene::{FLAT, OBLIQUE, OVERHEAD, POINT, bowl, floor, parameters, round_sphere, teapot, tilted_plane};
+use crate::cli::program::{caustics, folder};
 use crate::common::gpu_test;
 
 /// Slope 0.34, root of the mean square.
@@ -251,4 +252,13 @@ fn hit_is_the_same_each_time() {
         assert!(one.map("caustics-map", 1, 1) == other.map("caustics-map", 1, 1));
         assert!(one.target("caustics-map").iter().any(|&light| light > 0.0));
     });
+}
+
+/// Few beams, each over thousands of texels: a driver that ends loops early leaves light out, and the frame fails.
+#[test]
+fn light_that_loops_leave_out_is_missed() {
+    let scene = "render --variant hit --mesh teapot --light 1,-0.2,0 --map-size 2048 --water-triangles 2 --size 16x12";
+    let folder = folder();
+    let program = caustics(scene).on_test_device().arg("--quiet").arg("--image").arg(folder.path().join("a.png"));
+    program.run().refused(1, &["straddle", "left light out", "--water-triangles"]);
 }
