@@ -45,8 +45,7 @@ impl Visitor for Cases {
                     continue;
                 }
                 options.push(option + &value);
-                // The one that needs another is a map's.
-                let needed = parameter.requires.map(|name| format!("--{name}=volcano"));
+                let needed = parameter.requires.map(|name| format!("--{name}={}", example(name)));
                 if let Some(needed) = needed.filter(|needed| !options.contains(needed)) {
                     options.push(needed);
                 }
@@ -54,6 +53,14 @@ impl Visitor for Cases {
             self.0.push((S::PAPER, options));
         }
         Ok(())
+    }
+}
+
+/// A value of a parameter that another one needs.
+pub fn example(name: &str) -> &'static str {
+    match name {
+        "volume-file" => concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/volumes/eight.nrrd"),
+        _ => "volcano",
     }
 }
 

@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
 use super::program::{folder, fumarole};
-use super::properties::{ends_well, template};
+use super::properties::{ends_well, example, template};
 
 /// All of them with this variable, else so many.
 const ALL_VARIABLE: &str = "FUMAROLE_TEST_ALL_RANGES";
@@ -71,8 +71,8 @@ impl Visitor for Lines {
                 let rest = small(S::PAPER).split(' ').filter_map(|word| word.split_once('='));
                 let rest = rest.filter(|(name, _)| *name != parameter.name);
                 let mut line: Vec<String> = rest.map(|(name, value)| options(name, value)).collect();
-                let map = parameter.requires.map(|name| options(name, "volcano"));
-                line.extend(map.into_iter().chain([options(parameter.name, &end)]));
+                let needed = parameter.requires.map(|name| options(name, example(name)));
+                line.extend(needed.into_iter().chain([options(parameter.name, &end)]));
                 self.0.push((S::PAPER, line));
             }
         }
