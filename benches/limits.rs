@@ -9,7 +9,7 @@ use std::sync::Arc;
 use ash::vk;
 use fumarole::gpu::{
     Blend, Buffer, BufferDesc, Draw, Frame, Image, ImageDesc, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary,
-    Topology, transfer,
+    transfer,
 };
 use fumarole::host_block;
 use fumarole::measure::floor::floor;
@@ -124,21 +124,22 @@ fn passes(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<(Strin
     let idle = Pass::compute("idle", "", "limits/idle.comp").with("nothing", &nothing).build(shaders)?;
     let record = move |frame: &mut Frame<'_>| {
         frame.compute(&idle, |dispatch| {
-            (0..40).for_each(|_| {
-                dispatch.threads(100_000, 1, 1);
+            (0..30).for_each(|_| {
+                dispatch.threads(700_000, 1, 1);
             });
         })
     };
     passes.push(("empty invocations".to_owned(), Box::new(record)));
 
     let small = target(shaders, vk::Format::R8G8B8A8_UNORM)?;
-    let points = Pass::graphics("vertices", "", "limits/outside.vert", "limits/constant.frag")
-        .topology(Topology::Points)
+    let outside = Pass::graphics("vertices", "", "limits/outside.vert", "limits/constant.frag")
         .color(&small, Load::Discard, Blend::Replace)
         .build(shaders)?;
     let record = move |frame: &mut Frame<'_>| {
-        frame.graphics(&points, |draw: &mut Draw<'_>| {
-            draw.vertices(600_000);
+        frame.graphics(&outside, |draw: &mut Draw<'_>| {
+            (0..40).for_each(|_| {
+                draw.vertices(600_000);
+            });
         })
     };
     passes.push(("vertices".to_owned(), Box::new(record)));
@@ -151,7 +152,9 @@ fn passes(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<(Strin
         .build(shaders)?;
     let record = move |frame: &mut Frame<'_>| {
         frame.graphics(&triangles, |draw: &mut Draw<'_>| {
-            draw.indices(900_000);
+            (0..12).for_each(|_| {
+                draw.indices(900_000);
+            });
         })
     };
     passes.push(("triangles".to_owned(), Box::new(record)));

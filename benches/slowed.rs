@@ -15,11 +15,11 @@ use fumarole::measure::statistics::median;
 use fumarole::report::json;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_fumarole");
-/// Of this scene a process takes less than a second, and the pass has half of a frame.
-const SCENE: &str = "caustics --variant level-map --size 160x120 --map-size 128 --water-triangles 2000 --planes 11 \
-                     --warmup 2 --frames 30 --repeat 1 --no-limits --seed 1";
-const SHADER: &str = "caustics/caustics-map.frag";
-const PASS: &str = "caustics-map";
+/// Of this scene a process takes about a second, the pass has most of a frame, and its long rays scatter little.
+const SCENE: &str =
+    "terrain --variant gpu-compute --size 160x120 --warmup 2 --frames 20 --repeat 1 --no-limits --seed 1";
+const SHADER: &str = "terrain/depth.comp";
+const PASS: &str = "depth";
 const SLOWER: f64 = 0.10;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -82,9 +82,9 @@ fn slow_down(folder: &Path, steps: u32) -> Result<()> {
     let path = folder.join(SHADER);
     let text = fs::read_to_string(&path)?;
     let work = format!(
-        "void main() {{\n    float busy = gl_FragCoord.x * 1.0e-6;\n    for (int step = 0; step < {steps}; step++) \
-         {{\n        busy = fma(busy, 0.999, 0.001);\n    }}\n    // Never, and no compiler knows.\n    if (busy > 1.0e9) \
-         {{\n        return;\n    }}\n"
+        "void main() {{\n    float busy = float(gl_GlobalInvocationID.x) * 1.0e-6;\n    for (int step = 0; step < {steps}; step++) {{\n        \
+         busy = fma(busy, 0.999, 0.001);\n    }}\n    // Never, and no compiler knows.\n    if (busy > 1.0e9) {{\n        \
+         return;\n    }}\n"
     );
     let changed = text.replacen("void main() {\n", &work, 1);
     if changed == text {

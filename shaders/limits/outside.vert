@@ -4,5 +4,4 @@
 
 void main() {
     gl_Position = vec4(3.0, 3.0, 0.5, 1.0);
-    gl_PointSize = 1.0;
 }

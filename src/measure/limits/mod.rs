@@ -14,8 +14,8 @@ use super::statistics::{median, relative_mad, summarize};
 use crate::gpu::{Blend, Error, Feature, Frame, Mode, Recorder};
 use crate::report::record::{Limits, Summary};
 
-/// A load grows until it lasts this long: far above the resolution of a timestamp, short enough for every run.
-const LEAST_MS: f64 = 8.0;
+/// A load grows until it lasts this long: far above what a pass takes to begin and end, short enough for every run.
+const LEAST_MS: f64 = 16.0;
 const SAMPLES: usize = 5;
 /// Limits that scatter more than this are doubted.
 const NOISY: f64 = 0.1;
