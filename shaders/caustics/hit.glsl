@@ -71,17 +71,17 @@ Surface surface_at(vec2 place, float instead, bool whole) {
     return Surface(a + along_u.x * t.x + w * t.y, length(vec2(u, w)));
 }
 
-// Least and greatest height near a rectangle of texels, from the four entries of the pyramid that hold it. Where nothing is, the
-// least is above the greatest.
-vec2 heights_between(vec2 one, vec2 other) {
+// The finest level of the pyramid on which a rectangle of texels is no wider than so many entries and one more: its first entry and
+// its size; the rectangle, a texel wider on each side, in its entries.
+void climb(vec2 one, vec2 other, uint widest, out uvec2 from, out uvec2 to, out uint first, out uint level_size) {
     vec2 last = vec2(float(plane.map_size) - 1.0);
-    uvec2 from = uvec2(clamp(min(one, other) - 1.0, vec2(0.0), last));
-    uvec2 to = uvec2(clamp(max(one, other) + 1.0, vec2(0.0), last));
-    uint first = 0u;
-    uint level_size = plane.map_size;
+    from = uvec2(clamp(min(one, other) - 1.0, vec2(0.0), last));
+    to = uvec2(clamp(max(one, other) + 1.0, vec2(0.0), last));
+    first = 0u;
+    level_size = plane.map_size;
     for (uint level = 0u; level < 16u; level++) {
         uvec2 span = to - from;
-        if (max(span.x, span.y) <= 1u || level + 1u >= plane.levels) {
+        if (max(span.x, span.y) <= widest || level + 1u >= plane.levels) {
             break;
         }
         from /= 2u;
@@ -89,6 +89,16 @@ vec2 heights_between(vec2 one, vec2 other) {
         first += level_size * level_size;
         level_size = (level_size + 1u) / 2u;
     }
+}
+
+// Least and greatest height near a rectangle of texels, from the four entries of the pyramid that hold it. Where nothing is, the
+// least is above the greatest.
+vec2 heights_between(vec2 one, vec2 other) {
+    uvec2 from;
+    uvec2 to;
+    uint first;
+    uint level_size;
+    climb(one, other, 1u, from, to, first, level_size);
     vec2 a = pyramid.list[first + from.y * level_size + from.x];
     vec2 b = pyramid.list[first + from.y * level_size + to.x];
     vec2 c = pyramid.list[first + to.y * level_size + from.x];
@@ -98,21 +108,11 @@ vec2 heights_between(vec2 one, vec2 other) {
 
 // The same from up to sixteen entries of a finer level: for what must not be taken for more than it is.
 vec2 heights_within(vec2 one, vec2 other) {
-    vec2 last = vec2(float(plane.map_size) - 1.0);
-    uvec2 from = uvec2(clamp(min(one, other) - 1.0, vec2(0.0), last));
-    uvec2 to = uvec2(clamp(max(one, other) + 1.0, vec2(0.0), last));
-    uint first = 0u;
-    uint level_size = plane.map_size;
-    for (uint level = 0u; level < 16u; level++) {
-        uvec2 span = to - from;
-        if (max(span.x, span.y) <= 3u || level + 1u >= plane.levels) {
-            break;
-        }
-        from /= 2u;
-        to /= 2u;
-        first += level_size * level_size;
-        level_size = (level_size + 1u) / 2u;
-    }
+    uvec2 from;
+    uvec2 to;
+    uint first;
+    uint level_size;
+    climb(one, other, 3u, from, to, first, level_size);
     vec2 range = vec2(1.0e30, -1.0e30);
     for (uint y = from.y; y <= to.y; y++) {
         for (uint x = from.x; x <= to.x; x++) {

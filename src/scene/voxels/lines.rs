@@ -2,16 +2,56 @@
 
 use std::collections::HashMap;
 use std::fmt::Display;
-use std::io::{BufRead, Read};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use super::VoxelGrid;
+use super::header::Header;
 use super::source::{beside, malformed};
-use crate::scene::Error;
-use crate::scene::error::{Fault, Place};
+use crate::scene::error::{Asset, Fault, Place};
+use crate::scene::{Error, file};
 
 /// Headers are a few lines.
 const MOST_BYTES: u64 = 1 << 20;
+
+/// Reads the fields of a format's header.
+type ReadFields = fn(&mut BufReader<File>) -> Result<Fields, Fault>;
+/// The file of the samples by the fields of the header at that path, where they are not behind it.
+type SamplesPath = fn(&Fields, &Path) -> Result<Option<PathBuf>, Error>;
+
+/// Reads a file with its samples in it, or the one that its header names.
+///
+/// # Errors
+/// [`Error::Read`]; [`Error::Malformed`] with the file that is.
+pub(super) fn load(
+    path: &Path,
+    component: u32,
+    fields: ReadFields,
+    header: fn(&Fields) -> Result<Header, Fault>,
+    samples_path: SamplesPath,
+) -> Result<VoxelGrid, Error> {
+    let (file, size_bytes) = file::open(path, Asset::Volume)?;
+    let mut input = BufReader::new(file);
+    let fields = fields(&mut input).map_err(|fault| malformed(path, fault))?;
+    let header = header(&fields).map_err(|fault| malformed(path, fault))?;
+    let Some(data) = samples_path(&fields, path)? else {
+        return header.grid(input, size_bytes, component).map_err(|fault| malformed(path, fault));
+    };
+    let (file, size_bytes) = file::open(&data, Asset::Volume)?;
+    header.grid(BufReader::new(file), size_bytes, component).map_err(|fault| malformed(&data, fault))
+}
+
+/// The file of the samples, where they are not in the header's own.
+///
+/// # Errors
+/// As [`load`].
+pub(super) fn data_path(path: &Path, fields: ReadFields, samples_path: SamplesPath) -> Result<Option<PathBuf>, Error> {
+    let (file, _) = file::open(path, Asset::Volume)?;
+    let fields = fields(&mut BufReader::new(file)).map_err(|fault| malformed(path, fault))?;
+    samples_path(&fields, path)
+}
 
 /// The lines of a header, from 1, up to the first of which `is_last` says so, or the end; what follows is left.
 ///

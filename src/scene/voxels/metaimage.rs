@@ -1,6 +1,7 @@
 //! MetaImage, the format of ITK: a header of lines (`.mhd`) with its samples in another file, or behind it (`.mha`).
 
-use std::io::{BufRead, BufReader};
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -11,32 +12,21 @@ use super::grid::{check_size, check_steps};
 use super::header::{Header, Scale, Skip};
 use super::lines::{self, Fields, shown};
 use super::raw::{Kind, Raw};
-use super::source::malformed;
+use crate::scene::Error;
 use crate::scene::binary::ByteOrder;
-use crate::scene::error::{Asset, Fault};
-use crate::scene::{Error, file};
+use crate::scene::error::Fault;
 
 /// The key that the header ends with: the file of the samples, or LOCAL.
 const DATA: &str = "ElementDataFile";
 
 /// Reads a file with its samples in it, or the one that its header names.
 pub(super) fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
-    let (file, size_bytes) = file::open(path, Asset::Volume)?;
-    let mut input = BufReader::new(file);
-    let fields = fields(&mut input).map_err(|fault| malformed(path, fault))?;
-    let header = header(&fields).map_err(|fault| malformed(path, fault))?;
-    let Some(data) = samples_path(&fields, path)? else {
-        return header.grid(input, size_bytes, component).map_err(|fault| malformed(path, fault));
-    };
-    let (file, size_bytes) = file::open(&data, Asset::Volume)?;
-    header.grid(BufReader::new(file), size_bytes, component).map_err(|fault| malformed(&data, fault))
+    lines::load(path, component, fields, header, samples_path)
 }
 
 /// The file of the samples, where they are not in this one.
 pub(super) fn data_path(path: &Path) -> Result<Option<PathBuf>, Error> {
-    let (file, _) = file::open(path, Asset::Volume)?;
-    let fields = fields(&mut BufReader::new(file)).map_err(|fault| malformed(path, fault))?;
-    samples_path(&fields, path)
+    lines::data_path(path, fields, samples_path)
 }
 
 fn samples_path(fields: &Fields, header: &Path) -> Result<Option<PathBuf>, Error> {
@@ -45,7 +35,7 @@ fn samples_path(fields: &Fields, header: &Path) -> Result<Option<PathBuf>, Error
 }
 
 /// Reads up to the name of the samples' file.
-fn fields(input: &mut impl BufRead) -> Result<Fields, Fault> {
+fn fields(input: &mut BufReader<File>) -> Result<Fields, Fault> {
     let is_last = |line: &str| line.split_once('=').is_some_and(|(key, _)| key.trim() == DATA);
     let mut fields = Fields::default();
     for (line, text) in lines::read(input, is_last)? {

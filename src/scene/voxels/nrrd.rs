@@ -1,6 +1,7 @@
 //! NRRD, the format of Teem and 3D Slicer: a header of lines, and samples behind it or in a file of their own.
 
-use std::io::{BufRead, BufReader};
+use std::fs::File;
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -10,36 +11,29 @@ use super::grid::{check_size, check_steps};
 use super::header::{Header, Scale, Skip};
 use super::lines::{self, Fields, shown};
 use super::raw::{Kind, Raw};
-use super::source::malformed;
+use crate::scene::Error;
 use crate::scene::binary::ByteOrder;
-use crate::scene::error::{Asset, Fault, Place};
-use crate::scene::{Error, file};
+use crate::scene::error::{Fault, Place};
 
 /// The field that names the file of the samples.
 const DATA: &str = "data file";
 
 /// Reads a file with its samples in it, or the one that its header names.
 pub(super) fn load(path: &Path, component: u32) -> Result<VoxelGrid, Error> {
-    let (file, size_bytes) = file::open(path, Asset::Volume)?;
-    let mut input = BufReader::new(file);
-    let fields = fields(&mut input).map_err(|fault| malformed(path, fault))?;
-    let header = header(&fields).map_err(|fault| malformed(path, fault))?;
-    let Some(data) = fields.data_path(DATA, path)? else {
-        return header.grid(input, size_bytes, component).map_err(|fault| malformed(path, fault));
-    };
-    let (file, size_bytes) = file::open(&data, Asset::Volume)?;
-    header.grid(BufReader::new(file), size_bytes, component).map_err(|fault| malformed(&data, fault))
+    lines::load(path, component, fields, header, samples_path)
 }
 
 /// The file of the samples, where they are not in this one.
 pub(super) fn data_path(path: &Path) -> Result<Option<PathBuf>, Error> {
-    let (file, _) = file::open(path, Asset::Volume)?;
-    let fields = fields(&mut BufReader::new(file)).map_err(|fault| malformed(path, fault))?;
-    fields.data_path(DATA, path)
+    lines::data_path(path, fields, samples_path)
+}
+
+fn samples_path(fields: &Fields, header: &Path) -> Result<Option<PathBuf>, Error> {
+    fields.data_path(DATA, header)
 }
 
 /// Reads the fields, by their names in lower case, up to the empty line before the samples, or the end.
-fn fields(input: &mut impl BufRead) -> Result<Fields, Fault> {
+fn fields(input: &mut BufReader<File>) -> Result<Fields, Fault> {
     let mut magic = [0; 4];
     let is_nrrd = input.read_exact(&mut magic).is_ok() && magic == *b"NRRD";
     if !is_nrrd {
