@@ -10,4 +10,7 @@ layout(set = 0, binding = 0, std140) uniform Scene {
     vec2 rock_texels; // along both sides of the rock, without the border
     float depth_per_m; // depths in the texture are eye-space depths scaled to at most 1
     float rock_tile_m; // side of the square that the rock texture covers once
+    vec2 temperatures_k; // of a black body's colour, at the floor and at the top of the space
+    float per_brightest; // 1 / the brightest primary of the hottest
+    float is_blackbody; // 1 or 0
 } scene;

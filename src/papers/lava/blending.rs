@@ -40,6 +40,7 @@ impl Blending {
             .with("visibility", visibility)
             .with("rock", &scene.rock)
             .with("linear", &scene.linear)
+            .with("emission", &scene.emission)
             .color(sums, ZERO, Blend::Add)
             .build(context.shaders)?;
         Ok(Blending { pass, shading: context.parameters.shading })

@@ -79,6 +79,7 @@ impl March {
             .with("normal_height", &scene.normal_height)
             .with("rock", &scene.rock)
             .with("linear", &scene.linear)
+            .with("emission", &scene.emission)
             .color(sums, ZERO, Blend::Replace)
             .depth(depth, FAR, DepthTest::LessWrite)
             .build(context.shaders)?;

@@ -16,8 +16,10 @@
 mod accumulate_depths;
 mod animate;
 mod axes;
+pub mod blackbody;
 mod blending;
 mod cluster;
+mod color;
 mod density;
 mod estimate;
 pub mod experiments;
@@ -85,7 +87,8 @@ pub const FLOORS: [(&str, &str); 4] = [
 ];
 
 /// Parameters that only the passes from the surface to the picture take, as constants.
-pub const DRAWN: [&str; 7] = ["camera", "color", "epsilon", "exposure", "rock-tile", "splat-radius", "tone"];
+pub const DRAWN: [&str; 8] =
+    ["camera", "color", "epsilon", "exposure", "rock-tile", "splat-radius", "temperatures", "tone"];
 
 /// The paper with its resources.
 pub struct Lava {

@@ -13,6 +13,7 @@ host_block! {
     struct ToneConstants {
         exposure: f32,
         knee: f32,
+        is_linear: f32,
     }
 }
 
@@ -59,7 +60,11 @@ impl Normalisation {
 /// The parts of the picture show their values as they are.
 fn constants(parameters: &Parameters) -> ToneConstants {
     match parameters.shading {
-        Shading::Lava | Shading::Color => ToneConstants { exposure: parameters.exposure, knee: parameters.tone.knee() },
-        _ => ToneConstants { exposure: 1.0, knee: Tone::Clip.knee() },
+        Shading::Lava | Shading::Color => ToneConstants {
+            exposure: parameters.exposure,
+            knee: parameters.tone.knee(),
+            is_linear: f32::from(u8::from(parameters.is_blackbody)),
+        },
+        _ => ToneConstants { exposure: 1.0, knee: Tone::Clip.knee(), is_linear: 0.0 },
     }
 }

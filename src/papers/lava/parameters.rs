@@ -5,6 +5,8 @@ use std::ffi::OsStr;
 use glam::Vec3;
 use serde_json::Value as Json;
 
+use super::blackbody::HOTTEST_K;
+use super::color;
 use crate::field;
 use crate::measure::parameter::{
     self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one,
@@ -162,6 +164,10 @@ pub struct Parameters {
     pub speed_m_s: f32,
     /// The constant orange of section 7.2 in the display's RGB, each 0 to 1000.
     pub color: Vec3,
+    /// Black bodies' colours instead, by temperature.
+    pub is_blackbody: bool,
+    /// Temperatures at the floor and at the top of the space, kelvin, 1 to 10,000; [`TEMPERATURES_K`] without.
+    pub temperatures_k: Option<[f32; 2]>,
     /// Factor of the colours of lava and objects, above 0 and at most 1000.
     pub exposure: f32,
     /// Fate of what is brighter than the display.
@@ -200,6 +206,8 @@ impl Default for Parameters {
             border_m: 0.2,
             speed_m_s: 0.2,
             color: Vec3::new(2.5, 1.2, 0.28),
+            is_blackbody: false,
+            temperatures_k: None,
             exposure: 1.0,
             tone: Tone::Shoulder,
             rock_tile_m: 2.0,
@@ -213,6 +221,10 @@ impl Default for Parameters {
         }
     }
 }
+
+/// Eruption of a pahoehoe, 1,150 degrees Celsius (section 3.2), and the end of bright orange and dark red, 800 (section
+/// 3.1): kelvin.
+const TEMPERATURES_K: [f32; 2] = [1423.0, 1073.0];
 
 /// Our cameras for the four views of chapter 8; the thesis prints no positions.
 pub const CAMERAS: [(&str, Camera); 4] = [
@@ -352,11 +364,20 @@ impl Parameters {
                 .help("Mean speed of the flow")
                 .section("5.1")
                 .cost(Cost::Buffers),
-            Parameter::new("color", field!(Parameters.color))
-                .placeholder("R,G,B")
+            Parameter::new("color", color::FIELD)
                 .range(Range::from(0.0).to(1000.0))
-                .help("The constant orange as the display takes it: red, green, blue")
+                .help(
+                    "The constant orange as the display takes it, red, green, blue; or a black body's, by temperature",
+                )
                 .section("7.2"),
+            Parameter::new("temperatures", field!(Parameters.temperatures_k))
+                .placeholder("FLOOR,TOP")
+                .range(Range::from(1.0).to(f64::from(HOTTEST_K)))
+                .unit("kelvin")
+                .help("Temperatures of a black body's colour at the floor and at the top of the space")
+                .section("9")
+                .default_text("1423,1073 with a black body's colour")
+                .unrecorded(),
             Parameter::new("exposure", field!(Parameters.exposure))
                 .range(up_to_1000)
                 .help("Factor of the colours of lava and objects"),
@@ -426,6 +447,11 @@ impl Parameters {
             "must be at most 16777216 in all",
         )?;
         ParameterError::check_camera(&self.camera)
+    }
+
+    /// Temperatures at the floor and at the top of the space, kelvin.
+    pub fn temperatures_k(&self) -> [f32; 2] {
+        self.temperatures_k.unwrap_or(TEMPERATURES_K)
     }
 
     /// Drawing of the surface in a variant.

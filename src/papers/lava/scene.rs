@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
+use super::blackbody;
 use super::parameters::Parameters;
 use super::rock::Rock;
 use super::targets::Context;
@@ -22,6 +23,9 @@ host_block! {
         rock_texels: [f32; 2],
         depth_per_m: f32,
         rock_tile_m: f32,
+        temperatures_k: [f32; 2],
+        per_brightest: f32,
+        is_blackbody: f32,
         _pad: [f32; 2],
     }
 }
@@ -34,6 +38,8 @@ pub struct Scene {
     pub block: Arc<Buffer>,
     /// The rock.
     pub rock: Arc<ImageView>,
+    /// Light of black bodies by temperature.
+    pub emission: Arc<Buffer>,
     /// The sampler of the rock.
     pub linear: Arc<Sampler>,
 }
@@ -47,6 +53,7 @@ impl Scene {
             normal_height: normal_height.clone(),
             block: context.upload("scene", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
             rock: rock.load(context)?,
+            emission: blackbody::load(context)?,
             linear: Sampler::new(context.device(), "linear", vk::Filter::LINEAR)?,
         })
     }
@@ -67,10 +74,19 @@ pub fn depth_range_m(parameters: &Parameters) -> f32 {
 
 fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -> SceneBlock {
     let camera = &parameters.camera;
+    let temperatures_k = parameters.temperatures_k();
+    let hottest_k = temperatures_k[0].max(temperatures_k[1]);
+    let per_brightest = blackbody::per_brightest(hottest_k);
+    // Objects and particles take the colour of the hottest, as the display has it.
+    let hottest = || {
+        let light = blackbody::light(f64::from(hottest_k)).map(|value| value as f32);
+        light.map(|value| blackbody::encoded(per_brightest * value))
+    };
+    let glow = if parameters.is_blackbody { hottest() } else { parameters.color.to_array() };
     let view_projection = camera.projection(parameters.aspect()) * camera.view();
     SceneBlock {
         view_projection: view_projection.to_cols_array(),
-        glow: parameters.color.to_array(),
+        glow,
         splat_radius_m: parameters.splat_radius_m,
         space_m: parameters.space_m.to_array(),
         epsilon_m: parameters.epsilon_m,
@@ -78,6 +94,9 @@ fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -
         rock_texels: [rock.width as f32, rock.height as f32],
         depth_per_m: 1.0 / depth_range_m(parameters),
         rock_tile_m: parameters.rock_tile_m,
+        temperatures_k,
+        per_brightest,
+        is_blackbody: f32::from(u8::from(parameters.is_blackbody)),
         _pad: [0.0; 2],
     }
 }

@@ -61,6 +61,12 @@ impl Setup {
     /// [`Error::Parameter`], [`Error::Input`].
     pub fn check(&self) -> Result<(), Error> {
         self.parameters.validate()?;
+        if let Some([floor, top]) = self.parameters.temperatures_k
+            && !self.parameters.is_blackbody
+        {
+            let problem = "the constant colour has no temperature; give `color` blackbody";
+            return Err(Error::Input(format!("`temperatures` {floor},{top}: {problem}")));
+        }
         match (self.objects.first(), self.parameters.shading) {
             (Some(object), Shading::Particles) => {
                 let problem = "particles are points, without a surface that could hide it; choose another `shading`";

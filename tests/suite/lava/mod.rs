@@ -1,6 +1,7 @@
 //! The paper `lava` on the device: each stage against its oracle, laws, and its pictures.
 
 mod animation;
+mod blackbody;
 mod density;
 mod frames;
 mod gpu_driven;

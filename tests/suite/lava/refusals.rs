@@ -36,6 +36,9 @@ fn parameters_outside_their_range_are_named() {
         ("border", Parameters { border_m: nan, ..good.clone() }),
         ("speed", Parameters { speed_m_s: -1.0, ..good.clone() }),
         ("color", Parameters { color: Vec3::new(1.0, nan, 0.0), ..good.clone() }),
+        ("temperatures", Parameters { temperatures_k: Some([0.0, 1000.0]), ..good.clone() }),
+        ("temperatures", Parameters { temperatures_k: Some([1000.0, 10_001.0]), ..good.clone() }),
+        ("temperatures", Parameters { temperatures_k: Some([nan, 1000.0]), ..good.clone() }),
         ("rock-tile", Parameters { rock_tile_m: 0.0, ..good.clone() }),
         ("time-step", Parameters { time_step_s: f32::INFINITY, ..good.clone() }),
         ("size", Parameters { width: 0, ..good.clone() }),
@@ -45,6 +48,18 @@ fn parameters_outside_their_range_are_named() {
         let error = parameters.validate().expect_err(name);
         assert_eq!(error.name, name, "{error}");
     }
+}
+
+/// A constant colour has no temperature.
+#[test]
+fn temperatures_without_a_black_body_are_refused() {
+    let of = |is_blackbody| {
+        let parameters = Parameters { temperatures_k: Some([1300.0, 1000.0]), is_blackbody, ..parameters() };
+        Setup { parameters, ..Setup::default() }.check().map_err(|error| error.to_string())
+    };
+    assert_eq!(of(true), Ok(()));
+    let error = of(false).unwrap_err();
+    assert!(error.contains("temperatures") && error.contains("blackbody"), "{error}");
 }
 
 #[test]
