@@ -14,8 +14,8 @@ pub(crate) enum Counter {
     Timestamps,
     /// Samples that passed all tests.
     Samples,
-    /// Vertex-stage invocations, assembled primitives, fragment-stage invocations. Compute invocations have a pool of
-    /// their own: counting them beside graphics work alone brings one driver down.
+    /// Assembled primitives, vertex-stage invocations, clipped primitives, fragment-stage invocations. Compute invocations
+    /// have a pool of their own: counting them beside graphics work alone brings one driver down.
     Graphics,
     /// Compute-stage invocations.
     Compute,
@@ -23,7 +23,7 @@ pub(crate) enum Counter {
 
 impl Counter {
     fn values(self) -> usize {
-        if self == Counter::Graphics { 3 } else { 1 }
+        if self == Counter::Graphics { 4 } else { 1 }
     }
 }
 
@@ -47,6 +47,7 @@ impl QueryPool {
                 vk::QueryType::PIPELINE_STATISTICS,
                 vk::QueryPipelineStatisticFlags::VERTEX_SHADER_INVOCATIONS
                     | vk::QueryPipelineStatisticFlags::INPUT_ASSEMBLY_PRIMITIVES
+                    | vk::QueryPipelineStatisticFlags::CLIPPING_PRIMITIVES
                     | vk::QueryPipelineStatisticFlags::FRAGMENT_SHADER_INVOCATIONS,
             ),
             Counter::Compute => {

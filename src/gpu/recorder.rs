@@ -264,11 +264,12 @@ impl Recorder {
             let at = |values: &[u64], query: Option<u32>, stride: usize, offset: usize| {
                 values.get(query? as usize * stride + offset).copied()
             };
-            // Vulkan writes the counters in the order of their bits: primitives, vertices, fragments.
+            // Vulkan writes the counters in the order of their bits: primitives, vertices, clipped primitives, fragments.
             let counts = Counts {
-                primitives: at(&graphics, one.graphics, 3, 0),
-                vertices: at(&graphics, one.graphics, 3, 1),
-                fragments: at(&graphics, one.graphics, 3, 2),
+                primitives: at(&graphics, one.graphics, 4, 0),
+                vertices: at(&graphics, one.graphics, 4, 1),
+                clipped_primitives: at(&graphics, one.graphics, 4, 2),
+                fragments: at(&graphics, one.graphics, 4, 3),
                 compute_invocations: at(&compute, one.compute, 1, 0),
                 samples_passed: at(&samples, one.samples, 1, 0),
             };

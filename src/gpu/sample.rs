@@ -25,6 +25,8 @@ pub struct Counts {
     pub vertices: Option<u64>,
     /// Primitives assembled.
     pub primitives: Option<u64>,
+    /// Primitives that the clipper lets through, which are set up; what is cut may count as several.
+    pub clipped_primitives: Option<u64>,
     /// Fragment-stage invocations; some devices count whole blocks.
     pub fragments: Option<u64>,
     /// Compute-stage invocations, of whole workgroups.
@@ -38,6 +40,7 @@ impl Counts {
         let add = |sum: &mut Option<u64>, one: Option<u64>| *sum = sum.iter().copied().chain(one).reduce(|a, b| a + b);
         add(&mut self.vertices, other.vertices);
         add(&mut self.primitives, other.primitives);
+        add(&mut self.clipped_primitives, other.clipped_primitives);
         add(&mut self.fragments, other.fragments);
         add(&mut self.compute_invocations, other.compute_invocations);
         add(&mut self.samples_passed, other.samples_passed);

@@ -58,7 +58,7 @@ pub struct Work {
     /// Bytes that must come from memory or go there: the certain ones, with attachments once a pixel, without clears and
     /// without what a test or a blend reads of an attachment that is cleared first.
     pub memory_bytes: u64,
-    /// Triangles assembled; `None` where they are not counted.
+    /// Triangles that are set up: assembled, and let through by the clipper; `None` where they are not counted.
     pub triangles: Option<u64>,
     /// Samples of each colour attachment.
     pub kept: Vec<Kept>,
@@ -281,7 +281,8 @@ impl Declared {
             bytes_at_most: are_samples_known.then_some(at_most),
             uncertain,
             memory_bytes,
-            triangles: counts.primitives.filter(|_| self.has_triangles),
+            // Those outside of the picture are not set up, and those that the clipper cuts count once.
+            triangles: self.has_triangles.then(|| counts.primitives.min(counts.clipped_primitives)).flatten(),
             kept,
             multiply_adds: desc.multiply_adds.as_ref().and_then(|formula| formula(counts)),
             launches: u32::from(self.is_draw_or_dispatch),

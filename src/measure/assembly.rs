@@ -142,6 +142,7 @@ fn pass(measured: &MeasuredPass, limits: Option<&Limits>, is_cpu: bool) -> Pass 
         statistics: measured.counts.map(|c| Statistics {
             vertices: c.vertices,
             primitives: c.primitives,
+            clipped_primitives: c.clipped_primitives,
             fragments: c.fragments,
             compute_invocations: c.compute_invocations,
             samples_passed: c.samples_passed,
@@ -213,6 +214,7 @@ fn arguments(pass: &MeasuredPass) -> Map<String, Value> {
         ("bytes_written_at_most", work.and_then(|work| Some(work.bytes_at_most?.written))),
         ("vertices", counts.vertices),
         ("primitives", counts.primitives),
+        ("clipped_primitives", counts.clipped_primitives),
         ("fragments", counts.fragments),
         ("compute_invocations", counts.compute_invocations),
         ("samples_passed", counts.samples_passed),

@@ -20,7 +20,7 @@ struct Row<'a> {
 type Column = (&'static str, fn(&Row) -> String);
 
 /// Names and cells of the columns, in order. Times are milliseconds, sizes bytes.
-const COLUMNS: [Column; 64] = [
+const COLUMNS: [Column; 65] = [
     ("device", |row| row.record.environment.device.name.clone()),
     ("device_type", |row| row.record.environment.device.kind.name().to_owned()),
     ("paper", |row| row.run.paper.clone()),
@@ -59,6 +59,7 @@ const COLUMNS: [Column; 64] = [
     ("wait_median_ms", |row| row.of_pass(|pass| Some(pass.wait_ms.as_ref()?.median))),
     ("vertices", |row| row.statistic(|count| count.vertices)),
     ("primitives", |row| row.statistic(|count| count.primitives)),
+    ("clipped_primitives", |row| row.statistic(|count| count.clipped_primitives)),
     ("fragments", |row| row.statistic(|count| count.fragments)),
     ("compute_invocations", |row| row.statistic(|count| count.compute_invocations)),
     ("samples_passed", |row| row.statistic(|count| count.samples_passed)),

@@ -97,6 +97,9 @@ pub struct Statistics {
     pub vertices: Option<u64>,
     /// Primitives assembled.
     pub primitives: Option<u64>,
+    /// Primitives that the clipper lets through; absent from older records.
+    #[serde(default)]
+    pub clipped_primitives: Option<u64>,
     /// Fragment-stage invocations; some devices count whole blocks.
     pub fragments: Option<u64>,
     /// Compute-stage invocations, of whole workgroups.

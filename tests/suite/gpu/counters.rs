@@ -61,6 +61,7 @@ fn vertices_primitives_and_samples_of_a_grid_are_exact() {
         });
         assert_eq!(counts.vertices, Some(u64::from(index_count)));
         assert_eq!(counts.primitives, Some(u64::from(2 * QUADS)));
+        assert_eq!(counts.clipped_primitives, Some(u64::from(2 * QUADS)));
         assert_eq!(counts.samples_passed, Some(32 * 24));
         assert_eq!(counts.compute_invocations, None);
 
@@ -134,5 +135,26 @@ fn compute_invocations_are_exact_beside_graphics_work() {
         // Whole workgroups of 64, in two calls.
         assert_eq!(counts[1], Counts { compute_invocations: Some(2 * 16 * 64), ..Counts::default() });
         assert_eq!(sample.passes[1].calls, 2);
+    });
+}
+
+#[test]
+fn triangles_outside_of_the_picture_do_not_pass_the_clipper_and_are_no_work_of_its_set_up() {
+    gpu_test(|device| {
+        let target = color_target(device, "outside", vk::Format::R8G8B8A8_UNORM, 64, 48);
+        let pass = Pass::graphics("outside", "", "limits/outside.vert", "limits/constant.frag")
+            .color(&target, BLACK, Blend::Replace)
+            .build(&shaders(device))
+            .unwrap();
+        let sample = run(device, Mode::Counted, |frame| {
+            frame.graphics(&pass, |draw| {
+                draw.vertices(300);
+            })
+        })
+        .unwrap();
+        let counts = sample.passes[0].counts.unwrap();
+        assert_eq!((counts.vertices, counts.primitives), (Some(300), Some(100)));
+        assert_eq!((counts.clipped_primitives, counts.samples_passed), (Some(0), Some(0)));
+        assert_eq!(sample.passes[0].work.as_ref().unwrap().triangles, Some(0));
     });
 }
