@@ -11,4 +11,6 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
     uint jitter; // their places: RANDOM or BLUE_NOISE
     uint nearest; // fragments that are kept of a pixel, where not all are
     uint chunks; // of the triangles of tiles that there is room for
+    uint cache; // entries of the tables of densities along each axis
+    uint bricks; // along each axis of a volume's box
 } counts;

@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants DENSITY=functions,trilinear,tricubic
+#pragma variants DENSITY=functions,trilinear,tricubic,cached
 
 // Section "Calculation of the shadow table": "a table of the same dimensions containing functional values is first
 // computed". Entries lie on the box around the volume, the first and the last of an axis on its faces.

@@ -1,6 +1,6 @@
 #version 450
 
-#pragma variants DENSITY=functions,trilinear,tricubic
+#pragma variants DENSITY=functions,trilinear,tricubic,cached EMPTY=kept,skipped
 
 // What the gas takes of the light that falls on surfaces, traced from their points.
 
@@ -11,6 +11,7 @@
 #include "gas/volume.glsl"
 #include "gas/density-{DENSITY}.glsl"
 #include "gas/volume-density.glsl"
+#include "gas/empty-{EMPTY}.glsl"
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-traced.glsl"

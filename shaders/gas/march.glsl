@@ -9,6 +9,8 @@
 // - The text's loops shade inside `if self_shadowing`, their indentation is lost: gas is shaded with and without
 //   shadows, once, after all lights. Phase functions integrate to 1, and light is in units in which a white surface
 //   that faces an irradiance of 1 shows 1, not 1 / pi: hence the phase's factor of pi.
+// - Where bricks are skipped (empty-skipped.glsl), the march goes on with the increment that the brick ends in: what it
+//   leaves out adds nothing, and samples keep their random numbers.
 // - Solid (hypertexture) volumes: opacity is 1 - (1 - density)^(c step); the normal is from the density at the previous
 //   point, at this one, and in two directions orthogonal to the ray.
 
@@ -125,11 +127,14 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
         float aboves[MAX_VOLUMES];
         float extinction = 0.0;
         float densest = 0.0;
+        float clear_m = 1.0e30; // along which no volume has density
         uint evaluations = 0u;
         uint v = 0u;
         for (; v < counts.volumes; v++) {
             densities[v] = 0.0;
-            if (is_in[v]) {
+            float empty = is_in[v] ? empty_m(v, point, direction) : 1.0e30;
+            clear_m = min(clear_m, empty);
+            if (empty <= 0.0) {
                 // At the point, and for a solid in two directions orthogonal to the ray.
                 float apart = 0.25 * volumes[v].step_m;
                 uint count = volumes[v].is_solid != 0u ? 3u : 1u;
@@ -200,6 +205,16 @@ Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, f
             }
             gas.evaluations += evaluations;
             gas.increments++;
+            if (clear_m > 0.0) {
+                // On to the increment that the brick ends in; a solid's march goes on from the sample before that.
+                uint skipped = uint(min(at_m + clear_m, length_m) / step_m);
+                if (skipped > gas.increments) {
+                    gas.increments = skipped;
+                    from = float(skipped - 1u) * step_m;
+                    float part = place_in_part(pixel_index, first_number + skipped - 1u);
+                    previous_m = from + min(step_m, length_m - from) * part;
+                }
+            }
             gas.is_done = float(gas.increments) * step_m >= length_m || before * gas.transparency < early;
         }
     }

@@ -1,6 +1,6 @@
 // Section "Shadowing of the gas": the ray towards the light is traced through every volume, in increments of the
 // volume's step, the last one scaled. Sampled in their middles: the jitter of the viewer's ray makes one value noisy,
-// here it would make all of them so.
+// here it would make all of them so. Bricks without density are left at once (empty-*.glsl).
 
 float optical_depth_to(uint l, vec3 point) {
     LightRay to_light = ray_to_light(l, point);
@@ -20,7 +20,14 @@ float optical_depth_to(uint l, vec3 point) {
             float from = float(i) * step_m;
             float increment = clamp(length_m - from, 0.0, step_m);
             vec3 center = point + to_light.direction * (segment.x + from + 0.5 * increment);
-            in_volume += volume_density(v, center) * increment;
+            float clear_m = empty_m(v, center, to_light.direction);
+            if (clear_m > 0.0) {
+                // On to the increment that the brick ends in.
+                float end_m = min(from + 0.5 * increment + clear_m, length_m);
+                i = max(i + 1u, min(uint(end_m / step_m), count)) - 1u;
+            } else {
+                in_volume += volume_density(v, center) * increment;
+            }
         }
         is_cut = is_cut || i < count;
         sum += volumes[v].tau_per_m * in_volume;

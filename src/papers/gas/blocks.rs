@@ -45,6 +45,8 @@ host_block! {
         jitter: u32,
         nearest: u32,
         chunks: u32,
+        cache: u32,
+        bricks: u32,
     }
 }
 
@@ -287,6 +289,8 @@ impl CountsBlock {
             jitter: parameters.jitter as u32,
             nearest: parameters.lists.nearest().unwrap_or(0),
             chunks: capacity.chunks,
+            cache: parameters.density_cache.unwrap_or(0),
+            bricks: parameters.bricks,
         }
     }
 }

@@ -3,14 +3,16 @@
 use std::sync::Arc;
 
 use super::context::Context;
+use super::densities::Densities;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 use crate::host_block;
 
 host_block! {
-    struct TableConstants {
+    /// Of the passes that fill tables of densities.
+    pub struct TableConstants {
         /// Index of the volume.
-        volume: u32,
+        pub volume: u32,
     }
 }
 
@@ -26,7 +28,7 @@ pub struct DensityTable {
 impl DensityTable {
     /// # Errors
     /// [`Error::Limit`] for tables beyond what the device binds.
-    pub fn new(context: &Context<'_>, scene: &SceneBuffers) -> Result<Self, Error> {
+    pub fn new(context: &Context<'_>, scene: &SceneBuffers, values: &Densities) -> Result<Self, Error> {
         let volume_count = context.parameters.volumes.len() as u32;
         let densities = context.table("density-table", volume_count.into())?;
         let shader = format!("gas/density-table-{}.comp", context.parameters.density_shader());
@@ -36,7 +38,7 @@ impl DensityTable {
             .with("Volumes", &scene.volumes)
             .with("DensityTables", &densities)
             .constants::<TableConstants>();
-        let pass = scene.densities(pass).build(context.shaders)?;
+        let pass = values.values(scene, pass).build(context.shaders)?;
         Ok(DensityTable { densities, pass, size: context.parameters.table_size, volume_count })
     }
 

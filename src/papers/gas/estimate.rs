@@ -16,7 +16,9 @@ const NUMBER: f64 = 4.0;
 /// Bytes of a pixel of the radiance.
 const RADIANCE: f64 = 16.0;
 /// Passes of a band, those of the tables and of the picture.
-const PASSES: u64 = 8;
+const PASSES: u64 = 10;
+/// Loads of the table of densities for a value.
+const CACHED: f64 = 8.0;
 /// Invocations of a trivial shader that an octave of noise costs, roughly.
 const OCTAVE: f64 = 4.0;
 
@@ -48,7 +50,11 @@ impl Parameters {
             Filter::Trilinear => 8.0,
             Filter::Tricubic => 64.0,
         };
-        let octaves = if grids.is_some() { samples_of_point } else { 1.0 + OCTAVE * f64::from(self.octaves()) };
+        let values = if grids.is_some() { samples_of_point } else { 1.0 + OCTAVE * f64::from(self.octaves()) };
+        let octaves = if self.density_cache.is_some() { CACHED } else { values };
+        let cube = |entries: u32| f64::from(entries).powi(3) * volumes;
+        let cached = optional(has_volume, self.density_cache.map_or(0.0, cube));
+        let bricks = optional(has_volume, self.skip_empty.map_or(0.0, |_| cube(self.bricks)));
         let steps = pixels * f64::from(self.steps) * volumes;
         // A traced shadow takes up to half of the steps through a volume, and at least those of the sections' ends.
         let shadow_steps = match variant {
@@ -67,6 +73,8 @@ impl Parameters {
                 ("size", optional(has_volume, bytes_of::<SectionBlock>() * sections)),
                 ("light", optional(shadows, NUMBER * fragments * lights)),
                 ("volume-file", NUMBER * samples as f64),
+                ("density-cache", NUMBER * cached),
+                ("bricks", NUMBER * bricks),
                 ("table", NUMBER * table * volumes * (1.0 + lights)),
                 ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
                 ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),
@@ -78,6 +86,8 @@ impl Parameters {
             draws: None,
             invocations: vec![
                 ("steps", march),
+                ("density-cache", cached * values),
+                ("bricks", optional(bricks > 0.0, bricks + cached + samples as f64)),
                 ("table", table * volumes * (octaves + 8.0 * lights)),
                 ("object", 50.0 * triangles * bands as f64),
                 ("size", 100.0 * pixels),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::a_buffer::ABuffer;
 use super::band::{Band, BandConstants};
 use super::context::Context;
+use super::densities::Densities;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 
@@ -25,13 +26,14 @@ impl LightAttenuation {
         scene: &SceneBuffers,
         lists: &ABuffer,
         sections: &Arc<Buffer>,
+        densities: &Densities,
         shadow_sums: Option<&Arc<Buffer>>,
     ) -> Result<Self, Error> {
         let count = u64::from(lists.capacity.fragments) * context.parameters.lights.len() as u64;
         let attenuations = context.storage::<f32>("light-attenuations", count)?;
         let shader = match shadow_sums {
             Some(_) => "gas/light-attenuation-table.comp".to_owned(),
-            None => format!("gas/light-attenuation-traced-{}.comp", context.parameters.density_shader()),
+            None => format!("gas/light-attenuation-traced-{}.comp", context.parameters.ray_shader()),
         };
         let pass = Pass::compute("light-attenuation", "Shadowing of the gas", &shader)
             .with("frame", &scene.frame)
@@ -49,7 +51,7 @@ impl LightAttenuation {
             .constants::<BandConstants>();
         let pass = match shadow_sums {
             Some(sums) => pass.with("ShadowTables", sums),
-            None => scene.densities(pass),
+            None => densities.of_rays(scene, pass),
         };
         let pass = pass.build(context.shaders)?;
         Ok(LightAttenuation { attenuations, pass })

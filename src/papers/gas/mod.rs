@@ -13,8 +13,11 @@ mod axes;
 mod band;
 mod blocks;
 mod blue_noise;
+mod bricks;
 mod capacity;
 mod context;
+mod densities;
+mod density_cache;
 mod density_table;
 mod empty_lists;
 mod estimate;
@@ -39,6 +42,7 @@ mod sort;
 mod tiles;
 mod view;
 mod volume;
+mod ways;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -48,6 +52,7 @@ use self::band::Band;
 use self::blocks::GasUse;
 use self::capacity::BufferLimit;
 use self::context::Context;
+use self::densities::Densities;
 use self::density_table::DensityTable;
 use self::empty_lists::EmptyLists;
 use self::fragments::Fragments;
@@ -100,6 +105,7 @@ struct Passes {
     empty_lists: EmptyLists,
     surfaces: Surfaces,
     sort: Sort,
+    densities: Option<Densities>,
     density_table: Option<DensityTable>,
     shadow_table: Option<ShadowTable>,
     volume: Option<VolumeMarch>,
@@ -127,15 +133,27 @@ impl Passes {
             Lists::Tiles | Lists::Nearest(_) => Surfaces::Tiles(Tiles::new(context, scene, &lists)?),
         };
         let sort = Sort::new(context, scene, &lists)?;
-        let density_table = has_tables.then(|| DensityTable::new(context, scene)).transpose()?;
-        let densities = density_table.as_ref().map(|table| &table.densities);
-        let shadow_table = densities.map(|densities| ShadowTable::new(context, scene, densities)).transpose()?;
+        let densities = has_volume.then(|| Densities::new(context, scene)).transpose()?;
+        let density_table = densities
+            .as_ref()
+            .filter(|_| has_tables)
+            .map(|densities| DensityTable::new(context, scene, densities))
+            .transpose()?;
+        let table = density_table.as_ref().map(|table| &table.densities);
+        let shadow_table = table.map(|table| ShadowTable::new(context, scene, table)).transpose()?;
         let shadow_sums = shadow_table.as_ref().map(|table| &table.sums);
-        let volume = has_volume.then(|| VolumeMarch::new(context, scene, &lists, variant, shadow_sums)).transpose()?;
+        let volume = densities
+            .as_ref()
+            .map(|densities| VolumeMarch::new(context, scene, &lists, variant, densities, shadow_sums))
+            .transpose()?;
         let sections = volume.as_ref().map(|volume| &volume.sections);
-        let light_attenuation = sections
+        let light_attenuation = densities
+            .as_ref()
+            .zip(sections)
             .filter(|_| shadows_surfaces)
-            .map(|sections| LightAttenuation::new(context, scene, &lists, sections, shadow_sums))
+            .map(|(densities, sections)| {
+                LightAttenuation::new(context, scene, &lists, sections, densities, shadow_sums)
+            })
             .transpose()?;
         let attenuations = light_attenuation.as_ref().map(|pass| &pass.attenuations);
         let resolve = Resolve::new(context, scene, &lists, sections, attenuations)?;
@@ -145,6 +163,7 @@ impl Passes {
             empty_lists,
             surfaces,
             sort,
+            densities,
             density_table,
             shadow_table,
             volume,
@@ -276,6 +295,9 @@ impl Paper for Gas {
             }
             passes.sort.record(frame, band, self.calls.of(Carried::Sort))?;
             // All bands look up the same tables.
+            if let (Some(densities), true) = (&passes.densities, band.is_first()) {
+                densities.record(frame)?;
+            }
             if let (Some(densities), Some(shadows), true) =
                 (&passes.density_table, &passes.shadow_table, band.is_first())
             {
@@ -349,10 +371,15 @@ impl Paper for Gas {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let Passes { density_table, shadow_table, volume, light_attenuation, resolve, view, .. } = &self.passes;
+        let Passes { densities, density_table, shadow_table, volume, light_attenuation, resolve, view, .. } =
+            &self.passes;
+        let cache = densities.as_ref().and_then(|densities| densities.cache.as_ref());
+        let bricks = densities.as_ref().and_then(|densities| densities.bricks.as_ref());
         let row = self.parameters.table_size;
         let lights = self.parameters.lights.len() as u32;
         let buffers = [
+            cache.map(|pass| Target::table("density-cache", &pass.densities, pass.size).of("density before it fades, a table of each volume, x fastest")),
+            bricks.map(|pass| Target::table("bricks", &pass.bounds, pass.size).of("greatest density of a brick, 0 where it is skipped, a table of each volume, x fastest")),
             density_table.as_ref().map(|pass| Target::table("density-table", &pass.densities, row).of("density, a table of each volume, x fastest")),
             shadow_table.as_ref().map(|pass| Target::table("shadow-table", &pass.sums, row).of("density times metres towards the light, a table of each volume and light, x fastest")),
             volume.as_ref().map(|pass| Target::table("sections", &pass.sections, 8)

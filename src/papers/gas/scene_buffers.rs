@@ -83,10 +83,18 @@ impl SceneBuffers {
         })
     }
 
+    /// A pass with the samples of files, where densities are taken from them.
+    pub fn samples(&self, pass: PassBuilder) -> PassBuilder {
+        match &self.grids {
+            Some(grids) => pass.with("Grids", &grids.grids).with("Samples", &grids.samples),
+            None => pass,
+        }
+    }
+
     /// A pass with what its shader takes densities from.
     pub fn densities(&self, pass: PassBuilder) -> PassBuilder {
         match &self.grids {
-            Some(grids) => pass.with("Grids", &grids.grids).with("Samples", &grids.samples),
+            Some(_) => self.samples(pass),
             None => pass.with("Offsets", &self.offsets),
         }
     }

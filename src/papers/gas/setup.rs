@@ -23,13 +23,14 @@ use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Measurement;
-use crate::measure::parameter::{self, Cost, Given, Parameter, Value as _};
+use crate::measure::parameter::{self, Cost, Given, Parameter};
 use crate::measure::statistics::median;
 use crate::measure::stress::Axis;
 use crate::measure::study::{self, Identity, Metrics, Study};
 use crate::papers::gas::model::{self, Object};
 use crate::papers::gas::scenes::Preset;
-use crate::papers::gas::{Gas, Lists, NEEDS, Parameters, Variant, WRITTEN};
+use crate::papers::gas::ways::Ways;
+use crate::papers::gas::{Gas, NEEDS, Parameters, Variant, WRITTEN};
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{Light, promised_triangles};
 
@@ -48,8 +49,8 @@ pub struct Setup {
     pub layers: u32,
     /// Of each layer, 0 to 1.
     pub layer_opacity: f32,
-    /// The ways to the lists of fragments, which a bench measures in turn.
-    pub lists: Vec<Lists>,
+    /// The ways to lists and densities, which a bench measures in turn.
+    pub ways: Ways,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
     /// The preset, as the record names it.
@@ -84,7 +85,7 @@ impl Setup {
             surface_triangles: None,
             layers: 0,
             layer_opacity: 1.0,
-            lists: vec![Lists::Linked],
+            ways: Ways::default(),
             crease_deg: CREASE_DEG,
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
@@ -129,10 +130,19 @@ impl Setup {
         setup
     }
 
+    /// Refuses ways to densities where there is none.
+    fn check_ways_used(&self) -> Result<(), Error> {
+        let name = ["density-cache", "skip-empty"].into_iter().find(|name| self.given.has(name));
+        match name.filter(|_| self.parameters.volumes.is_empty()) {
+            Some(name) => Err(Error::Input(format!("`{name}`: the scene has no volume: give `volume`"))),
+            None => Ok(()),
+        }
+    }
+
     /// Adds the volumes and sets their numbers and the lights.
     fn apply(&mut self, given: &Given) {
+        self.ways.apply(&mut self.parameters);
         let all = &mut self.parameters.volumes;
-        self.parameters.lists = self.lists.first().copied().unwrap_or(Lists::Linked);
         let first = all.first().copied().unwrap_or_else(default_volume);
         all.extend(self.placements.iter().map(|&Placement { shape, center, half_extent_m }| model::Volume {
             shape,
@@ -216,6 +226,7 @@ impl Study for Setup {
     /// Checks the parameters, models the scene's surfaces and loads the user's.
     fn load(&self) -> Result<Scene, Error> {
         volumes::check_used(&self.given, &self.parameters.volumes)?;
+        self.check_ways_used()?;
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
@@ -285,13 +296,13 @@ impl Study for Setup {
         let mut config = parameter::config(&Self::parameters(), self);
         config.extend(entries([
             ("scene", json!(self.scene.as_str())),
-            ("lists", p.lists.json()),
             ("triangles", json!(triangles)),
             ("volumes", json!(volumes)),
             ("lights", json!(p.lights.iter().map(config::light).collect::<Vec<_>>())),
             ("background", json!(p.background.to_array())),
             ("camera", config::camera(&p.camera)),
         ]));
+        config.extend(p.ways_config());
         if self.layers > 0 {
             config.insert("layers".to_owned(), json!(self.layers));
             config.insert("layer_opacity".to_owned(), json!(self.layer_opacity));
@@ -300,8 +311,8 @@ impl Study for Setup {
     }
 
     fn summary(&self) -> String {
-        let Parameters { lists, first_frame, .. } = &self.parameters;
-        format!("{}, frame {first_frame}, {}", self.scene.as_str(), lists.text())
+        let Parameters { first_frame, .. } = &self.parameters;
+        format!("{}, frame {first_frame}, {}", self.scene.as_str(), self.parameters.ways_text())
     }
 
     fn metrics(
@@ -353,18 +364,6 @@ impl Study for Setup {
                 .cost(Cost::Buffers)
                 .everyday(),
             parameter::crease_angle(field!(Setup.crease_deg)),
-            Parameter::new("lists", field!(Setup.lists))
-                .help(
-                    "The way to the lists of fragments. linked: the rasteriser draws a box around each triangle, and \
-                     fragments are linked as they come; tiles: triangles are put into tiles of 8 x 8 pixels, and of what \
-                     an opaque triangle hides that fills a pixel only the next fragment is kept; k:N: as tiles, but a \
-                     pixel keeps its N nearest fragments alone, 1 to 32. bench takes several, comma-separated, and \
-                     measures them in turn",
-                )
-                .section("Combining A-buffer and volume rendering techniques")
-                .cost(Cost::Pipelines)
-                .everyday()
-                .unrecorded(),
             Parameter::new("volume", field!(Setup.placements))
                 .group("Gases")
                 .help(
@@ -425,7 +424,8 @@ impl Study for Setup {
         let gases = volumes::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.gases, |s| &mut s.gases));
         let numbers =
             Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
-        objects.into_iter().chain(files).chain(gases).chain(numbers).chain(lights).collect()
+        let ways = Ways::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.ways, |s| &mut s.ways));
+        objects.into_iter().chain(ways).chain(files).chain(gases).chain(numbers).chain(lights).collect()
     }
 
     fn options() -> Vec<Parameter<Options>> {
@@ -467,21 +467,19 @@ impl Study for Setup {
     }
 
     fn resolve(&mut self, given: &Given) -> Result<(), Error> {
-        if let Some((_, twice)) = self.lists.iter().enumerate().find(|(at, lists)| self.lists[..*at].contains(lists)) {
-            let message = format!("`lists`: {} stands there twice; name each way once", twice.text());
-            return Err(Error::Input(message));
-        }
+        self.ways.check_distinct()?;
         self.given = given.clone();
         self.apply(given);
         Ok(())
     }
 
     fn alternatives(&self) -> Vec<Self> {
-        let of = |&lists: &Lists| {
-            let parameters = Parameters { lists, ..self.parameters.clone() };
-            Setup { parameters, lists: vec![lists], ..self.clone() }
+        let of = |ways: Ways| {
+            let mut alone = Setup { ways, ..self.clone() };
+            alone.ways.apply(&mut alone.parameters);
+            alone
         };
-        self.lists.iter().map(of).collect()
+        self.ways.alone().into_iter().map(of).collect()
     }
 
     /// The figure's; of figure 4, which has no volumes, `table` where the user adds some.

@@ -6,6 +6,7 @@ use super::a_buffer::ABuffer;
 use super::band::{Band, BandConstants};
 use super::blocks::SectionBlock;
 use super::context::Context;
+use super::densities::Densities;
 use super::parameters::Variant;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
@@ -27,6 +28,7 @@ impl VolumeMarch {
         scene: &SceneBuffers,
         lists: &ABuffer,
         variant: Variant,
+        densities: &Densities,
         shadow_sums: Option<&Arc<Buffer>>,
     ) -> Result<Self, Error> {
         let sections = context.storage::<SectionBlock>("sections", lists.capacity.sections.into())?;
@@ -35,7 +37,7 @@ impl VolumeMarch {
             Variant::Traced => "traced",
             Variant::Table => "table",
         };
-        let shader = format!("gas/volume-{shadows}-{}.comp", context.parameters.density_shader());
+        let shader = format!("gas/volume-{shadows}-{}.comp", context.parameters.ray_shader());
         let mut pass = Pass::compute("volume", "Volume rendering", &shader)
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
@@ -49,7 +51,7 @@ impl VolumeMarch {
             .with("Progress", &lists.progress.states)
             .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>();
-        pass = scene.densities(pass);
+        pass = densities.of_rays(scene, pass);
         if let Some(sums) = shadow_sums {
             pass = pass.with("ShadowTables", sums);
         }

@@ -1,5 +1,6 @@
 //! The paper `gas` on the device: against its oracle, closed forms and laws.
 
+mod cache;
 mod density;
 mod drawing;
 mod files;
@@ -10,6 +11,7 @@ mod pictures;
 mod resolve;
 mod scenes;
 mod shadows;
+mod skipping;
 mod slab;
 mod surfaces;
 mod tables;

@@ -1,6 +1,7 @@
 //! The tables and figures of the `gas` paper, with the paper's own numbers.
 
 mod lists;
+mod savings;
 mod tables;
 mod trade;
 
@@ -35,8 +36,8 @@ pub fn options() -> Vec<Parameter<Options>> {
     vec![
         Parameter::new("counts", field!(Options.counts))
             .placeholder("N,N,..")
-            .help("Table sizes, steps or sheets of a sweep, comma-separated")
-            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128"),
+            .help("Table sizes, steps, sheets or entries of a sweep, comma-separated")
+            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128, or 24,32,48,64"),
     ]
 }
 
@@ -86,6 +87,20 @@ pub fn all() -> Vec<Experiment<Setup>> {
             options: &["counts"],
             refuses: &[("lists", "this experiment compares three")],
             run: lists::run,
+        },
+        Experiment {
+            name: "density-cache",
+            help: "Tables of 24 to 64 densities a side that rays read: cost against the difference from the functions",
+            options: &["counts"],
+            refuses: &[("density-cache", "this experiment sweeps it; give `counts`")],
+            run: savings::cache,
+        },
+        Experiment {
+            name: "skipping",
+            help: "Bricks that rays skip: cost, and the difference that it makes",
+            options: &[],
+            refuses: &[OWN_SCENES, ("skip-empty", "this experiment compares several")],
+            run: savings::skipping,
         },
         Experiment {
             name: "sequence",

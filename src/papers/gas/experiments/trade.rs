@@ -119,14 +119,14 @@ impl Trade {
     }
 }
 
-fn draw(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Rgba8, Error> {
+pub(super) fn draw(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Rgba8, Error> {
     let scene = setup.load()?;
     let mut built = build(machine, setup, &scene, variant)?;
     picture::render(machine, &mut built.paper, 0)
 }
 
 /// The pixels in which the gas that is seen has an opacity of more than 1 %: it shines with it, between black surfaces.
-fn gas_mask(machine: &mut Machine, setup: &Setup) -> Result<Vec<bool>, Error> {
+pub(super) fn gas_mask(machine: &mut Machine, setup: &Setup) -> Result<Vec<bool>, Error> {
     let mut study = setup.clone();
     let parameters = &mut study.parameters;
     parameters.volumes.iter_mut().for_each(|volume| volume.albedo = Vec3::ONE);

@@ -1,6 +1,7 @@
 //! The paper's parameters under its own names, each declared once.
 
 mod lists;
+pub mod or_off;
 pub mod placed_object;
 pub mod volume_file;
 pub mod volumes;
@@ -96,6 +97,13 @@ pub struct Parameters {
     pub samples: u32,
     /// Their places.
     pub jitter: Jitter,
+    /// Entries of the table of densities that rays read along each axis, 2 to 512; without, they ask the functions.
+    pub density_cache: Option<u32>,
+    /// Rays skip bricks in which one through the whole volume loses no more than this optical depth, at least 0; without,
+    /// none.
+    pub skip_empty: Option<f32>,
+    /// Bricks along each axis of a volume's box, 1 to 128.
+    pub bricks: u32,
     /// Entries of the density and shadow tables along each axis, 2 to 512.
     pub table_size: u32,
     /// Octaves of turbulence go on while the scale exceeds it; 0.0001 to 1 texture units.
@@ -144,6 +152,9 @@ impl Default for Parameters {
             steps: 40,
             samples: 1,
             jitter: Jitter::Random,
+            density_cache: None,
+            skip_empty: None,
+            bricks: 16,
             table_size: 64,
             pixel_size: 1.0 / 16.0,
             shadow_threshold: 0.0,
@@ -219,8 +230,19 @@ impl Parameters {
         (!grids.is_empty()).then_some(grids)
     }
 
-    /// The shaders' name of what the volumes' densities are taken from.
+    /// The shaders' name of what rays and tables take the volumes' densities from.
     pub(super) fn density_shader(&self) -> &'static str {
+        if self.density_cache.is_some() { "cached" } else { self.density_source() }
+    }
+
+    /// The same of rays, with the way that they take through what is empty.
+    pub(super) fn ray_shader(&self) -> String {
+        let empty = if self.skip_empty.is_some() { "skipped" } else { "kept" };
+        format!("{}-{empty}", self.density_shader())
+    }
+
+    /// The shaders' name of what the volumes' densities are in the end.
+    pub(super) fn density_source(&self) -> &'static str {
         match self.filter {
             _ if self.volume_grids().is_none() => "functions",
             Filter::Trilinear => "trilinear",
@@ -259,6 +281,12 @@ impl Parameters {
                 .section("Volume rendering")
                 .cost(Cost::Buffers)
                 .everyday(),
+            Parameter::new("bricks", field!(Parameters.bricks))
+                .range(Range::from(1.0).to(128.0))
+                .help("Of skip-empty: bricks along each axis of the box around a volume")
+                .section("Volume rendering")
+                .cost(Cost::Buffers)
+                .requires("skip-empty"),
             Parameter::new("table", field!(Parameters.table_size))
                 .range(Range::from(2.0).to(512.0))
                 .help("Entries of the density and shadow tables along each axis")

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::density_cache::Values;
 use super::grid;
 use super::noise::{noise, turbulence};
 use crate::papers::gas::blocks::{OFFSET_SIZE, offsets};
@@ -20,19 +21,30 @@ pub struct Medium {
     frame: f64,
     grids: Vec<Arc<Grid>>,
     filter: Filter,
+    /// The tables of values of all volumes; empty where the densities are asked for themselves.
+    cached: Vec<Values>,
 }
 
 impl Medium {
     /// Of scene frame `number`.
     pub fn new(parameters: &Parameters, number: u32) -> Self {
-        Medium {
+        let mut medium = Medium {
             seed: parameters.noise_seed(),
             offsets: offsets(parameters.seed),
             pixel_size: f64::from(parameters.pixel_size),
             frame: f64::from(number),
             grids: parameters.grids.clone(),
             filter: parameters.filter,
+            cached: Vec::new(),
+        };
+        if let Some(size) = parameters.density_cache {
+            let values = |volume: &Volume| {
+                Values::new(volume, size, |world| medium.texture_density(&volume.texture, Some(volume), world))
+            };
+            let cached = parameters.volumes.iter().map(values).collect();
+            medium.cached = cached;
         }
+        medium
     }
 
     pub fn noise(&self, p: DVec3) -> f64 {
@@ -118,7 +130,11 @@ impl Medium {
         }
         let falloff = f64::from(volume.falloff);
         let t = if falloff > 0.0 { (inside / falloff).min(1.0) } else { 1.0 };
-        let density = self.texture_density(&volume.texture, Some(volume), world) * t * t * (3.0 - 2.0 * t);
+        let value = match self.cached.iter().find(|values| values.is_of(volume)) {
+            Some(values) => values.value(world),
+            None => self.texture_density(&volume.texture, Some(volume), world),
+        };
+        let density = value * t * t * (3.0 - 2.0 * t);
         if volume.is_solid { -(1.0 - density.clamp(0.0, 0.9999)).ln() } else { density }
     }
 

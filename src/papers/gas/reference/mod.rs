@@ -2,6 +2,7 @@
 
 pub mod coverage;
 pub mod density;
+pub mod density_cache;
 pub mod grid;
 pub mod noise;
 pub mod phase;

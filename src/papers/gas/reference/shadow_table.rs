@@ -79,7 +79,7 @@ pub fn density_table(medium: &Medium, volume: &Volume, size: u32) -> Vec<f64> {
 }
 
 /// All entries, x fastest.
-fn entries(size: u32) -> impl Iterator<Item = IVec3> {
+pub fn entries(size: u32) -> impl Iterator<Item = IVec3> {
     let n = size as i32;
     (0..n * n * n).map(move |i| IVec3::new(i % n, i / n % n, i / (n * n)))
 }

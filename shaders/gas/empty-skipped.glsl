@@ -1,0 +1,14 @@
+// Metres of a ray from a point to the end of a brick that has no density; 0 in one that has.
+
+#include "gas/bricks.glsl"
+
+float empty_m(uint v, vec3 point, vec3 direction) {
+    vec3 scale = bricks_a_metre(v);
+    vec3 at = (point - volumes[v].center) * scale + 0.5 * float(counts.bricks);
+    ivec3 brick = brick_of(at);
+    if (brick_bounds[brick_at(v, brick)] > 0.0) {
+        return 0.0;
+    }
+    made++;
+    return max(way_through(brick, at, direction * scale), 1.0e-30);
+}

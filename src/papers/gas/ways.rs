@@ -1,0 +1,126 @@
+//! Ways to one picture: to its lists of fragments, and to its densities. A bench takes several and measures them in turn.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::parameters::or_off::OrOff;
+use super::parameters::{Lists, Parameters};
+use crate::field;
+use crate::measure::Error;
+use crate::measure::config::entries;
+use crate::measure::parameter::{Cost, Parameter, Range, Value};
+
+/// The ways that are asked for, of each kind at least one.
+#[derive(Debug, Clone)]
+pub struct Ways {
+    /// The ways to the lists of fragments.
+    pub lists: Vec<Lists>,
+    /// Entries of the tables of densities that rays read.
+    pub density_caches: Vec<OrOff<u32>>,
+    /// The optical depths that skipped bricks may have.
+    pub skips: Vec<OrOff<f32>>,
+}
+
+/// The paper's.
+impl Default for Ways {
+    fn default() -> Self {
+        Ways { lists: vec![Lists::Linked], density_caches: vec![OrOff(None)], skips: vec![OrOff(None)] }
+    }
+}
+
+impl Ways {
+    /// Each option once.
+    pub fn declared() -> Vec<Parameter<Ways>> {
+        vec![
+            Parameter::new("lists", field!(Ways.lists))
+                .help(
+                    "The way to the lists of fragments. linked: the rasteriser draws a box around each triangle, and \
+                     fragments are linked as they come; tiles: triangles are put into tiles of 8 x 8 pixels, and of what \
+                     an opaque triangle hides that fills a pixel only the next fragment is kept; k:N: as tiles, but a \
+                     pixel keeps its N nearest fragments alone, 1 to 32. bench takes several, comma-separated, and \
+                     measures them in turn",
+                )
+                .section("Combining A-buffer and volume rendering techniques")
+                .cost(Cost::Pipelines)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("density-cache", field!(Ways.density_caches))
+                .range(Range::from(2.0).to(512.0))
+                .help(
+                    "Entries along each axis of a table of the densities' values, made in every frame, which rays read in \
+                     place of functions and files. bench takes several, comma-separated, and measures them in turn",
+                )
+                .section("Discussion of results")
+                .cost(Cost::Pipelines)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("skip-empty", field!(Ways.skips))
+                .range(Range::from(0.0).to(100.0))
+                .help(
+                    "Rays skip bricks of a volume in which one through all of it loses at most this optical depth: 0 for \
+                     those without any density, which leaves the picture as it is. bench takes several, comma-separated, \
+                     and measures them in turn",
+                )
+                .section("Volume rendering")
+                .cost(Cost::Pipelines)
+                .everyday()
+                .unrecorded(),
+        ]
+    }
+
+    /// Checks that no way stands there twice.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the first that does.
+    pub fn check_distinct(&self) -> Result<(), Error> {
+        check_once("lists", &self.lists)?;
+        check_once("density-cache", &self.density_caches)?;
+        check_once("skip-empty", &self.skips)
+    }
+
+    /// Each alone, those of the last kind changing fastest.
+    pub fn alone(&self) -> Vec<Ways> {
+        let mut all = Vec::new();
+        for &lists in &self.lists {
+            for &cache in &self.density_caches {
+                let of = |&skip| Ways { lists: vec![lists], density_caches: vec![cache], skips: vec![skip] };
+                all.extend(self.skips.iter().map(of));
+            }
+        }
+        all
+    }
+
+    /// Sets the first ones.
+    pub fn apply(&self, parameters: &mut Parameters) {
+        parameters.lists = self.lists.first().copied().unwrap_or(Lists::Linked);
+        parameters.density_cache = OrOff::first(&self.density_caches);
+        parameters.skip_empty = OrOff::first(&self.skips);
+    }
+}
+
+impl Parameters {
+    /// The ways in the record.
+    pub(super) fn ways_config(&self) -> Map<String, Json> {
+        entries([
+            ("lists", self.lists.json()),
+            ("density_cache", json!(self.density_cache)),
+            ("skip_empty", json!(self.skip_empty)),
+        ])
+    }
+
+    /// The ways in words, those that are not the paper's.
+    pub(super) fn ways_text(&self) -> String {
+        let mut text = self.lists.text();
+        if let Some(entries) = self.density_cache {
+            text += &format!(", densities from {entries} entries a side");
+        }
+        if let Some(depth) = self.skip_empty {
+            text += &format!(", bricks up to {depth} skipped");
+        }
+        text
+    }
+}
+
+fn check_once<T: Value + PartialEq>(name: &str, ways: &[T]) -> Result<(), Error> {
+    let Some((_, twice)) = ways.iter().enumerate().find(|(at, way)| ways[..*at].contains(way)) else { return Ok(()) };
+    Err(Error::Input(format!("`{name}`: {} stands there twice; name each way once", twice.text())))
+}
