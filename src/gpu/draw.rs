@@ -141,12 +141,21 @@ impl<'a> Draw<'a> {
 
     /// Draws `count` indices from `first` on.
     pub fn indices_from(&mut self, first: u32, count: u32) -> &mut Self {
-        let end = u64::from(first) + u64::from(count);
+        self.draw_indexed(first, count, 1)
+    }
+
+    /// Draws `count` instances of the first `indices` indices.
+    pub fn indexed_instances(&mut self, indices: u32, count: u32) -> &mut Self {
+        self.draw_indexed(0, indices, count)
+    }
+
+    fn draw_indexed(&mut self, first: u32, indices: u32, instances: u32) -> &mut Self {
+        let end = u64::from(first) + u64::from(indices);
         // Vertices that indices name beyond the buffer are not fetched: robust buffer access is on.
-        if self.is_ready(first, DrawCounts { vertices: 0, instances: 1, indices: end }) {
+        if self.is_ready(first, DrawCounts { vertices: 0, instances: instances.into(), indices: end }) {
             let BodyCommands { device, raw, .. } = self.commands;
             // SAFETY: as for `draw`; the indices lie inside the bound buffer.
-            unsafe { device.raw.cmd_draw_indexed(raw, count, 1, first, 0, 0) };
+            unsafe { device.raw.cmd_draw_indexed(raw, indices, instances, first, 0, 0) };
         }
         self
     }

@@ -3,7 +3,9 @@
 use super::mesh::{BLOCK_INDICES, MESH_SIDE};
 use super::parameters::{Interpolation, Lod, Parameters, Variant};
 use super::pyramid::Shape;
+use super::quadtree::PATCH_SIDE;
 use super::scene::Inputs;
+use super::selection::Patch;
 use crate::measure::estimate::Estimate;
 use crate::scene::Samples;
 
@@ -18,7 +20,7 @@ impl Parameters {
     pub(super) fn estimate(&self, variant: Variant, inputs: &Inputs<'_>, map: &'static str) -> Estimate {
         let pixels = self.pixels() as f64;
         let is_host = variant == Variant::Cpu;
-        let is_mesh = variant == Variant::Mesh;
+        let is_mesh = variant.is_rasterised();
         let shades_objects = self.shadows && !inputs.objects.is_empty();
         let bounds = match self.interpolation {
             Interpolation::Bilinear => 1.0,
@@ -37,7 +39,14 @@ impl Parameters {
                 Variant::DdaCompute | Variant::DdaFragment => side,
                 _ => 4.0 * side.log2() + if self.lod == Lod::Exact { 8.0 } else { 0.0 },
             };
-            if is_mesh && side <= f64::from(MESH_SIDE) {
+            if variant == Variant::MeshLod {
+                let patches = |nodes: u32| f64::from((nodes - 1).div_ceil(PATCH_SIDE));
+                let most = patches(shape.width) * patches(shape.height);
+                indices += 6.0 * NUMBER * f64::from(PATCH_SIDE * PATCH_SIDE) + size_of::<Patch>() as f64 * most;
+                // A vertex for a few pixels, less where triangles may be farther off; and the patches' bounds, once.
+                let cells = f64::from(shape.width) * f64::from(shape.height);
+                vertices += cells.min(pixels / f64::from(self.mesh_error_px)) + cells;
+            } else if is_mesh && side <= f64::from(MESH_SIDE) {
                 let columns = shape.width - 1;
                 let rows = (BLOCK_INDICES / (6 * columns)).clamp(1, shape.height - 1);
                 indices += 6.0 * NUMBER * f64::from(columns) * f64::from(rows);

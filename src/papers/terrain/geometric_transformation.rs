@@ -18,6 +18,8 @@ pub struct SceneView {
     pub terrains: Vec<TerrainBlock>,
     /// Light and camera in the world.
     pub light: LightBlock,
+    /// Of the picture.
+    pub rays: Rays,
     /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
     /// 1 - near / w, without a far plane.
     pub to_clip: DMat4,
@@ -30,6 +32,7 @@ impl SceneView {
         SceneView {
             terrains: scene.terrain_blocks(parameters, &rays, camera.near_m).collect(),
             light: LightBlock::new(scene, parameters, &rays, camera.near_m),
+            rays,
             to_clip: to_clip(&camera, parameters.aspect()),
         }
     }

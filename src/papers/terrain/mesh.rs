@@ -1,4 +1,4 @@
-//! The pass `mesh` (section 4) of the variant `mesh`, what a user would do without the method: the map as an indexed
+//! The pass `mesh` (section 4) of the variant `mesh`, what a user would do first without the method: the map as an indexed
 //! triangle grid, rasterised. It fills the same target as the pass `depth`. Once for each map.
 
 use ash::vk;
@@ -20,13 +20,21 @@ pub const MESH_SIDE: u32 = 4096;
 pub const BLOCK_INDICES: u32 = 1 << 20;
 
 host_block! {
-    struct MeshConstants {
+    pub(super) struct MeshConstants {
         /// From u, v and h; w is the depth along the view's axis in metres.
         to_clip: [f32; 16],
         /// Of the block of rows that is drawn.
         first_row: i32,
         /// A [`Surface`].
         surface: i32,
+    }
+}
+
+impl MeshConstants {
+    /// Of a map on the screen.
+    pub(super) fn new(view: &SceneView, ground: &Ground, (surface, first_row): (Surface, u32)) -> Self {
+        let to_clip = (view.to_clip * ground.to_frame.inverse()).as_mat4().to_cols_array();
+        MeshConstants { to_clip, first_row: first_row as i32, surface: surface as i32 }
     }
 }
 
@@ -82,12 +90,7 @@ impl Mesh {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, grounds: &[Ground], view: &SceneView) -> Result<(), Error> {
         for (grid, ground) in self.grids.iter().zip(grounds) {
-            let to_clip = (view.to_clip * ground.to_frame.inverse()).as_mat4().to_cols_array();
-            let constants = |surface: Surface, first_row: u32| MeshConstants {
-                to_clip,
-                first_row: first_row as i32,
-                surface: surface as i32,
-            };
+            let constants = |surface, first_row| MeshConstants::new(view, ground, (surface, first_row));
             let Shape { width, height, .. } = grid.shape;
             frame.graphics(&grid.pass, |draw| {
                 for first_row in (0..height - 1).step_by(grid.block_rows as usize) {
@@ -107,7 +110,7 @@ impl Mesh {
 }
 
 /// Two triangles a cell, row by row; vertices are numbered from the block's first row.
-fn block_indices(width: u32, rows: u32) -> Vec<u32> {
+pub(super) fn block_indices(width: u32, rows: u32) -> Vec<u32> {
     let cell = |row: u32, column: u32| {
         let a = row * width + column;
         let (b, c, d) = (a + 1, a + width, a + width + 1);

@@ -4,6 +4,7 @@
 //! geometric-transformation (host) ─► depth ─► normal (─► shadow (─► occlusion)) ─► illumination
 //!                                  (─► object-depth (─► object-hits ─► object-shadow ─► object-occlusion) ─► objects)
 //! geometric-transformation (host) ─► base ─► mesh ─► normal (─► shadow (─► occlusion)) ─► illumination (...)   (mesh)
+//! geometric-transformation (host) ─► base ─► select (host) ─► mesh-lod ─► normal ...                           (mesh-lod)
 //! ```
 
 mod axes;
@@ -27,6 +28,7 @@ mod interpolation;
 mod layouts;
 mod levels;
 mod mesh;
+mod mesh_lod;
 mod nearest;
 mod normal;
 mod object_depth;
@@ -38,10 +40,12 @@ mod occlusion;
 mod parameters;
 mod placement;
 mod pyramid;
+mod quadtree;
 mod ray_caster;
 mod ray_segment;
 pub mod reference;
 mod scene;
+mod selection;
 pub mod setup;
 mod shadow;
 mod show;
@@ -63,6 +67,7 @@ use self::illumination::{HostIllumination, illumination};
 pub use self::levels::Levels;
 pub use self::mesh::MESH_SIDE;
 use self::mesh::Mesh;
+use self::mesh_lod::MeshLod;
 use self::normal::{HostNormal, normal};
 use self::object_depth::ObjectDepth;
 use self::object_hits::ObjectHits;
@@ -73,8 +78,10 @@ use self::occlusion::{HostOcclusion, occlusion};
 pub use self::parameters::{Base, Interpolation, Lod, Normals, Parameters, Sun, Variant, View};
 pub use self::placement::{Extent, Placement, Rays};
 pub use self::pyramid::{Bound, Cover, Pyramid, Shape, Texel};
+pub use self::quadtree::{Bounds, PATCH_SIDE, PatchLevel, Quadtree};
 use self::scene::{DeviceScene, Scene};
 pub use self::scene::{Inputs, MapInput};
+pub use self::selection::{Patch, Selection, Viewer};
 use self::shadow::{HostShadow, all_lit, shadow};
 use self::show::Show;
 use self::stage::{Build, PixelPass, Stage, Traversal};
@@ -88,7 +95,7 @@ use crate::scene::{Camera, HeightMap, Suspect};
 pub const NEEDS: [Feature; 0] = [];
 
 /// Parameters that each frame writes into its blocks.
-pub const WRITTEN: [&str; 4] = ["camera", "haze", "normals", "sun"];
+pub const WRITTEN: [&str; 5] = ["camera", "haze", "mesh-error", "normals", "sun"];
 
 /// The paper under one variant.
 pub struct Terrain {
@@ -105,7 +112,13 @@ pub struct Terrain {
 enum Technique {
     Cpu(HostPasses),
     RayCast(PixelPass, Shading),
-    Mesh(BasePass, Mesh, Shading),
+    Mesh(BasePass, Triangles, Shading),
+}
+
+/// The triangles of the maps.
+enum Triangles {
+    All(Mesh),
+    Selected(MeshLod),
 }
 
 /// Everything on the processor.
@@ -171,7 +184,9 @@ impl Terrain {
             Variant::GpuCompute => (Stage::Compute, Traversal::Halving),
             Variant::DdaCompute => (Stage::Compute, Traversal::Cells),
             Variant::DdaFragment => (Stage::Fragment, Traversal::Cells),
-            Variant::Cpu | Variant::GpuFragment | Variant::Mesh => (Stage::Fragment, Traversal::Halving),
+            Variant::Cpu | Variant::GpuFragment | Variant::Mesh | Variant::MeshLod => {
+                (Stage::Fragment, Traversal::Halving)
+            }
         };
         if let Some(problem) = variant.refusal(parameters.base) {
             return Err(Error::Pass { pass: format!("{label}/depth"), problem: problem.into() });
@@ -193,10 +208,13 @@ impl Terrain {
                 let shading = Shading::new(&build, &maps, &depth.target, device_tree.as_ref())?;
                 (Some(maps), Technique::RayCast(depth, shading))
             }
-            Variant::Mesh => {
+            Variant::Mesh | Variant::MeshLod => {
                 let maps = on_device(inputs.drape)?;
                 let base = BasePass::new(&build, &maps)?;
-                let mesh = Mesh::new(&build, &scene.grounds, &maps, &base)?;
+                let mesh = match variant {
+                    Variant::MeshLod => Triangles::Selected(MeshLod::new(&build, &scene.grounds, &maps, &base)?),
+                    _ => Triangles::All(Mesh::new(&build, &scene.grounds, &maps, &base)?),
+                };
                 let shading = Shading::new(&build, &maps, &base.target, device_tree.as_ref())?;
                 (Some(maps), Technique::Mesh(base, mesh, shading))
             }
@@ -242,6 +260,14 @@ impl Terrain {
         }
     }
 
+    /// Patches of triangles that the last frame drew, by level from the maps' own cells on; of [`Variant::MeshLod`].
+    pub fn patches(&self) -> Option<Vec<u64>> {
+        match &self.technique {
+            Technique::Mesh(_, Triangles::Selected(mesh), _) => Some(mesh.by_level()),
+            _ => None,
+        }
+    }
+
     fn record_passes(&mut self, frame: &mut Frame<'_>, shows: bool) -> Result<(), Error> {
         let Terrain { geometric_transformation, scene, parameters, device_scene, .. } = self;
         let view = geometric_transformation.record(frame, scene, parameters, device_scene.as_ref())?;
@@ -266,7 +292,10 @@ impl Terrain {
             }
             Technique::Mesh(base, mesh, shading) => {
                 base.record(frame)?;
-                mesh.record(frame, &self.scene.grounds, &view)?;
+                match mesh {
+                    Triangles::All(mesh) => mesh.record(frame, &self.scene.grounds, &view)?,
+                    Triangles::Selected(mesh) => mesh.record(frame, &self.scene.grounds, &view, &self.parameters)?,
+                }
                 shading.record(frame)?;
             }
         }

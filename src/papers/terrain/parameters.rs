@@ -25,6 +25,8 @@ pub enum Variant {
     GpuFragment,
     /// The map as an indexed triangle grid, rasterised.
     Mesh,
+    /// The map as patches of triangles at the level of detail that the picture needs, rasterised.
+    MeshLod,
     /// Not the paper's: rays that go from border to border of blocks of cells, by compute stages.
     DdaCompute,
     /// The same as full-screen fragment passes.
@@ -33,7 +35,13 @@ pub enum Variant {
 
 impl Variant {
     /// The paper's, and what it is compared with.
-    pub const PAPER: &[Variant] = &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh];
+    pub const PAPER: &[Variant] =
+        &[Variant::Cpu, Variant::GpuCompute, Variant::GpuFragment, Variant::Mesh, Variant::MeshLod];
+
+    /// Triangles instead of rays.
+    pub fn is_rasterised(self) -> bool {
+        matches!(self, Variant::Mesh | Variant::MeshLod)
+    }
 
     /// Reason why it cannot draw a base.
     pub fn refusal(self, base: Base) -> Option<&'static str> {
@@ -49,6 +57,7 @@ impl measure::Variant for Variant {
         Variant::GpuCompute,
         Variant::GpuFragment,
         Variant::Mesh,
+        Variant::MeshLod,
         Variant::DdaCompute,
         Variant::DdaFragment,
     ];
@@ -59,6 +68,7 @@ impl measure::Variant for Variant {
             Variant::GpuCompute => "gpu-compute",
             Variant::GpuFragment => "gpu-fragment",
             Variant::Mesh => "mesh",
+            Variant::MeshLod => "mesh-lod",
             Variant::DdaCompute => "dda-compute",
             Variant::DdaFragment => "dda-fragment",
         }
@@ -256,6 +266,8 @@ pub struct Parameters {
     pub sun: Sun,
     /// The terrain throws shadows on itself; adds the pass `shadow`.
     pub shadows: bool,
+    /// The most pixels by which triangles of the variant `mesh-lod` are off, 0.01 to 1000.
+    pub mesh_error_px: f32,
     /// Extinction by haze per kilometre, 0 to 1000; by the scene's size without one.
     pub haze_per_km: Option<f32>,
     /// Size of the picture in pixels.
@@ -288,6 +300,7 @@ impl Default for Parameters {
             view: View::Side,
             sun: Sun { azimuth_rad: 300.0_f32.to_radians(), elevation_rad: 35.0_f32.to_radians() },
             shadows: false,
+            mesh_error_px: 1.0,
             haze_per_km: None,
             width: 800,
             height: 600,
@@ -331,6 +344,11 @@ impl Parameters {
                 .section("3")
                 .cost(Cost::Pipelines)
                 .everyday(),
+            Parameter::new("mesh-error", field!(Parameters.mesh_error_px))
+                .range(Range::from(0.01).to(1000.0))
+                .unit("pixels")
+                .help("Bound of the error on the screen of the triangles of variant mesh-lod")
+                .section("4"),
             Parameter::new("sun", SUN)
                 .placeholder("AZIMUTH,ELEVATION")
                 .help("Place of the sun: degrees clockwise from north, degrees above the horizon")

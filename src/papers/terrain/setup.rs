@@ -8,6 +8,7 @@ use glam::DVec2;
 use serde_json::{Map, Value as Json, json};
 
 use super::axes;
+use super::experiments::figures::shares;
 use super::experiments::{self, Options, figures};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
@@ -330,12 +331,15 @@ impl Study for Setup {
         for (built, measurement) in measured {
             let frame_ms = median(&measurement.frame_ms).filter(|&ms| ms > 0.0);
             let census = figures::census(machine, &mut built.paper)?;
-            // A rasterised grid has no steps.
-            let steps = (built.variant != Variant::Mesh).then(|| census.steps_per_ray());
+            let levels = built.paper.patches().map_or_else(|| census.levels(), |patches| shares(&patches));
+            // Triangles have no steps.
+            let steps = (!built.variant.is_rasterised()).then(|| census.steps_per_ray());
             let results = entries([
                 ("mrays_per_s", json!(frame_ms.map(|ms| rays / ms / 1e3))),
                 ("steps_per_ray", json!(steps)),
                 ("hit_share", json!(census.hit_fraction())),
+                ("patches", json!(built.paper.patches().map(|patches| patches.iter().sum::<u64>()))),
+                ("levels", json!(levels)),
             ]);
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }

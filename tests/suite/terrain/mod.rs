@@ -5,6 +5,7 @@ mod drawing;
 mod footprint;
 mod light;
 mod maps;
+mod mesh_lod;
 mod normals;
 mod oracle;
 mod pictures;

@@ -23,6 +23,13 @@ pub fn draw(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Rg
     picture::render(machine, &mut built.paper, 0)
 }
 
+/// The share of each in their sum, up to the last that has any.
+pub fn shares(counts: &[u64]) -> Vec<f64> {
+    let sum = counts.iter().sum::<u64>() as f64;
+    let used = counts.iter().rposition(|count| *count > 0).map_or(0, |last| last + 1);
+    counts[..used].iter().map(|count| *count as f64 / sum).collect()
+}
+
 /// The hits of a frame's rays.
 pub struct Census {
     /// Row by row.
@@ -34,6 +41,17 @@ impl Census {
     pub fn hit_fraction(&self) -> f64 {
         let met = self.hits.iter().filter(|hit| !matches!(hit.surface, Surface::Sky | Surface::Base)).count();
         met as f64 / self.hits.len() as f64
+    }
+
+    /// The share of the hits on land that each level of the map answered for, from the data on.
+    pub fn levels(&self) -> Vec<f64> {
+        let mut counts = Vec::new();
+        for hit in self.hits.iter().filter(|hit| hit.surface == Surface::Terrain) {
+            let level = hit.shift as usize;
+            counts.resize(counts.len().max(level + 1), 0);
+            counts[level] += 1;
+        }
+        shares(&counts)
     }
 
     /// Mean number of segments that a ray of the picture tried; rays that met no map count none.

@@ -58,6 +58,7 @@ impl Choice for Listed {
         Listed(Some(Variant::GpuCompute)),
         Listed(Some(Variant::GpuFragment)),
         Listed(Some(Variant::Mesh)),
+        Listed(Some(Variant::MeshLod)),
         Listed(Some(Variant::DdaCompute)),
         Listed(Some(Variant::DdaFragment)),
         Listed(None),
@@ -67,6 +68,7 @@ impl Choice for Listed {
         ("gpu-compute", ""),
         ("gpu-fragment", ""),
         ("mesh", ""),
+        ("mesh-lod", ""),
         ("dda-compute", ""),
         ("dda-fragment", ""),
         ("all", ""),
@@ -83,7 +85,7 @@ pub fn options() -> Vec<Parameter<Options>> {
         Parameter::new("variant", field!(Options.variants))
             .placeholder("VARIANT,..")
             .help("Variants of a sweep, comma-separated, or all; a figure shows the first")
-            .default_text("the paper's and mesh"),
+            .default_text("the paper's, mesh and mesh-lod"),
         Parameter::new("segment", field!(Options.segments))
             .placeholder("X,Y,Z,X,Y,Z")
             .help("From a place to another, metres: east, up from the base, south")

@@ -35,6 +35,22 @@ fn paper_ms(variant: &str, side: f64) -> Option<f64> {
     }
 }
 
+/// The share of each level in what a run read.
+fn shares_of(run: &Run) -> Option<Vec<f64>> {
+    run.results.get("levels")?.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+/// The levels that a run read, from the data, 0, on, with their shares; of patches their number.
+fn levels(run: &Run) -> String {
+    let shares = shares_of(run).unwrap_or_default();
+    let used = shares.iter().enumerate().filter(|(_, share)| **share > 0.0);
+    let used: Vec<String> = used.map(|(level, share)| format!("{level}: {:.0} %", 100.0 * share)).collect();
+    match run.results.get("patches").and_then(Value::as_u64) {
+        Some(patches) => format!("{} of {patches} patches", used.join(", ")),
+        None => used.join(", "),
+    }
+}
+
 /// The axis of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
@@ -174,6 +190,7 @@ impl Outcome {
             ("Mrays/s", Align::Right),
             ("steps/ray", Align::Right),
             ("rays that hit", Align::Right),
+            ("levels read", Align::Left),
             ("device MiB", Align::Right),
             ("", Align::Left),
         ]);
@@ -197,6 +214,7 @@ impl Outcome {
                 number(figure("mrays_per_s"), 2),
                 number(figure("steps_per_ray"), 1),
                 figure("hit_share").map_or(String::new(), |share| format!("{:.1} %", share * 100.0)),
+                levels(run),
                 number(device_mib, 1),
                 if run.frame_ms.is_none() { run.warnings.last().cloned().unwrap_or_default() } else { String::new() },
             ]);
@@ -206,7 +224,44 @@ impl Outcome {
         if self.axis == Axis::Map {
             text.push_str("the paper's: an E8400 for cpu, a 470 GTX for the GPU\n");
         }
+        for line in self.verdicts() {
+            text.push_str(&line);
+            text.push('\n');
+        }
         text
+    }
+
+    /// Where triangles are faster than rays, and where the level of detail changes nothing.
+    fn verdicts(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        let of = |variant: Variant| self.rows.iter().filter(move |row| row.run.variant == variant.as_str());
+        for rays in [Variant::GpuCompute, Variant::GpuFragment] {
+            for triangles in [Variant::Mesh, Variant::MeshLod] {
+                let pairs = of(triangles).filter_map(|row| {
+                    let other = of(rays).find(|other| other.label == row.label)?;
+                    let ratio = ratio_within_process(other.run.frame_samples(), row.run.frame_samples())?;
+                    Some((row.label.as_str(), ratio))
+                });
+                let pairs: Vec<(&str, Ratio)> = pairs.collect();
+                let faster = pairs.iter().filter(|(_, ratio)| ratio.interval[1] < 1.0);
+                let faster: Vec<String> =
+                    faster.map(|(label, ratio)| format!("{label} ({:.2} of its time)", ratio.ratio)).collect();
+                if !pairs.is_empty() {
+                    let where_ =
+                        if faster.is_empty() { "nowhere".to_owned() } else { format!("at {}", faster.join(", ")) };
+                    lines.push(format!("{} is faster than {}: {where_}", triangles.as_str(), rays.as_str()));
+                }
+            }
+        }
+        let is_finest = |row: &&Row| matches!(shares_of(&row.run).as_deref(), Some([_]));
+        let finest: Vec<&str> = of(Variant::GpuCompute).filter(is_finest).map(|row| row.label.as_str()).collect();
+        if self.axis == Axis::Map && !finest.is_empty() {
+            lines.push(format!(
+                "rays read the data alone, so that the level of detail does nothing: at {}",
+                finest.join(", ")
+            ));
+        }
+        lines
     }
 
     /// Frame time along the axis; the paper's growth is dashed, from our first row on: shapes compare, machines do not.
@@ -262,7 +317,7 @@ mod tests {
     #[test]
     fn the_mesh_stops_at_4096_and_says_so() {
         let points = by_map(&Setup::default(), &[4096, 8192], Variant::PAPER);
-        assert_eq!((points[0].variants.len(), points[0].left_out.len()), (4, 0));
+        assert_eq!((points[0].variants.len(), points[0].left_out.len()), (5, 0));
         assert!(!points[1].variants.contains(&Variant::Mesh));
         assert_eq!(points[1].left_out[0].0, Variant::Mesh);
     }

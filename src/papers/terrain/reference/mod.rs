@@ -33,6 +33,7 @@ mod shading;
 mod sheet;
 #[cfg(test)]
 mod tests;
+mod triangles;
 
 pub use base::{Base, Frame, Place};
 pub use clearance::Clearance;
@@ -41,3 +42,4 @@ pub use grid::{Grid, Interpolation, Sample};
 pub use pyramid::{Extreme, Level, pyramid};
 pub use ray::{Hit, Part, Ray, Terrain};
 pub use shading::{is_lit, lambert};
+pub use triangles::Square;
