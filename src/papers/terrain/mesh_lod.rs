@@ -53,6 +53,8 @@ impl MeshLod {
             let bytes = (tree.most() * size_of::<Patch>()) as u64;
             let desc = BufferDesc::new(format!("{name}/patches"), bytes).usage(vk::BufferUsageFlags::VERTEX_BUFFER);
             let patches = Buffer::new(shaders.device(), desc.location(Location::Upload))?;
+            // A frame writes those that it draws alone; the rest is bound as well.
+            patches.write(0, &vec![0; bytes as usize])?;
             let pass = Pass::graphics("mesh-lod", "4", "terrain/mesh-lod.vert", "terrain/mesh.frag")
                 .with("terrain", &map.terrain)
                 .with("levels", &map.levels.view)

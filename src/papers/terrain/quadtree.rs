@@ -13,8 +13,8 @@ use crate::host_block;
 
 /// Cells a side of a patch.
 pub const PATCH_SIDE: u32 = 16;
-/// What rounding in single precision may have taken from an error.
-const ROUNDING: f64 = 1.0 + 1e-5;
+/// What rounding in single precision may have taken from an error: a share of it, and of the heights in each level.
+const ROUNDING: [f64; 2] = [1.0 + 1e-5, 1.0 / (1 << 22) as f64];
 
 host_block! {
     struct CellConstants {
@@ -141,7 +141,7 @@ impl Builder<'_> {
         let view = self.draw("patch-bounds", ("errors", errors), (size, format), (level, last, level == 0))?;
         let texels = bytemuck::pod_collect_to_vec::<u8, f32>(&read_image(self.shaders.device(), &view)?);
         let bounds = |[error, low, high, _]: &[f32; 4]| Bounds {
-            error: f64::from(*error) * ROUNDING,
+            error: f64::from(*error) * ROUNDING[0] + f64::from(level + 1) * f64::from(low.abs().max(high.abs())) * ROUNDING[1],
             low: (*low).into(),
             high: (*high).into(),
         };

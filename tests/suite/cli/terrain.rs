@@ -167,6 +167,40 @@ fn segments_and_spheres_meet_the_land() {
     assert!(lines.contains("meets the terrain of map 0") && lines.contains("normal 0.0000"), "{lines}");
 }
 
+/// A file of bodies gives what the same bodies do one by one.
+#[test]
+fn bodies_of_a_file_meet_the_land() {
+    let out = folder();
+    file(&out, "table.asc", TABLE);
+    let lines = "x,y,z,to x,to y,to z\n1,200,2,1,0,2\n\n# a comment\n 0, 104, 0, 5\r\n-50,50,0,50,50,0\n";
+    file(&out, "bodies.csv", lines);
+    let of = |bodies: &str| {
+        let ended = terrain("collide --map table.asc --base-level 0").args(bodies).inside(out.path()).run().succeeded();
+        (ended.stdout.lines().map(str::to_owned).collect::<BTreeSet<_>>(), ended.stderr)
+    };
+    let (of_file, said) = of("--bodies bodies.csv");
+    assert!(said.contains("3 bodies in"), "{said}");
+    assert_eq!(of_file, of("--segment 1,200,2,1,0,2 --sphere 0,104,0,5 --segment -50,50,0,50,50,0").0);
+    assert_eq!(of_file.len(), 3);
+    let record = terrain("collide --map table.asc --base-level 0 --json --bodies bodies.csv").inside(out.path()).run();
+    let record = record.succeeded().json();
+    assert_eq!(record["collisions"].as_array().unwrap().len(), 3);
+    let distance_m = record["collisions"][1]["meets"]["distance_m"].as_f64().unwrap();
+    assert!((distance_m - 4.0).abs() < 1e-6, "{distance_m}");
+    for (lines, parts) in [
+        ("1,2,3\n", &["line 1", "3 fields"][..]),
+        ("1,2,3,4\n1,2,x,4\n", &["line 2"]),
+        ("nan,2,3,4\n", &["line 1"]),
+        ("0,0,0,1\n1,2,3,1,2,3\n", &["line 2", "no length"]),
+        ("# nothing\n", &["no body"]),
+    ] {
+        file(&out, "bodies.csv", lines);
+        let ended = terrain("collide --resolution 16 --bodies bodies.csv").inside(out.path()).run();
+        ended.refused(2, &[&["bodies.csv"], parts].concat());
+    }
+    terrain("collide --resolution 16 --bodies none.csv").inside(out.path()).run().refused(2, &["none.csv"]);
+}
+
 /// 36 columns of 10 degrees go once round: at 180 degrees, between the last column and the first, there is land.
 #[test]
 fn a_map_of_the_whole_earth_has_no_gap_at_its_seam() {

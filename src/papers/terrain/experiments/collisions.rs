@@ -1,6 +1,10 @@
 //! "Detection of spatial collisions" (section 1): what bodies meet in a setup's terrain.
 
+use std::time::Instant;
+
 use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serializer;
 use serde_json::{Value, json};
 
 use super::super::setup::Setup;
@@ -48,7 +52,9 @@ impl From<&[f64; 4]> for Body {
 }
 
 impl Body {
-    fn check(&self) -> Result<(), Error> {
+    /// # Errors
+    /// [`Error::Parameter`] for one without extent or too far away.
+    pub fn check(&self) -> Result<(), Error> {
         let (name, places, is_body, what) = match *self {
             Body::Segment { from, to } => ("segment", vec![from, to], from != to, "has no length"),
             Body::Sphere { center, radius_m } => (
@@ -86,20 +92,38 @@ impl std::fmt::Display for Body {
     }
 }
 
-/// The first contacts of bodies, in their order, and warnings of the maps.
+/// The first contacts of bodies, in their order, warnings of the maps, and the seconds that all contacts took.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a body without extent or too far away, [`Error::Scene`].
-pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<(Vec<Collision>, Vec<String>), Error> {
+pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<(Vec<Collision>, Vec<String>, f64), Error> {
     bodies.iter().try_for_each(Body::check)?;
     let scene = setup.load()?;
     let collider = Collider::new(&setup.parameters, &Inputs { maps: &scene.maps, ..Inputs::default() });
-    let collisions = bodies.iter().map(|body| Collision { body: *body, contact: body.meet(&collider) });
-    Ok((collisions.collect(), void_warnings(scene.maps.iter().map(|input| &*input.map))))
+    let collisions = bodies.par_iter().map(|body| Collision { body: *body, contact: body.meet(&collider) });
+    let started = Instant::now();
+    let collisions = collisions.collect();
+    let seconds = started.elapsed().as_secs_f64();
+    Ok((collisions, void_warnings(scene.maps.iter().map(|input| &*input.map)), seconds))
+}
+
+/// What `collide` found, as it is written.
+#[derive(serde::Serialize)]
+pub struct Record<'a> {
+    /// In the order of the bodies.
+    #[serde(serialize_with = "one_by_one")]
+    pub collisions: &'a [Collision],
+    /// Of the maps.
+    pub warnings: &'a [String],
+}
+
+/// A document of a million bodies is never there as a whole.
+fn one_by_one<S: Serializer>(collisions: &&[Collision], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(collisions.iter().map(Collision::json))
 }
 
 impl Collision {
-    pub fn json(&self) -> Value {
+    fn json(&self) -> Value {
         let contact = self.contact.map(|m| {
             json!({
                 "surface": m.surface.as_str(), "map": m.map, "parameter": m.t, "distance_m": m.distance_m,

@@ -1,12 +1,16 @@
 //! The tables and figures of the `terrain` paper, with the paper's own numbers.
 
+mod bodies;
 pub mod collisions;
 pub mod figures;
 pub mod table;
 
-use serde_json::json;
 
-use self::collisions::{Body, Collision, collide};
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+
+use self::collisions::{Body, Collision, Record, collide};
 use self::table::{Axis, Outcome};
 use super::setup::Setup;
 use super::{Variant, View};
@@ -31,6 +35,8 @@ pub struct Options {
     segments: Vec<[f64; 6]>,
     /// Centre and radius, metres.
     spheres: Vec<[f64; 4]>,
+    /// A file of both.
+    bodies: Option<PathBuf>,
 }
 
 impl Options {
@@ -94,6 +100,10 @@ pub fn options() -> Vec<Parameter<Options>> {
             .placeholder("X,Y,Z,R")
             .help("Centre, metres as in `segment`, and radius, above 0")
             .everyday(),
+        Parameter::new("bodies", field!(Options.bodies))
+            .placeholder("FILE.csv")
+            .help("Many of both, one a line: six numbers for a segment, four for a sphere")
+            .everyday(),
     ]
 }
 
@@ -150,7 +160,7 @@ pub fn verbs() -> Vec<Experiment<Setup>> {
     vec![Experiment {
         name: "collide",
         help: "The first contacts of segments and spheres with the terrain: section 1's detection of spatial collisions",
-        options: &["segment", "sphere"],
+        options: &["segment", "sphere", "bodies"],
         refuses: &[
             ("object", NO_PICTURE),
             ("drape", NO_PICTURE),
@@ -225,23 +235,30 @@ fn heat_maps(context: &Context<'_>, points: &[Point<Setup>]) -> Result<(), Error
 }
 
 fn collisions(context: &mut Context<'_>) -> Result<(), Error> {
-    let Options { segments, spheres, .. } = &context.options;
-    let bodies: Vec<Body> = segments.iter().map(Body::from).chain(spheres.iter().map(Body::from)).collect();
+    let Options { segments, spheres, bodies: file_of_bodies, .. } = &context.options;
+    let mut bodies: Vec<Body> = segments.iter().map(Body::from).chain(spheres.iter().map(Body::from)).collect();
+    if let Some(path) = file_of_bodies {
+        bodies.extend(bodies::read(path)?);
+    }
     if bodies.is_empty() {
-        return Err(Error::Input("collide: there is nothing to collide; give a `segment` or a `sphere`".into()));
+        let reason = "collide: there is nothing to collide; give a `segment`, a `sphere` or a file of `bodies`";
+        return Err(Error::Input(reason.into()));
     }
     let json = context.destinations.json.as_deref();
     let file = json.filter(|path| path.as_os_str() != "-");
     file.map_or(Ok(()), check_writable)?;
-    let (collisions, warnings) = collide(&context.setup, &bodies)?;
+    let (collisions, warnings, seconds) = collide(&context.setup, &bodies)?;
     warnings.iter().for_each(|warning| context.console.say(&format!("warning: {warning}")));
-    let record =
-        json!({"collisions": collisions.iter().map(Collision::json).collect::<Vec<_>>(), "warnings": warnings});
-    let record = experiment::json_text(&record)?;
-    match file {
-        Some(path) => write(path, record.as_bytes())?,
-        None if json.is_some() => return context.console.print(&record),
-        None => {}
+    if file_of_bodies.is_some() {
+        context.console.say(&format!("{} bodies in {seconds:.3} s", bodies.len()));
     }
-    context.console.print(&collisions.iter().map(Collision::text).collect::<String>())
+    if json.is_some() {
+        let record = experiment::json_text(&Record { collisions: &collisions, warnings: &warnings })?;
+        match file {
+            Some(path) => write(path, record.as_bytes())?,
+            None => return context.console.print(&record),
+        }
+    }
+    let lines: Vec<String> = collisions.par_iter().map(Collision::text).collect();
+    context.console.print(&lines.concat())
 }
