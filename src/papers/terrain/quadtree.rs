@@ -141,7 +141,8 @@ impl Builder<'_> {
         let view = self.draw("patch-bounds", ("errors", errors), (size, format), (level, last, level == 0))?;
         let texels = bytemuck::pod_collect_to_vec::<u8, f32>(&read_image(self.shaders.device(), &view)?);
         let bounds = |[error, low, high, _]: &[f32; 4]| Bounds {
-            error: f64::from(*error) * ROUNDING[0] + f64::from(level + 1) * f64::from(low.abs().max(high.abs())) * ROUNDING[1],
+            error: f64::from(*error) * ROUNDING[0]
+                + f64::from(level + 1) * f64::from(low.abs().max(high.abs())) * ROUNDING[1],
             low: (*low).into(),
             high: (*high).into(),
         };

@@ -300,7 +300,7 @@ fn the_variants_that_walk_from_cell_to_cell_are_asked_for_by_name() {
         assert!(depth["shaders"].to_string().contains("depth-dda-bilinear-pixel"), "{depth}");
     }
     let benched = small("bench --json --quiet --resolution 64").args(ONCE).run().succeeded().json();
-    assert_eq!(benched["runs"].as_array().unwrap().len(), 4);
+    assert_eq!(benched["runs"].as_array().unwrap().len(), 5);
     let curved = "bench --resolution 64 --base earth --variant dda-fragment";
     small(curved).args(ONCE).run().refused(2, &["dda-fragment", "--base plane"]);
 }
@@ -490,7 +490,7 @@ fn variants_that_cannot_draw_a_base_are_left_out_of_all_and_refused_by_name() {
     let record = terrain("bench --variant all").args(tiny).on_test_device().run().succeeded().json();
     let variants: Vec<&str> =
         record["runs"].as_array().unwrap().iter().map(|run| run["variant"].as_str().unwrap()).collect();
-    assert_eq!(variants, ["cpu", "gpu-compute", "gpu-fragment", "mesh"]);
+    assert_eq!(variants, ["cpu", "gpu-compute", "gpu-fragment", "mesh", "mesh-lod"]);
     terrain("bench --variant dda-compute").args(tiny).on_test_device().run().refused(2, &["dda-compute", "--base"]);
     let picture = "--variant dda-fragment --base earth --size 8x8";
     terrain("render").args(picture).on_test_device().run().refused(2, &["dda-fragment", "--base"]);

@@ -5,7 +5,6 @@ pub mod collisions;
 pub mod figures;
 pub mod table;
 
-
 use std::path::PathBuf;
 
 use rayon::prelude::*;
