@@ -39,13 +39,13 @@ void main() {
     if (bits == 0u) {
         return;
     }
-    for (uint i = 0u; i < 32u; i++) {
-        if ((bits & (1u << i)) != 0u) {
-            uint corner = 3u * (32u * word + i);
-            pairs.list[next] = indices.list[corner] + plane * cull.vertices;
-            pairs.list[next + 1u] = indices.list[corner + 1u] + plane * cull.vertices;
-            pairs.list[next + 2u] = indices.list[corner + 2u] + plane * cull.vertices;
-            next += 3u;
-        }
+    // One round a pair, 32 at the most.
+    for (uint round = 0u; round < 32u && bits != 0u; round++) {
+        uint corner = 3u * (32u * word + uint(findLSB(bits)));
+        pairs.list[next] = indices.list[corner] + plane * cull.vertices;
+        pairs.list[next + 1u] = indices.list[corner + 1u] + plane * cull.vertices;
+        pairs.list[next + 2u] = indices.list[corner + 2u] + plane * cull.vertices;
+        next += 3u;
+        bits &= bits - 1u;
     }
 }

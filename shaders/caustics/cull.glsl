@@ -1,5 +1,5 @@
 // Culling of pairs of water triangle and plane (section 6.1): what its passes share. A word holds 32 neighbouring triangles, a bit
-// each; its pairs with a plane are tested together first.
+// each.
 
 #include "caustics/ray.glsl"
 #include "caustics/cell.glsl"
@@ -7,8 +7,9 @@
 layout(push_constant) uniform Cull {
     vec2 center; // of the box along U and W, from the rays' reference point, metres
     vec2 texels_per_m;
-    float first_height; // of the uppermost plane, from the reference point, metres
-    float last_height; // of the lowest
+    float top; // of the box along V, from its centre, metres
+    float cells_per_m; // along V
+    float inset; // of the outer samples of a texel from its sides, texels
     uint map_size; // texels a side
     uint levels; // of the position map's pyramid
     uint triangles;

@@ -29,8 +29,10 @@ layout(std430, set = 0, binding = 3) readonly buffer Pyramid {
     vec2 list[]; // least and greatest height, level after level, row by row
 } pyramid;
 
-// Steps of a ray through the position map; of a texel each, where it moves no farther than that many.
-const int HIT_STEPS = 64;
+// Steps of a ray through the position map, of a texel each: more than a map has texels along a side.
+const int MOST_STEPS = 32768;
+// Steps that are left out together where the ray passes above all that is near.
+const int STRIDE = 8;
 
 bool is_receiver(float height) {
     return height > -1.0e29;

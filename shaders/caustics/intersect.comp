@@ -38,18 +38,28 @@ vec4 first_hit(vec3 origin, vec2 slope) {
         return vec4(0.0);
     }
     vec2 path = abs(place_at(origin, slope, bottom) - place_at(origin, slope, top));
-    int steps = int(clamp(ceil(max(path.x, path.y)), 1.0, float(HIT_STEPS)));
+    int steps = int(clamp(ceil(max(path.x, path.y)), 1.0, float(MOST_STEPS)));
     float above = top;
     float height = top;
     float found = -1.0e30;
-    for (int i = 0; i <= steps; i++) {
+    for (int from = 0; from <= steps && found < height; from += STRIDE) {
+        int to = min(from + STRIDE - 1, steps);
         // Exactly the lowest at the end, where nothing can be missed.
-        height = i == steps ? bottom : mix(top, bottom, float(i) / float(steps));
-        found = height_at(ivec2(floor(place_at(origin, slope, height))));
-        if (found >= height) {
-            break;
+        float lowest = to == steps ? bottom : mix(top, bottom, float(to) / float(steps));
+        vec2 near = heights_between(place_at(origin, slope, mix(top, bottom, float(from) / float(steps))), place_at(origin, slope, lowest));
+        if (near.y < lowest) {
+            found = -1.0e30;
+            height = lowest;
+            above = lowest;
         }
-        above = height;
+        for (int i = from; i <= to && near.y >= lowest; i++) {
+            height = i == steps ? bottom : mix(top, bottom, float(i) / float(steps));
+            found = height_at(ivec2(floor(place_at(origin, slope, height))));
+            if (found >= height) {
+                break;
+            }
+            above = height;
+        }
     }
     if (found < height) {
         return vec4(0.0);

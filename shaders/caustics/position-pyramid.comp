@@ -1,7 +1,7 @@
 #version 450
 
-// A level of the position map's pyramid (section 6.1): least and greatest height in a square of texels. Places without a receiver
-// have neither.
+// A level of the position map's pyramid (section 6.1): least and greatest height in a square of texels; the finest and the one above
+// it together. Places without a receiver have neither.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -28,19 +28,33 @@ vec2 finer(uint x, uint y) {
     return pyramid.list[level.from + min(y, last) * level.from_size + min(x, last)];
 }
 
+// A texel of the map, as an entry of the finest level.
+vec2 finest(uint x, uint y) {
+    uint last = level.to_size - 1u;
+    uvec2 texel = uvec2(min(x, last), min(y, last));
+    float height = texelFetch(sampler2D(position_map, nearest), ivec2(texel), 0).r;
+    vec2 bounds = height > -1.0e29 ? vec2(height) : vec2(1.0e30, -1.0e30);
+    pyramid.list[texel.y * level.to_size + texel.x] = bounds;
+    return bounds;
+}
+
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
-    if (max(at.x, at.y) >= level.to_size) {
+    bool is_finest = level.from == level.to;
+    uint size = is_finest ? (level.to_size + 1u) / 2u : level.to_size;
+    if (max(at.x, at.y) >= size) {
         return;
     }
-    vec2 bounds;
-    if (level.from == level.to) {
-        float height = texelFetch(sampler2D(position_map, nearest), ivec2(at), 0).r;
-        bounds = height > -1.0e29 ? vec2(height) : vec2(1.0e30, -1.0e30);
+    uvec2 first = 2u * at;
+    if (is_finest) {
+        vec2 bounds = joined(joined(finest(first.x, first.y), finest(first.x + 1u, first.y)),
+            joined(finest(first.x, first.y + 1u), finest(first.x + 1u, first.y + 1u)));
+        if (level.to_size > 1u) {
+            pyramid.list[level.to_size * level.to_size + at.y * size + at.x] = bounds;
+        }
     } else {
-        uvec2 first = 2u * at;
-        bounds = joined(joined(finer(first.x, first.y), finer(first.x + 1u, first.y)),
-            joined(finer(first.x, first.y + 1u), finer(first.x + 1u, first.y + 1u)));
+        pyramid.list[level.to + at.y * size + at.x] =
+            joined(joined(finer(first.x, first.y), finer(first.x + 1u, first.y)),
+                joined(finer(first.x, first.y + 1u), finer(first.x + 1u, first.y + 1u)));
     }
-    pyramid.list[level.to + at.y * level.to_size + at.x] = bounds;
 }

@@ -20,20 +20,31 @@ const uint IN_TURN = 16u;
 // Set where the driver leaves a loop before its end.
 bool is_cut = false;
 
-// True where the receiver stands between a texel and the light: a beam ends at the first surface that it meets.
+// True where the receiver stands between a texel and the light: a beam ends at the first surface that it meets. Texel after texel,
+// but where nothing near the way is high enough.
 bool is_hidden(vec2 place, float height, vec2 slope, float top) {
     vec2 back = -slope * plane.texels_per_m;
     vec2 path = abs(back) * (top - height);
-    int steps = int(min(max(path.x, path.y), float(HIT_STEPS)));
-    int i = 1;
-    for (; i <= steps; i++) {
-        float rise = (top - height) * float(i) / float(steps);
-        ivec2 texel = ivec2(floor(place + back * rise));
-        if (is_in_map(texel) && height_at(texel) > height + rise) {
-            return true;
+    int steps = int(min(max(path.x, path.y), float(MOST_STEPS)));
+    int from = 0;
+    for (; from < steps; from += STRIDE) {
+        int to = min(from + STRIDE, steps);
+        float least = (top - height) * float(from) / float(steps);
+        float most = (top - height) * float(to) / float(steps);
+        vec2 near = heights_between(place + back * least, place + back * most);
+        if (near.y > height + least) {
+            int i = from + 1;
+            for (; i <= to; i++) {
+                float rise = (top - height) * float(i) / float(steps);
+                ivec2 texel = ivec2(floor(place + back * rise));
+                if (is_in_map(texel) && height_at(texel) > height + rise) {
+                    return true;
+                }
+            }
+            is_cut = is_cut || i <= to;
         }
     }
-    is_cut = is_cut || i <= steps;
+    is_cut = is_cut || from < steps;
     return false;
 }
 

@@ -285,19 +285,58 @@ impl<S: Study> Context<'_, S> {
         self.print(if self.is_json_printed() { text } else { table })
     }
 
-    /// Publishes a table without times: JSON and CSV as files, and the table or the JSON on standard output.
+    /// Publishes a table: JSON and CSV as files, and the table or the JSON on standard output.
     ///
     /// # Errors
     /// [`Error::Output`].
     pub fn publish_table(&self, machine: &Machine, table: &ResultTable) -> Result<(), Error> {
-        let document: Value = json!({
+        self.publish_tables(machine, table, &[])
+    }
+
+    /// The same with more tables after it, each under a name of its own in the JSON and at the end of its CSV file's name.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn publish_tables(
+        &self,
+        machine: &Machine,
+        table: &ResultTable,
+        more: &[(&str, ResultTable)],
+    ) -> Result<(), Error> {
+        let mut document: Value = json!({
             "experiment": self.name, "environment": machine.environment(),
             "command": environment::command(), "table": table.json(),
         });
+        let mut printed = table.render(self.console.style());
+        for (name, table) in more {
+            document[name] = table.json();
+            printed.push_str(&format!("\n{}", table.render(self.console.style())));
+        }
         let text = json_text(&document)?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), table.csv().as_bytes())?;
-        self.print(if self.is_json_printed() { text } else { table.render(self.console.style()) })
+        for (name, table) in more {
+            self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes())?;
+        }
+        self.print(if self.is_json_printed() { text } else { printed })
+    }
+
+    /// Publishes a table after others: its CSV file, called by its name, and the table on standard output, unless that holds a
+    /// record.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn publish_more(&self, name: &str, table: &ResultTable) -> Result<(), Error> {
+        self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes())?;
+        if self.is_json_printed() { Ok(()) } else { self.print(format!("\n{}", table.render(self.console.style()))) }
+    }
+
+    /// Writes the rows of a table that has begun as CSV, where the finished one will be: whatever ends it, they stay.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn keep_table(&self, table: &ResultTable) -> Result<(), Error> {
+        Ok(write(&self.csv_file(), table.csv().as_bytes())?)
     }
 
     /// Publishes a table without times and its plot.

@@ -13,11 +13,16 @@ use super::receiver::LitReceiver;
 use super::resources::BLACK;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
+use crate::measure::parameter::Choice;
 
 /// Triangles of a word.
 const WORD: u32 = 32;
 /// Words of a block.
 const BLOCK: u32 = 256;
+/// Planes of an invocation.
+const GROUP: u32 = 32;
+/// Workgroups in a row: no device allows fewer.
+const ROW: u32 = 65_535;
 
 host_block! {
     /// A plane's height from the rays' reference point, and the heights of its cell from the box's centre, metres.
@@ -33,8 +38,9 @@ host_block! {
     struct CullConstants {
         center: [f32; 2],
         texels_per_m: [f32; 2],
-        first_height: f32,
-        last_height: f32,
+        top: f32,
+        cells_per_m: f32,
+        inset: f32,
         map_size: u32,
         levels: u32,
         triangles: u32,
@@ -42,6 +48,15 @@ host_block! {
         planes: u32,
         blocks: u32,
         vertices: u32,
+    }
+}
+
+host_block! {
+    /// 1 for each step that is taken.
+    pub struct StepsBlock {
+        groups: u32,
+        planes: u32,
+        texels: u32,
     }
 }
 
@@ -56,10 +71,51 @@ host_block! {
     }
 }
 
+/// Steps by which `culled` drops pairs of water triangle and plane (section 6.1). They change its time alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CullSteps {
+    /// Groups of planes are tested before their planes.
+    pub groups: bool,
+    /// Planes are tested by the rectangle around the triangle.
+    pub planes: bool,
+    /// Planes are tested down to texels.
+    pub texels: bool,
+}
+
+impl CullSteps {
+    pub const EVERY: CullSteps = CullSteps { groups: true, planes: true, texels: true };
+
+    const fn of(groups: bool, planes: bool, texels: bool) -> Self {
+        CullSteps { groups, planes, texels }
+    }
+}
+
+impl Choice for CullSteps {
+    const ALL: &'static [Self] = &[
+        CullSteps::EVERY,
+        CullSteps::of(false, false, false),
+        CullSteps::of(true, false, false),
+        CullSteps::of(false, true, false),
+        CullSteps::of(false, false, true),
+        CullSteps::of(true, true, false),
+        CullSteps::of(true, false, true),
+        CullSteps::of(false, true, true),
+    ];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("every", "Groups of planes, then planes, then texels"),
+        ("none", "Every pair of a triangle that light enters by and of a plane under it is drawn"),
+        ("groups", "Groups of planes alone"),
+        ("planes", "Planes alone, by the rectangle around the triangle"),
+        ("texels", "Texels alone, or nearly so"),
+        ("groups-planes", "Groups of planes, then planes"),
+        ("groups-texels", "Groups of planes, then texels"),
+        ("planes-texels", "Planes, then texels"),
+    ];
+}
+
 /// Passes of one receiver under one light.
 pub struct CulledMap {
     position_pyramid: PositionPyramid,
-    cull_bounds: Pass,
     cull: Pass,
     cull_count: Pass,
     cull_sum: Pass,
@@ -86,7 +142,7 @@ impl CulledMap {
         let shaders = context.shaders;
         let offset = lit.aligned.center - volumes.reference;
         let mut uniform = Vec::new();
-        planes::slice(lit.aligned.extent.y, context.parameters.planes, &mut uniform);
+        planes::slice(lit.aligned.extent.y, lit.planes, &mut uniform);
         let height = |cell: &planes::Cell| (offset.y + f64::from(cell.plane)) as f32;
         let cells: Vec<CellBlock> = uniform
             .iter()
@@ -114,7 +170,14 @@ impl CulledMap {
                 .map_err(|error| error.set_by("planes"))
         };
         let none = vk::BufferUsageFlags::empty();
-        let bounds = buffer("culled-bounds", 32 * u64::from(words), none)?;
+        let taken = context.parameters.cull;
+        let steps = StepsBlock {
+            groups: u32::from(taken.groups),
+            planes: u32::from(taken.planes),
+            texels: u32::from(taken.texels),
+        };
+        let steps =
+            context.upload("culling-steps", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&steps))?;
         let kept = buffer("culled-kept", 4 * all_words, none)?;
         let before = buffer("culled-before", 4 * all_words, none)?;
         let block_sums = buffer("culled-blocks", 4 * blocks, none)?;
@@ -152,15 +215,10 @@ impl CulledMap {
             caustics_map = caustics_map.with("shadow_map", &shadows.map);
         }
         Ok(CulledMap {
-            cull_bounds: kernel("cull-bounds", "caustics/cull-bounds.comp")
-                .with("rays", &volumes.rays)
-                .with("indices", &water.indices)
-                .with("bounds", &bounds)
-                .build(shaders)?,
             cull: kernel("cull", "caustics/cull.comp")
                 .with("rays", &volumes.rays)
                 .with("indices", &water.indices)
-                .with("bounds", &bounds)
+                .with("steps", &steps)
                 .with("pyramid", &position_pyramid.heights)
                 .with("cells", &cells)
                 .with("kept", &kept)
@@ -185,8 +243,9 @@ impl CulledMap {
             constants: CullConstants {
                 center,
                 texels_per_m: [(texels / extent.x) as f32, (texels / extent.z) as f32],
-                first_height: uniform.first().map_or(0.0, height),
-                last_height: uniform.last().map_or(0.0, height),
+                top: (lit.aligned.extent.y / 2.0) as f32,
+                cells_per_m: (uniform.len() as f64 / lit.aligned.extent.y) as f32,
+                inset: 0.5 / context.parameters.coverage as f32,
                 map_size: context.parameters.map_size,
                 levels: position_pyramid.level_count(),
                 triangles,
@@ -215,16 +274,16 @@ impl CulledMap {
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         self.position_pyramid.record(frame)?;
         let CullConstants { words, planes, blocks, .. } = self.constants;
+        let rows = words.div_ceil(ROW);
         let steps = [
-            (&self.cull_bounds, [words, 1]),
-            (&self.cull, [words, planes]),
-            (&self.cull_count, [blocks * BLOCK, 1]),
-            (&self.cull_sum, [1, 1]),
-            (&self.cull_compact, [words, planes]),
+            (&self.cull, [WORD * words.div_ceil(rows), rows, planes.div_ceil(GROUP)]),
+            (&self.cull_count, [blocks * BLOCK, 1, 1]),
+            (&self.cull_sum, [1, 1, 1]),
+            (&self.cull_compact, [words, planes, 1]),
         ];
-        for (pass, [x, y]) in steps {
+        for (pass, [x, y, z]) in steps {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.constants).threads(x, y, 1);
+                dispatch.constants(&self.constants).threads(x, y, z);
             })?;
         }
         frame.graphics(&self.caustics_map, |draw| {

@@ -1,6 +1,6 @@
 //! Host structs against the blocks of buffers that hold them.
 
-use super::culled_map::CellBlock;
+use super::culled_map::{CellBlock, StepsBlock};
 use super::illumination_volumes::Ray;
 use super::receiver::BoxBlock;
 use super::stencil_volumes::VolumesBlock;
@@ -19,9 +19,10 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["caustics/cull.comp", "caustics/culled.vert", "caustics/caustics-map-options-kept.vert"] {
         check_list::<CellBlock>(shader, "cells");
     }
-    for shader in ["caustics/cull.comp", "caustics/cull-bounds.comp", "caustics/culled.vert"] {
+    for shader in ["caustics/cull.comp", "caustics/culled.vert"] {
         check_list::<Ray>(shader, "rays");
     }
+    check_block::<StepsBlock>("caustics/cull.comp", "steps");
     for shader in
         ["caustics/intersect-off.comp", "caustics/intersect-on.comp", "caustics/land.comp", "caustics/straddle-on.comp"]
     {

@@ -78,7 +78,7 @@ impl LevelMap {
     ) -> Result<Self, Error> {
         let slicing = match variant {
             Variant::LevelMapSmart | Variant::Hit => Slicing::Boxes(BoundingBox::new()),
-            _ => Slicing::Uniform(ReferencePlanes::new(context.parameters)),
+            _ => Slicing::Uniform(ReferencePlanes::new()),
         };
         let passes = |lit: &LitReceiver| {
             let volumes = &volumes[lit.light];

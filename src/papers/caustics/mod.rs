@@ -77,7 +77,9 @@ use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Bounds, Camera};
 
-pub use self::parameters::{IntensityRule, Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters};
+pub use self::parameters::{
+    CullSteps, IntensityRule, Parameters, SmartParameters, SmartPlacement, Variant, WaveParameters,
+};
 pub use self::receiver::ReceiverInput;
 pub use self::water_map::WaterMap;
 
@@ -200,12 +202,16 @@ impl Caustics {
     }
 
     /// Sets the numbers of [`DRAWN`] of the next frames; all others are those that it was made with. False where the camera
-    /// passes through the water's surface, which other shaders show. The caller has validated them.
+    /// passes through the water's surface, which other shaders show, or moves while planes go by its distance. The caller has validated them.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn set_drawn(&mut self, parameters: &Parameters) -> Result<bool, Error> {
         if parameters.is_seen_from_above() != self.parameters.is_seen_from_above() {
+            return Ok(false);
+        }
+        // Another distance from the camera may ask for other planes, for which there are other buffers.
+        if parameters.planes_within_m.is_some() && parameters.camera != self.parameters.camera {
             return Ok(false);
         }
         self.underwater.set_camera(parameters)?;

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use glam::Vec3;
 
+pub use super::culled_map::CullSteps;
 pub use super::planes::SmartPlacement;
 use super::water::waves;
 use super::water_map::WaterMap;
@@ -102,6 +103,8 @@ impl WaveParameters {
 pub struct Parameters {
     /// Reference (or sample) planes, 1 to 4096.
     pub planes: u32,
+    /// Distance from the camera within which a receiver has all of them, metres; beyond, fewer in inverse proportion.
+    pub planes_within_m: Option<f32>,
     /// Texels a side of the position, diffuse, caustics and slice maps, at least 1.
     pub map_size: u32,
     /// Triangles of the water's mesh, 2 to 20,000,000; rounded to a whole number of cells.
@@ -113,6 +116,8 @@ pub struct Parameters {
     /// Texels a side of the caustics map that are drawn and averaged for each of its texels, 1 to 64.
     pub coverage: u32,
     pub intensity: IntensityRule,
+    /// Steps of the variant `culled`.
+    pub cull: CullSteps,
     /// Receivers cast shadows on one another.
     pub shadows: bool,
     /// The water's surface reflects a part of the light.
@@ -149,12 +154,14 @@ impl Default for Parameters {
     fn default() -> Self {
         Parameters {
             planes: 31,
+            planes_within_m: None,
             map_size: 512,
             water_triangles: 10_000,
             mrt: true,
             smart: SmartParameters { levels: 100, placement: SmartPlacement::Fitted { epsilon_m: None } },
             coverage: 1,
             intensity: IntensityRule::Face,
+            cull: CullSteps::EVERY,
             shadows: false,
             fresnel: false,
             refraction_index: 4.0 / 3.0,
@@ -247,6 +254,16 @@ impl Parameters {
                 .section("4.2.1")
                 .cost(Cost::Buffers)
                 .everyday(),
+            Parameter::new("planes-within", field!(Parameters.planes_within_m))
+                .range(Range::above(0.0))
+                .unit("metres")
+                .help(
+                    "Distance from the camera to the middle of a receiver within which it has all `planes`; one twice as far \
+                     has half of them, by level-map and culled",
+                )
+                .section("6.1")
+                .default_text("all planes at any distance")
+                .cost(Cost::Buffers),
             Parameter::new("map-size", field!(Parameters.map_size))
                 .range(Range::from(1.0))
                 .unit("texel a side")
@@ -295,6 +312,10 @@ impl Parameters {
                 .help("The intensity of light on a plane: of triangles, as the thesis prints it, or of vertices, interpolated")
                 .section("eq. 4-18")
                 .cost(Cost::Pipelines),
+            Parameter::new("cull", field!(Parameters.cull))
+                .help("Steps by which `culled` finds the pairs of triangle and plane to draw; its light is the same by all of them")
+                .section("6.1")
+                .cost(Cost::Buffers),
             Parameter::new("shadows", field!(Parameters.shadows))
                 .help("Receivers cast shadows on one another and on the floor, but for the stencil method's; the thesis's do not")
                 .cost(Cost::Buffers)
@@ -430,6 +451,13 @@ impl Parameters {
         let of_waves = || waves(self).iter().map(|w| TAU / w.vector.length()).fold(f64::INFINITY, f64::min);
         let of_map = |map: &WaterMap| 4.0 * map.heights().spacing_m().min_element();
         self.water_map.as_ref().map_or_else(of_waves, of_map)
+    }
+
+    /// Planes of a receiver whose middle is at that place: all, or by its distance from the camera.
+    pub fn planes_at(&self, middle: Vec3) -> u32 {
+        let Some(within_m) = self.planes_within_m else { return self.planes };
+        let share = f64::from(within_m) / f64::from(self.camera.eye.distance(middle));
+        (f64::from(self.planes) * share.min(1.0)).ceil().max(1.0) as u32
     }
 
     /// Width over height of the picture.

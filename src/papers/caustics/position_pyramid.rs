@@ -50,9 +50,12 @@ impl PositionPyramid {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        self.levels.iter().try_for_each(|level| {
+        // The finest level comes with the one above it.
+        let finest = self.levels.iter().take(1).map(|level| (level, level.to_size.div_ceil(2)));
+        let others = self.levels.iter().skip(2).map(|level| (level, level.to_size));
+        finest.chain(others).try_for_each(|(level, size)| {
             frame.compute(&self.pass, |dispatch| {
-                dispatch.constants(level).threads(level.to_size, level.to_size, 1);
+                dispatch.constants(level).threads(size, size, 1);
             })
         })
     }

@@ -13,7 +13,7 @@ use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::upload_each;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 use crate::host_block;
-use crate::scene::Mesh;
+use crate::scene::{Bounds, Mesh};
 
 host_block! {
     /// A vertex of a receiver, world space.
@@ -99,6 +99,8 @@ pub struct LitReceiver {
     pub index: usize,
     /// Its box in the light's axes.
     pub aligned: ReceiverBox,
+    /// Planes of the level map and of its culling.
+    pub planes: u32,
     /// Nearest to the light first.
     pub cells: Vec<Cell>,
     /// Texels a side of its maps.
@@ -114,6 +116,7 @@ impl LitReceiver {
             index,
             aligned: ReceiverBox::around(axes, &receiver.positions),
             receiver: receiver.clone(),
+            planes: parameters.planes_at(Bounds::of_points(receiver.positions.iter().copied()).center()),
             cells: Vec::with_capacity(parameters.planes as usize),
             map_size: parameters.map_size,
             absorption_per_m: parameters.absorption_per_m,

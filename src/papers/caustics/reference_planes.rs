@@ -2,24 +2,22 @@
 
 use std::sync::Arc;
 
-use super::parameters::Parameters;
 use super::receiver::LitReceiver;
 use crate::gpu::{Frame, PassInfo};
 
 /// The pass.
 pub struct ReferencePlanes {
     info: Arc<PassInfo>,
-    planes: u32,
 }
 
 impl ReferencePlanes {
-    pub fn new(parameters: &Parameters) -> Self {
+    pub fn new() -> Self {
         let info = PassInfo::host("reference-planes", "4.2.1", &["receiver"], &["planes"]);
-        ReferencePlanes { info, planes: parameters.planes }
+        ReferencePlanes { info }
     }
 
     /// Aligns and slices every box anew.
     pub fn record(&self, frame: &mut Frame<'_>, receivers: &mut [LitReceiver]) {
-        frame.host(&self.info, || receivers.iter_mut().for_each(|lit| lit.slice(self.planes)));
+        frame.host(&self.info, || receivers.iter_mut().for_each(|lit| lit.slice(lit.planes)));
     }
 }

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::slice::from_ref;
 
 use fumarole::gpu::Compiler;
+use fumarole::measure::parameter::Choice as _;
 use fumarole::measure::study::Study;
 use fumarole::papers::caustics::setup::Setup;
-use fumarole::papers::caustics::{IntensityRule, Parameters, Variant, WaveParameters};
+use fumarole::papers::caustics::{CullSteps, IntensityRule, Parameters, Variant, WaveParameters};
 use fumarole::scene::{Light, MeshSource};
 use glam::Vec3;
 
@@ -36,6 +37,46 @@ fn culled_pairs_light_exactly_what_all_pairs_light() {
                     .map(|variant| Drawing::of(device, variant, &parameters, from_ref(receiver)));
                 assert_same(&all, &culled, &format!("{} under {light:?}, {planes} planes", receiver.mesh.name));
             }
+        }
+    });
+}
+
+/// Every choice of steps draws the same light; groups of planes of which the last is not full.
+#[test]
+fn each_step_of_culling_loses_nothing() {
+    gpu_test(|device| {
+        for (receiver, light, planes) in [(teapot(), OBLIQUE, 75), (bowl(), POINT, 33)] {
+            let parameters = Parameters { planes, map_size: 150, ..parameters(light) };
+            let all = Drawing::of(device, Variant::LevelMap, &parameters, from_ref(&receiver));
+            for &cull in CullSteps::ALL {
+                let culled = Drawing::of(
+                    device,
+                    Variant::Culled,
+                    &Parameters { cull, ..parameters.clone() },
+                    from_ref(&receiver),
+                );
+                assert_same(&all, &culled, cull.name());
+            }
+        }
+    });
+}
+
+/// Receivers three times as far away as `planes-within` have a third of the planes; culling follows the level map.
+#[test]
+fn receivers_far_away_have_fewer_planes() {
+    gpu_test(|device| {
+        let receivers = [teapot(), bowl()];
+        let mut parameters = parameters(OBLIQUE);
+        let middle = teapot().mesh.bounds().center();
+        parameters.planes = 30;
+        parameters.camera.eye = middle + Vec3::X * 9.0;
+        for (within_m, planes) in [(None, 30), (Some(100.0), 30), (Some(3.0), 10), (Some(0.001), 1)] {
+            parameters.planes_within_m = within_m;
+            let [all, culled] = [Variant::LevelMap, Variant::Culled]
+                .map(|variant| Drawing::of(device, variant, &parameters, &receivers));
+            assert_eq!(all.plane_counts[0], planes, "{within_m:?}");
+            assert_same(&all, &culled, &format!("{within_m:?}"));
+            assert!(all.map("caustics-map", 0, 1) == culled.map("caustics-map", 0, 1), "{within_m:?}");
         }
     });
 }

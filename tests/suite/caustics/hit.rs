@@ -49,7 +49,7 @@ fn truth(
     let surface = waves_surface(parameters);
     let (size, hit) = (parameters.map_size as usize, hit_of(receiver, &oracle));
     [0.25, 0.75].map(|place| {
-        let photons = Photons { low, high, strata: [strata, strata], place: DVec2::splat(place) };
+        let photons = Photons { low, high, strata: [strata, strata], place: DVec2::splat(place), is_reflected: false };
         let map = photons.landed(&surface, oracle.light, oracle.medium, &oracle.receiver, &hit, size);
         let texels = map.into_iter().zip(drawing.target("position-map"));
         texels.map(|(intensity, &height)| if height < -1e29 { 0.0 } else { intensity }).collect()

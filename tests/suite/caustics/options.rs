@@ -34,7 +34,7 @@ fn truth(parameters: &Parameters, drawing: &Drawing, light: &Light) -> [Vec<f64>
     let (low, high) = (drawing.grid.corner, drawing.grid.corner + drawing.grid.extent_m());
     let surface = waves_surface(parameters);
     [0.25, 0.75].map(|place| {
-        let photons = Photons { low, high, strata: [1200, 1200], place: DVec2::splat(place) };
+        let photons = Photons { low, high, strata: [1200, 1200], place: DVec2::splat(place), is_reflected: false };
         let size = parameters.map_size as usize;
         let map = photons.map(&surface, oracle.light, oracle.medium, &oracle.receiver, 0.0, size);
         // Under slanting light the floor does not fill its map.

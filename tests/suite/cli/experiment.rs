@@ -80,6 +80,91 @@ fn chapter_6_is_set_against_the_level_map() {
     }
 }
 
+/// Photons decide between the methods: under steep water the light where it lands is nearer to them than the level map, and
+/// culling changes nothing but the time.
+#[test]
+fn every_method_is_set_against_photons() {
+    let out = folder();
+    let small = "--size 96x64 --water-triangles 2000 --sizes 16,32 --counts 9,5 --photons 60 --frames 1 --repeat 1";
+    let program = caustics("experiment accuracy --mesh plane --errors 90,1 --out .").inside(out.path());
+    let ended = program.args(small).on_test_device().run().succeeded();
+    let files = ["-smallest.csv", ".csv", ".json", ".svg"].map(|suffix| format!("caustics-accuracy{suffix}"));
+    assert_eq!(entries(out.path()), files);
+    let record = read_json(&out.path().join("caustics-accuracy.json"));
+    let rows = record["table"]["rows"].as_array().unwrap();
+    let of = |case: &str, method: &str| -> Vec<serde_json::Value> {
+        let is_it = |row: &&serde_json::Value| row["case"] == case && row["method"] == method && row["map"] == 32;
+        rows.iter().filter(is_it).cloned().collect()
+    };
+    for case in ["steep", "oblique", "point", "two lights", "murky"] {
+        assert_eq!(of(case, "level-map").len(), 1, "{case}");
+    }
+    assert_eq!((of("as set", "level-map").len(), of("as set", "hit").len()), (2, 1));
+    let number = |row: &serde_json::Value, name: &str| row[name].as_f64().unwrap();
+    for row in rows {
+        assert!(number(row, "halves") > 0.9 && number(row, "frame ms") > 0.0, "{row}");
+        assert!((number(row, "flux") - 1.0).abs() < 0.1, "{row}");
+    }
+    let (level_map, hit, culled) = (&of("steep", "level-map")[0], &of("steep", "hit")[0], &of("steep", "culled")[0]);
+    assert!(
+        number(hit, "correlation") > 0.98 && number(hit, "rms") < 0.7 * number(level_map, "rms"),
+        "{hit} {level_map}"
+    );
+    for name in ["correlation", "rms", "greatest", "flux", "rms seen"] {
+        assert_eq!(number(level_map, name), number(culled, name), "{name}");
+    }
+    // The smallest of those tried that reaches an error, and nothing for one that none reaches.
+    let smallest = record["smallest"]["rows"].as_array().unwrap();
+    let of_hit: Vec<_> = smallest.iter().filter(|row| row["method"] == "hit").collect();
+    assert_eq!((of_hit[0]["map"].as_u64(), of_hit[1]["map"].as_u64()), (Some(16), None), "{of_hit:?}");
+    assert!(ended.stdout.contains("halves") && ended.stdout.contains("The smallest map"), "{}", ended.stdout);
+
+    let refused = |options: &str, name: &str| {
+        let program = caustics("experiment accuracy --quiet").args(options).on_test_device();
+        program.inside(out.path()).run().refused(2, &[name]);
+    };
+    refused("--sizes 24,32", "--sizes");
+    refused("--map-size 32", "--sizes");
+    refused("--coverage 2", "--coverage");
+    caustics("experiment 5-1 --photons 3").run().refused(2, &["--photons"]);
+}
+
+/// Each step drops pairs, all of them together the most, and what is kept of the fragments stays the same.
+#[test]
+fn each_step_of_culling_is_measured() {
+    let out = folder();
+    let program = caustics("experiment 6.1 --counts 9 --mesh sphere --errors 90 --sizes 16,32 --photons 20 --out .");
+    let ended = program.inside(out.path()).args(SMALL).args(ONCE).on_test_device().run().succeeded();
+    let files = ["-smallest.csv", ".csv", ".json", ".svg"].map(|suffix| format!("caustics-6.1{suffix}"));
+    assert_eq!(entries(out.path()), files);
+    let record = read_json(&out.path().join("caustics-6.1.json"));
+    let rows = record["table"]["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 9);
+    let pairs = |steps: &str| {
+        let row = rows.iter().find(|row| row["steps"] == steps).unwrap();
+        assert_eq!(row["kept"], rows[0]["kept"], "{steps}");
+        row["pairs"].as_u64().unwrap()
+    };
+    assert!(pairs("none") <= pairs("level-map"));
+    for step in ["groups", "planes", "texels"] {
+        assert!(pairs("every") <= pairs(step) && pairs(step) < pairs("none"), "{step}");
+    }
+    assert!(pairs("every") * 2 < pairs("none") && pairs("texels") < pairs("planes"));
+    assert!(ended.stdout.contains("culling ms") && ended.stdout.contains("The smallest map"), "{}", ended.stdout);
+}
+
+/// The fewer planes, the farther from the picture with all of them.
+#[test]
+fn fewer_planes_change_the_picture_more() {
+    let out = folder();
+    let program = caustics("experiment 6.1-far --counts 32 --mesh teapot --out .").inside(out.path());
+    program.args(SMALL).on_test_device().run().succeeded();
+    let rows = read_json(&out.path().join("caustics-6.1-far.json"))["table"]["rows"].as_array().unwrap().clone();
+    let of = |name: &str| -> Vec<f64> { rows.iter().map(|row| row[name].as_f64().unwrap()).collect() };
+    assert_eq!(of("planes drawn"), [16.0, 8.0, 4.0]);
+    assert!(of("mean").is_sorted() && of("mean")[0] > 0.0, "{rows:?}");
+}
+
 #[test]
 fn a_table_without_times_is_written_and_printed() {
     let out = folder();

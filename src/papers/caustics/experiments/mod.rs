@@ -1,5 +1,7 @@
 //! The thesis's tables and figures, with its own numbers.
 
+mod accuracy;
+mod culling;
 mod drawn;
 mod ratios;
 mod slicing;
@@ -31,7 +33,18 @@ pub struct Options {
     counts: Vec<u32>,
     /// Step from 3 to 101 planes in place of the counts.
     step: Option<u32>,
+    /// Sides of maps whose accuracy is measured.
+    sizes: Vec<u32>,
+    /// Photons of each half of the truth, a texel of the greatest map.
+    photons: Option<u32>,
+    /// Errors to be reached, percent.
+    errors: Vec<u32>,
+    /// Every case on every mesh.
+    cross: bool,
 }
+
+const SIZES: [u32; 2] = [64, 128];
+const PHOTONS: u32 = 100;
 
 impl Options {
     fn counts(&self) -> Vec<u32> {
@@ -40,6 +53,19 @@ impl Options {
             None if self.counts.is_empty() => vec![3, 11, 31, 101],
             None => self.counts.clone(),
         }
+    }
+
+    fn sizes(&self) -> Vec<u32> {
+        if self.sizes.is_empty() { SIZES.to_vec() } else { self.sizes.clone() }
+    }
+
+    fn photons(&self) -> u32 {
+        self.photons.unwrap_or(PHOTONS)
+    }
+
+    /// The errors given, of `accuracy` its own without any.
+    fn errors(&self, own: &[u32]) -> Vec<u32> {
+        if self.errors.is_empty() { own.to_vec() } else { self.errors.clone() }
     }
 }
 
@@ -54,8 +80,32 @@ pub fn options() -> Vec<Parameter<Options>> {
             .range(Range::from(1.0).to(98.0))
             .help("Sweep 3 to 101 planes by this step instead: 1 is the thesis's full table")
             .excludes(&["counts"]),
+        Parameter::new("sizes", field!(Options.sizes))
+            .placeholder("N,N,..")
+            .range(Range::from(1.0))
+            .unit("texels a side")
+            .help("Sizes of maps whose accuracy is measured, comma-separated; each divides the greatest")
+            .default_text("64,128"),
+        Parameter::new("photons", field!(Options.photons))
+            .range(Range::from(1.0).to(100_000.0))
+            .help("Photons of each half of the truth for a texel of the greatest map")
+            .default_text("100"),
+        Parameter::new("errors", field!(Options.errors))
+            .placeholder("N,N,..")
+            .range(Range::from(1.0).to(1000.0))
+            .unit("percent of the mean light")
+            .help(
+                "Errors (`rms seen` of accuracy) to which the smallest map and plane count are sought, comma-separated",
+            )
+            .default_text("20,10,5,2; of 6.1 and 6.3 none"),
+        Parameter::new("cross", field!(Options.cross))
+            .help("Every light and water on every mesh, not on the first alone"),
     ]
 }
+
+/// Options of the experiments of chapter 6; with errors they seek the smallest map and plane count that reaches each.
+const CHAPTER_6_OPTIONS: &[&str] = &["counts", "step", "sizes", "photons", "errors"];
+const SWEPT: (&str, &str) = ("planes", "this experiment sweeps them; give `counts`");
 
 /// Every experiment, in the thesis's order.
 pub fn all() -> Vec<Experiment<Setup>> {
@@ -95,9 +145,38 @@ pub fn all() -> Vec<Experiment<Setup>> {
             context.publish_table(&machine, &table)
         }),
         single("5-13", "Figure 5-13: the picture by normal and by smart slicing", picture_pairs),
-        sweep("6.3", "Sections 6.1 and 6.3: level map against culled and hit by number of planes", |context| {
-            compare(context, CHAPTER_6).map(drop)
-        }),
+        Experiment {
+            name: "6.1",
+            help: "Section 6.1: what each step of culling drops, and what it costs, by number of planes",
+            options: CHAPTER_6_OPTIONS,
+            refuses: &[SWEPT, ("cull", "this experiment measures every choice")],
+            run: culling::run,
+        },
+        sweep("6.1-far", "Section 6.1: Luv difference of fewer planes for receivers that are far away", fewer_planes),
+        Experiment {
+            name: "6.3",
+            help: "Sections 6.1 and 6.3: level map against culled and hit by number of planes",
+            options: CHAPTER_6_OPTIONS,
+            refuses: &[SWEPT],
+            run: |context| {
+                let (_, mut machine) = compare(context, CHAPTER_6)?;
+                let smallest =
+                    accuracy::smallest(context, &mut machine, &[Variant::LevelMap, Variant::Culled, Variant::Hit])?;
+                smallest.map_or(Ok(()), |table| context.publish_more("smallest", &table))
+            },
+        },
+        Experiment {
+            name: "accuracy",
+            help: "Every method's maps against photons in double precision, beside their time",
+            options: &["counts", "step", "sizes", "photons", "errors", "cross"],
+            refuses: &[
+                ("planes", "this experiment sweeps them; give `counts`"),
+                ("map-size", "this experiment sweeps it; give `sizes`"),
+                ("coverage", "this experiment measures with it and without"),
+                ("intensity", "this experiment measures both"),
+            ],
+            run: accuracy::run,
+        },
         sweep("appendix", "The appendix: three pictures, the curves and the histogram of every mesh given", appendix),
     ]
 }
@@ -151,6 +230,15 @@ fn differences(context: &mut Context<'_>) -> Result<(), Error> {
     look_from_below(context);
     let table = slicing::intensity_difference(&mut machine, &context.setup, &meshes, &context.options.counts())?;
     let plot = table.lines("planes", "mean Luv difference", &["fitted mean", "kept mean", "thesis"]);
+    context.publish_plotted(&machine, &table, plot)?;
+    machine.check_validation().map_err(Error::from).map(drop)
+}
+
+fn fewer_planes(context: &mut Context<'_>) -> Result<(), Error> {
+    let (meshes, mut machine) = open(context)?;
+    look_from_below(context);
+    let table = slicing::fewer_planes(&mut machine, &context.setup, &meshes, &context.options.counts())?;
+    let plot = table.lines("planes drawn", "mean Luv difference", &["mean", "p99"]);
     context.publish_plotted(&machine, &table, plot)?;
     machine.check_validation().map_err(Error::from).map(drop)
 }

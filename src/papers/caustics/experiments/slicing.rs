@@ -102,22 +102,62 @@ pub struct PicturePair {
 /// # Errors
 /// [`Error::Gpu`], [`Error::Image`]: when the object is nowhere in the picture.
 pub fn picture_pair(machine: &mut Machine, setup: &Setup, scene: &Scene) -> Result<PicturePair, Error> {
-    let mut render = |variant| -> Result<(Rgba8, Vec<bool>), Error> {
-        let mut built = build(machine, setup, scene, variant)?;
-        let rendered = picture::render(machine, &mut built.paper, 0)?;
-        let targets = built.paper.targets();
-        let depth = targets.iter().find(|t| t.name == "underwater-depth");
-        let mask =
-            match depth.map(|t| picture::read_target(&machine.device, t)).transpose()?.map(|r| r.samples().clone()) {
-                Some(Samples::F32(depth)) => depth.iter().map(|&d| d < 1.0).collect(),
-                _ => Vec::new(),
-            };
-        Ok((rendered, mask))
-    };
-    let (normal, mask) = render(Variant::LevelMap)?;
-    let (smart, _) = render(Variant::LevelMapSmart)?;
+    let (normal, mask) = masked_picture(machine, setup, scene, Variant::LevelMap)?;
+    let (smart, _) = masked_picture(machine, setup, scene, Variant::LevelMapSmart)?;
     let difference = compare(&normal, &smart, Some(&mask))?;
     Ok(PicturePair { normal, smart, difference })
+}
+
+/// The picture of the first frame, and its pixels that show an object where the camera is under water.
+fn masked_picture(
+    machine: &mut Machine,
+    setup: &Setup,
+    scene: &Scene,
+    variant: Variant,
+) -> Result<(Rgba8, Vec<bool>), Error> {
+    let mut built = build(machine, setup, scene, variant)?;
+    let rendered = picture::render(machine, &mut built.paper, 0)?;
+    let targets = built.paper.targets();
+    let depth = targets.iter().find(|t| t.name == "underwater-depth");
+    let mask = match depth.map(|t| picture::read_target(&machine.device, t)).transpose()?.map(|r| r.samples().clone()) {
+        Some(Samples::F32(depth)) => depth.iter().map(|&d| d < 1.0).collect(),
+        _ => Vec::new(),
+    };
+    Ok((rendered, mask))
+}
+
+/// Section 6.1: what fewer planes for a far receiver change in the picture. Shares of its distance from the camera within which
+/// it would have all planes: with one half it has half of them.
+pub fn fewer_planes(
+    machine: &mut Machine,
+    setup: &Setup,
+    meshes: &[MeshSource],
+    counts: &[u32],
+) -> Result<ResultTable, Error> {
+    let mut rows = Vec::new();
+    for_each_mesh(setup, meshes, |mesh, setup, scene| {
+        let middle = scene.receivers[0].mesh.bounds().center();
+        let distance_m = setup.parameters.camera.eye.distance(middle);
+        for &planes in counts {
+            setup.parameters.planes = planes;
+            setup.parameters.planes_within_m = None;
+            let (every, mask) = masked_picture(machine, setup, scene, Variant::Culled)?;
+            for share in [0.5, 0.25, 0.125] {
+                setup.parameters.planes_within_m = Some(distance_m * share);
+                let (fewer, _) = masked_picture(machine, setup, scene, Variant::Culled)?;
+                let Difference { mean, p99, .. } = compare(&every, &fewer, Some(&mask))?;
+                let drawn = setup.parameters.planes_at(middle);
+                rows.push(vec![json!(mesh.name), json!(planes), json!(share), json!(drawn), json!(mean), json!(p99)]);
+            }
+        }
+        Ok(())
+    })?;
+    Ok(ResultTable {
+        title: "Section 6.1: Luv difference of fewer planes for a receiver that is farther away than `planes-within`, over the \
+                object's pixels; within: of its distance",
+        columns: &["mesh", "planes", "within", "planes drawn", "mean", "p99"],
+        rows,
+    })
 }
 
 /// Table 5-5: mean Luv difference (eq. 2-9) between normal and smart slicing, in both placements.

@@ -59,9 +59,35 @@ pub fn refract(incident: DVec3, normal: DVec3, n1: f64, n2: f64) -> Option<DVec3
         .then(|| ratio * incident + (ratio * cos_incident - cos_squared.sqrt()) * normal)
 }
 
+/// The part of unpolarised light that enters index `n2` from index `n1` under that cosine of incidence: 1 less the mean of
+/// Fresnel's two reflectances. None of it where it is totally reflected.
+pub fn transmitted(cos_incident: f64, n1: f64, n2: f64) -> f64 {
+    let sine = n1 / n2 * (1.0 - cos_incident * cos_incident).max(0.0).sqrt();
+    if sine >= 1.0 {
+        return 0.0;
+    }
+    let cos_refracted = (1.0 - sine * sine).sqrt();
+    let across = (n1 * cos_incident - n2 * cos_refracted) / (n1 * cos_incident + n2 * cos_refracted);
+    let along = (n1 * cos_refracted - n2 * cos_incident) / (n1 * cos_refracted + n2 * cos_incident);
+    1.0 - (across * across + along * along) / 2.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn water_reflects_two_percent_overhead_and_all_light_that_grazes_it() {
+        let reflected = |cos_incident| 1.0 - transmitted(cos_incident, AIR, 4.0 / 3.0);
+        assert!((reflected(1.0) - (1.0f64 / 7.0).powi(2)).abs() < 1e-15);
+        // Brewster's angle: of the light that swings along the plane of incidence nothing.
+        let brewster = (4.0f64 / 3.0).atan();
+        let refracted = (brewster.sin() * 0.75).asin();
+        let across = ((brewster - refracted).sin() / (brewster + refracted).sin()).powi(2) / 2.0;
+        assert!((reflected(brewster.cos()) - across).abs() < 1e-14);
+        assert!((reflected(0.0) - 1.0).abs() < 1e-15);
+        assert_eq!(transmitted(0.3, 4.0 / 3.0, AIR), 0.0);
+    }
 
     #[test]
     fn refraction_obeys_snells_law_in_the_plane_of_incidence() {

@@ -26,17 +26,19 @@ mod planes;
 mod position_map;
 mod raster;
 mod receiver_box;
+mod tracer;
 mod water;
 
 pub use caustics_map::{CausticsMap, cast, caustics_map, combine, volumetric};
 pub use flux::{flat_water_intensity, flux_in_map, flux_reaching_box, flux_through_water};
 pub use illumination::{IlluminationVolume, Intersection, illumination_volumes, intensity, intersection_triangle};
 pub use landed::{LandedTriangle, landed_map};
-pub use light::{AIR, Medium, ReferenceLight, refract};
+pub use light::{AIR, Medium, ReferenceLight, refract, transmitted};
 pub use photons::{GRAZING, Photons, correlation};
 pub use planes::{Cell, depth_profile, keep_occupied, place_planes, smart_planes, smart_sub_boxes, uniform_epsilon};
 pub use position_map::{PositionMap, ReceiverTriangle, diffuse, diffuse_map, position_map};
 pub use receiver_box::{ReceiverBox, align_box};
+pub use tracer::Tracer;
 pub use water::{HeightField, Water, WaterVertex, Wave, spherical_cap_focus, spherical_cap_vertex, wave_vertex};
 
 /// Half width, in texels, of the band around an edge in which a rasteriser with snapped vertices may decide either way.
