@@ -171,7 +171,7 @@ fn assert_within(name: &str, world: &World, ground: &Ground, rays: &Rays, (patch
     };
     let mut largest: f64 = 0.0;
     for patch in patches.iter().filter(|patch| patch.shift > 0) {
-        let corner = patch.corner.map(|at| at as usize / (PATCH_SIDE as usize) >> patch.shift);
+        let corner = patch.corner.map(|at| (at as usize / PATCH_SIDE as usize) >> patch.shift);
         for square in squares(corner, patch.shift as usize, size).filter(|square| is_inner(patch, square)) {
             let end = square.end(grid);
             let corners =
