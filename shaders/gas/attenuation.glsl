@@ -24,6 +24,7 @@ void main() {
         return;
     }
     uint list = list_of(pixel);
+    uint pixel_index = pixel.y * frame.size.x + pixel.x;
     if (!is_due(LIGHT_ATTENUATION, list)) {
         return;
     }
@@ -54,12 +55,12 @@ void main() {
             vec3 normal = unpack_normal(surface.normal);
             normal = dot(normal, ray) > 0.0 ? -normal : normal;
             while (l < counts.lights && !is_cut) {
-                float depth = 0.0;
+                float passed = 1.0;
                 if (dot(normal, ray_to_light(l, point).direction) > 0.0) {
-                    depth = optical_depth_to(l, point);
+                    passed = passed_to_surface(l, point, pixel_index, surface.triangle);
                 }
                 if (!is_cut) {
-                    attenuations[f * counts.lights + l] = 1.0 - exp(-depth);
+                    attenuations[f * counts.lights + l] = 1.0 - passed;
                     l++;
                 }
             }

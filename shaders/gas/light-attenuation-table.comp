@@ -10,4 +10,5 @@
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-table.glsl"
+#include "gas/surface-sums.glsl"
 #include "gas/attenuation.glsl"

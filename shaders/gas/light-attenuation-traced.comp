@@ -15,4 +15,5 @@
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-traced.glsl"
+#include "gas/surface-sums.glsl"
 #include "gas/attenuation.glsl"

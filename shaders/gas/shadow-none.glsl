@@ -1,5 +1,5 @@
 // Nothing hides a light from the gas.
 
-float optical_depth_to(uint l, vec3 point) {
-    return 0.0;
+float transmittance_to(uint l, vec3 point) {
+    return 1.0;
 }

@@ -35,3 +35,7 @@ float optical_depth_to(uint l, vec3 point) {
     is_cut = is_cut || v < counts.volumes;
     return sum;
 }
+
+float transmittance_to(uint l, vec3 point) {
+    return exp(-optical_depth_to(l, point));
+}

@@ -15,4 +15,6 @@
 #include "gas/light.glsl"
 #include "gas/lists.glsl"
 #include "gas/shadow-table.glsl"
-#include "gas/march.glsl"
+#include "gas/scattering.glsl"
+#include "gas/march-steps.glsl"
+#include "gas/sections.glsl"

@@ -22,8 +22,8 @@ impl Densities {
     pub fn new(context: &Context<'_>, scene: &SceneBuffers) -> Result<Self, Error> {
         let cached = context.parameters.density_cache;
         let cache = cached.map(|size| DensityCache::new(context, scene, size)).transpose()?;
-        let skipped = context.parameters.skip_empty;
-        let bricks = skipped.map(|depth| Bricks::new(context, scene, cache.as_ref(), depth)).transpose()?;
+        let lost = context.parameters.brick_depth();
+        let bricks = lost.map(|depth| Bricks::new(context, scene, cache.as_ref(), depth)).transpose()?;
         Ok(Densities { cache, bricks })
     }
 

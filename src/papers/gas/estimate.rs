@@ -6,7 +6,7 @@ use super::blocks::{
 use super::capacity::{BufferLimit, Capacity};
 use super::grid::Filter;
 use super::model::Object;
-use super::parameters::{Parameters, Variant};
+use super::parameters::{March, Parameters, Variant};
 use super::progress::StateBlock;
 use super::tiles;
 use crate::measure::estimate::Estimate;
@@ -19,6 +19,8 @@ const RADIANCE: f64 = 16.0;
 const PASSES: u64 = 10;
 /// Loads of the table of densities for a value.
 const CACHED: f64 = 8.0;
+/// Particles that a way of delta tracking meets, roughly: bounds are a few times the density.
+const PARTICLES: f64 = 16.0;
 /// Invocations of a trivial shader that an octave of noise costs, roughly.
 const OCTAVE: f64 = 4.0;
 
@@ -54,11 +56,15 @@ impl Parameters {
         let octaves = if self.density_cache.is_some() { CACHED } else { values };
         let cube = |entries: u32| f64::from(entries).powi(3) * volumes;
         let cached = optional(has_volume, self.density_cache.map_or(0.0, cube));
-        let bricks = optional(has_volume, self.skip_empty.map_or(0.0, |_| cube(self.bricks)));
-        let steps = pixels * f64::from(self.steps) * volumes;
+        let bricks = optional(has_volume, self.brick_depth().map_or(0.0, |_| cube(self.bricks)));
+        let (points, ways) = match self.march {
+            March::Steps => (f64::from(self.steps), 1.0),
+            March::Delta => (PARTICLES, f64::from(self.samples)),
+        };
+        let steps = pixels * points * ways * volumes;
         // A traced shadow takes up to half of the steps through a volume, and at least those of the sections' ends.
         let shadow_steps = match variant {
-            Variant::Traced => lights * (0.5 * f64::from(self.steps)) * octaves,
+            Variant::Traced => lights * (0.5 * points) * octaves,
             _ => lights,
         };
         let march = if has_volume { steps * (octaves + shadow_steps) } else { 0.0 };

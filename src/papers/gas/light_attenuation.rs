@@ -6,6 +6,7 @@ use super::a_buffer::ABuffer;
 use super::band::{Band, BandConstants};
 use super::context::Context;
 use super::densities::Densities;
+use super::parameters::March;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 
@@ -33,6 +34,9 @@ impl LightAttenuation {
         let attenuations = context.storage::<f32>("light-attenuations", count)?;
         let shader = match shadow_sums {
             Some(_) => "gas/light-attenuation-table.comp".to_owned(),
+            None if context.parameters.march == March::Delta => {
+                format!("gas/light-attenuation-ratio-{}.comp", context.parameters.density_shader())
+            }
             None => format!("gas/light-attenuation-traced-{}.comp", context.parameters.ray_shader()),
         };
         let pass = Pass::compute("light-attenuation", "Shadowing of the gas", &shader)

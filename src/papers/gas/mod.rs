@@ -72,7 +72,7 @@ use crate::scene::Camera;
 
 pub use self::a_buffer::Fragment;
 pub use self::capacity::Capacity;
-pub use self::parameters::{Lists, Parameters, Variant};
+pub use self::parameters::{Lists, March, Parameters, Variant};
 
 /// Features that a device must have for this paper, beyond the baseline of the Vulkan layer.
 pub const NEEDS: [Feature; 1] = [Feature::FragmentStores];

@@ -58,7 +58,7 @@ impl Carried {
     fn way_out(self) -> &'static str {
         match self {
             Carried::Sort | Carried::Resolve => "give a larger `size` or an `object` of fewer triangles",
-            Carried::Volume | Carried::LightAttenuation => "lower `steps` or `samples`",
+            Carried::Volume | Carried::LightAttenuation => "lower `steps` or `samples`, or `tau` with `march` delta",
         }
     }
 }

@@ -130,15 +130,6 @@ impl Setup {
         setup
     }
 
-    /// Refuses ways to densities where there is none.
-    fn check_ways_used(&self) -> Result<(), Error> {
-        let name = ["density-cache", "skip-empty"].into_iter().find(|name| self.given.has(name));
-        match name.filter(|_| self.parameters.volumes.is_empty()) {
-            Some(name) => Err(Error::Input(format!("`{name}`: the scene has no volume: give `volume`"))),
-            None => Ok(()),
-        }
-    }
-
     /// Adds the volumes and sets their numbers and the lights.
     fn apply(&mut self, given: &Given) {
         self.ways.apply(&mut self.parameters);
@@ -226,7 +217,7 @@ impl Study for Setup {
     /// Checks the parameters, models the scene's surfaces and loads the user's.
     fn load(&self) -> Result<Scene, Error> {
         volumes::check_used(&self.given, &self.parameters.volumes)?;
-        self.check_ways_used()?;
+        self.ways.check_used(&self.given, &self.parameters.volumes)?;
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {

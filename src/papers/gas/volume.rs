@@ -7,7 +7,7 @@ use super::band::{Band, BandConstants};
 use super::blocks::SectionBlock;
 use super::context::Context;
 use super::densities::Densities;
-use super::parameters::Variant;
+use super::parameters::{March, Variant};
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::{Buffer, Error, Frame, Pass};
 
@@ -32,18 +32,24 @@ impl VolumeMarch {
         shadow_sums: Option<&Arc<Buffer>>,
     ) -> Result<Self, Error> {
         let sections = context.storage::<SectionBlock>("sections", lists.capacity.sections.into())?;
-        let shadows = match variant {
-            Variant::NoVolume | Variant::None | Variant::Surfaces => "none",
-            Variant::Traced => "traced",
-            Variant::Table => "table",
+        let parameters = context.parameters;
+        let shader = match (parameters.march, variant) {
+            (March::Steps, Variant::NoVolume | Variant::None | Variant::Surfaces) => {
+                format!("gas/volume-none-{}.comp", parameters.ray_shader())
+            }
+            (March::Steps, Variant::Traced) => format!("gas/volume-traced-{}.comp", parameters.ray_shader()),
+            (March::Steps, Variant::Table) => format!("gas/volume-table-{}.comp", parameters.ray_shader()),
+            (March::Delta, Variant::NoVolume | Variant::None | Variant::Surfaces) => {
+                format!("gas/volume-delta-none-{}.comp", parameters.density_shader())
+            }
+            (March::Delta, Variant::Traced) => format!("gas/volume-delta-ratio-{}.comp", parameters.density_shader()),
+            (March::Delta, Variant::Table) => format!("gas/volume-delta-table-{}.comp", parameters.density_shader()),
         };
-        let shader = format!("gas/volume-{shadows}-{}.comp", context.parameters.ray_shader());
         let mut pass = Pass::compute("volume", "Volume rendering", &shader)
             .with("frame", &scene.frame)
             .with("counts", &scene.counts)
             .with("Volumes", &scene.volumes)
             .with("Lights", &scene.lights)
-            .with("Jitter", &scene.jitter)
             .with("Heads", &lists.heads)
             .with("Links", &lists.links)
             .with("Pixels", &lists.pixels)
@@ -51,6 +57,9 @@ impl VolumeMarch {
             .with("Progress", &lists.progress.states)
             .with("Unfinished", &lists.progress.unfinished)
             .constants::<BandConstants>();
+        if parameters.march == March::Steps {
+            pass = pass.with("Jitter", &scene.jitter);
+        }
         pass = densities.of_rays(scene, pass);
         if let Some(sums) = shadow_sums {
             pass = pass.with("ShadowTables", sums);

@@ -3,17 +3,20 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::parameters::or_off::OrOff;
-use super::parameters::{Lists, Parameters};
+use super::parameters::{Lists, March, Parameters};
 use crate::field;
 use crate::measure::Error;
 use crate::measure::config::entries;
-use crate::measure::parameter::{Cost, Parameter, Range, Value};
+use crate::measure::parameter::{self, Cost, Given, Parameter, Range, Value};
+use crate::papers::gas::model::Volume;
 
 /// The ways that are asked for, of each kind at least one.
 #[derive(Debug, Clone)]
 pub struct Ways {
     /// The ways to the lists of fragments.
     pub lists: Vec<Lists>,
+    /// The ways of rays through the gas.
+    pub marches: Vec<March>,
     /// Entries of the tables of densities that rays read.
     pub density_caches: Vec<OrOff<u32>>,
     /// The optical depths that skipped bricks may have.
@@ -23,7 +26,12 @@ pub struct Ways {
 /// The paper's.
 impl Default for Ways {
     fn default() -> Self {
-        Ways { lists: vec![Lists::Linked], density_caches: vec![OrOff(None)], skips: vec![OrOff(None)] }
+        Ways {
+            lists: vec![Lists::Linked],
+            marches: vec![March::Steps],
+            density_caches: vec![OrOff(None)],
+            skips: vec![OrOff(None)],
+        }
     }
 }
 
@@ -40,6 +48,16 @@ impl Ways {
                      measures them in turn",
                 )
                 .section("Combining A-buffer and volume rendering techniques")
+                .cost(Cost::Pipelines)
+                .everyday()
+                .unrecorded(),
+            Parameter::new("march", field!(Ways.marches))
+                .help(
+                    "The way of rays through the gas. steps: in increments of a step; delta: by delta tracking, and of \
+                     shadows that are traced by ratio tracking, whose mean is the integral, with `samples` ways of a ray \
+                     through each section of gas. bench takes several, comma-separated, and measures them in turn",
+                )
+                .section("Volume rendering")
                 .cost(Cost::Pipelines)
                 .everyday()
                 .unrecorded(),
@@ -73,17 +91,48 @@ impl Ways {
     /// [`Error::Input`] with the first that does.
     pub fn check_distinct(&self) -> Result<(), Error> {
         check_once("lists", &self.lists)?;
+        check_once("march", &self.marches)?;
         check_once("density-cache", &self.density_caches)?;
         check_once("skip-empty", &self.skips)
+    }
+
+    /// Checks every range, and refuses what makes no difference to any way.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for one outside of its range, [`Error::Input`] with one that was given in vain.
+    pub fn check_used(&self, given: &Given, volumes: &[Volume]) -> Result<(), Error> {
+        parameter::check(&Self::declared(), self)?;
+        let first = ["march", "density-cache", "skip-empty", "bricks"].into_iter().find(|name| given.has(name));
+        if let Some(name) = first.filter(|_| volumes.is_empty()) {
+            return Err(Error::Input(format!("`{name}`: the scene has no volume: give `volume`")));
+        }
+        let has_bricks = self.marches.contains(&March::Delta) || self.skips.iter().any(|skip| skip.0.is_some());
+        if given.has("bricks") && !has_bricks {
+            let message = "`bricks`: no ray asks for them: give `skip-empty`, or `march` delta";
+            return Err(Error::Input(message.to_owned()));
+        }
+        // Of a solid the normals are found at a quarter of a step.
+        let has_steps = self.marches != [March::Delta] || volumes.iter().any(|volume| volume.is_solid);
+        if given.has("steps") && !has_steps {
+            return Err(Error::Input("`steps`: `march` delta has none: give `samples`".to_owned()));
+        }
+        Ok(())
     }
 
     /// Each alone, those of the last kind changing fastest.
     pub fn alone(&self) -> Vec<Ways> {
         let mut all = Vec::new();
         for &lists in &self.lists {
-            for &cache in &self.density_caches {
-                let of = |&skip| Ways { lists: vec![lists], density_caches: vec![cache], skips: vec![skip] };
-                all.extend(self.skips.iter().map(of));
+            for &march in &self.marches {
+                for &cache in &self.density_caches {
+                    let of = |&skip| Ways {
+                        lists: vec![lists],
+                        marches: vec![march],
+                        density_caches: vec![cache],
+                        skips: vec![skip],
+                    };
+                    all.extend(self.skips.iter().map(of));
+                }
             }
         }
         all
@@ -92,6 +141,7 @@ impl Ways {
     /// Sets the first ones.
     pub fn apply(&self, parameters: &mut Parameters) {
         parameters.lists = self.lists.first().copied().unwrap_or(Lists::Linked);
+        parameters.march = self.marches.first().copied().unwrap_or(March::Steps);
         parameters.density_cache = OrOff::first(&self.density_caches);
         parameters.skip_empty = OrOff::first(&self.skips);
     }
@@ -102,6 +152,7 @@ impl Parameters {
     pub(super) fn ways_config(&self) -> Map<String, Json> {
         entries([
             ("lists", self.lists.json()),
+            ("march", self.march.json()),
             ("density_cache", json!(self.density_cache)),
             ("skip_empty", json!(self.skip_empty)),
         ])
@@ -110,6 +161,9 @@ impl Parameters {
     /// The ways in words, those that are not the paper's.
     pub(super) fn ways_text(&self) -> String {
         let mut text = self.lists.text();
+        if self.march == March::Delta {
+            text += ", delta tracking";
+        }
         if let Some(entries) = self.density_cache {
             text += &format!(", densities from {entries} entries a side");
         }

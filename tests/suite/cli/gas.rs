@@ -262,6 +262,13 @@ fn what_no_gas_heeds_is_refused() {
         ("--swirl-frames -1", &["--swirl-frames -1"]),
         ("--ellipse 1,99999", &["--ellipse 1,99999"]),
         ("--preset solid --hypertexture 1,0", &["--hypertexture 0", "softness"]),
+        ("--preset fig-4 --density-cache 8", &["--density-cache", "no volume", "--volume"]),
+        ("--preset fig-4 --march delta", &["--march", "no volume", "--volume"]),
+        ("--bricks 8", &["--bricks", "--skip-empty", "--march delta"]),
+        ("--march delta --steps 9", &["--steps", "--march delta", "--samples"]),
+        ("--march delta --jitter blue-noise", &["--jitter blue-noise", "--march delta"]),
+        ("--density-cache 1", &["--density-cache 1"]),
+        ("--skip-empty -1", &["--skip-empty -1"]),
         ("--volume box,0,0,0,1,0,1", &["--volume 1,0,1", "half extents"]),
         ("--volume frustum,0,0,0,1,1,1,0,0", &["--volume 0,0", "radii"]),
     ] {
@@ -334,6 +341,7 @@ fn ways_to_the_lists_are_measured_in_turn() {
     assert!(found[1] <= found[0] && found[2] <= found[1] && found[2] > 0, "{found:?}");
     assert!(found[1] <= slots(&runs[1]) && found[2] < slots(&runs[2]), "{found:?}");
     small("bench --lists tiles,k:4,tiles").run().refused(2, &["--lists", "tiles", "twice"]);
+    small("bench --density-cache 8,off,8").run().refused(2, &["--density-cache", "8", "twice"]);
     small("render --lists linked,tiles --image never.png").run().refused(2, &["give one"]);
     small("render --lists k:0 --image never.png").run().misused(&["k:1 to k:32"]);
 }

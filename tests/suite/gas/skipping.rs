@@ -55,7 +55,7 @@ fn patchy() -> Vec<Volume> {
 }
 
 /// A plane below the gas that takes its shadow.
-fn ground() -> Object {
+pub fn ground() -> Object {
     let positions = [(-3.0, -3.0), (-3.0, 3.0), (3.0, 3.0), (3.0, -3.0)].map(|(x, z)| Vec3::new(x, -1.3, z)).to_vec();
     let mesh = Mesh { positions, normals: vec![Vec3::Y; 4], indices: vec![0, 1, 2, 0, 2, 3], ..Mesh::default() };
     Object::new(mesh, Vec3::splat(0.6))

@@ -1,6 +1,7 @@
 //! The paper's parameters under its own names, each declared once.
 
 mod lists;
+mod march;
 pub mod or_off;
 pub mod placed_object;
 pub mod volume_file;
@@ -11,6 +12,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 pub use lists::Lists;
+pub use march::March;
 
 use super::grid::{Filter, Grid};
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
@@ -97,6 +99,8 @@ pub struct Parameters {
     pub samples: u32,
     /// Their places.
     pub jitter: Jitter,
+    /// The way of rays through the gas.
+    pub march: March,
     /// Entries of the table of densities that rays read along each axis, 2 to 512; without, they ask the functions.
     pub density_cache: Option<u32>,
     /// Rays skip bricks in which one through the whole volume loses no more than this optical depth, at least 0; without,
@@ -152,6 +156,7 @@ impl Default for Parameters {
             steps: 40,
             samples: 1,
             jitter: Jitter::Random,
+            march: March::Steps,
             density_cache: None,
             skip_empty: None,
             bricks: 16,
@@ -235,10 +240,15 @@ impl Parameters {
         if self.density_cache.is_some() { "cached" } else { self.density_source() }
     }
 
-    /// The same of rays, with the way that they take through what is empty.
+    /// The same of rays that march, with the way that they take through what is empty.
     pub(super) fn ray_shader(&self) -> String {
         let empty = if self.skip_empty.is_some() { "skipped" } else { "kept" };
         format!("{}-{empty}", self.density_shader())
+    }
+
+    /// The optical depth that a ray through a volume may lose in its bricks; nothing where there are no bricks.
+    pub(super) fn brick_depth(&self) -> Option<f32> {
+        self.skip_empty.or((self.march == March::Delta).then_some(0.0))
     }
 
     /// The shaders' name of what the volumes' densities are in the end.
@@ -283,10 +293,9 @@ impl Parameters {
                 .everyday(),
             Parameter::new("bricks", field!(Parameters.bricks))
                 .range(Range::from(1.0).to(128.0))
-                .help("Of skip-empty: bricks along each axis of the box around a volume")
+                .help("Of `skip-empty` and `march` delta: bricks along each axis of the box around a volume")
                 .section("Volume rendering")
-                .cost(Cost::Buffers)
-                .requires("skip-empty"),
+                .cost(Cost::Buffers),
             Parameter::new("table", field!(Parameters.table_size))
                 .range(Range::from(2.0).to(512.0))
                 .help("Entries of the density and shadow tables along each axis")
@@ -363,6 +372,8 @@ impl Parameters {
         let lights = self.lights.len();
         ParameterError::check((1..=MAX_LIGHTS).contains(&lights), "light", lights, "a scene has 1 to 4 lights")?;
         volumes::check(&self.volumes)?;
+        let is_placed = self.march == March::Steps || self.jitter == Jitter::Random;
+        ParameterError::check(is_placed, "jitter", "blue-noise", "has no place in `march` delta; give random")?;
         self.lights.iter().try_for_each(validate_light)?;
         let background = self.background;
         ParameterError::check(is_color(background, 64.0), "background", components(background), "must be 0 to 64")?;

@@ -13,7 +13,7 @@ pub struct OrOff<T>(pub Option<T>);
 macro_rules! or_off {
     ($($type:ty, $placeholder:literal);+) => { $(
         impl Value for OrOff<$type> {
-            const SHAPE: Shape = Shape { joins: true, ..Shape::single($placeholder) };
+            const SHAPE: Shape = Shape { joins: true, is_signed: true, ..Shape::single($placeholder) };
 
             fn parse(texts: &[&OsStr]) -> Result<Self, String> {
                 match one(texts)? {

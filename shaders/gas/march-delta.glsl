@@ -1,0 +1,102 @@
+// Delta tracking, in place of increments (ours; E. Woodcock and others, 1965). Gas is filled up with fictitious particles to
+// the bounds of its bricks, so that the way to the next particle is exponentially distributed; a particle that it meets is
+// real with the probability density over bound, and sends the light there to the eye, or else the way goes on. The mean of
+// many ways is the integral itself, without a step's error: light comes from the element with the probability T tau rho dt.
+// Of a section as many ways are followed as an increment has samples; its light and its transparency are their means, and
+// those of a pixel's sections are independent, so that the mean of their products is the product of their means.
+
+#include "gas/random.glsl"
+
+// Only what nothing shines through ends a pixel: an end at a small transparency would be a bias.
+bool ends_at(float transparency) {
+    return transparency <= 0.0;
+}
+
+// One section of a pixel, from the ways on that `begun` has, whose light and transparency are means so far.
+Gas march(uint pixel_index, vec3 ray, vec2 segments[MAX_VOLUMES], vec2 extent, float before, uint first_number, Gas begun) {
+    float scale = length(ray);
+    vec3 direction = ray / scale;
+    vec3 side = normalize(cross(direction, abs(direction.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+    Frames frames = Frames(direction, side, cross(side, direction));
+    vec3 entry = frame.eye + ray * extent.x;
+    float middle = 0.5 * (extent.x + extent.y);
+    float length_m = (extent.y - extent.x) * scale;
+    bool is_in[MAX_VOLUMES];
+    float apart = 1.0e30; // of the densities by which a solid's normal is found
+    uint volume = 0u;
+    for (; volume < counts.volumes; volume++) {
+        is_in[volume] = segments[volume].x <= middle && middle <= segments[volume].y;
+        apart = is_in[volume] ? min(apart, 0.25 * volumes[volume].step_m) : apart;
+    }
+    is_cut = is_cut || volume < counts.volumes;
+    Gas gas = begun;
+    gas.evaluations = 0u;
+    while (!gas.is_done && !is_cut && made < MOST_MADE) {
+        begin_way(pixel_index, first_number + gas.increments);
+        float at_m = 0.0;
+        vec3 color = vec3(0.0);
+        float transparency = 1.0;
+        uint evaluations = 0u;
+        bool is_over = false;
+        uint v = 0u;
+        while (!is_over && !is_cut) {
+            vec3 point = entry + direction * at_m;
+            Flight flight = Flight(0.0, length_m - at_m);
+            for (v = 0u; v < counts.volumes; v++) {
+                if (is_in[v]) {
+                    flight = through(flight, v, point, direction);
+                }
+            }
+            is_cut = is_cut || v < counts.volumes;
+            float free_m = free_way(flight);
+            at_m += min(free_m, flight.clear_m);
+            is_over = free_m >= flight.clear_m && at_m >= length_m;
+            if (free_m < flight.clear_m) {
+                point = entry + direction * at_m;
+                float densities[MAX_VOLUMES];
+                float previous[MAX_VOLUMES];
+                float asides[MAX_VOLUMES];
+                float aboves[MAX_VOLUMES];
+                float extinction = 0.0;
+                float densest = 0.0;
+                for (v = 0u; v < counts.volumes; v++) {
+                    densities[v] = 0.0;
+                    if (is_in[v]) {
+                        densities[v] = volume_density(v, point);
+                        evaluations++;
+                        densest = max(densest, densities[v]);
+                        extinction += volumes[v].tau_per_m * densities[v];
+                    }
+                }
+                is_cut = is_cut || v < counts.volumes;
+                if (drawn() * flight.bound < extinction) {
+                    for (v = 0u; v < counts.volumes; v++) {
+                        if (densities[v] > 0.0 && volumes[v].is_solid != 0u) {
+                            float offset_m = 0.25 * volumes[v].step_m;
+                            previous[v] = volume_density(v, point - direction * apart);
+                            asides[v] = volume_density(v, point + frames.side * offset_m);
+                            aboves[v] = volume_density(v, point + frames.up * offset_m);
+                            evaluations += 3u;
+                        }
+                    }
+                    is_cut = is_cut || v < counts.volumes;
+                    vec3 emission = emission_at(point, frames, densest, apart, densities, previous, asides, aboves);
+                    color = emission / extinction;
+                    transparency = 0.0;
+                    is_over = true;
+                }
+            }
+        }
+        is_cut = is_cut || !is_over;
+        // Nothing is kept of a way that was not followed to its end.
+        if (!is_cut) {
+            gas.increments++;
+            float part = 1.0 / float(gas.increments);
+            gas.color = mix(gas.color, color, part);
+            gas.transparency = mix(gas.transparency, transparency, part);
+            gas.evaluations += evaluations;
+            gas.is_done = gas.increments >= counts.samples;
+        }
+    }
+    return gas;
+}

@@ -1,0 +1,71 @@
+// The light that an element of gas sends to the eye (section "Illumination of gaseous phenomena").
+
+const float PI = 3.14159265;
+
+// Henyey and Greenstein; the angle is between the light's direction and that to the eye, so that g > 0 scatters
+// forwards.
+float scattered(float g, float cosine) {
+    float under = max(1.0 + g * g - 2.0 * g * cosine, 1.0e-6);
+    return (1.0 - g * g) / (4.0 * PI * under * sqrt(under));
+}
+
+float phase(uint v, float cosine) {
+    vec2 weights = volumes[v].phase_weights;
+    vec2 g = volumes[v].phase_g;
+    return weights.x * scattered(g.x, cosine) + weights.y * scattered(g.y, cosine);
+}
+
+// The viewer's ray and two directions orthogonal to it.
+struct Frames {
+    vec3 ray;
+    vec3 side;
+    vec3 up;
+};
+
+// Of all volumes, times their extinctions: tau density albedo (sum(I_i phase) + ambient). Densities of solids are also those of
+// `since_m` before the point, and a quarter of a step beside it and above it.
+vec3 emission_at(vec3 point, Frames frames, float densest, float since_m, float densities[MAX_VOLUMES],
+    float previous[MAX_VOLUMES], float asides[MAX_VOLUMES], float aboves[MAX_VOLUMES]) {
+    vec3 emission = vec3(0.0);
+    uint l = 0u;
+    uint v = 0u;
+    for (; l < counts.lights; l++) {
+        LightRay to_light = ray_to_light(l, point);
+        // For patchy gas, shadows are not computed where it is thinner than a threshold.
+        float passed = densest >= frame.shadow_threshold ? transmittance_to(l, point) : 1.0;
+        vec3 light = irradiance(l, to_light.distance_m) * passed;
+        for (v = 0u; v < counts.volumes; v++) {
+            if (densities[v] > 0.0) {
+                float response = PI * phase(v, dot(to_light.direction, frames.ray));
+                if (volumes[v].is_solid != 0u) {
+                    float apart = 0.25 * volumes[v].step_m;
+                    float along = (densities[v] - previous[v]) / since_m;
+                    float aside = (asides[v] - densities[v]) / apart;
+                    float above = (aboves[v] - densities[v]) / apart;
+                    vec3 rise = frames.ray * along + frames.side * aside + frames.up * above;
+                    vec3 normal = dot(rise, rise) > 0.0 ? -normalize(rise) : -frames.ray;
+                    response = max(dot(normal, to_light.direction), 0.0);
+                }
+                emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * light * response;
+            }
+        }
+        is_cut = is_cut || v < counts.volumes;
+    }
+    is_cut = is_cut || l < counts.lights;
+    for (v = 0u; v < counts.volumes; v++) {
+        emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * frame.ambient;
+    }
+    is_cut = is_cut || v < counts.volumes;
+    return emission;
+}
+
+// What the march of a section finds.
+struct Gas {
+    vec3 color; // premultiplied
+    float transparency;
+    uint increments;
+    uint evaluations; // of the density, in this dispatch
+    bool is_done;
+};
+
+const Gas NOTHING = Gas(vec3(0.0), 1.0, 0u, 0u, false);

@@ -1,0 +1,138 @@
+// Section "Volume rendering". The viewer's ray goes through the volumes of a pixel up to the depth that `sort` found, cut at
+// every fragment and at every entry and exit of a volume (figure 1). What the march finds of a section becomes a fragment with
+// a full mask at its depth in the pixel's list.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 7, std430) buffer Heads {
+    uint heads[];
+};
+
+layout(set = 0, binding = 8, std430) buffer Links {
+    Link links[];
+};
+
+layout(set = 0, binding = 12, std430) buffer Pixels {
+    Pixel pixels[];
+};
+
+layout(set = 0, binding = 13, std430) buffer Sections {
+    Section sections[];
+};
+
+void set_next(uint list, uint node, uint next) {
+    if (node == NONE) {
+        heads[list] = next;
+    } else if (is_section(node)) {
+        sections[node & ~SECTION].next = next;
+    } else {
+        links[node].next = next;
+    }
+}
+
+void main() {
+    uvec2 pixel = pixel_of(gl_GlobalInvocationID.xy);
+    if (!is_in_band(pixel)) {
+        return;
+    }
+    uint pixel_index = pixel.y * frame.size.x + pixel.x;
+    uint list = list_of(pixel);
+    Pixel reserved = pixels[list];
+    if (reserved.section_count == 0u || !is_due(VOLUME, list)) {
+        return;
+    }
+    vec3 ray = ray_direction(vec2(pixel) + 0.5);
+    float end = reserved.end_m;
+    vec2 segments[MAX_VOLUMES];
+    float depth = 1.0e30;
+    uint v = 0u;
+    for (; v < counts.volumes; v++) {
+        segments[v] = intersect(volume_segment(v, frame.eye, ray), vec2(frame.hither_m, end));
+        if (segments[v].x < segments[v].y) {
+            depth = min(depth, segments[v].x);
+        }
+    }
+    is_cut = v < counts.volumes;
+    uint previous = NONE; // fragment or section, of the list's start
+    uint fragment = heads[list];
+    uint used = 0u;
+    uint evaluations = 0u;
+    uint number = 0u;
+    float transparency = 1.0;
+    Gas begun = NOTHING;
+    State before = NO_STATE;
+    if (is_carried(VOLUME, list)) {
+        before = state_of(list);
+        depth = uintBitsToFloat(before.a.x);
+        fragment = before.a.y;
+        previous = before.a.z;
+        used = before.a.w;
+        number = before.b.x;
+        transparency = uintBitsToFloat(before.b.y);
+        evaluations = reserved.evaluations;
+        if (before.b.z > 0u) {
+            Section section = sections[reserved.first_section + used];
+            begun = Gas(section.color, section.transparency, before.b.z, 0u, false);
+        }
+    }
+    bool is_done = depth >= end || used >= reserved.section_count;
+    bool is_stopped = is_cut;
+    while (!is_done && !is_stopped) {
+        float next = end;
+        bool is_found = false;
+        while (fragment != NONE && !is_found) {
+            Link link = links[fragment];
+            float cut = mean_depth(link);
+            is_found = cut > depth;
+            if (is_found) {
+                next = min(next, cut);
+            } else {
+                previous = fragment;
+                fragment = link.next;
+            }
+        }
+        bool has_gas = false;
+        bool has_more = false;
+        for (v = 0u; v < counts.volumes; v++) {
+            if (segments[v].x < segments[v].y && segments[v].y > depth) {
+                has_more = true;
+                if (segments[v].x > depth) {
+                    next = min(next, segments[v].x);
+                } else {
+                    has_gas = true;
+                    next = min(next, segments[v].y);
+                }
+            }
+        }
+        is_stopped = (fragment != NONE && !is_found) || v < counts.volumes;
+        is_done = !is_stopped && (!has_more || next <= depth);
+        if (!is_stopped && !is_done) {
+            if (has_gas) {
+                Gas gas = march(pixel_index, ray, segments, vec2(depth, next), transparency, number, begun);
+                evaluations += gas.evaluations;
+                uint slot = reserved.first_section + used;
+                sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
+                is_stopped = !gas.is_done;
+                if (is_stopped) {
+                    begun = gas;
+                } else {
+                    begun = NOTHING;
+                    number += gas.increments;
+                    transparency *= gas.transparency;
+                    set_next(list, previous, slot | SECTION);
+                    previous = slot | SECTION;
+                    used++;
+                    is_done = ends_at(transparency);
+                }
+            }
+            if (!is_stopped) {
+                depth = next;
+                is_done = is_done || depth >= end || used >= reserved.section_count;
+            }
+        }
+    }
+    pixels[list].evaluations = evaluations;
+    uvec4 place = uvec4(floatBitsToUint(depth), fragment, previous, used);
+    State state = State(place, uvec4(number, floatBitsToUint(transparency), begun.increments, 0u), uvec3(0u));
+    leave(VOLUME, list, is_done, before, state);
+}
