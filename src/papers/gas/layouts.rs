@@ -9,12 +9,12 @@ use crate::papers::layout::{check_block, check_list};
 
 #[test]
 fn the_buffers_hold_what_the_shaders_read() {
-    for shader in ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions.comp", "gas/resolve.comp"] {
+    for shader in ["gas/fragments.geom", "gas/sort.comp", "gas/volume-table-functions-kept.comp", "gas/resolve.comp"] {
         check_block::<FrameBlock>(shader, "frame");
     }
-    check_list::<VolumeBlock>("gas/volume-traced-functions.comp", "Volumes");
-    check_list::<GridBlock>("gas/volume-traced-trilinear.comp", "Grids");
-    check_list::<LightBlock>("gas/volume-traced-functions.comp", "Lights");
+    check_list::<VolumeBlock>("gas/volume-traced-functions-kept.comp", "Volumes");
+    check_list::<GridBlock>("gas/volume-traced-trilinear-kept.comp", "Grids");
+    check_list::<LightBlock>("gas/volume-traced-functions-kept.comp", "Lights");
     check_list::<ObjectBlock>("gas/fragments.geom", "Objects");
     check_list::<VertexBlock>("gas/fragments.geom", "Vertices");
     check_list::<TriangleBlock>("gas/fragments.frag", "Triangles");
@@ -22,7 +22,7 @@ fn the_buffers_hold_what_the_shaders_read() {
     check_list::<SurfaceBlock>("gas/fragments.frag", "Surfaces");
     check_list::<ColorBlock>("gas/fragments.frag", "Colors");
     check_list::<PixelBlock>("gas/sort.comp", "Pixels");
-    check_list::<SectionBlock>("gas/volume-table-functions.comp", "Sections");
+    check_list::<SectionBlock>("gas/volume-table-functions-kept.comp", "Sections");
     check_block::<CountsBlock>("gas/resolve.comp", "counts");
     check_block::<UnfinishedBlock>("gas/sort.comp", "Unfinished");
     check_block::<CountersBlock>("gas/sort.comp", "Counters");
