@@ -1,12 +1,17 @@
-//! Pass `animate` (section 5.1): the particles move one step, from one pair of textures into the other.
+//! The particles move one step, from one pair of textures into the other: pass `animate` (section 5.1), or the passes of the
+//! fluid.
 
 use std::sync::Arc;
 
+use ash::vk;
+
 use super::parameters::Parameters;
+use super::sph::Sph;
+use super::sph::parameters::Simulation;
 use super::start::Particles;
 use super::targets::{Context, FLOATS};
 use crate::gpu::transfer::upload_rows;
-use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
+use crate::gpu::{Blend, Error, Frame, Image, ImageView, Load, Pass, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
@@ -15,6 +20,9 @@ host_block! {
         time_step_s: f32,
     }
 }
+
+/// Index of the start among the fluid's states.
+const START: usize = 2;
 
 /// One position and one velocity texture, a texel for each particle.
 #[derive(Clone)]
@@ -25,40 +33,36 @@ pub struct State {
     pub velocities: Arc<ImageView>,
 }
 
-/// The pass, with its ping-pong textures.
+/// The steps, with their ping-pong textures.
 pub struct Animate {
+    motion: Motion,
+    /// The states that steps write alternately.
+    pub states: [State; 2],
+    steps: u32,
+}
+
+/// By [`Simulation`].
+enum Motion {
+    Free(Free),
+    Sph(Box<Sph>),
+}
+
+/// The thesis's.
+struct Free {
     /// Writes the first state from the start.
     first: Pass,
     /// Each writes the state of its index from the other.
     ping_pong: [Pass; 2],
-    /// The states that steps write alternately.
-    pub states: [State; 2],
     constants: MotionConstants,
-    steps: u32,
 }
 
-impl Animate {
-    /// `label` goes before the names of the textures.
-    ///
-    /// # Errors
-    /// Errors of the Vulkan layer; [`Error::Limit`] for more particles than a texture holds.
-    pub fn new(
+impl Free {
+    fn new(
         shaders: &ShaderLibrary,
-        label: &str,
         parameters: &Parameters,
-        particles: &Particles,
+        start: &State,
+        states: &[State; 2],
     ) -> Result<Self, Error> {
-        let context = Context { shaders, label, parameters };
-        let (width, height) = Particles::texture_size(particles.positions.len() as u32);
-        let state = |suffix: &str| -> Result<State, Error> {
-            let target = |name: &str| context.target(&format!("{name}{suffix}"), FLOATS, width, height);
-            Ok(State { positions: target("positions")?, velocities: target("velocities")? })
-        };
-        // The start stays, so that a restart moves nothing.
-        let start = state("-start")?;
-        let states = [state("-a")?, state("-b")?];
-        load(shaders, particles, &start)?;
-
         let first = Pass::graphics("animate", "5.1", "common/fullscreen.vert", "lava/animate.frag")
             .constants::<MotionConstants>()
             .with("positions", &start.positions)
@@ -80,7 +84,47 @@ impl Animate {
         };
         let ping_pong = [step(&states[1], &states[0])?, step(&states[0], &states[1])?];
         let constants = MotionConstants { space_m: parameters.space_m.to_array(), time_step_s: parameters.time_step_s };
-        Ok(Animate { first, ping_pong, states, constants, steps: 0 })
+        Ok(Free { first, ping_pong, constants })
+    }
+}
+
+impl Animate {
+    /// `label` goes before the names of the textures.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer; [`Error::Limit`] for more particles than a texture holds.
+    pub fn new(
+        shaders: &ShaderLibrary,
+        label: &str,
+        parameters: &Parameters,
+        particles: &Particles,
+    ) -> Result<Self, Error> {
+        let context = Context { shaders, label, parameters };
+        let (width, height) = Particles::texture_size(particles.positions.len() as u32);
+        let target = |name: String| {
+            let mut desc = context.desc(&name, FLOATS, width, height);
+            if parameters.simulation == Simulation::Sph {
+                desc = desc.usage(vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED);
+            }
+            Image::new(context.device(), desc)?.view()
+        };
+        let state = |suffix: &str| -> Result<State, Error> {
+            let (positions, velocities) =
+                (target(format!("positions{suffix}"))?, target(format!("velocities{suffix}"))?);
+            Ok(State { positions, velocities })
+        };
+        // The start stays, so that a restart moves nothing.
+        let start = state("-start")?;
+        let states = [state("-a")?, state("-b")?];
+        load(shaders, particles, &start)?;
+        let motion = match parameters.simulation {
+            Simulation::Free => Motion::Free(Free::new(shaders, parameters, &start, &states)?),
+            Simulation::Sph => {
+                let count = particles.positions.len() as u32;
+                Motion::Sph(Box::new(Sph::new(context, [&states[0], &states[1], &start], count)?))
+            }
+        };
+        Ok(Animate { motion, states, steps: 0 })
     }
 
     /// Moves the particles one step.
@@ -88,12 +132,28 @@ impl Animate {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&mut self, frame: &mut Frame<'_>) -> Result<(), Error> {
-        let pass = if self.steps == 0 { &self.first } else { &self.ping_pong[self.steps as usize % 2] };
-        frame.graphics(pass, |draw| {
-            draw.constants(&self.constants).vertices(3);
-        })?;
+        match &self.motion {
+            Motion::Free(Free { first, ping_pong, constants }) => {
+                let pass = if self.steps == 0 { first } else { &ping_pong[self.steps as usize % 2] };
+                frame.graphics(pass, |draw| {
+                    draw.constants(constants).vertices(3);
+                })?;
+            }
+            Motion::Sph(sph) => {
+                let to = self.steps as usize % 2;
+                sph.record(frame, if self.steps == 0 { START } else { 1 - to }, to)?;
+            }
+        }
         self.steps += 1;
         Ok(())
+    }
+
+    /// The fluid; `None` where the particles move by themselves.
+    pub fn sph(&self) -> Option<&Sph> {
+        match &self.motion {
+            Motion::Free(_) => None,
+            Motion::Sph(sph) => Some(sph),
+        }
     }
 
     /// Back to the start.

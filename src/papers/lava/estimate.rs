@@ -4,6 +4,8 @@ use super::cluster::Point;
 use super::gpu_driven;
 use super::parameters::{Parameters, SurfaceDraw, Variant};
 use super::rock::Rock;
+use super::sph;
+use super::sph::parameters::Simulation;
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -26,6 +28,10 @@ impl Parameters {
             ("rock", size_of_val(&rock.texels[..]) as f64),
             ("object", 24.0 * vertices as f64 + 4.0 * indices as f64),
         ];
+        let flow = match self.simulation {
+            Simulation::Free => Estimate::default(),
+            Simulation::Sph => sph::estimate(self),
+        };
         let heights = 4.0 * f64::from(self.density[0]) * f64::from(self.density[2]);
         let (drawn_bytes, buffers, invocations) = match self.surface_draw(variant) {
             SurfaceDraw::Splats => {
@@ -35,9 +41,10 @@ impl Parameters {
             SurfaceDraw::March => (("density", heights), Some(("density", heights)), vec![("size", pixels)]),
         };
         Estimate {
-            bytes: first_stages.bytes.into_iter().chain(bytes).chain([drawn_bytes]).collect(),
-            buffers: first_stages.buffers.into_iter().chain(buffers).collect(),
-            invocations: first_stages.invocations.into_iter().chain(invocations).collect(),
+            bytes: first_stages.bytes.into_iter().chain(bytes).chain([drawn_bytes]).chain(flow.bytes).collect(),
+            buffers: first_stages.buffers.into_iter().chain(buffers).chain(flow.buffers).collect(),
+            invocations: first_stages.invocations.into_iter().chain(invocations).chain(flow.invocations).collect(),
+            passes: first_stages.passes.into_iter().chain(flow.passes).reduce(|a, b| (a.0, a.1 + b.1)),
             ..first_stages
         }
     }

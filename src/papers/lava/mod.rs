@@ -18,6 +18,7 @@ mod animate;
 mod axes;
 pub mod blackbody;
 mod blending;
+mod cameras;
 mod cluster;
 mod color;
 mod density;
@@ -43,6 +44,7 @@ pub mod reference;
 mod rock;
 mod scene;
 pub mod setup;
+pub mod sph;
 mod splats;
 mod splatting;
 mod start;
@@ -61,15 +63,18 @@ use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
 pub use self::animate::{Animate, State};
+pub use self::cameras::CAMERAS;
 pub use self::cluster::{Clusters, Point};
 pub use self::extract::Accepted;
 pub use self::gpu_driven::{Cells, GpuDriven};
 pub use self::method::Method;
-pub use self::parameters::{CAMERAS, Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, Variant};
+pub use self::parameters::{Parameters, Shading, SurfaceDraw, SurfaceKind, Tone, Variant};
 pub use self::placement::{Object, Place};
 pub use self::read_back::ReadBack;
 pub use self::rock::Rock;
 pub use self::scene::depth_range_m;
+pub use self::sph::Sph;
+pub use self::sph::parameters::{Flow, Sides, Simulation};
 pub use self::splatting::Splatting;
 pub use self::start::Particles;
 
@@ -174,6 +179,7 @@ impl Paper for Lava {
 
     /// Looks at what was accepted, and for objects under the surface.
     fn settle(&mut self, shaders: &ShaderLibrary) -> Result<bool, Error> {
+        self.animate.sph().map_or(Ok(()), |sph| sph.check(shaders.device()))?;
         self.accepted = Some(self.method.accepted(shaders.device())?);
         if !self.meshes.is_empty() {
             let surface = &self.normal_height.surface;

@@ -1,17 +1,15 @@
 //! Numbers that a user can set, under the thesis's own words.
 
-use std::ffi::OsStr;
-
 use glam::Vec3;
-use serde_json::Value as Json;
 
 use super::blackbody::HOTTEST_K;
+use super::cameras::{self, CAMERAS};
 use super::color;
+use super::sph;
+use super::sph::parameters::{Flow, Simulation};
 use crate::field;
-use crate::measure::parameter::{
-    self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one,
-};
-use crate::measure::{ParameterError, config};
+use crate::measure::ParameterError;
+use crate::measure::parameter::{self, Choice, Cost, Extents, Field, Parameter, Range, Size, Value as _};
 use crate::scene::Camera;
 
 /// The methods that are compared: the thesis's, and ours.
@@ -160,6 +158,10 @@ pub struct Parameters {
     pub epsilon_m: f32,
     /// Distance from the borders in metres over which the height sinks to 0, 0 to 1000.
     pub border_m: f32,
+    /// Motion of the particles.
+    pub simulation: Simulation,
+    /// The fluid of [`Simulation::Sph`].
+    pub flow: Flow,
     /// Mean speed of the flow along x in metres per second, 0 to 1000.
     pub speed_m_s: f32,
     /// The constant orange of section 7.2 in the display's RGB, each 0 to 1000.
@@ -204,6 +206,8 @@ impl Default for Parameters {
             splat_radius_m: 0.020625,
             epsilon_m: 0.05,
             border_m: 0.2,
+            simulation: Simulation::Free,
+            flow: Flow::default(),
             speed_m_s: 0.2,
             color: Vec3::new(2.5, 1.2, 0.28),
             is_blackbody: false,
@@ -226,53 +230,12 @@ impl Default for Parameters {
 /// 3.1): kelvin.
 const TEMPERATURES_K: [f32; 2] = [1423.0, 1073.0];
 
-/// Our cameras for the four views of chapter 8; the thesis prints no positions.
-pub const CAMERAS: [(&str, Camera); 4] = [
-    ("fig-8.1", camera(Vec3::new(-0.7, 3.1, 2.4), Vec3::new(1.65, 0.05, 0.5))),
-    ("fig-8.2", camera(Vec3::new(2.0, 3.9, 2.2), Vec3::new(2.0, 0.2, 0.6))),
-    ("fig-8.3", camera(Vec3::new(5.0, 2.2, 0.5), Vec3::new(3.0, 0.1, 0.5))),
-    ("fig-8.4", camera(Vec3::new(1.4, 1.9, 1.2), Vec3::new(1.9, 0.3, 0.5))),
-];
-
-const fn camera(eye: Vec3, target: Vec3) -> Camera {
-    Camera { eye, target, up: Vec3::Y, vertical_fov_rad: 0.75, near_m: 0.05, far_m: 20.0 }
-}
-
-/// A camera by the name of its figure, or by eye and target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct View(Camera);
-
-impl Value for View {
-    const SHAPE: Shape = Shape { placeholder: "FIGURE|EYE,TARGET", ..EyeAndTarget::SHAPE };
-
-    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
-        let text = one(texts)?;
-        if let Some((_, camera)) = CAMERAS.iter().find(|(name, _)| *name == text) {
-            return Ok(View(*camera));
-        }
-        let figures = CAMERAS.map(|(name, _)| name).join(", ");
-        let place = EyeAndTarget::parse(texts).map_err(|e| format!("{figures}, or eye and target: {e}"))?;
-        Ok(View(Camera { eye: place.eye, target: place.target, ..CAMERAS[0].1 }))
-    }
-
-    fn text(&self) -> String {
-        let Camera { eye, target, .. } = self.0;
-        let figure = CAMERAS.iter().find(|(_, camera)| *camera == self.0);
-        figure.map_or_else(|| EyeAndTarget { eye, target }.text(), |(name, _)| (*name).to_owned())
-    }
-
-    fn json(&self) -> Json {
-        config::camera(&self.0)
-    }
-}
-
 const SPACE: Field<Parameters, Extents<f32, 3>> =
     Field { get: |p| Extents(p.space_m.to_array()), set: |p, space| p.space_m = Vec3::from(space.0) };
 const DENSITY: Field<Parameters, Extents<u32, 3>> =
     Field { get: |p| Extents(p.density), set: |p, density| p.density = density.0 };
 const SPLATS: Field<Parameters, Extents<u32, 2>> =
     Field { get: |p| Extents(p.splats), set: |p, splats| p.splats = splats.0 };
-const CAMERA: Field<Parameters, View> = Field { get: |p| View(p.camera), set: |p, view| p.camera = view.0 };
 const SIZE: Field<Parameters, Size> = Field {
     get: |p| Size { width: p.width, height: p.height },
     set: |p, size| (p.width, p.height) = (size.width, size.height),
@@ -287,7 +250,8 @@ impl Parameters {
     /// Every number that a user can set, once.
     pub fn declared() -> Vec<Parameter<Parameters>> {
         let up_to_1000 = Range::above(0.0).to(1000.0);
-        vec![
+        let flow = Flow::declared().into_iter().map(|p| p.inside(|s: &Self| &s.flow, |s| &mut s.flow));
+        let numbers = vec![
             Parameter::new("space", SPACE)
                 .placeholder("XxYxZ")
                 .range(up_to_1000)
@@ -358,6 +322,11 @@ impl Parameters {
                 .help("Distance from the borders over which the surface falls off")
                 .section("6.4")
                 .cost(Cost::Buffers),
+            Parameter::new("simulation", field!(Parameters.simulation))
+                .help("Motion of the particles")
+                .section("9")
+                .cost(Cost::Buffers)
+                .everyday(),
             Parameter::new("speed", field!(Parameters.speed_m_s))
                 .range(Range::from(0.0).to(1000.0))
                 .unit("metres per second")
@@ -395,7 +364,7 @@ impl Parameters {
                 .help("Splats by a geometry stage, as in the thesis, or as instanced quads")
                 .section("7.1")
                 .cost(Cost::Pipelines),
-            Parameter::new("camera", CAMERA)
+            Parameter::new("camera", cameras::FIELD)
                 .help("Camera: fig-8.1, fig-8.2, fig-8.3, fig-8.4, or eye and target x,y,z,x,y,z in metres")
                 .everyday(),
             Parameter::new("size", SIZE)
@@ -416,7 +385,8 @@ impl Parameters {
                 .help("Simulated time between two frames")
                 .default_text("1/30")
                 .cost(Cost::Buffers),
-        ]
+        ];
+        numbers.into_iter().chain(flow).collect()
     }
 
     /// Checks every range.
@@ -446,6 +416,7 @@ impl Parameters {
             Extents(self.splats).text(),
             "must be at most 16777216 in all",
         )?;
+        sph::check::check(self)?;
         ParameterError::check_camera(&self.camera)
     }
 
@@ -463,14 +434,19 @@ impl Parameters {
     }
 
     /// The accepted density: the one given, or the mean of eq. 6.2 summed over particles that fill the space evenly,
-    /// 4 pi N / V times the integral of F(r, h) r^2 from 0 to h, which is 0.14057 N h^2 / V.
+    /// 4 pi N / V times the integral of F(r, h) r^2 from 0 to h, which is 0.14057 N h^2 / V. A fluid fills no space: half of
+    /// the mean inside it, which is what a level surface has.
     pub fn rho(&self) -> f32 {
         self.rho.unwrap_or_else(|| {
-            let [x, y, z] = self.space_m.as_dvec3().to_array();
+            let (filled_m, share) = match self.simulation {
+                Simulation::Free => (self.space_m, 1.0),
+                Simulation::Sph => (self.flow.block_m, 0.5),
+            };
+            let [x, y, z] = filled_m.as_dvec3().to_array();
             let h = f64::from(self.radius_m);
             // 405 / 187 times (1/3 - 22/45 + 17/63 - 4/81).
             let integral = 405.0 / 187.0 * (1.0 / 3.0 - 22.0 / 45.0 + 17.0 / 63.0 - 4.0 / 81.0);
-            (integral * f64::from(self.particles) * h * h / (x * y * z)) as f32
+            (share * integral * f64::from(self.particles) * h * h / (x * y * z)) as f32
         })
     }
 

@@ -112,7 +112,7 @@ impl Study for Setup {
         let space_m = self.parameters.space_m;
         let objects =
             self.objects.iter().map(|object| object.load(space_m, self.crease_deg)).collect::<Result<_, _>>()?;
-        Ok(Scene { particles: Particles::seeded(&self.parameters), rock, objects })
+        Ok(Scene { particles: Particles::of(&self.parameters), rock, objects })
     }
 
     fn make(&self, shaders: &ShaderLibrary, label: &str, scene: &Scene, variant: Variant) -> Result<Lava, gpu::Error> {
@@ -152,6 +152,9 @@ impl Study for Setup {
     fn config(&self, scene: &Scene, paper: &Lava) -> Map<String, Value> {
         let mut config = parameter::config(&Self::parameters(), self);
         config.insert("surface_draw".to_owned(), json!(self.parameters.surface_draw(paper.variant()).name()));
+        if self.parameters.is_blackbody {
+            config.insert("temperatures".to_owned(), json!(self.parameters.temperatures_k()));
+        }
         config.insert("rho".to_owned(), json!(self.parameters.rho()));
         if !scene.objects.is_empty() {
             let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();

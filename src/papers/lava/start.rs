@@ -3,6 +3,8 @@
 use glam::Vec3;
 
 use super::parameters::Parameters;
+use super::sph;
+use super::sph::parameters::Simulation;
 use crate::scene::random::Random;
 
 /// Positions in metres inside the simulation space, and velocities in metres per second.
@@ -31,6 +33,14 @@ impl Particles {
             particles.velocities.push(speed * Vec3::new(motions.range(0.5, 1.5), y, z));
         }
         particles
+    }
+
+    /// As the simulation starts: free particles all over the space, or a block of lava.
+    pub fn of(parameters: &Parameters) -> Self {
+        match parameters.simulation {
+            Simulation::Free => Particles::seeded(parameters),
+            Simulation::Sph => sph::start::block(parameters),
+        }
     }
 
     /// Width and height of a texture with a texel for each of `count` particles, as square as possible.

@@ -3,6 +3,7 @@
 mod animation;
 mod blackbody;
 mod density;
+mod fluid;
 mod frames;
 mod gpu_driven;
 mod march;

@@ -1,6 +1,6 @@
 //! The cells that particles are sorted into.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::super::parameters::Parameters;
 
@@ -16,13 +16,18 @@ pub struct Cells {
 impl Cells {
     /// As small as the radius allows, and no more than there are particles.
     pub fn new(parameters: &Parameters, particles: u32) -> Self {
-        /// Over the radius, so that rounding adds no fourth cell to three.
+        Self::of_side(parameters.space_m, f64::from(parameters.radius_m), particles.max(1), particles)
+    }
+
+    /// Of sides no shorter than `least_m`, and at most so many, of a space in metres.
+    pub fn of_side(space_m: Vec3, least_m: f64, most: u32, particles: u32) -> Self {
+        /// Over the side, so that rounding adds no fourth cell to three.
         const ROOM: f64 = 1.001;
-        let space = parameters.space_m.as_dvec3();
-        let mut side_m = ROOM * f64::from(parameters.radius_m);
+        let space = space_m.as_dvec3();
+        let mut side_m = ROOM * least_m;
         loop {
             let counts = (space / side_m).floor().max(DVec3::ONE);
-            if counts.x * counts.y * counts.z <= f64::from(particles.max(1)) {
+            if counts.x * counts.y * counts.z <= f64::from(most) {
                 return Cells { counts: counts.to_array().map(|n| n as u32), particles };
             }
             // By a tenth more cells' worth.
@@ -52,8 +57,6 @@ impl Cells {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
 
     #[test]

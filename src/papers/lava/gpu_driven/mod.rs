@@ -38,7 +38,7 @@ pub use self::estimate::estimate;
 const SUBMISSION_S: f64 = 1.0;
 
 /// Invocations along the first axis of a list that is dispatched in rows.
-const ROW: u32 = 1 << 20;
+pub(super) const ROW: u32 = 1 << 20;
 
 /// Stages one and two behind `animate`.
 pub struct GpuDriven {
@@ -56,7 +56,7 @@ impl GpuDriven {
     /// Errors of the Vulkan layer; [`Error::Limit`] for a grid beyond the device's.
     pub fn new(context: Context<'_>, animate: &Animate, particle_count: u32) -> Result<Self, Error> {
         let cells = Cells::new(context.parameters, particle_count);
-        let sort = Sort::new(context, &cells, animate)?;
+        let sort = Sort::new(context, &cells, &animate.states.each_ref().map(|state| &state.positions))?;
         let density = GatheredDensity::new(context, &cells, &sort)?;
         let columns = Columns::new(context, &density.density)?;
         let most_work = SUBMISSION_S * per_second(context.device());

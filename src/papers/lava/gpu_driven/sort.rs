@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::super::animate::Animate;
 use super::super::targets::Context;
 use super::cells::Cells;
 use super::{ROW, density};
-use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass};
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
 host_block! {
@@ -48,17 +47,19 @@ const RUN: u32 = 256;
 
 /// The passes, and what they leave.
 pub struct Sort {
-    /// One for each state of the animation.
-    cell_keys: [Pass; 2],
+    /// One for each texture of positions.
+    cell_keys: Vec<Pass>,
     /// Of each digit, the lowest first.
     digits: Vec<Digit>,
     sort_sum: Pass,
     sums: Vec<SumConstants>,
-    /// One for each state of the animation.
-    arrange: [Pass; 2],
+    /// One for each texture of positions.
+    arrange: Vec<Pass>,
     cell_starts: Pass,
     constants: CellConstants,
     cell_count: u32,
+    /// Cell and number of each particle by cells.
+    pub items: Arc<Buffer>,
     /// Places along x, y and z by cells, metres.
     pub places: [Arc<Buffer>; 3],
     /// The first particle of each cell, and the end of the last.
@@ -98,9 +99,11 @@ pub fn bytes(cells: &Cells) -> f64 {
 }
 
 impl Sort {
+    /// Of the particles in any of these textures.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, cells: &Cells, animate: &Animate) -> Result<Self, Error> {
+    pub fn new(context: Context<'_>, cells: &Cells, positions: &[&Arc<ImageView>]) -> Result<Self, Error> {
         let Context { shaders, parameters, .. } = context;
         let particles = cells.particles;
         let buffer = |name: &str, words: u32| {
@@ -116,14 +119,12 @@ impl Sort {
         let pieces = density::pieces(particles);
         let reached = buffer("reached-pieces", pieces)?;
 
-        let positions = animate.states.each_ref().map(|state| &state.positions);
         let first = Pass::compute("cell-keys", "5.2", "lava/cell-keys.comp")
             .constants::<CellConstants>()
             .with("positions", positions[0])
             .with("items", &items[0])
             .build(shaders)?;
-        let second = first.rebind().with("positions", positions[1]).build(shaders)?;
-        let cell_keys = [first, second];
+        let cell_keys = of_each(first, positions, context)?;
         let digit = |n: u32| -> Result<Digit, Error> {
             let from = &items[n as usize % 2];
             let kernel = |name, shader: &str| {
@@ -161,7 +162,7 @@ impl Sort {
             .with("zs", &places[2])
             .with("reached", &reached)
             .build(shaders)?;
-        let second = first.rebind().with("positions", positions[1]).build(shaders)?;
+        let arrange = of_each(first, positions, context)?;
         let cell_starts = Pass::compute("cell-starts", "5.2", "lava/cell-starts.comp")
             .constants::<CellConstants>()
             .with("items", sorted)
@@ -179,7 +180,8 @@ impl Sort {
             digits,
             sort_sum,
             sums: sums.collect(),
-            arrange: [first, second],
+            arrange,
+            items: sorted.clone(),
             cell_starts,
             constants,
             cell_count: cells.count(),
@@ -189,7 +191,7 @@ impl Sort {
         })
     }
 
-    /// Sorts the particles of the state with this index.
+    /// Sorts the particles of the texture with this index.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
@@ -216,6 +218,13 @@ impl Sort {
         listed(frame, &self.arrange[state], self.constants.particles)?;
         listed(frame, &self.cell_starts, self.cell_count + 1)
     }
+}
+
+/// The pass on the first texture of positions, and on each other.
+fn of_each(first: Pass, positions: &[&Arc<ImageView>], context: Context<'_>) -> Result<Vec<Pass>, Error> {
+    let other = |view: &&Arc<ImageView>| first.rebind().with("positions", *view).build(context.shaders);
+    let others = positions.iter().skip(1).map(other).collect::<Result<Vec<_>, _>>()?;
+    Ok([first].into_iter().chain(others).collect())
 }
 
 #[cfg(test)]

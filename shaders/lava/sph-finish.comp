@@ -1,0 +1,33 @@
+#version 450
+
+// The step's end: velocities from the places, both into the textures at the particles' numbers.
+
+layout(local_size_x = 64) in;
+
+#include "lava/sph.glsl"
+
+layout(set = 0, binding = 4, std430) readonly buffer Predicted {
+    vec4 list[]; // metres
+} predicted;
+
+layout(set = 0, binding = 5, std430) readonly buffer Items {
+    uvec2 list[]; // cell and particle, by cells
+} items;
+
+layout(set = 0, binding = 6, rgba32f) uniform image2D positions;
+
+layout(set = 0, binding = 7, rgba32f) uniform image2D velocities;
+
+void main() {
+    uint at = place_in_list();
+    if (at >= flow.particles) {
+        return;
+    }
+    uint particle = items.list[at].y;
+    ivec2 texel = ivec2(particle % flow.width, particle / flow.width);
+    vec3 place_m = predicted.list[at].xyz;
+    vec2 turns = flow.periodic * floor(place_m.xz / flow.space_m.xz);
+    vec3 within = vec3(place_m.x - turns.x * flow.space_m.x, place_m.y, place_m.z - turns.y * flow.space_m.z);
+    imageStore(positions, texel, vec4(within, 0.0));
+    imageStore(velocities, texel, vec4((place_m - began_m(at)) / flow.time_step_s, 0.0));
+}

@@ -1,0 +1,40 @@
+#version 450
+
+// Velocities after gravity alone, in the order of the cells: what viscosity takes, and its first guess.
+
+#extension GL_EXT_samplerless_texture_functions : require
+
+layout(local_size_x = 64) in;
+
+#include "lava/sph.glsl"
+
+layout(set = 0, binding = 4) uniform texture2D velocities;
+
+layout(set = 0, binding = 5, std430) readonly buffer Items {
+    uvec2 list[]; // cell and particle, by cells
+} items;
+
+layout(set = 0, binding = 6, std430) buffer Pushed {
+    vec4 list[]; // metres per second
+} pushed;
+
+layout(set = 0, binding = 7, std430) buffer To {
+    vec4 list[]; // metres per second
+} to;
+
+layout(set = 0, binding = 8, std430) buffer Change {
+    vec4 list[]; // metres per second
+} change;
+
+void main() {
+    uint at = place_in_list();
+    if (at >= flow.particles) {
+        return;
+    }
+    uint particle = items.list[at].y;
+    vec3 velocity = texelFetch(velocities, ivec2(particle % flow.width, particle / flow.width), 0).xyz;
+    vec4 after = vec4(velocity + flow.time_step_s * flow.gravity_m_s2, 0.0);
+    pushed.list[at] = after;
+    to.list[at] = after;
+    change.list[at] = vec4(0.0);
+}

@@ -1,0 +1,24 @@
+#version 450
+
+// Places at the end of the step by the velocities alone.
+
+layout(local_size_x = 64) in;
+
+#include "lava/sph.glsl"
+#include "lava/sph-inside.glsl"
+
+layout(set = 0, binding = 4, std430) readonly buffer From {
+    vec4 list[]; // metres per second
+} from;
+
+layout(set = 0, binding = 5, std430) buffer Predicted {
+    vec4 list[]; // metres
+} predicted;
+
+void main() {
+    uint at = place_in_list();
+    if (at >= flow.particles) {
+        return;
+    }
+    predicted.list[at] = vec4(inside(began_m(at) + flow.time_step_s * from.list[at].xyz), 0.0);
+}

@@ -1,0 +1,49 @@
+#version 450
+
+// One step of Chebyshev's semi-iteration (Golub and Varga 1961) on the implicit viscosity of Morris et al. (1997):
+// (1 + sum of a_ij + a_wall) v_i - sum of a_ij v_j = what gravity left. The matrix is symmetric and its rows add up to 1, so
+// no step changes the momentum of lava that touches no wall; no sum over all particles is needed.
+
+layout(local_size_x = 64) in;
+
+#include "lava/sph.glsl"
+
+layout(set = 0, binding = 4, std430) readonly buffer Pushed {
+    vec4 list[]; // metres per second
+} pushed;
+
+layout(set = 0, binding = 5, std430) readonly buffer From {
+    vec4 list[];
+} from;
+
+layout(set = 0, binding = 6, std430) buffer To {
+    vec4 list[];
+} to;
+
+layout(set = 0, binding = 7, std430) buffer Change {
+    vec4 list[];
+} change;
+
+void main() {
+    uint at = place_in_list();
+    if (at >= flow.particles) {
+        return;
+    }
+    vec3 place_m = began_m(at);
+    vec3 velocity = from.list[at].xyz;
+    vec3 dragged = vec3(0.0);
+    for (int z = -1; z <= 1; z++) {
+        for (int x = -1; x <= 1; x++) {
+            uvec2 stretch = stretch_at(place_m, x, z);
+            uint end = min(stretch.y, stretch.x + MOST);
+            for (uint i = stretch.x; i < end; i++) {
+                float q = length(apart(place_m - began_m(i))) / flow.support_m;
+                dragged -= slope(q) * (velocity - from.list[i].xyz);
+            }
+        }
+    }
+    vec3 braked = velocity + flow.drag * dragged + flow.wall_drag * wall_drag(walls_at(place_m)) * velocity;
+    vec3 changed = flow.kept * change.list[at].xyz + flow.gained * (pushed.list[at].xyz - braked);
+    change.list[at] = vec4(changed, 0.0);
+    to.list[at] = vec4(velocity + changed, 0.0);
+}

@@ -1,0 +1,131 @@
+// Smoothed particle hydrodynamics of the variant of stage one that flows: constants, the kernel, walls, and the cells
+// around a particle. Particles are in the order of their cells; cells along y follow each other.
+
+layout(push_constant, std430) uniform Flow {
+    vec3 space_m;
+    uint particles;
+    uvec3 counts; // cells along x, y and z
+    uint width; // of the particles' textures
+    vec3 gravity_m_s2;
+    float time_step_s;
+    float support_m; // h, where the kernel ends
+    float volume; // of a particle over the kernel's unit, h^3: a lattice at rest sums up to 1
+    float drag; // of two particles: twice step, viscosity and volume over density, per h^2
+    float wall_drag; // of a wall: twice step and viscosity over density, per h^2
+    float kept; // of Chebyshev's last change
+    float gained; // of the residual
+    float margin_m; // no particle comes nearer to a wall
+    float periodic; // 1 where x and z have no walls but repeat
+} flow;
+
+layout(set = 0, binding = 0, std430) readonly buffer Starts {
+    uint list[];
+} starts;
+
+layout(set = 0, binding = 1, std430) readonly buffer Xs {
+    float list[]; // metres, by cells, as the step begins
+} xs;
+
+layout(set = 0, binding = 2, std430) readonly buffer Ys {
+    float list[];
+} ys;
+
+layout(set = 0, binding = 3, std430) readonly buffer Zs {
+    float list[];
+} zs;
+
+// lavapipe ends all loops of a shader after 65,535 iterations: nine stretches of so many particles.
+const uint MOST = 7200u;
+const float SIGMA = 3.34225380493; // 21 / (2 pi)
+
+uint place_in_list() {
+    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
+}
+
+vec3 began_m(uint at) {
+    return vec3(xs.list[at], ys.list[at], zs.list[at]);
+}
+
+// Wendland's kernel C2 (1995) in units of h^-3: SIGMA (1 - q)^4 (1 + 4 q).
+float kernel(float q) {
+    float inside = max(1.0 - q, 0.0);
+    float squared = inside * inside;
+    return SIGMA * squared * squared * (1.0 + 4.0 * q);
+}
+
+// Its slope over the distance, which is at most 0, in units of h^-5.
+float slope(float q) {
+    float inside = max(1.0 - q, 0.0);
+    return -20.0 * SIGMA * inside * inside * inside;
+}
+
+// The shortest way between two places, where the space repeats.
+vec3 apart(vec3 way_m) {
+    vec2 turns = flow.periodic * floor(way_m.xz / flow.space_m.xz + 0.5);
+    return vec3(way_m.x - turns.x * flow.space_m.x, way_m.y, way_m.z - turns.y * flow.space_m.z);
+}
+
+// Distances from the floor and from the four sides over h; no wall is out of reach.
+struct Walls {
+    float floor_q;
+    vec4 sides_q; // low x, high x, low z, high z
+};
+
+Walls walls_at(vec3 place_m) {
+    vec2 high = flow.space_m.xz - place_m.xz;
+    vec4 sides = vec4(place_m.x, high.x, place_m.z, high.y) / flow.support_m + flow.periodic * 2.0;
+    return Walls(max(place_m.y / flow.support_m, 0.0), max(sides, 0.0));
+}
+
+// Share of the kernel's sum that a half space of lava beyond a wall has, by the distance: the kernel's integral.
+float beyond(float q) {
+    float u = max(1.0 - q, 0.0);
+    float cubed = u * u * u;
+    return cubed * cubed * (3.5 - 4.5 * u + 1.5 * u * u);
+}
+
+// How fast it falls with the distance, per h.
+float beyond_slope(float q) {
+    float u = max(1.0 - q, 0.0);
+    float squared = u * u;
+    return 21.0 * squared * squared * u * (1.0 - 1.5 * u + 4.0 / 7.0 * squared);
+}
+
+float wall_share(Walls walls) {
+    vec4 q = walls.sides_q;
+    return beyond(walls.floor_q) + beyond(q.x) + beyond(q.y) + beyond(q.z) + beyond(q.w);
+}
+
+// Gradient of the walls' share, times h.
+vec3 wall_gradient(Walls walls) {
+    vec4 q = walls.sides_q;
+    float along_x = beyond_slope(q.y) - beyond_slope(q.x);
+    float along_z = beyond_slope(q.w) - beyond_slope(q.z);
+    return vec3(along_x, -beyond_slope(walls.floor_q), along_z);
+}
+
+// The drag of a half space whose speed goes on linearly through 0 at the wall (Morris et al. 1997), integrated.
+float drag_beyond(float q) {
+    float u = max(1.0 - q, 0.0);
+    float squared = u * u;
+    return squared * squared * u * (21.0 - 31.5 * u + 12.0 * squared) / max(q, 1.0e-3);
+}
+
+float wall_drag(Walls walls) {
+    vec4 q = walls.sides_q;
+    return drag_beyond(walls.floor_q) + drag_beyond(q.x) + drag_beyond(q.y) + drag_beyond(q.z) + drag_beyond(q.w);
+}
+
+// The stretch of particles in the column of cells that is so far from a particle's, along y a cell to either side: none
+// beyond a wall. A periodic space has three cells along x and z at least.
+uvec2 stretch_at(vec3 place_m, int along_x, int along_z) {
+    ivec3 counts = ivec3(flow.counts);
+    ivec3 cell = min(ivec3(place_m / flow.space_m * vec3(counts)), counts - 1);
+    ivec2 at = cell.xz + ivec2(along_x, along_z);
+    ivec2 turned = ivec2((at.x + counts.x) % counts.x, (at.y + counts.z) % counts.z);
+    int column = (turned.y * counts.x + turned.x) * counts.y;
+    uint first = starts.list[column + max(cell.y - 1, 0)];
+    uint end = starts.list[column + min(cell.y + 1, counts.y - 1) + 1];
+    bool is_there = at == turned || flow.periodic > 0.5;
+    return uvec2(first, is_there ? end : first);
+}

@@ -1,0 +1,167 @@
+//! A viscous fluid of particles (chapter 9, "Improved particle simulation"), each against every other.
+
+use glam::DVec3;
+
+/// The fluid's numbers, in metres, seconds and kilograms.
+pub struct Fluid {
+    pub space: DVec3,
+    /// Distance of the particles at rest.
+    pub spacing: f64,
+    /// Radius of the kernel.
+    pub support: f64,
+    pub step: f64,
+    /// Viscosity over density.
+    pub kinematic: f64,
+    /// Nearest that a particle comes to a wall.
+    pub margin: f64,
+    /// Whether x and z repeat instead of having walls.
+    pub is_periodic: bool,
+}
+
+/// Wendland's kernel C2: 21 / (2 pi h^3) (1 - q)^4 (1 + 4 q).
+fn wendland(distance: f64, support: f64) -> f64 {
+    let q = distance / support;
+    if q >= 1.0 { 0.0 } else { 21.0 / (std::f64::consts::TAU * support.powi(3)) * (1.0 - q).powi(4) * (1.0 + 4.0 * q) }
+}
+
+/// Its derivative by the distance, by differences.
+fn wendland_slope(distance: f64, support: f64) -> f64 {
+    let small = 1e-6 * support;
+    let low = (distance - small).max(0.0);
+    (wendland(distance + small, support) - wendland(low, support)) / (distance + small - low)
+}
+
+/// Integral from `low` to `high` by Simpson's rule.
+fn integral(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
+    const PARTS: usize = 64;
+    let step = (high - low) / PARTS as f64;
+    let weight = |at: usize| if at == 0 || at == PARTS { 1.0 } else { 2.0 + 2.0 * (at % 2) as f64 };
+    (0..=PARTS).map(|at| weight(at) * of(low + step * at as f64)).sum::<f64>() * step / 3.0
+}
+
+impl Fluid {
+    fn apart(&self, a: DVec3, b: DVec3) -> DVec3 {
+        let mut way = a - b;
+        if self.is_periodic {
+            way.x -= self.space.x * (way.x / self.space.x).round();
+            way.z -= self.space.z * (way.z / self.space.z).round();
+        }
+        way
+    }
+
+    /// Factors of a particle's volume with which a cubic lattice has the density 1 and the Laplacian of a parabola.
+    fn volumes(&self) -> (f64, f64) {
+        let range = -3..=3;
+        let lattice = range.clone().flat_map(|x| range.clone().flat_map(move |y| (-3..=3).map(move |z| (x, y, z))));
+        let (mut density, mut laplacian) = (0.0, 0.0);
+        for (x, y, z) in lattice {
+            let place = self.spacing * DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            let distance = place.length();
+            let volume = self.spacing.powi(3);
+            density += volume * wendland(distance, self.support);
+            if distance > 0.0 {
+                laplacian -= volume * wendland_slope(distance, self.support) / distance * place.y * place.y;
+            }
+        }
+        (self.spacing.powi(3) / density, self.spacing.powi(3) / laplacian)
+    }
+
+    /// Distances to walls and the directions away from them.
+    fn walls(&self, place: DVec3) -> Vec<(f64, DVec3)> {
+        let floor = (place.y, DVec3::Y);
+        let sides = [
+            (place.x, DVec3::X),
+            (self.space.x - place.x, DVec3::NEG_X),
+            (place.z, DVec3::Z),
+            (self.space.z - place.z, DVec3::NEG_Z),
+        ];
+        [floor].into_iter().chain(sides.into_iter().filter(|_| !self.is_periodic)).collect()
+    }
+
+    /// The kernel integrated over a plane at a distance.
+    fn over_plane(&self, distance: f64) -> f64 {
+        if distance >= self.support {
+            return 0.0;
+        }
+        integral(distance, self.support, |r| std::f64::consts::TAU * r * wendland(r, self.support))
+    }
+
+    /// The kernel integrated over all that lies beyond a wall at a distance.
+    fn beyond(&self, distance: f64) -> f64 {
+        if distance >= self.support { 0.0 } else { integral(distance, self.support, |z| self.over_plane(z)) }
+    }
+
+    /// How much a wall drags: as if the speed beyond it went on linearly through 0 at the wall.
+    fn wall_drag(&self, distance: f64) -> f64 {
+        if distance >= self.support {
+            return 0.0;
+        }
+        let plane = |z: f64| {
+            integral(z, self.support, |r| -std::f64::consts::TAU * r * wendland_slope(r, self.support) / r.max(1e-12))
+        };
+        integral(distance, self.support, |z| plane(z) * z) / distance
+    }
+
+    /// Density over that at rest and the constraint's factor, lambda, in metres squared.
+    pub fn constraint(&self, places: &[DVec3], at: usize, softness: f64) -> (f64, f64) {
+        let (volume, _) = self.volumes();
+        let (mut density, mut own, mut others) = (0.0, DVec3::ZERO, 0.0);
+        for (i, &other) in places.iter().enumerate() {
+            let way = self.apart(places[at], other);
+            let distance = way.length();
+            density += volume * wendland(distance, self.support);
+            if i != at && distance > 0.0 {
+                let gradient = volume * wendland_slope(distance, self.support) * way / distance;
+                own += gradient;
+                others += gradient.length_squared();
+            }
+        }
+        for (distance, normal) in self.walls(places[at]) {
+            density += self.beyond(distance);
+            own -= self.over_plane(distance) * normal;
+        }
+        let softness = softness / (self.support * self.support);
+        (density, -(density - 1.0).max(0.0) / (own.length_squared() + others + softness))
+    }
+
+    /// A particle's place after one correction with these factors.
+    pub fn corrected(&self, places: &[DVec3], factors: &[f64], at: usize) -> DVec3 {
+        let (volume, _) = self.volumes();
+        let mut push = DVec3::ZERO;
+        for (i, &other) in places.iter().enumerate() {
+            let way = self.apart(places[at], other);
+            if i != at && way.length() > 0.0 {
+                let slope = wendland_slope(way.length(), self.support);
+                push += (factors[at] + factors[i]) * volume * slope * way.normalize();
+            }
+        }
+        for (distance, normal) in self.walls(places[at]) {
+            push -= factors[at] * self.over_plane(distance) * normal;
+        }
+        self.inside(places[at] + push)
+    }
+
+    fn inside(&self, place: DVec3) -> DVec3 {
+        let low = DVec3::splat(self.margin);
+        let clamped = place.clamp(low, self.space - low);
+        if self.is_periodic { DVec3::new(place.x, clamped.y, place.z) } else { clamped }
+    }
+
+    /// What is left of the equation of implicit viscosity for one particle: `before` after gravity, `after` after viscosity.
+    pub fn viscous_residual(&self, places: &[DVec3], before: &[DVec3], after: &[DVec3], at: usize) -> DVec3 {
+        let (_, volume) = self.volumes();
+        let rate = 2.0 * self.step * self.kinematic;
+        let mut braked = after[at];
+        for (i, &other) in places.iter().enumerate() {
+            let distance = self.apart(places[at], other).length();
+            if i != at && distance > 0.0 {
+                let drag = -wendland_slope(distance, self.support) / distance;
+                braked += rate * volume * drag * (after[at] - after[i]);
+            }
+        }
+        for (distance, _) in self.walls(places[at]) {
+            braked += rate * self.wall_drag(distance) * after[at];
+        }
+        before[at] - braked
+    }
+}

@@ -1,0 +1,308 @@
+//! Stage one as a viscous fluid (chapter 9, "Improved particle simulation"): smoothed particle hydrodynamics.
+//!
+//! ```text
+//! cell-keys ─► sort-count ─► sort-sum ─► sort-scatter ─► arrange ─► cell-starts ─► sph-forces ─► sph-viscosity ─┐
+//!   ┌───────────────────────────────────────────────────────────────────────────────── a few dozen times ◄──────┘
+//!   └─► sph-predict ─► sph-density ─► sph-correct ─► sph-finish
+//!                        `─ corrections ─´
+//! ```
+//!
+//! Pressure is that of position-based fluids (Macklin and Mueller 2013), which no step makes unstable; viscosity is implicit
+//! (Morris et al. 1997, by Chebyshev's semi-iteration). All sums are gathered in the order of the cells: every run is the same
+//! to the bit.
+
+pub mod chebyshev;
+pub mod check;
+pub mod kernel;
+pub mod parameters;
+pub mod start;
+
+use std::sync::Arc;
+
+use ash::vk;
+use glam::DVec3;
+
+use self::chebyshev::Coefficients;
+use super::animate::State;
+use super::gpu_driven::sort::{self, Sort};
+use super::gpu_driven::{Cells, ROW};
+use super::parameters::Parameters;
+use super::targets::Context;
+use crate::gpu::transfer::read_buffer;
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, Pass};
+use crate::host_block;
+use crate::measure::estimate::Estimate;
+
+host_block! {
+    struct FlowConstants {
+        space_m: [f32; 3],
+        particles: u32,
+        counts: [u32; 3],
+        width: u32,
+        gravity_m_s2: [f32; 3],
+        time_step_s: f32,
+        support_m: f32,
+        volume: f32,
+        drag: f32,
+        wall_drag: f32,
+        kept: f32,
+        gained: f32,
+        margin_m: f32,
+        periodic: f32,
+    }
+}
+
+/// Most iterations of a step's viscosity.
+const MOST_ITERATIONS: u32 = 300;
+/// Nearest that a particle comes to a wall, in distances of particles at rest.
+const MARGIN: f64 = 0.25;
+/// Cells beyond one for each particle: 16 MiB of their starts.
+const MORE_CELLS: u32 = 1 << 22;
+
+/// The fluid.
+pub struct Sph {
+    /// By cells of the kernel's radius, of the start and of the two states.
+    pub sort: Sort,
+    forces: [Pass; 3],
+    viscosity: [Pass; 2],
+    predict: Pass,
+    density: [Pass; 2],
+    correct: [Pass; 2],
+    finish: [Pass; 2],
+    constants: FlowConstants,
+    coefficients: Vec<Coefficients>,
+    corrections: u32,
+    /// Iterates of the velocities by cells, metres per second: the last step's are in the first where its iterations were
+    /// even in number.
+    pub velocities: [Arc<Buffer>; 2],
+    /// Velocities that gravity alone leaves.
+    pub pushed: Arc<Buffer>,
+    /// Predicted places by cells, metres, likewise by corrections.
+    pub predicted: [Arc<Buffer>; 2],
+    /// Factor of the constraint times h^-2, density over that at rest: before the last correction.
+    pub factors: Arc<Buffer>,
+    crowded: Arc<Buffer>,
+}
+
+/// Numbers of the discretization, for `particles` of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Distance at rest, metres.
+    pub spacing_m: f64,
+    /// Radius of the kernel, metres.
+    pub support_m: f64,
+    /// Volume of a particle over support^3, so that a lattice has the density 1.
+    pub volume: f64,
+    /// The same, so that a lattice has the Laplacian of a parabola.
+    pub laplacian: f64,
+    /// Step times viscosity over density and support^2.
+    pub stiffness: f64,
+    /// Nearest that a particle comes to a wall, metres.
+    pub margin_m: f64,
+}
+
+impl Scale {
+    /// Of these parameters.
+    pub fn of(parameters: &Parameters) -> Self {
+        let flow = &parameters.flow;
+        let spacing_m = flow.spacing_m(parameters.particles);
+        let support_m = kernel::SUPPORT * spacing_m;
+        let (density, laplacian) = kernel::lattice_sums();
+        let volume = (spacing_m / support_m).powi(3);
+        let kinematic = f64::from(flow.viscosity_pa_s) / f64::from(flow.melt_kg_m3);
+        Scale {
+            spacing_m,
+            support_m,
+            volume: volume / density,
+            laplacian: volume / laplacian,
+            stiffness: f64::from(parameters.time_step_s) * kinematic / (support_m * support_m),
+            margin_m: MARGIN * spacing_m,
+        }
+    }
+
+    /// Cells of the kernel's radius.
+    pub fn cells(&self, parameters: &Parameters, particles: u32) -> Cells {
+        let most = particles.saturating_add(MORE_CELLS).min(1 << 24);
+        Cells::of_side(parameters.space_m, self.support_m, most, particles)
+    }
+}
+
+impl Sph {
+    /// The steps between these states; the last is the start and is not written.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn new(context: Context<'_>, states: [&State; 3], particle_count: u32) -> Result<Self, Error> {
+        let Context { shaders, parameters, .. } = context;
+        let scale = Scale::of(parameters);
+        let cells = scale.cells(parameters, particle_count);
+        let label = context.name("sph");
+        let context = Context { label: &label, ..context };
+        let sort = Sort::new(context, &cells, &states.map(|state| &state.positions))?;
+        let buffer = |name: &str, bytes: u64| {
+            let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+            let desc = BufferDesc::new(context.name(name), bytes * u64::from(particle_count)).usage(usage);
+            Buffer::new(context.device(), desc).map_err(|error| error.set_by("particles"))
+        };
+        let velocities = [buffer("velocities-a", 16)?, buffer("velocities-b", 16)?];
+        let predicted = [buffer("predicted-a", 16)?, buffer("predicted-b", 16)?];
+        let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
+        let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
+
+        let kernel = |name, shader: &str| {
+            let [xs, ys, zs] = &sort.places;
+            Pass::compute(name, "9", shader)
+                .constants::<FlowConstants>()
+                .with("starts", &sort.starts)
+                .with("xs", xs)
+                .with("ys", ys)
+                .with("zs", zs)
+        };
+        let forces = |state: &State| {
+            kernel("sph-forces", "lava/sph-forces.comp")
+                .with("velocities", &state.velocities)
+                .with("items", &sort.items)
+                .with("pushed", &pushed)
+                .with("to", &velocities[0])
+                .with("change", &change)
+                .build(shaders)
+        };
+        let viscosity = |from: usize| {
+            kernel("sph-viscosity", "lava/sph-viscosity.comp")
+                .with("pushed", &pushed)
+                .with("from", &velocities[from])
+                .with("to", &velocities[1 - from])
+                .with("change", &change)
+                .build(shaders)
+        };
+        let coefficients = chebyshev::coefficients(scale.stiffness);
+        let predict = kernel("sph-predict", "lava/sph-predict.comp")
+            .with("from", &velocities[coefficients.len() % 2])
+            .with("predicted", &predicted[0])
+            .build(shaders)?;
+        let density = |from: usize| {
+            kernel("sph-density", "lava/sph-density.comp")
+                .with("predicted", &predicted[from])
+                .with("factors", &factors)
+                .with("crowded", &crowded)
+                .build(shaders)
+        };
+        let correct = |from: usize| {
+            kernel("sph-correct", "lava/sph-correct.comp")
+                .with("predicted", &predicted[from])
+                .with("factors", &factors)
+                .with("corrected", &predicted[1 - from])
+                .build(shaders)
+        };
+        let corrections = parameters.flow.corrections;
+        let finish = |state: &State| {
+            kernel("sph-finish", "lava/sph-finish.comp")
+                .with("predicted", &predicted[corrections as usize % 2])
+                .with("items", &sort.items)
+                .with("positions", &state.positions)
+                .with("velocities", &state.velocities)
+                .build(shaders)
+        };
+        Ok(Sph {
+            forces: [forces(states[0])?, forces(states[1])?, forces(states[2])?],
+            viscosity: [viscosity(0)?, viscosity(1)?],
+            density: [density(0)?, density(1)?],
+            correct: [correct(0)?, correct(1)?],
+            finish: [finish(states[0])?, finish(states[1])?],
+            constants: constants(parameters, &scale, &cells, states[0].positions.width()),
+            predict,
+            sort,
+            coefficients,
+            corrections,
+            velocities,
+            pushed,
+            predicted,
+            factors,
+            crowded,
+        })
+    }
+
+    /// A step from one state to another; the third is the start.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn record(&self, frame: &mut Frame<'_>, from: usize, to: usize) -> Result<(), Error> {
+        let particles = self.constants.particles;
+        let run = |frame: &mut Frame<'_>, pass: &Pass, constants: &FlowConstants| {
+            frame.compute(pass, |dispatch| {
+                dispatch.constants(constants).threads(particles.min(ROW), particles.div_ceil(ROW), 1);
+            })
+        };
+        self.sort.record(frame, from)?;
+        run(frame, &self.forces[from], &self.constants)?;
+        for (at, &[kept, gained]) in self.coefficients.iter().enumerate() {
+            run(frame, &self.viscosity[at % 2], &FlowConstants { kept, gained, ..self.constants })?;
+        }
+        run(frame, &self.predict, &self.constants)?;
+        for at in 0..self.corrections as usize {
+            run(frame, &self.density[at % 2], &self.constants)?;
+            run(frame, &self.correct[at % 2], &self.constants)?;
+        }
+        run(frame, &self.finish[to], &self.constants)
+    }
+
+    /// Iterations of a step's viscosity.
+    pub fn iterations(&self) -> usize {
+        self.coefficients.len()
+    }
+
+    /// Fails where a device's loops left particles out.
+    ///
+    /// # Errors
+    /// [`Error::Pass`] for more particles in one place than a loop may take; errors of the Vulkan layer.
+    pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
+        let bytes = read_buffer(device, &self.crowded)?;
+        if bytes.iter().all(|byte| *byte == 0) {
+            return Ok(());
+        }
+        let problem =
+            "more than 7,200 particles lie in three cells above each other, beyond which drivers end loops; take a \
+                       shorter `time-step` or fewer `particles`"
+                .to_owned();
+        Err(Error::Pass { pass: "sph-density".to_owned(), problem })
+    }
+}
+
+/// Device memory, passes and the work of a step. A particle looks at those of 27 cells, of its own volume each as long as they
+/// are at rest.
+pub fn estimate(parameters: &Parameters) -> Estimate {
+    let scale = Scale::of(parameters);
+    let particles = f64::from(parameters.particles);
+    let cells = scale.cells(parameters, parameters.particles);
+    let sides = parameters.space_m.as_dvec3() / DVec3::from(cells.counts.map(f64::from));
+    let looked_at = (27.0 * (sides / scale.spacing_m).element_product()).min(particles);
+    let turns = chebyshev::needed(scale.stiffness) + 2.0 * f64::from(parameters.flow.corrections);
+    Estimate {
+        bytes: vec![("particles", 88.0 * particles + sort::bytes(&cells))],
+        buffers: vec![("particles", 16.0 * particles)],
+        passes: Some(("corrections", turns as u64 + 24)),
+        invocations: vec![("particles", particles * looked_at * turns)],
+        ..Estimate::default()
+    }
+}
+
+fn constants(parameters: &Parameters, scale: &Scale, cells: &Cells, width: u32) -> FlowConstants {
+    let flow = &parameters.flow;
+    let (sine, cosine) = flow.slope_deg.to_radians().sin_cos();
+    FlowConstants {
+        space_m: parameters.space_m.to_array(),
+        particles: cells.particles,
+        counts: cells.counts,
+        width,
+        gravity_m_s2: [flow.gravity_m_s2 * sine, -flow.gravity_m_s2 * cosine, 0.0],
+        time_step_s: parameters.time_step_s,
+        support_m: scale.support_m as f32,
+        volume: scale.volume as f32,
+        drag: (2.0 * scale.stiffness * scale.laplacian) as f32,
+        wall_drag: (2.0 * scale.stiffness) as f32,
+        kept: 0.0,
+        gained: 0.0,
+        margin_m: scale.margin_m as f32,
+        periodic: f32::from(u8::from(flow.sides == parameters::Sides::Periodic)),
+    }
+}

@@ -1,0 +1,141 @@
+//! Numbers of the lava that flows (chapter 9, "Improved particle simulation").
+
+use glam::Vec3;
+
+use crate::field;
+use crate::measure::parameter::{Choice, Cost, Extents, Field, Parameter, Range, Value as _};
+
+/// Motion of the particles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Simulation {
+    /// Section 5.1.
+    Free,
+    /// Smoothed particle hydrodynamics.
+    Sph,
+}
+
+impl Choice for Simulation {
+    const ALL: &'static [Self] = &[Simulation::Free, Simulation::Sph];
+    const NAMES: &'static [(&'static str, &'static str)] = &[
+        ("free", "The thesis's: each particle by itself"),
+        ("sph", "A viscous fluid on a slope: smoothed particle hydrodynamics"),
+    ];
+}
+
+/// What bounds the fluid along x and z.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// Walls that the lava sticks to.
+    Walls,
+    /// The space repeats.
+    Periodic,
+}
+
+impl Choice for Sides {
+    const ALL: &'static [Self] = &[Sides::Walls, Sides::Periodic];
+    const NAMES: &'static [(&'static str, &'static str)] =
+        &[("walls", "Walls that the lava sticks to, as it does to the floor"), ("periodic", "The space repeats")];
+}
+
+/// The fluid, in the ranges of [`Flow::declared`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flow {
+    /// Sides of the block of lava at the start along x, y and z in metres, from the space's first corner on; each above 0
+    /// and no longer than the space.
+    pub block_m: Vec3,
+    /// Dynamic viscosity in pascal seconds, 0 to 1,000,000.
+    pub viscosity_pa_s: f32,
+    /// Density in kilograms per cubic metre, 100 to 10,000.
+    pub melt_kg_m3: f32,
+    /// Gravity in metres per second squared, 0 to 100.
+    pub gravity_m_s2: f32,
+    /// Slope of the floor down along x in degrees, 0 to 80.
+    pub slope_deg: f32,
+    /// What bounds the fluid along x and z.
+    pub sides: Sides,
+    /// Corrections of the density in a step, 1 to 100.
+    pub corrections: u32,
+}
+
+impl Default for Flow {
+    fn default() -> Self {
+        Flow {
+            block_m: Vec3::new(1.2, 0.6, 1.0),
+            viscosity_pa_s: 100.0,
+            melt_kg_m3: 2700.0,
+            gravity_m_s2: 9.81,
+            slope_deg: 10.0,
+            sides: Sides::Walls,
+            corrections: 6,
+        }
+    }
+}
+
+const BLOCK: Field<Flow, Extents<f32, 3>> =
+    Field { get: |f| Extents(f.block_m.to_array()), set: |f, block| f.block_m = Vec3::from(block.0) };
+
+impl Flow {
+    /// Every number that a user can set, once.
+    pub fn declared() -> Vec<Parameter<Flow>> {
+        vec![
+            Parameter::new("block", BLOCK)
+                .placeholder("XxYxZ")
+                .range(Range::above(0.0).to(1000.0))
+                .unit("metres")
+                .help("With sph: sides of the block of lava at the start, in the space's first corner, at most as long as its")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("viscosity", field!(Flow.viscosity_pa_s))
+                .range(Range::from(0.0).to(1e6))
+                .unit("pascal seconds")
+                .help("With sph: viscosity of the lava")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("melt-density", field!(Flow.melt_kg_m3))
+                .range(Range::from(100.0).to(10_000.0))
+                .unit("kilograms per cubic metre")
+                .help("With sph: density of the lava")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("gravity", field!(Flow.gravity_m_s2))
+                .range(Range::from(0.0).to(100.0))
+                .unit("metres per second squared")
+                .help("With sph: gravity")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("slope", field!(Flow.slope_deg))
+                .range(Range::from(0.0).to(80.0))
+                .unit("degrees")
+                .help("With sph: slope of the floor, down along x; the space is drawn level")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("sides", field!(Flow.sides))
+                .help("With sph: what bounds the lava along x and z")
+                .section("9")
+                .cost(Cost::Buffers),
+            Parameter::new("corrections", field!(Flow.corrections))
+                .range(Range::from(1.0).to(100.0))
+                .help("With sph: corrections of the density in a step")
+                .section("9")
+                .cost(Cost::Buffers),
+        ]
+    }
+
+    /// Name and value of the first number that is not the default's.
+    pub fn first_set(&self) -> Option<(&'static str, String)> {
+        let default = Flow::default();
+        let of = |p: &Parameter<Flow>| (p.text(self) != p.text(&default)).then(|| (p.name, p.text(self)));
+        Flow::declared().iter().find_map(of)
+    }
+
+    /// Distance of the particles at rest, metres: the cube root of their volume.
+    pub fn spacing_m(&self, particles: u32) -> f64 {
+        let [x, y, z] = self.block_m.as_dvec3().to_array();
+        (x * y * z / f64::from(particles)).cbrt()
+    }
+
+    /// The block as it is typed.
+    pub fn block_text(&self) -> String {
+        Extents(self.block_m.to_array()).text()
+    }
+}
