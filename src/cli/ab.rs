@@ -58,6 +58,9 @@ pub struct AbArgs {
     common: Vec<OsString>,
 }
 
+/// The verdicts, beside the records.
+pub const VERDICTS_FILE: &str = "ab.json";
+
 const LAST_LOOK: u32 = LOOKS[LOOKS.len() - 1] as u32;
 
 /// A block's order: drift that is linear over its four processes cancels.
@@ -102,7 +105,8 @@ fn parse_binary(text: &str) -> Result<(Side, PathBuf), String> {
 
 pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     let files = [Side::A, Side::B].map(|side| arguments.record_file(side));
-    files.iter().try_for_each(|path| file::check_writable(path))?;
+    let verdicts = arguments.out.join(VERDICTS_FILE);
+    files.iter().chain([&verdicts]).try_for_each(|path| file::check_writable(path))?;
     let interrupted = interrupted();
     let own = arguments.own_blocks()?;
     let bar = progress_bar(arguments.quiet, "blocks A B B A");
@@ -156,6 +160,11 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
                 outcome::say(&format!("wrote {}", file.display()));
             }
         }
+    }
+    // What the page of a report shows: compared again, without the options of this call, it might be decided otherwise.
+    file::write(&verdicts, outcome::text(&comparison)?.as_bytes())?;
+    if !arguments.quiet {
+        outcome::say(&format!("wrote {}", verdicts.display()));
     }
     arguments.verdict.publish(&comparison)
 }
@@ -226,18 +235,17 @@ impl AbArgs {
         Ok(content::sha256(fixed.to_string().as_bytes()))
     }
 
-    /// Compares the blocks so far, at this look's part of the error; absent with fewer than two.
+    /// Compares the blocks so far; absent with fewer than two.
     fn look(&self, records: &[Vec<Record>; 2]) -> Result<Option<Comparison>, Failure> {
         if records[0].len() < 4 {
             return Ok(None);
         }
-        let mut options = self.verdict.options(Design::Blocks);
-        options.rules.error /= LOOKS.len() as f64;
         let inputs = |side: Side| -> Vec<Input> {
             let name = self.record_file(side).display().to_string();
             records[side as usize].iter().map(|record| Input { name: name.clone(), record: record.clone() }).collect()
         };
-        Ok(Some(compare(&inputs(Side::A), &inputs(Side::B), &options)?))
+        let (a, b) = (inputs(Side::A), inputs(Side::B));
+        Ok(Some(compare(&a, &b, &self.verdict.options(Design::Blocks).for_blocks(&a, &b))?))
     }
 
     /// Measures one side in a fresh process.

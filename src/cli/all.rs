@@ -88,8 +88,9 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
 fn summary(record: &Record, output: &OutputArgs, page: Option<&Path>) -> Vec<String> {
     let mut papers: Vec<&str> = record.runs.iter().map(|run| run.paper.as_str()).collect();
     papers.dedup();
-    let mut lines =
-        vec![format!("{} papers in {} variants; the slowest pass of each", papers.len(), record.runs.len())];
+    let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+    let (papers, variants) = (count(papers.len(), "paper"), count(record.runs.len(), "variant"));
+    let mut lines = vec![format!("{papers} in {variants}; the slowest pass of each")];
     lines.extend(record.runs.iter().filter_map(|run| {
         let (pass, ms) = slowest(run)?;
         let near = pass.share_of_limit().zip(pass.bound.as_ref());
@@ -178,7 +179,7 @@ mod tests {
     fn the_end_names_slowest_passes_files_and_what_to_try() {
         let output = OutputArgs { json: Some("out/fumarole.json".into()), ..AllArgs::plain().output };
         let lines = summary(&example::full(), &output, Some(Path::new("out/report.html")));
-        assert_eq!(lines[0], "1 papers in 1 variants; the slowest pass of each");
+        assert_eq!(lines[0], "1 paper in 1 variant; the slowest pass of each");
         assert_eq!(lines[1], "  gas slices: splat, 2.0 ms, 25 % of limit (vertices)");
         assert_eq!(lines[2], "files: out/fumarole.json, out/report.html, fumarole-out/gas.png");
         assert!(lines[3].starts_with("next: fumarole PAPER bench"), "{lines:?}");

@@ -134,7 +134,8 @@ pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
             "compare --blocks: the sides are not of the same blocks; name ab-a.json and ab-b.json of one folder";
         return Err(Failure::Input(message.to_owned()));
     }
-    arguments.verdict.publish(&compare(&a, &b, &arguments.verdict.options(Design::Blocks))?)
+    let options = arguments.verdict.options(Design::Blocks).for_blocks(&a, &b);
+    arguments.verdict.publish(&compare(&a, &b, &options)?)
 }
 
 /// Numbers of the processes of a side, in their order.

@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::ab::VERDICTS_FILE;
 use super::compare::{Side, parse_side};
 use super::failure::Failure;
 use super::outcome;
 use crate::content;
 use crate::file;
 use crate::image::{self, Rgba8};
-use crate::measure::compare::{Comparison, Design, Input, Options, compare, sections};
+use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
 use crate::report::html::{Contents, Picture, PictureDifference, Plot, Source, page};
 use crate::report::json::{self, ReadError};
 use crate::report::{Record, Run};
@@ -38,6 +39,8 @@ pub struct ReportArgs {
 
 /// Largest plot that is shown, bytes.
 const MAX_PLOT_BYTES: u64 = 16 << 20;
+/// Largest comparison that is shown, bytes.
+const MAX_VERDICTS_BYTES: u64 = 16 << 20;
 /// Largest picture that is shown, bytes.
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
 
@@ -97,12 +100,18 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
         .map_err(failed)?;
     files.sort();
     let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
+    let mut verdicts = None;
     for path in &files {
         let ending = path.extension().unwrap_or_default();
         if ending == "svg" {
             match file::read(path, MAX_PLOT_BYTES) {
                 Ok(svg) => contents.plots.push(Plot { name: name_of(path), svg }),
                 Err(e) => contents.warnings.push(format!("{}: {e}", path.display())),
+            }
+        } else if path.ends_with(VERDICTS_FILE) {
+            match comparison(path) {
+                Ok(comparison) => verdicts = Some(comparison),
+                Err(e) => contents.warnings.push(e),
             }
         } else if ending == "json" {
             match json::read(path) {
@@ -118,14 +127,24 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
             }
         }
     }
-    if let (Some(a), Some(b)) = (sides.get("ab-a.json"), sides.get("ab-b.json")) {
-        let options = Options { design: Design::Blocks, ..Options::default() };
-        match compare(a, b, &options) {
-            Ok(comparison) => contents.verdicts.extend(named_sections(folder, &comparison)),
+    if let (None, Some(a), Some(b)) = (&verdicts, sides.get("ab-a.json"), sides.get("ab-b.json")) {
+        match compare(a, b, &Options::default().for_blocks(a, b)) {
+            Ok(comparison) => verdicts = Some(comparison),
             Err(e) => contents.warnings.push(e.to_string()),
         }
     }
+    contents.verdicts.extend(verdicts.iter().flat_map(|comparison| named_sections(folder, comparison)));
     Ok(())
+}
+
+/// The verdicts that `ab` left.
+fn comparison(path: &Path) -> Result<Comparison, String> {
+    let text = file::read_text(path, MAX_VERDICTS_BYTES).map_err(|e| format!("{}: {e}", path.display()))?;
+    let comparison: Comparison = json::document(&text, path).map_err(|e| e.to_string())?;
+    match comparison.schema == compare::SCHEMA {
+        true => Ok(comparison),
+        false => Err(format!("{}: its schema is {}, not {}", path.display(), comparison.schema, compare::SCHEMA)),
+    }
 }
 
 fn named_sections(folder: &Path, comparison: &Comparison) -> Vec<crate::report::html::Section> {

@@ -89,20 +89,20 @@ impl MeshSource {
         Ok(mesh)
     }
 
-    /// Triangles that a file says it has, where it says so before they come.
+    /// Triangles that a file says it has, where it says so before they come, and at least those that a mesh is divided into.
     ///
     /// # Errors
     /// As [`MeshSource::load`], of what stands before the triangles.
     pub fn promised_triangles(&self) -> Result<Option<u64>, Error> {
         match self {
             Self::File(path) => formats::promised_triangles(path),
-            Self::Divided(source, _) => source.promised_triangles(),
+            Self::Divided(source, triangles) => Ok(source.promised_triangles()?.max(Some(*triangles))),
             _ => Ok(None),
         }
     }
 }
 
-/// Triangles that the files among these say they have, where they say so before they come.
+/// Triangles that these are known to have before they are loaded.
 ///
 /// # Errors
 /// As [`MeshSource::promised_triangles`].

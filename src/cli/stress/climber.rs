@@ -125,6 +125,7 @@ impl Climber for MachineClimber<'_> {
             words.extend(["--step-across".into(), across.to_string().into()]);
         }
         let end = Instant::now() + Duration::from_secs_f64(left_s);
+        let killed_before = host_memory::killed_for_memory();
         let Returned { ended, report, wall_s } = self.children.run(&words, Some(end))?;
         let outcome = match report {
             _ if self.is_interrupted() => Outcome::Stopped(StopKind::Interruption, "interrupted".to_owned()),
@@ -135,7 +136,9 @@ impl Climber for MachineClimber<'_> {
             Some(Report::Machine(_)) | None if ended.is_late => {
                 Outcome::Stopped(StopKind::Time, format!("ended after {wall_s:.1} s, when the budget was over"))
             }
-            Some(Report::Machine(_)) | None => crashed(&ended),
+            Some(Report::Machine(_)) | None => {
+                crashed(&ended, killed_before.is_some() && killed_before == host_memory::killed_for_memory())
+            }
         };
         match &outcome {
             Outcome::Finished(step) => {
@@ -159,13 +162,18 @@ fn step(value: u64, measured: Measured, wall_s: f64) -> Step {
     Step { value, amount, throughput_per_s: frame_ms.map(|ms| amount / ms * 1e3), wall_s, peak_bytes, not_finite, run }
 }
 
-/// What a process that left no report died of.
-fn crashed(ended: &Ended) -> Outcome {
+/// What a process that left no report died of. Where the system tells that it has killed nothing for memory, a kill came from
+/// elsewhere, and another call tries the step again.
+fn crashed(ended: &Ended, has_memory: bool) -> Outcome {
     #[cfg(unix)]
     {
         use std::os::unix::process::ExitStatusExt;
         /// SIGKILL, which Linux ends a process with when memory runs out.
         const KILL: i32 = 9;
+        if ended.status.signal() == Some(KILL) && has_memory {
+            let reason = "its process was killed, and not by the system for memory".to_owned();
+            return Outcome::Stopped(StopKind::Crash, reason);
+        }
         if ended.status.signal() == Some(KILL) {
             let reason = "its process was killed, as the system does when memory runs out".to_owned();
             return Outcome::Stopped(StopKind::Memory, reason);

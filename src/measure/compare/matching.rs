@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::Input;
 use crate::report::record::{Environment, Record, Run};
@@ -209,17 +209,28 @@ fn fields(run: &Run) -> BTreeMap<String, String> {
         ("validation", text(run.validation.name())),
     ];
     let config = run.config.iter().map(|(name, value)| (format!("config.{name}"), by_content(value, run).to_string()));
-    fixed.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(config).collect()
+    // Also of a file that the parameters tell by something else than its path.
+    let mut contents: Vec<&str> = run.inputs.iter().map(|file| file.sha256.as_str()).collect();
+    contents.sort_unstable();
+    let inputs = ("inputs".to_owned(), Value::from(contents).to_string());
+    fixed.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(config).chain([inputs]).collect()
 }
 
-/// A parameter's value with the content of files in place of their paths.
+/// A parameter's value with the content of files in place of their paths, of which a number of triangles (`:N`) or a place
+/// (`@X,Y,Z`) may follow.
 fn by_content(value: &Value, run: &Run) -> Value {
     match value {
         Value::String(text) => {
-            let file = run.inputs.iter().find(|file| file.path == *text);
-            file.map_or_else(|| value.clone(), |file| format!("sha256:{}", file.sha256).into())
+            let rest =
+                |path: &str| text.strip_prefix(path).filter(|rest| rest.is_empty() || rest.starts_with([':', '@']));
+            let found = run.inputs.iter().filter_map(|file| Some((file, rest(&file.path)?)));
+            let longest = found.min_by_key(|(_, rest)| rest.len());
+            longest.map_or_else(|| value.clone(), |(file, rest)| format!("sha256:{}{rest}", file.sha256).into())
         }
         Value::Array(items) => items.iter().map(|item| by_content(item, run)).collect(),
+        Value::Object(fields) => {
+            fields.iter().map(|(name, value)| (name.clone(), by_content(value, run))).collect::<Map<_, _>>().into()
+        }
         other => other.clone(),
     }
 }

@@ -79,6 +79,18 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// These for sides that were measured in blocks. `ab` measures until it has decided, so that each of its [`LOOKS`] has a
+    /// part of the error; parts of many machines have a number of blocks that was fixed beforehand, and are looked at once.
+    pub fn for_blocks(mut self, a: &[Input], b: &[Input]) -> Self {
+        self.design = Design::Blocks;
+        if !a.iter().chain(b).all(|input| input.record.share.is_some()) {
+            self.rules.error /= LOOKS.len() as f64;
+        }
+        self
+    }
+}
+
 /// [`Options::min_share`] of those that name none.
 pub const MIN_SHARE: f64 = 0.02;
 

@@ -224,7 +224,12 @@ fn passes_have_verdicts_by_clock() {
     let mut noise = Noise::new(1);
     let mut times = |mean_ms: f64| noise.frame_times(FRAMES, mean_ms, 0.005);
     let [a, b] = [0.1, 0.3].map(|splat_ms| {
-        let runs = (0..5).map(|process| Run { process, ..with_passes(&times(5.0), &times(1.0), &times(splat_ms)) });
+        let runs = (0..5).map(|process| {
+            let mut run = Run { process, ..with_passes(&times(5.0), &times(1.0), &times(splat_ms)) };
+            let wait_ms = summarize(&times(1.0 - splat_ms));
+            run.passes.push(Pass { wait_ms, ..example::pass("read-back", PassKind::Transfer) });
+            run
+        });
         vec![input("x.json", runs.collect())]
     });
     let comparison = compared(&a, &b, Some(0.05));
@@ -233,6 +238,7 @@ fn passes_have_verdicts_by_clock() {
     let found: Vec<_> = run.passes.iter().map(|p| (p.name.as_str(), p.clock, p.time.verdict, p.time.gate)).collect();
     assert_eq!(found[0], ("cluster", Clock::Host, Verdict::Same, Some(Gate::Passed)));
     assert_eq!(found[1], ("splat", Clock::Gpu, Verdict::Slower, Some(Gate::Failed)));
+    assert_eq!(found[2], ("read-back", Clock::Wait, Verdict::Faster, Some(Gate::Passed)));
     assert!((run.passes[1].time.ratio.unwrap() - 3.0).abs() < 0.02);
     assert!(comparison.has_regression(), "a pass of 6 % that takes three times as long fails");
 
@@ -312,6 +318,26 @@ fn files_count_by_their_content() {
     assert_eq!(verdict(&a, &with_file("b/bunny.ply", "11")), Verdict::Same);
     let changed = compare(&a, &with_file("a/bunny.ply", "22"), &Options::default()).unwrap_err().to_string();
     assert!(changed.contains("config.mesh is [\"sha256:11\"]"), "{changed}");
+
+    // A number of triangles or a place behind the path, a file within an object, and one that no parameter names.
+    let values: [fn(&str) -> Value; 4] = [
+        |path| json!([format!("{path}:20000")]),
+        |path| json!(format!("{path}@1,2,3")),
+        |path| json!([{"source": path, "columns": 3}]),
+        |_| json!({"name": "water", "range": [0, 1]}),
+    ];
+    for value in values {
+        let of = |path: &str, sha256: &str| {
+            let mut run = run_of(&[5.0; 4]);
+            run.config.insert("input".to_owned(), value(path));
+            run.inputs = vec![InputFile { path: path.to_owned(), sha256: sha256.to_owned() }];
+            vec![input(path, vec![run])]
+        };
+        let a = of("a/water.png", "11");
+        assert_eq!(verdict(&a, &of("b/water.png", "11")), Verdict::Same);
+        let changed = compare(&a, &of("a/water.png", "22"), &Options::default()).unwrap_err().to_string();
+        assert!(changed.contains("11") && changed.contains("22"), "{changed}");
+    }
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! The loads behind the limits.
 
+use std::sync::Arc;
+
 use ash::vk;
 
-use super::{rate, times};
+use super::Workload;
 use crate::gpu::{
-    Blend, Buffer, BufferDesc, Draw, Error, Image, ImageDesc, Load, Mode, Pass, Recorder, ShaderLibrary, transfer,
+    Blend, Buffer, BufferDesc, Draw, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Recorder, ShaderLibrary,
+    transfer,
 };
 use crate::host_block;
 
@@ -28,55 +31,55 @@ host_block! {
 }
 
 /// Bytes read and written by copies of a buffer of `bytes`, in 10^9 a second.
-pub fn copy(recorder: &mut Recorder, shaders: &ShaderLibrary, bytes: u64) -> Result<Vec<f64>, Error> {
+pub fn copy(shaders: &ShaderLibrary, bytes: u64) -> Result<Workload, Error> {
     let device = shaders.device();
     // Uploaded, not only allocated: a driver may map untouched pages to one of zeros.
     let contents = vec![1u8; bytes as usize];
     let from = transfer::upload(device, "limits/copy-source", vk::BufferUsageFlags::empty(), &contents)?;
     let to = Buffer::new(device, BufferDesc::new("limits/copy-destination", bytes))?;
     let pass = Pass::copy("copy", "", &from, &to);
-    rate(recorder, 2.0 * bytes as f64, |frame, load| (0..load).try_for_each(|_| frame.copy(&pass)))
+    Ok(Workload::new(2.0 * bytes as f64, move |frame, load| (0..load).try_for_each(|_| frame.copy(&pass))))
 }
 
 /// Operations of multiply-adds in 10^9 a second, two each.
-pub fn multiply_add(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+pub fn multiply_add(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let desc = BufferDesc::new("limits/results", u64::from(THREADS) * 16).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
     let results = Buffer::new(shaders.device(), desc)?;
     let pass = Pass::compute("multiply-add", "", "limits/multiply-add.comp")
         .with("results", &results)
         .constants::<MultiplyAdd>()
         .build(shaders)?;
-    rate(recorder, f64::from(THREADS) * f64::from(ITERATIONS) * FLOPS_PER_ITERATION, |frame, load| {
+    let operations = f64::from(THREADS) * f64::from(ITERATIONS) * FLOPS_PER_ITERATION;
+    Ok(Workload::new(operations, move |frame, load| {
         frame.compute(&pass, |dispatch| {
             let constants = MultiplyAdd { iterations: ITERATIONS * load, factor: 0.5 };
             dispatch.constants(&constants).threads(THREADS, 1, 1);
         })
-    })
+    }))
 }
 
 /// Invocations of a kernel that does nothing, in 10^9 a second.
-pub fn issue(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+pub fn issue(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let pass = idle(shaders)?;
-    rate(recorder, f64::from(INVOCATIONS), |frame, load| {
+    Ok(Workload::new(f64::from(INVOCATIONS), move |frame, load| {
         frame.compute(&pass, |dispatch| {
             (0..load).for_each(|_| {
                 dispatch.threads(INVOCATIONS, 1, 1);
             });
         })
-    })
+    }))
 }
 
 /// Milliseconds of a pass with one dispatch of one workgroup that does nothing.
-pub fn empty_dispatch(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+pub fn empty_dispatch(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let pass = idle(shaders)?;
-    let times = times(recorder, |frame, load| {
+    Ok(Workload::time(move |frame, load| {
         (0..load).try_for_each(|_| {
             frame.compute(&pass, |dispatch| {
                 dispatch.threads(1, 1, 1);
             })
         })
-    })?;
-    Ok(times.into_iter().map(|(load, ms)| ms / f64::from(load)).collect())
+    }))
 }
 
 fn idle(shaders: &ShaderLibrary) -> Result<Pass, Error> {
@@ -87,22 +90,22 @@ fn idle(shaders: &ShaderLibrary) -> Result<Pass, Error> {
 
 /// Vertices of triangles outside the picture, none of them shared, in 10^9 a second. Points would be slower: a driver that
 /// shades vertices one after the other has a way of its own for them.
-pub fn vertices(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+pub fn vertices(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let target = target(shaders, vk::Format::R8G8B8A8_UNORM, 64)?;
     let pass = Pass::graphics("vertices", "", "limits/outside.vert", "limits/constant.frag")
         .color(&target, Load::Clear([0.0; 4]), Blend::Replace)
         .build(shaders)?;
-    rate(recorder, f64::from(VERTICES), |frame, load| frame.graphics(&pass, |draw| repeat(load, draw, VERTICES)))
-}
-
-fn repeat(load: u32, draw: &mut Draw<'_>, vertices: u32) {
-    for _ in 0..load {
-        draw.vertices(vertices);
-    }
+    Ok(Workload::new(f64::from(VERTICES), move |frame, load| {
+        frame.graphics(&pass, |draw| {
+            for _ in 0..load {
+                draw.vertices(VERTICES);
+            }
+        })
+    }))
 }
 
 /// Triangles without area, of three vertices that are shaded once, in 10^9 a second.
-pub fn triangles(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+pub fn triangles(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let target = target(shaders, vk::Format::R8G8B8A8_UNORM, 64)?;
     let indices: Vec<u32> = (0..3 * TRIANGLES).map(|index| index % 3).collect();
     let usage = vk::BufferUsageFlags::INDEX_BUFFER;
@@ -111,29 +114,28 @@ pub fn triangles(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec
         .indices(&indices)
         .color(&target, Load::Clear([0.0; 4]), Blend::Replace)
         .build(shaders)?;
-    rate(recorder, f64::from(TRIANGLES), |frame, load| {
+    Ok(Workload::new(f64::from(TRIANGLES), move |frame, load| {
         frame.graphics(&pass, |draw| {
             for _ in 0..load {
                 draw.indices(3 * TRIANGLES);
             }
         })
-    })
+    }))
 }
 
 /// Milliseconds of a pass with one draw that covers nothing.
-pub fn empty_draw(recorder: &mut Recorder, shaders: &ShaderLibrary) -> Result<Vec<f64>, Error> {
+pub fn empty_draw(shaders: &ShaderLibrary) -> Result<Workload, Error> {
     let target = target(shaders, vk::Format::R8G8B8A8_UNORM, 64)?;
     let pass = Pass::graphics("empty", "", "limits/flat.vert", "limits/constant.frag")
         .color(&target, Load::Discard, Blend::Replace)
         .build(shaders)?;
-    let times = times(recorder, |frame, load| {
+    Ok(Workload::time(move |frame, load| {
         (0..load).try_for_each(|_| {
             frame.graphics(&pass, |draw| {
                 draw.vertices(3);
             })
         })
-    })?;
-    Ok(times.into_iter().map(|(load, ms)| ms / f64::from(load)).collect())
+    }))
 }
 
 /// Pixels of a constant colour, in 10^9 a second. Each fill is a render pass of its own: of opaque ones in the same, a
@@ -143,7 +145,7 @@ pub fn fill(
     shaders: &ShaderLibrary,
     format: vk::Format,
     blend: Blend,
-) -> Result<Vec<f64>, Error> {
+) -> Result<Workload, Error> {
     let target = target(shaders, format, SIDE)?;
     let pass = |load| {
         Pass::graphics("fill", "", "common/fullscreen.vert", "limits/constant.frag")
@@ -157,16 +159,12 @@ pub fn fill(
     let cleared = pass(Load::Clear([0.0; 4]))?;
     recorder.run(Mode::Plain, |frame| frame.graphics(&cleared, covered))?;
     let measured = if blend == Blend::Replace { pass(Load::Discard)? } else { pass(Load::Keep)? };
-    rate(recorder, f64::from(SIDE) * f64::from(SIDE), |frame, load| {
+    Ok(Workload::new(f64::from(SIDE) * f64::from(SIDE), move |frame, load| {
         (0..load).try_for_each(|_| frame.graphics(&measured, covered))
-    })
+    }))
 }
 
-fn target(
-    shaders: &ShaderLibrary,
-    format: vk::Format,
-    side: u32,
-) -> Result<std::sync::Arc<crate::gpu::ImageView>, Error> {
+fn target(shaders: &ShaderLibrary, format: vk::Format, side: u32) -> Result<Arc<ImageView>, Error> {
     let desc = ImageDesc::new_2d("limits/target", format, side, side).usage(vk::ImageUsageFlags::COLOR_ATTACHMENT);
     Image::new(shaders.device(), desc)?.view()
 }

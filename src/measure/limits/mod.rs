@@ -1,7 +1,7 @@
 //! The device's own limits, measured in the same process, so that a pass can be shown as a fraction of them.
 //!
-//! Each is the time of a load that does one thing and as little else as possible (`loads.rs`). A load grows until it lasts,
-//! and is then measured several times; every sample is kept.
+//! Each is the time of a load that does one thing and as little else as possible (`loads.rs`). Loads grow until they last, and
+//! are then measured several times in turn; every sample is kept.
 
 mod loads;
 
@@ -45,26 +45,35 @@ pub fn pixel_rate(format: vk::Format, blends: bool) -> Option<String> {
 /// Any error of the Vulkan layer.
 pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
     let Machine { recorder, shaders, .. } = machine;
-    let mut found = vec![
-        ("copy_gb_s".to_owned(), loads::copy(recorder, shaders, COPY_BYTES)?),
-        ("small_copy_gb_s".to_owned(), loads::copy(recorder, shaders, SMALL_COPY_BYTES)?),
-        ("fma_gflops".to_owned(), loads::multiply_add(recorder, shaders)?),
-        ("issue_ginvocations_s".to_owned(), loads::issue(recorder, shaders)?),
-        ("vertex_gvertices_s".to_owned(), loads::vertices(recorder, shaders)?),
-        ("triangle_gtriangles_s".to_owned(), loads::triangles(recorder, shaders)?),
-        ("empty_draw_ms".to_owned(), loads::empty_draw(recorder, shaders)?),
-        ("empty_dispatch_ms".to_owned(), loads::empty_dispatch(recorder, shaders)?),
+    let mut loads = vec![
+        ("copy_gb_s".to_owned(), loads::copy(shaders, COPY_BYTES)?),
+        ("small_copy_gb_s".to_owned(), loads::copy(shaders, SMALL_COPY_BYTES)?),
+        ("fma_gflops".to_owned(), loads::multiply_add(shaders)?),
+        ("issue_ginvocations_s".to_owned(), loads::issue(shaders)?),
+        ("vertex_gvertices_s".to_owned(), loads::vertices(shaders)?),
+        ("triangle_gtriangles_s".to_owned(), loads::triangles(shaders)?),
+        ("empty_draw_ms".to_owned(), loads::empty_draw(shaders)?),
+        ("empty_dispatch_ms".to_owned(), loads::empty_dispatch(shaders)?),
     ];
     for (format, _) in FORMATS {
         for blend in [Blend::Replace, Blend::Add] {
             let blends = blend == Blend::Add;
             if let Some(name) = pixel_rate(format, blends).filter(|_| !blends || can_blend(shaders.device(), format)) {
-                found.push((name, loads::fill(recorder, shaders, format, blend)?));
+                loads.push((name, loads::fill(recorder, shaders, format, blend)?));
             }
         }
     }
+    for (_, load) in &mut loads {
+        load.grow(recorder)?;
+    }
+    // In turn, so that what else the machine does for a moment is in one sample of each and not in all of one.
+    for _ in 0..SAMPLES {
+        for (_, load) in &mut loads {
+            load.sample(recorder)?;
+        }
+    }
     let samples: BTreeMap<String, Summary> =
-        found.into_iter().filter_map(|(name, rates)| Some((name, summarize(&rates)?))).collect();
+        loads.into_iter().filter_map(|(name, load)| Some((name, summarize(&load.samples)?))).collect();
     let rate = |name: &str| samples.get(name).map(|rates| rates.median);
     Ok(Limits {
         copy_gb_s: rate("copy_gb_s"),
@@ -105,40 +114,57 @@ pub fn warning(limits: &Limits) -> Option<String> {
 /// Any error of the Vulkan layer.
 pub fn float_blend_gpix_s(machine: &mut Machine) -> Result<Option<f64>, Error> {
     let Machine { recorder, shaders, .. } = machine;
-    Ok(median(&loads::fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, Blend::Add)?))
+    let mut load = loads::fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, Blend::Add)?;
+    load.grow(recorder)?;
+    (0..SAMPLES).try_for_each(|_| load.sample(recorder))?;
+    Ok(median(&load.samples))
 }
 
-/// Milliseconds of a load that lasts, with the load, sample after sample; none without timestamps. `record` records it
-/// under one name.
-fn times(
-    recorder: &mut Recorder,
-    record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
-) -> Result<Vec<(u32, f64)>, Error> {
-    let mut once = |load: u32| -> Result<Option<f64>, Error> {
-        let sample = recorder.run(Mode::Timestamped, |frame| record(frame, load))?;
-        Ok(sample.passes.first().and_then(|p| p.gpu_ms).filter(|&ms| ms > 0.0))
-    };
-    // The first use compiles the pipeline.
-    once(1)?;
-    let mut load = 1;
-    while load < 1 << 14 && once(load)?.is_some_and(|ms| ms < LEAST_MS) {
-        load *= 2;
-    }
-    let mut times = Vec::with_capacity(SAMPLES);
-    for _ in 0..SAMPLES {
-        times.extend(once(load)?.map(|ms| (load, ms)));
-    }
-    Ok(times)
+type Record = Box<dyn Fn(&mut Frame<'_>, u32) -> Result<(), Error>>;
+
+/// Work of one kind that can be made any number of times as large.
+struct Workload {
+    /// Amount that it does when it is made once; `None` where its time is looked for and no rate.
+    amount: Option<f64>,
+    /// Records it so many times as large, under one name.
+    record: Record,
+    times: u32,
+    /// Amounts in 10^9 a second, or milliseconds of one.
+    samples: Vec<f64>,
 }
 
-/// Amounts in 10^9 a second, where a load of one does `amount`.
-fn rate(
-    recorder: &mut Recorder,
-    amount: f64,
-    record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error>,
-) -> Result<Vec<f64>, Error> {
-    let times = times(recorder, record)?;
-    Ok(times.into_iter().map(|(load, ms)| amount * f64::from(load) / ms * 1e-6).collect())
+impl Workload {
+    fn new(amount: f64, record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error> + 'static) -> Self {
+        Workload { amount: Some(amount), record: Box::new(record), times: 1, samples: Vec::new() }
+    }
+
+    fn time(record: impl Fn(&mut Frame<'_>, u32) -> Result<(), Error> + 'static) -> Self {
+        Workload { amount: None, record: Box::new(record), times: 1, samples: Vec::new() }
+    }
+
+    /// Makes it so large that it lasts.
+    fn grow(&mut self, recorder: &mut Recorder) -> Result<(), Error> {
+        // The first use compiles the pipeline.
+        self.run_ms(recorder)?;
+        while self.times < 1 << 14 && self.run_ms(recorder)?.is_some_and(|ms| ms < LEAST_MS) {
+            self.times *= 2;
+        }
+        Ok(())
+    }
+
+    /// Adds a sample; none without timestamps.
+    fn sample(&mut self, recorder: &mut Recorder) -> Result<(), Error> {
+        if let Some(ms) = self.run_ms(recorder)? {
+            let times = f64::from(self.times);
+            self.samples.push(self.amount.map_or(ms / times, |amount| amount * times / ms * 1e-6));
+        }
+        Ok(())
+    }
+
+    fn run_ms(&self, recorder: &mut Recorder) -> Result<Option<f64>, Error> {
+        let sample = recorder.run(Mode::Timestamped, |frame| (self.record)(frame, self.times))?;
+        Ok(sample.passes.first().and_then(|pass| pass.gpu_ms).filter(|&ms| ms > 0.0))
+    }
 }
 
 #[cfg(test)]

@@ -17,6 +17,11 @@ pub fn available_bytes() -> Option<u64> {
     Some(of_group.map_or(free, |left| left.min(free)))
 }
 
+/// Processes that the system has killed since its start because memory ran out, its own or a control group's.
+pub fn killed_for_memory() -> Option<u64> {
+    counted(&fs::read_to_string("/proc/vmstat").ok()?, "oom_kill")
+}
+
 /// Makes this process the first that the system kills when memory runs out, so that it takes no other.
 pub fn be_killed_first() {
     // Where it cannot be said, nothing is lost.
@@ -33,6 +38,10 @@ fn kilobytes(text: &str, name: &str) -> Option<u64> {
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
 
+fn counted(text: &str, name: &str) -> Option<u64> {
+    text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(' ')?.trim().parse().ok())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,6 +50,8 @@ mod tests {
     fn numbers_are_read_in_bytes_and_a_group_may_have_none() {
         assert_eq!(kilobytes("a: 1 kB\nVmHWM:\t  12 kB\n", "VmHWM:"), Some(12 << 10));
         assert_eq!(kilobytes("VmHWM: many", "VmHWM:"), None);
+        assert_eq!(counted("oom_kill_of 1\noom_kill 3\n", "oom_kill"), Some(3));
+        assert_eq!(counted("oom_kills 1\n", "oom_kill"), None);
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(left_in(folder.path()), None);
         fs::write(folder.path().join("memory.current"), "100\n").unwrap();

@@ -1,6 +1,7 @@
 //! `fumarole ab`: two sides in turn.
 
 use super::program::{ONCE, Program, SCENE, device, folder, fumarole, read_json};
+use super::shaders::{end_cast_with, own_shaders};
 
 /// Two blocks of the tiny scene, with `options` before the paper.
 fn ab(options: &str) -> Program {
@@ -62,6 +63,29 @@ fn it_ends_with_the_look_that_decides() {
     assert_eq!(report["confidence"], 0.9875, "a quarter of the error");
     let kept = read_json(&out.path().join("ab-b.json"));
     assert_eq!(kept["runs"].as_array().unwrap().len() as u64, processes);
+
+    // The page shows these verdicts and none of its own.
+    let verdicts = out.path().join("ab.json");
+    let mut left = read_json(&verdicts);
+    assert_eq!(left, report);
+    left["runs"][0]["frame"]["verdict"] = "FASTER".into();
+    std::fs::write(&verdicts, left.to_string()).unwrap();
+    let page = out.path().join("page.html");
+    fumarole("report --quiet -o").arg(&page).arg(out.path()).run().succeeded();
+    assert!(std::fs::read_to_string(page).unwrap().contains("FASTER"));
+}
+
+#[test]
+fn a_side_may_have_another_program_and_changed_shaders() {
+    let out = folder();
+    let shaders = own_shaders(out.path());
+    end_cast_with(&shaders, "color.r += 0.25;");
+    let program = ab("--json --out").arg(out.path()).arg("--binary");
+    let program = program.arg(format!("B:{}", env!("CARGO_BIN_EXE_fumarole")));
+    let report = common(program.arg("--b").arg(format!("--shader-dir {}", shaders.display()))).run().succeeded().json();
+    let differences = report["differences"].as_array().unwrap().iter();
+    let whats: Vec<&str> = differences.map(|difference| difference["what"].as_str().unwrap()).collect();
+    assert!(whats.iter().any(|what| what.starts_with("SPIR-V of caustics level-map cast")), "{whats:?}");
 }
 
 #[test]

@@ -14,14 +14,14 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// A copy of the program's own shaders in `folder`.
-fn own_shaders(folder: &Path) -> PathBuf {
+pub(super) fn own_shaders(folder: &Path) -> PathBuf {
     let shaders = folder.join("my-shaders");
     copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), &shaders);
     shaders
 }
 
 /// Replaces the end of the cast's shader.
-fn end_cast_with(shaders: &Path, ending: &str) -> usize {
+pub(super) fn end_cast_with(shaders: &Path, ending: &str) -> usize {
     let path = shaders.join("caustics/cast.frag");
     let text = fs::read_to_string(&path).unwrap();
     let (body, _) = text.rsplit_once('}').unwrap();

@@ -163,7 +163,7 @@ fn meshes_are_divided_and_objects_multiplied() {
     }
     let out = folder();
     let layers =
-        gas("stress --axis fragments --from 4 --factor 4 --variant no-volume --size 45x31 --budget 10 --quiet --out");
+        gas("stress --axis fragments --from 4 --factor 4 --variant no-volume --size 45x31 --budget 25 --quiet --out");
     layers.arg(out.path()).on_test_device().run().succeeded();
     let found: Vec<f64> = steps(&record(out.path())).iter().map(|step| step["amount"].as_f64().unwrap()).collect();
     // Twelve more layers of every pixel, whose diagonals are in both of their triangles.
@@ -296,7 +296,7 @@ fn killed_in_a_step_it_loses_that_step_alone() {
 #[test]
 fn a_step_that_crashes_or_is_killed_ends_its_series_and_says_so() {
     beside_others(|| {
-        for (name, kind, part) in [("-SEGV", "crash", "signal"), ("-KILL", "memory", "killed")] {
+        for (name, kind, part) in [("-SEGV", "crash", "signal"), ("-KILL", "crash", "killed")] {
             let out = folder();
             let mut running = planes(out.path(), "--from 64 --factor 1.05 --budget 100").start();
             later_step(running.id(), out.path());
