@@ -25,7 +25,7 @@ layout(location = 0) out vec4 accumulated;
 void main() {
     float ratio_squared = dot(disc, disc);
     float nearest = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).r;
-    if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest) {
+    if (ratio_squared > 1.0 || eye_depth_m * scene.depth_per_m >= nearest || center_m.y <= scene.bare_m) {
         discard;
     }
     vec3 color = color_of(center_m.y, rock_at(center_m.xz));

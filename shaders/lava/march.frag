@@ -155,6 +155,9 @@ void main() {
     vec3 place_m = shading.eye_m + hit.t * direction;
     vec4 surface = surface_at(columns_at(place_m.xz));
     bool is_wall = dot(hit.side, hit.side) > 0.0;
+    if (!is_wall && surface.w <= scene.bare_m) {
+        discard;
+    }
     vec3 normal = is_wall ? hit.side : normalize(surface.xyz);
     // The pixel's sides on the tangent plane; seen edge-on they would not end.
     float facing = dot(direction, normal);

@@ -6,7 +6,7 @@
 #include "lava/splat-in.glsl"
 
 void main() {
-    if (dot(disc, disc) > 1.0) {
+    if (dot(disc, disc) > 1.0 || center_m.y <= scene.bare_m) {
         discard;
     }
     gl_FragDepth = (eye_depth_m + scene.epsilon_m) * scene.depth_per_m;

@@ -7,10 +7,14 @@ use ash::vk;
 use super::blackbody;
 use super::parameters::Parameters;
 use super::rock::Rock;
+use super::sph::parameters::Simulation;
 use super::targets::Context;
 use crate::gpu::transfer::update;
 use crate::gpu::{Buffer, Error, ImageView, Sampler};
 use crate::host_block;
+
+/// Of the distance between particles; a single one on the floor stands half of it high.
+const BARE_SPACINGS: f64 = 0.25;
 
 host_block! {
     pub(super) struct SceneBlock {
@@ -26,7 +30,8 @@ host_block! {
         temperatures_k: [f32; 2],
         per_brightest: f32,
         is_blackbody: f32,
-        _pad: [f32; 2],
+        bare_m: f32,
+        _pad: f32,
     }
 }
 
@@ -72,6 +77,15 @@ pub fn depth_range_m(parameters: &Parameters) -> f32 {
     parameters.camera.far_m + parameters.epsilon_m
 }
 
+/// Height of places without lava, at most. The thesis's sheet lies over all of the space, at the floor where no particle is; a
+/// fluid that has not come so far leaves the floor bare, and what is thinner than a part of its particles' distance is none.
+fn bare_m(parameters: &Parameters) -> f32 {
+    match parameters.simulation {
+        Simulation::Free => f32::MIN,
+        Simulation::Sph => (BARE_SPACINGS * parameters.flow.spacing_m(parameters.particles)) as f32,
+    }
+}
+
 fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -> SceneBlock {
     let camera = &parameters.camera;
     let temperatures_k = parameters.temperatures_k();
@@ -97,6 +111,7 @@ fn block(parameters: &Parameters, normal_height: &Arc<ImageView>, rock: &Rock) -
         temperatures_k,
         per_brightest,
         is_blackbody: f32::from(u8::from(parameters.is_blackbody)),
-        _pad: [0.0; 2],
+        bare_m: bare_m(parameters),
+        _pad: 0.0,
     }
 }

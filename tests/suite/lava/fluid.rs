@@ -7,10 +7,14 @@ use fumarole::gpu::transfer::read_buffer;
 use fumarole::gpu::{Buffer, Device, Mode, Recorder};
 use fumarole::papers::lava::reference::Fluid;
 use fumarole::papers::lava::sph::Scale;
-use fumarole::papers::lava::{Animate, Flow, Lava, Parameters, Particles, Rock, Sides, Simulation, State, Variant};
+use fumarole::papers::lava::{
+    Animate, Flow, Lava, Parameters, Particles, Rock, Sides, Simulation, State, SurfaceDraw, Variant,
+};
+use fumarole::scene::Camera;
 use glam::{DVec3, Vec3};
 
 use super::scene::{draw, parameters, shaders, texels};
+use super::splatting::{low_camera, ridge, stage};
 use crate::common::gpu_test;
 
 /// 600 particles in a corner of the small space.
@@ -284,4 +288,31 @@ fn numbers_that_make_no_fluid_are_refused() {
         let error = parameters.validate().expect_err(name);
         assert_eq!(error.name, name, "{error}");
     }
+}
+
+/// Half of the space has lava: by splats and by rays the other half is bare, where the thesis's sheet lies on the floor.
+#[test]
+fn floor_without_lava_is_not_drawn() {
+    gpu_test(|device| {
+        let lit = |simulation, draw| {
+            let parameters = Parameters {
+                simulation,
+                surface_draw: Some(draw),
+                camera: Camera { eye: Vec3::new(1.0, 3.0, 0.7), target: Vec3::new(1.0, 0.0, 0.6), ..low_camera() },
+                ..parameters()
+            };
+            let mut surface = ridge(&parameters);
+            let columns = parameters.density[0] as usize;
+            for (index, height) in surface.heights.iter_mut().enumerate() {
+                *height = if index % columns < columns / 2 { 0.25 } else { 0.0 };
+            }
+            let stage = stage(device, &parameters, &surface, Rock::built_in());
+            let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
+            sums.iter().filter(|sums| sums[3] > 0.0).count() as f64
+        };
+        for draw in [SurfaceDraw::Splats, SurfaceDraw::March] {
+            let (sheet, fluid) = (lit(Simulation::Free, draw), lit(Simulation::Sph, draw));
+            assert!(sheet > 1000.0 && (0.4..0.6).contains(&(fluid / sheet)), "{draw:?}: {fluid} of {sheet} pixels");
+        }
+    });
 }
