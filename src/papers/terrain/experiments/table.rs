@@ -231,7 +231,7 @@ impl Outcome {
         text
     }
 
-    /// Where triangles are faster than rays, and where the level of detail changes nothing.
+    /// Where triangles are faster than rays and where slower, and where the level of detail changes nothing.
     fn verdicts(&self) -> Vec<String> {
         let mut lines = Vec::new();
         let of = |variant: Variant| self.rows.iter().filter(move |row| row.run.variant == variant.as_str());
@@ -243,13 +243,23 @@ impl Outcome {
                     Some((row.label.as_str(), ratio))
                 });
                 let pairs: Vec<(&str, Ratio)> = pairs.collect();
-                let faster = pairs.iter().filter(|(_, ratio)| ratio.interval[1] < 1.0);
-                let faster: Vec<String> =
-                    faster.map(|(label, ratio)| format!("{label} ({:.2} of its time)", ratio.ratio)).collect();
-                if !pairs.is_empty() {
-                    let where_ =
-                        if faster.is_empty() { "nowhere".to_owned() } else { format!("at {}", faster.join(", ")) };
-                    lines.push(format!("{} is faster than {}: {where_}", triangles.as_str(), rays.as_str()));
+                let places = |what: &str, holds: fn(&Ratio) -> bool| {
+                    let held = pairs.iter().filter(|(_, ratio)| holds(ratio));
+                    let held: Vec<String> =
+                        held.map(|(label, ratio)| format!("{label} ({:.2} of its time)", ratio.ratio)).collect();
+                    (!held.is_empty()).then(|| format!("{what} at {}", held.join(", ")))
+                };
+                let found: Vec<String> = [
+                    places("faster", |ratio| ratio.interval[1] < 1.0),
+                    places("slower", |ratio| ratio.interval[0] > 1.0),
+                    places("undecided", |ratio| ratio.interval[0] <= 1.0 && ratio.interval[1] >= 1.0),
+                ]
+                .into_iter()
+                .flatten()
+                .collect();
+                if !found.is_empty() {
+                    let (triangles, rays) = (triangles.as_str(), rays.as_str());
+                    lines.push(format!("{triangles} beside {rays}, by 95 % intervals: {}", found.join("; ")));
                 }
             }
         }
