@@ -5,8 +5,8 @@ layout(set = 0, binding = 6, std430) readonly buffer Emission {
     vec4 list[];
 } emission;
 
-const float ENTRIES_A_KELVIN = 0.4096;
-const float LAST_ENTRY = 4095.0; // that has a next one
+const float ENTRIES_A_KELVIN = 0.4095;
+const float LAST_ENTRY = 4094.0; // that has a next one
 
 vec3 emitted(float kelvin) {
     float place = clamp(kelvin * ENTRIES_A_KELVIN, 0.0, LAST_ENTRY + 1.0);

@@ -213,6 +213,10 @@ unsafe extern "system" fn get_instance_proc_addr(
 ) -> vk::PFN_vkVoidFunction {
     // SAFETY: the name ends in a zero.
     let name = unsafe { CStr::from_ptr(name) };
+    // The loader asks the topmost layer for it by an instance that is not there yet.
+    if name == c"vkCreateInstance" {
+        return own("vkCreateInstance");
+    }
     // What the driver lacks stays lacking.
     let next = next_instance_proc(instance, name);
     let is_there =

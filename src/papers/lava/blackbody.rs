@@ -9,7 +9,7 @@ use super::targets::Context;
 use crate::gpu::{Buffer, Error};
 
 /// Entries of the table, from 0 to [`HOTTEST_K`]: those of `lava/emission.glsl`.
-const ENTRIES: u32 = 4097;
+const ENTRIES: u32 = 4096;
 /// The last entry's temperature, kelvin.
 pub const HOTTEST_K: f32 = 10_000.0;
 

@@ -94,7 +94,8 @@ impl Layer {
 
     /// Runs with the layer next to the driver, `validated` with the Khronos layer above it.
     pub fn before(&self, program: Program, validated: bool) -> Program {
-        let program = program.env("FUMAROLE_LAYER_REPORT", self.report_path());
+        // Mesa's implicit layer makes calls of its own, whose failures it hides from the program.
+        let program = program.env("FUMAROLE_LAYER_REPORT", self.report_path()).env("NODEVICE_SELECT", "1");
         if !validated {
             return program.env("VK_INSTANCE_LAYERS", LAYER).env("VK_ADD_LAYER_PATH", self.folder.path());
         }
