@@ -53,7 +53,7 @@ impl Extension {
 pub(super) fn supported(instance: &Instance, raw: vk::PhysicalDevice) -> Result<Vec<Extension>, Error> {
     // SAFETY: `raw` comes from this instance.
     let offered = unsafe { instance.raw.enumerate_device_extension_properties(raw) }
-        .context("listing", "the extensions of a device")?;
+        .before_a_device("listing", "the extensions of a device")?;
     let is_offered = |one: &Extension| offered.iter().any(|e| e.extension_name_as_c_str() == Ok(one.name()));
     let mut listed: Vec<Extension> = Extension::ALL.into_iter().filter(is_offered).collect();
     let mut boundary = vk::PhysicalDeviceFrameBoundaryFeaturesEXT::default();

@@ -302,10 +302,10 @@ fn floor_without_lava_is_not_drawn() {
                 ..parameters()
             };
             let mut surface = ridge(&parameters);
-            let columns = parameters.density[0] as usize;
-            for (index, height) in surface.heights.iter_mut().enumerate() {
-                *height = if index % columns < columns / 2 { 0.25 } else { 0.0 };
-            }
+            let middle = surface.heights.len() / 2;
+            let (covered, bare) = surface.heights.split_at_mut(middle);
+            covered.fill(0.25);
+            bare.fill(0.0);
             let stage = stage(device, &parameters, &surface, Rock::built_in());
             let sums: Vec<[f32; 4]> = texels(device, &stage.sums);
             sums.iter().filter(|sums| sums[3] > 0.0).count() as f64
