@@ -7,16 +7,15 @@ use fumarole::gpu::{Compiler, Device, ShaderLibrary};
 use fumarole::papers::terrain::reference::{Part, Ray, Square};
 use fumarole::papers::terrain::{
     Base, Bound, Cover, Ground, Inputs, Interpolation, Levels, Origin, PATCH_SIDE, Parameters, Patch, Quadtree, Rays,
-    Selection, Surface, Variant, Viewer,
+    Selection, Variant, Viewer,
 };
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, HeightMap};
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 
 use super::drawing::Painter;
 use super::maps::{adversaries, ridges};
-use super::ridges::silhouette;
+use super::silhouette::{Silhouette, is_land};
 use super::variants::assert_agree;
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
@@ -246,10 +245,6 @@ fn the_choice_covers_the_picture_within_the_bound() {
     });
 }
 
-fn is_land(surface: Surface) -> bool {
-    !matches!(surface, Surface::Sky | Surface::Base)
-}
-
 /// Inside the land that all triangles show no base and no sky is seen through those that are chosen.
 #[test]
 fn no_crack_is_seen() {
@@ -326,34 +321,15 @@ fn silhouettes_are_within_the_bound_of_brute_force() {
                     near_m: ((sides - 0.65) * 0.9 * world.side_m()) as f32,
                     far_m: 1e8,
                 };
-                let rays = Rays::new(&camera, size.0, size.1);
-                let is_terrain = |pixel: u32| {
-                    let (x, y) = (f64::from(pixel % size.0), f64::from(pixel / size.0));
-                    let direction = rays.corner + x * rays.across + y * rays.down;
-                    let ray = Ray::new(world.moved(rays.eye), world.turned(direction));
-                    let hit = world.terrain.first_hit(&ray, [0.0, f64::INFINITY]);
-                    hit.is_some_and(|hit| matches!(hit.part, Part::Surface | Part::Wall))
-                };
-                let expected: Vec<bool> = (0..size.0 * size.1).into_par_iter().map(is_terrain).collect();
-                let expected = silhouette(&expected, size);
+                let expected = Silhouette::of_world(&world, &camera, size);
                 for most in [0.5_f32, 1.0, 3.0] {
                     let name = format!("{base:?} {sides} sides, {most} pixels");
                     let parameters = Parameters { mesh_error_px: most, ..world.parameters(camera, size) };
                     let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
                     let mut painter = Painter::new(device, Compiler::Glslang, Variant::MeshLod, &parameters, &inputs);
-                    let found: Vec<bool> = painter.draw().hits.iter().map(|hit| is_land(hit.surface)).collect();
-                    let found = silhouette(&found, size);
-                    let seen = expected.iter().filter(|row| **row < size.1).count();
-                    assert!(seen > 20, "{name}: only {seen} columns show land");
                     let reach = most.ceil() as usize;
-                    for (column, row) in found.iter().enumerate() {
-                        // Where land rises steeply a pixel to the side is several up or down.
-                        let beside = &expected[column.saturating_sub(reach)..(column + reach + 1).min(expected.len())];
-                        let (highest, lowest) = (beside.iter().min().unwrap(), beside.iter().max().unwrap());
-                        let more = reach as u32 + 1;
-                        let is_near = (highest.saturating_sub(more)..=lowest + more).contains(row);
-                        assert!(is_near, "{name}: column {column}: {row}, not {beside:?}");
-                    }
+                    let found = Silhouette::of_drawing(&painter.draw());
+                    found.assert_near(&name, &expected, (reach, reach as u32 + 1));
                 }
             }
         }

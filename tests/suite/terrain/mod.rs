@@ -12,6 +12,7 @@ mod pictures;
 mod pyramids;
 mod ridges;
 mod scenes;
+mod silhouette;
 mod variants;
 mod verdict;
 mod world;

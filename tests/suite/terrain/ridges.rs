@@ -1,16 +1,15 @@
 //! Rough land: crests narrower than a piece of a ray must neither be passed through nor moved.
 
 use fumarole::measure::Variant as _;
-use fumarole::papers::terrain::reference::{Part, Ray};
-use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, Parameters, Rays, Surface, Variant};
+use fumarole::papers::terrain::{Base, Inputs, Interpolation, Lod, Parameters, Variant};
 use fumarole::scene::random::Random;
 use fumarole::scene::{Camera, HeightMap, HeightMapSource};
 use glam::{DVec2, Vec3};
-use rayon::prelude::*;
 
 use super::drawing::Drawing;
 use super::maps::ridges;
 use super::oracle::{THOUSANDTH, Trials, is_cast_by};
+use super::silhouette::Silhouette;
 use super::world::World;
 use crate::common::gpu_test;
 
@@ -55,12 +54,6 @@ fn magnified_crests_stand_as_brute_force_has_them() {
     });
 }
 
-/// Rows of the first terrain from above, of each column; the picture's rows where there is none.
-pub fn silhouette(is_terrain: &[bool], (width, height): (u32, u32)) -> Vec<u32> {
-    let top = |x: u32| (0..height).find(|y| is_terrain[(y * width + x) as usize]).unwrap_or(height);
-    (0..width).map(top).collect()
-}
-
 /// Where a pixel covers many cells, the land against the sky is at most a pixel off.
 #[test]
 fn far_silhouettes_are_within_a_pixel_of_brute_force() {
@@ -84,34 +77,14 @@ fn far_silhouettes_are_within_a_pixel_of_brute_force() {
                     near_m: 1.0,
                     far_m: 1e8,
                 };
-                let rays = Rays::new(&camera, size.0, size.1);
-                let is_terrain = |pixel: u32| {
-                    let (x, y) = (f64::from(pixel % size.0), f64::from(pixel / size.0));
-                    let direction = rays.corner + x * rays.across + y * rays.down;
-                    let ray = Ray::new(world.moved(rays.eye), world.turned(direction));
-                    let hit = world.terrain.first_hit(&ray, [0.0, f64::INFINITY]);
-                    hit.is_some_and(|hit| matches!(hit.part, Part::Surface | Part::Wall))
-                };
-                let expected: Vec<bool> = (0..size.0 * size.1).into_par_iter().map(is_terrain).collect();
-                let expected = silhouette(&expected, size);
+                let expected = Silhouette::of_world(&world, &camera, size);
                 let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
                 let ray_casts = Variant::ALL.iter().filter(|v| !v.is_rasterised() && is_cast_by(**v, base));
                 for &variant in ray_casts {
                     let parameters = Parameters { lod: Lod::Pixel, ..world.parameters(camera, size) };
                     let drawing = Drawing::with(device, variant, &parameters, &inputs);
-                    let is_ground = |surface| !matches!(surface, Surface::Sky | Surface::Base);
-                    let found: Vec<bool> = drawing.hits.iter().map(|hit| is_ground(hit.surface)).collect();
-                    let found = silhouette(&found, size);
                     let name = format!("{base:?} {interpolation:?} {variant:?} {sides} sides, {height_m} m");
-                    let seen = expected.iter().filter(|row| **row < size.1).count();
-                    assert!(seen > 20, "{name}: only {seen} columns show land");
-                    for (column, row) in found.iter().enumerate() {
-                        // Where land rises steeply a pixel to the side is several up or down.
-                        let beside = &expected[column.saturating_sub(1)..(column + 2).min(expected.len())];
-                        let (highest, lowest) = (beside.iter().min().unwrap(), beside.iter().max().unwrap());
-                        let is_near = (highest.saturating_sub(1)..=lowest + 1).contains(row);
-                        assert!(is_near, "{name}: column {column}: {row}, not {beside:?}");
-                    }
+                    Silhouette::of_drawing(&drawing).assert_near(&name, &expected, (1, 1));
                 }
             }
         }
