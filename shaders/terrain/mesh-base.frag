@@ -16,5 +16,5 @@ void main() {
     float base_m = base_depth(direction).x;
     depth = vec4(base_m, base_place(direction, base_m), surface_code(base_m < NO_DEPTH ? BASE : SKY, 0, 0));
     // Where the map lies in the base, the map is seen: the base counts as a little farther away.
-    gl_FragDepth = 1.0 - terrain.near_m / max(base_m * 1.001, terrain.near_m);
+    gl_FragDepth = terrain.near_m / max(base_m * 1.001, terrain.near_m);
 }

@@ -10,5 +10,5 @@ layout(set = 0, binding = 1) uniform texture2D depth;
 
 void main() {
     float depth_m = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).x;
-    gl_FragDepth = 1.0 - light.near_m / max(depth_m, light.near_m);
+    gl_FragDepth = light.near_m / max(depth_m, light.near_m);
 }

@@ -83,6 +83,8 @@ impl Blend {
 pub enum DepthTest {
     /// Nearer fragments pass and are written.
     LessWrite,
+    /// As [`DepthTest::LessWrite`] of a depth that falls with the distance: 0 is farthest. Floats are dense there.
+    GreaterWrite,
     /// Nearer fragments pass; nothing is written.
     LessReadOnly,
     /// Fragments of the depth that is there pass; nothing is written.
@@ -99,6 +101,7 @@ impl DepthTest {
     pub fn as_str(self) -> &'static str {
         match self {
             DepthTest::LessWrite => "less, write",
+            DepthTest::GreaterWrite => "greater, write",
             DepthTest::LessReadOnly => "less, read only",
             DepthTest::EqualReadOnly => "equal, read only",
             DepthTest::CountVolume => "stencil: z-fail, wrapping",
@@ -122,6 +125,7 @@ impl DepthTest {
         };
         match self {
             DepthTest::LessWrite => depth(vk::CompareOp::LESS).depth_write_enable(true),
+            DepthTest::GreaterWrite => depth(vk::CompareOp::GREATER).depth_write_enable(true),
             DepthTest::LessReadOnly => depth(vk::CompareOp::LESS),
             DepthTest::EqualReadOnly => depth(vk::CompareOp::EQUAL),
             DepthTest::CountVolume => depth(vk::CompareOp::LESS)
@@ -135,6 +139,11 @@ impl DepthTest {
         }
     }
 
+    /// True where depth is written.
+    pub(crate) fn writes(self) -> bool {
+        matches!(self, DepthTest::LessWrite | DepthTest::GreaterWrite)
+    }
+
     /// True where the stencil is tested.
     pub(crate) fn has_stencil(self) -> bool {
         matches!(self, DepthTest::CountVolume | DepthTest::InsideVolume)
@@ -142,7 +151,9 @@ impl DepthTest {
 
     pub(crate) fn access(self) -> Access {
         match self {
-            DepthTest::LessWrite | DepthTest::CountVolume | DepthTest::InsideVolume => Access::DepthTarget,
+            DepthTest::LessWrite | DepthTest::GreaterWrite | DepthTest::CountVolume | DepthTest::InsideVolume => {
+                Access::DepthTarget
+            }
             DepthTest::LessReadOnly | DepthTest::EqualReadOnly => Access::DepthReadOnly,
         }
     }

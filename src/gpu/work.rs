@@ -317,7 +317,7 @@ impl Attachment {
     /// What fails the test is read as well, how often nobody counts; a stencil changes by rules of its own.
     fn depth(target: &Target, test: DepthTest, is_counting: bool) -> Self {
         let is_certain = !is_counting && !test.has_stencil();
-        Attachment { reads: true, writes: test == DepthTest::LessWrite, is_certain, ..Self::new(target) }
+        Attachment { reads: true, writes: test.writes(), is_certain, ..Self::new(target) }
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::hit::NO_DEPTH;
 use super::scene::DeviceScene;
-use super::stage::{Build, VECTOR};
+use super::stage::{Build, FARTHEST, VECTOR};
 use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass};
 
 /// The pass, and the targets that it shares with the pass `mesh`.
@@ -12,7 +12,7 @@ pub struct BasePass {
     pass: Pass,
     /// A hit of each pixel, of base and grids.
     pub target: Arc<ImageView>,
-    /// The depth buffer: 1 - near / depth.
+    /// The depth buffer: near / depth.
     pub tested: Arc<ImageView>,
 }
 
@@ -30,7 +30,7 @@ impl BasePass {
             .with("terrain", &first.terrain)
             .with("levels", &first.levels.view)
             .color(&target, Load::Clear([NO_DEPTH, 0.0, 0.0, 0.0]), Blend::Replace)
-            .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
+            .depth(&tested, FARTHEST, DepthTest::GreaterWrite)
             .build(build.shaders)?;
         Ok(BasePass { pass, target, tested })
     }

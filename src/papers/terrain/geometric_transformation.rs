@@ -20,8 +20,8 @@ pub struct SceneView {
     pub light: LightBlock,
     /// Of the picture.
     pub rays: Rays,
-    /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z is
-    /// 1 - near / w, without a far plane.
+    /// World to Vulkan clip space for what is rasterised: w is the depth along the view's axis in metres, z / w is near / w,
+    /// without a far plane.
     pub to_clip: DMat4,
 }
 
@@ -43,8 +43,8 @@ fn to_clip(camera: &Camera, aspect: f64) -> DMat4 {
     let projection = DMat4::from_cols(
         DVec4::new(scale / aspect, 0.0, 0.0, 0.0),
         DVec4::new(0.0, -scale, 0.0, 0.0),
-        DVec4::new(0.0, 0.0, -1.0, -1.0),
-        DVec4::new(0.0, 0.0, -f64::from(camera.near_m), 0.0),
+        DVec4::new(0.0, 0.0, 0.0, -1.0),
+        DVec4::new(0.0, 0.0, f64::from(camera.near_m), 0.0),
     );
     projection * camera.view().as_dmat4()
 }

@@ -79,7 +79,7 @@ impl Mesh {
                 .indices(&indices)
                 .constants::<MeshConstants>()
                 .color(&base.target, Load::Keep, Blend::Replace)
-                .depth(&base.tested, Load::Keep, DepthTest::LessWrite)
+                .depth(&base.tested, Load::Keep, DepthTest::GreaterWrite)
                 .build(shaders)?;
             grids.push(Grid { shape, block_rows, pass });
         }

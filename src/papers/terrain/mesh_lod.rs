@@ -62,7 +62,7 @@ impl MeshLod {
                 .indices(&indices)
                 .constants::<MeshConstants>()
                 .color(&base.target, Load::Keep, Blend::Replace)
-                .depth(&base.tested, Load::Keep, DepthTest::LessWrite)
+                .depth(&base.tested, Load::Keep, DepthTest::GreaterWrite)
                 .build(shaders)?;
             Ok(Grid { selection: Selection::new(tree), patches, pass })
         };

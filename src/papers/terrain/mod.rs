@@ -396,7 +396,7 @@ impl ObjectPasses {
         });
         let shadow = shadow.transpose()?;
         let (sunlit, test) = match &shadow {
-            None => (all_lit(build, "/objects")?, DepthTest::LessWrite),
+            None => (all_lit(build, "/objects")?, DepthTest::GreaterWrite),
             Some(shadows) => (shadows.occlusion.target.clone(), DepthTest::EqualReadOnly),
         };
         let objects = Objects::new(build, &meshes, (&depth, test), &sunlit, picture)?;

@@ -6,15 +6,15 @@ use std::sync::Arc;
 use super::blocks::LightBlock;
 use super::geometric_transformation::SceneView;
 use super::scene::block_buffer;
-use super::stage::Build;
-use crate::gpu::{Buffer, DepthTest, Error, Frame, ImageView, Load, Pass};
+use super::stage::{Build, FARTHEST};
+use crate::gpu::{Buffer, DepthTest, Error, Frame, ImageView, Pass};
 
 /// The pass, and what it shares with the passes that draw the objects.
 pub struct ObjectDepth {
     pass: Pass,
     /// A [`LightBlock`].
     pub light: Arc<Buffer>,
-    /// The depth buffer.
+    /// The depth buffer: near / depth.
     pub tested: Arc<ImageView>,
 }
 
@@ -27,7 +27,7 @@ impl ObjectDepth {
         let pass = Pass::graphics("object-depth", "1", "common/fullscreen.vert", "terrain/object-depth.frag")
             .with("light", &light)
             .with("depth", depth)
-            .depth(&tested, Load::Clear([1.0, 0.0, 0.0, 0.0]), DepthTest::LessWrite)
+            .depth(&tested, FARTHEST, DepthTest::GreaterWrite)
             .build(build.shaders)?;
         Ok(ObjectDepth { pass, light, tested })
     }

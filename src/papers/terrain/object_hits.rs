@@ -27,7 +27,7 @@ impl ObjectHits {
             let pass = mesh.pass("object-hits", "terrain/object-hit.frag").color(&target, load, Blend::Replace).depth(
                 &object_depth.tested,
                 Load::Keep,
-                DepthTest::LessWrite,
+                DepthTest::GreaterWrite,
             );
             passes.push(pass.build(build.shaders)?);
         }

@@ -13,6 +13,10 @@ use crate::measure::parameter::Choice;
 /// Format of hits and normals.
 pub const VECTOR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
+/// Nothing is as far as that in a depth buffer, which holds near / depth: to a ten millionth of any depth, where 1 - near / depth would
+/// be off by its square over the near plane's.
+pub const FARTHEST: Load = Load::Clear([0.0; 4]);
+
 /// The stages that a device offers for one program over all pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {

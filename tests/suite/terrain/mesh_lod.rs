@@ -264,13 +264,7 @@ fn no_crack_is_seen() {
                 for stand in
                     [Stand::Above, Stand::Hovering, Stand::Down, Stand::Beside, Stand::Far(3.0), Stand::Far(8.0)]
                 {
-                    // A depth buffer knows depths to their square over the near plane's, 60 billionths of it.
-                    let near_m = if let Stand::Far(sides) = stand {
-                        0.1 * sides * world.side_m()
-                    } else {
-                        0.05 * world.cell_m()
-                    };
-                    let camera = Camera { near_m: near_m as f32, ..world.camera(stand, &mut random) };
+                    let camera = world.camera(stand, &mut random);
                     let (expected, found) = (all.from(camera), chosen.from(camera));
                     // Beside a coarser patch triangles may be off by 2.25 times the bound.
                     let reach = (2.25 * most).ceil() as i32 + 1;
@@ -318,7 +312,7 @@ fn silhouettes_are_within_the_bound_of_brute_force() {
                     target: middle.as_vec3(),
                     up: glam::Vec3::Y,
                     vertical_fov_rad: (0.5 / sides) as f32 * [1.0, 1.3, 2.0][number],
-                    near_m: ((sides - 0.65) * 0.9 * world.side_m()) as f32,
+                    near_m: 1.0,
                     far_m: 1e8,
                 };
                 let expected = Silhouette::of_world(&world, &camera, size);

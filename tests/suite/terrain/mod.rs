@@ -2,6 +2,7 @@
 
 mod collisions;
 mod drawing;
+mod far;
 mod footprint;
 mod light;
 mod maps;
