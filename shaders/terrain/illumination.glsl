@@ -1,7 +1,8 @@
-// The pass `illumination` of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or from a draped
-// picture, haze by distance. The paper names the pass and no model of light.
+// The pass `illumination` of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or from what is
+// draped over it, haze by distance. The paper names the pass and no model of light.
 
 #include "terrain/light.glsl"
+#include "terrain/tints.glsl"
 
 layout(set = 0, binding = 1) uniform texture2D depth;
 layout(set = 0, binding = 2) uniform texture2D normal;
@@ -58,8 +59,11 @@ vec4 color_of(ivec2 pixel) {
         vec2 fraction = (hit.yz - light.drape_corner) / light.drape_cells;
         // A picture with a place of its own ends at its border; the other has its corners on the map's.
         bool is_over = light.draping == DRAPED || all(equal(clamp(fraction, vec2(0.0), vec2(1.0)), fraction));
-        if (light.draping != UNDRAPED && is_over && surface == 2 && map == 0) {
+        if ((light.draping == DRAPED || light.draping == PLACED) && is_over && surface == 2 && map == 0) {
             albedo = draped(fraction);
+        }
+        if (light.draping > PLACED && surface == 2) {
+            albedo = tinted(albedo, direction, hit.x, facing);
         }
         color = lit_color(albedo, facing.xyz, sunlit, hit.x * length(direction));
     }

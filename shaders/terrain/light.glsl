@@ -2,7 +2,7 @@
 
 const int UNDRAPED = 0;
 const int DRAPED = 1; // the picture's corners on the map's
-const int PLACED = 2; // where it lies
+const int PLACED = 2; // where it lies; those of tints.glsl follow
 
 layout(set = 0, binding = 0, std140) uniform Light {
     vec3 corner_direction; // to the middle of pixel (0, 0), world, for 1 m of depth
@@ -19,6 +19,12 @@ layout(set = 0, binding = 0, std140) uniform Light {
     vec2 drape_corner; // column and row of its north-west corner
     vec3 eye; // world, metres
     int draping;
+    vec3 base_center; // of a curved base, world, metres
+    float drape_scale; // metres between lines of equal height, or the heights' exaggeration
+    vec3 base_axis; // its axis, a unit vector
+    float zero_m; // where the maps' heights are 0, above the base
+    vec2 base_radii; // off the axis and along it
+    int base_kind;
 } light;
 
 vec3 view_direction(vec2 pixel) {

@@ -132,8 +132,21 @@ host_block! {
         pub drape_corner: Vec2,
         /// World, metres.
         pub eye: Vec3,
-        /// 0 without a picture; 1 with one whose corners lie on the first map's, 2 with one in a place of its own.
+        /// 0 without a drape; 1 with a picture whose corners lie on the first map's, 2 with one in a place of its own; 3 with lines
+        /// of equal height, 4 with colours by slope, 5 by height.
         pub draping: i32,
+        /// Of a curved base, world, metres. This and the axis are 0 over a plane.
+        pub base_center: Vec3,
+        /// Metres between lines of equal height, or the heights' exaggeration.
+        pub drape_scale: f32,
+        /// Of a curved base, a unit vector.
+        pub base_axis: Vec3,
+        /// Where the maps' heights are 0, above the base.
+        pub zero_m: f32,
+        /// Of a curved base, off the axis and along it.
+        pub base_radii: Vec2,
+        /// [`PLANE`], [`CYLINDER`] or an ellipsoid.
+        pub base_kind: i32,
     }
 }
 
@@ -241,11 +254,13 @@ impl LightBlock {
         let columns = if repeated > 0 { shape.width - 2 * repeated } else { shape.width - 1 };
         let (corner, cells) = match scene.draping {
             Some(Draping::Placed { corner, cells }) => (corner, cells),
-            Some(Draping::WholeMap) | None => {
+            _ => {
                 let half_cell = if repeated > 0 { 0.5 } else { 0.0 };
                 (Vec2::new(-half_cell, 0.0), UVec2::new(columns, shape.height - 1).as_vec2())
             }
         };
+        let first = scene.grounds.first();
+        let curve = first.and_then(|ground| ground.curve.as_ref().map(|curve| (ground, curve)));
         LightBlock {
             corner_direction: rays.corner.as_vec3(),
             near_m,
@@ -264,7 +279,22 @@ impl LightBlock {
                 None => 0,
                 Some(Draping::WholeMap) => 1,
                 Some(Draping::Placed { .. }) => 2,
+                Some(Draping::Contours { .. }) => 3,
+                Some(Draping::Slope) => 4,
+                Some(Draping::Hypsometric { .. }) => 5,
             },
+            base_center: curve.map_or(Vec3::ZERO, |(ground, curve)| {
+                ground.to_frame.inverse().transform_point3(curve.center()).as_vec3()
+            }),
+            drape_scale: match scene.draping {
+                Some(Draping::Contours { interval_m }) => interval_m,
+                Some(Draping::Hypsometric { scale }) => scale,
+                _ => 0.0,
+            },
+            base_axis: curve.map_or(Vec3::ZERO, |(ground, _)| ground.axes[2].as_vec3()),
+            zero_m: -scene.base_level_m as f32,
+            base_radii: curve.map_or(Vec2::ZERO, |(_, curve)| curve.radii_m().as_vec2()),
+            base_kind: curve.map_or(PLANE, |(_, curve)| if curve.is_cylinder { CYLINDER } else { ELLIPSOID }),
         }
     }
 }

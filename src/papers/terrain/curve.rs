@@ -85,6 +85,16 @@ impl Curve {
         }
     }
 
+    /// The centre: of a cylinder the point of the axis beside the middle.
+    pub fn center(&self) -> DVec3 {
+        DVec3::new(0.0, -self.off_m, -self.along_m)
+    }
+
+    /// Off the axis, and of an ellipsoid along it.
+    pub fn radii_m(&self) -> DVec2 {
+        DVec2::new(self.a, self.b())
+    }
+
     fn b(&self) -> f64 {
         self.a * (1.0 - self.squared_eccentricity).sqrt()
     }

@@ -1,10 +1,10 @@
-//! A picture over a map.
+//! What lies over the land in place of its colours.
 
 use glam::{UVec2, Vec2, Vec3};
 
 use crate::measure::ParameterError;
 
-/// A picture over the first map.
+/// A picture over the first map, or what is drawn of the land itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drape {
     width: u32,
@@ -13,13 +13,19 @@ pub struct Drape {
     draping: Draping,
 }
 
-/// The place of a draped picture.
+/// The place of a draped picture; what else lies over the land of all maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Draping {
     /// Its corners on the map's.
     WholeMap,
     /// In columns and rows of the map's samples: its north-west corner, and from it to the south-east one.
     Placed { corner: Vec2, cells: Vec2 },
+    /// Lines of equal height over the land's colours, so many metres apart, every fifth a wide one.
+    Contours { interval_m: f32 },
+    /// Colours by the angle between the surface that is lit and the base.
+    Slope,
+    /// Colours by height, of which so many metres are a true one.
+    Hypsometric { scale: f32 },
 }
 
 impl Drape {
@@ -44,6 +50,11 @@ impl Drape {
         Drape { draping: Draping::Placed { corner, cells }, ..self }
     }
 
+    /// No picture: what is drawn of the land itself. Numbers are finite and above 0.
+    pub fn of_land(draping: Draping) -> Self {
+        Drape { draping, ..Self::white() }
+    }
+
     pub fn draping(&self) -> Draping {
         self.draping
     }
@@ -61,7 +72,7 @@ impl Drape {
     /// Its colour at a fraction of its sides, 0 to 1 from the west and from the north, linear; nothing beside a picture with
     /// a place of its own, and the border's beside another.
     pub fn color(&self, uv: Vec2) -> Option<Vec3> {
-        if self.draping != Draping::WholeMap && uv.clamp(Vec2::ZERO, Vec2::ONE) != uv {
+        if matches!(self.draping, Draping::Placed { .. }) && uv.clamp(Vec2::ZERO, Vec2::ONE) != uv {
             return None;
         }
         let size = UVec2::new(self.width, self.height);

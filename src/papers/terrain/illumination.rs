@@ -1,5 +1,5 @@
 //! The pass `illumination` (section 4) of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or
-//! from a draped picture, haze by distance. The paper names the pass and no model of light.
+//! from what is draped over it, haze by distance. The paper names the pass and no model of light.
 
 use std::sync::Arc;
 
@@ -8,13 +8,14 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::blocks::LightBlock;
-use super::drape::Drape;
+use super::drape::{Drape, Draping};
 use super::geometric_transformation::SceneView;
 use super::hit::{Hit, Surface};
 use super::host::HostPass;
 use super::parameters::Parameters;
 use super::scene::DeviceScene;
 use super::stage::{Build, PixelPass};
+use super::tints::tinted;
 use crate::gpu::{Error, Frame, ImageView, Load, PassInfo};
 
 /// Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
@@ -88,8 +89,8 @@ impl HostIllumination {
     }
 }
 
-/// The colour of a pixel, 8-bit sRGB: Lambert's law under the sun and the sky, the ground's colour by height or from a draped
-/// picture, haze by distance. `sunlit` is 0 in the shadow and 1 outside.
+/// The colour of a pixel, 8-bit sRGB: Lambert's law under the sun and the sky, the ground's colour by height or from what is
+/// draped over it, haze by distance. `sunlit` is 0 in the shadow and 1 outside.
 pub fn color_of(
     light: &LightBlock,
     drape: Option<&Drape>,
@@ -105,10 +106,15 @@ pub fn color_of(
         haze.lerp(ZENITH, direction.normalize().y.clamp(0.0, 1.0).sqrt())
     } else {
         let height = (facing.w - light.lowest_m) / (light.highest_m - light.lowest_m).max(1e-6);
-        let draped = drape
-            .filter(|_| hit.surface == Surface::Terrain && hit.map == 0)
-            .and_then(|drape| drape.color((Vec2::from_array(hit.place) - light.drape_corner) / light.drape_cells));
-        let albedo = draped.unwrap_or_else(|| albedo_at(hit.surface, normal, height));
+        let albedo = albedo_at(hit.surface, normal, height);
+        let draped = drape.filter(|_| hit.surface == Surface::Terrain).and_then(|drape| match drape.draping() {
+            Draping::WholeMap | Draping::Placed { .. } if hit.map > 0 => None,
+            Draping::WholeMap | Draping::Placed { .. } => {
+                drape.color((Vec2::from_array(hit.place) - light.drape_corner) / light.drape_cells)
+            }
+            draping => Some(tinted(light, draping, albedo, (direction, hit.depth_m), facing)),
+        });
+        let albedo = draped.unwrap_or(albedo);
         let lit = sunlit * normal.dot(light.to_sun).max(0.0);
         let open = light.sky_strength * (0.5 + 0.5 * normal.y);
         let seen = albedo * (SUNLIGHT * lit + SKYLIGHT * open);

@@ -35,7 +35,7 @@ pub struct Inputs<'a> {
     pub maps: &'a [MapInput],
     /// Polygon objects in the world, metres: x east, y up from the base, z south.
     pub objects: &'a [Mesh],
-    /// A picture over the first map.
+    /// A picture over the first map, or what is drawn of the land itself.
     pub drape: Option<&'a Drape>,
 }
 
@@ -54,7 +54,9 @@ pub struct Scene {
     pub extent: Extent,
     /// Lowest and highest above the base, metres.
     pub range_m: (f64, f64),
-    /// The place of a picture over the first map, if there is one.
+    /// The maps' height at which the base lies, metres.
+    pub base_level_m: f64,
+    /// What lies over the land, if anything does.
     pub draping: Option<Draping>,
 }
 
@@ -76,6 +78,7 @@ impl Scene {
         Scene {
             extent: grounds.iter().map(Ground::extent).fold(start, Extent::union),
             range_m: (f64::from(lowest_m) - base_level_m, f64::from(highest_m) - base_level_m),
+            base_level_m,
             draping: inputs.drape.map(Drape::draping),
             maps: placed.iter().zip(&grounds).map(closed).collect(),
             grounds,

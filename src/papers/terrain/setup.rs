@@ -1,7 +1,6 @@
 //! A user's configuration of the `terrain` paper: its declaration, its scene, its measured runs.
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -12,7 +11,6 @@ use super::experiments::figures::shares;
 use super::experiments::{self, Options, figures};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
-use crate::image::read_png;
 use crate::measure::bench::Built;
 use crate::measure::config::entries;
 use crate::measure::estimate::{DRAWN_BYTES, Estimate};
@@ -25,11 +23,11 @@ use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
-    Collider, Drape, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement, Terrain, Variant,
+    Collider, Drape, DrapeSource, Draping, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement, Terrain, Variant,
     View, WRITTEN,
 };
 use crate::scene::loading::CREASE_DEG;
-use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano, world_file};
+use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};
 
 /// A user's configuration.
 #[derive(Debug, Clone)]
@@ -44,8 +42,8 @@ pub struct Setup {
     pub objects: Vec<ObjectSource>,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
-    /// PNG over the first map, in place of the colour ramp.
-    pub drape: Option<PathBuf>,
+    /// What lies over the land in place of the colour ramp.
+    pub drape: Option<DrapeSource>,
     /// Heights for the samples that maps leave void.
     pub voids: Voids,
     /// Samples a side of the synthetic volcano.
@@ -116,7 +114,7 @@ pub struct Scene {
     pub maps: Vec<MapInput>,
     /// Polygon objects in the maps' frame.
     pub objects: Vec<Mesh>,
-    /// A picture over the first map.
+    /// What lies over the land.
     pub drape: Option<Drape>,
 }
 
@@ -184,44 +182,6 @@ impl Setup {
     }
 }
 
-/// The picture, where its world file says or with its corners on the map's.
-fn load_drape(path: &Path, map: &HeightMap) -> Result<Drape, Error> {
-    let picture = read_png(path)?;
-    let drape = Drape::new(picture.width(), picture.height(), picture.pixels().as_chunks().0.to_vec())?;
-    let Some((world_file, coordinates)) = world_file::beside(path)? else { return Ok(drape) };
-    let Some(of_map) = map.coordinates() else {
-        let message = format!(
-            "{} places {}, but the first map has no coordinates; take a map that has, or move that file away to lay the \
-             picture's corners on the map's",
-            world_file.display(),
-            path.display()
-        );
-        return Err(Error::Input(message));
-    };
-    let (corners, map_corners) =
-        (coordinates.corners(picture.width(), picture.height()), of_map.corners(map.width(), map.height()));
-    // The same meridian may have two names.
-    let apart_deg = (map_corners[0] + map_corners[1] - corners[0] - corners[1]).x / 2.0;
-    let turns = if map.geographic().is_some() { (apart_deg / 360.0).round() } else { 0.0 };
-    let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
-    let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
-    if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
-        let shown = |number: f64| (number * 1e6).round() / 1e6;
-        let span = |[a, b]: [DVec2; 2]| {
-            format!("{} to {} east, {} to {} north", shown(a.x), shown(b.x), shown(b.y), shown(a.y))
-        };
-        let message = format!(
-            "{} places {} beside the first map: it lies at {}, the map at {}; both have to be in the same coordinates",
-            world_file.display(),
-            path.display(),
-            span(corners),
-            span(map_corners)
-        );
-        return Err(Error::Input(message));
-    }
-    Ok(drape.placed(first.as_vec2(), (last - first).as_vec2()))
-}
-
 impl Study for Setup {
     const PAPER: &'static str = "terrain";
     const NEEDS: &'static [Feature] = &NEEDS;
@@ -240,7 +200,7 @@ impl Study for Setup {
             maps = maps.into_iter().map(|map| map.with_voids(Voids::Hole, base_m)).collect::<Result<_, _>>()?;
         }
         let input = |(map, placement)| MapInput { map: Arc::new(map), placement };
-        let drape = self.drape.as_ref().zip(maps.first()).map(|(path, map)| load_drape(path, map)).transpose()?;
+        let drape = self.drape.as_ref().map(|source| source.load(&maps, self.exaggeration)).transpose()?;
         let mut scene =
             Scene { maps: maps.into_iter().zip(self.placements()).map(input).collect(), objects: Vec::new(), drape };
         scene.objects = self.stand(&scene.maps)?;
@@ -309,6 +269,9 @@ impl Study for Setup {
         let mut config = parameter::config(&Self::parameters(), self);
         let haze = terrain.extinction_per_km();
         config.extend(entries([("resolution", json!(first)), ("maps", json!(maps)), ("haze", json!(haze))]));
+        if let Some(Draping::Contours { interval_m }) = scene.drape.as_ref().map(Drape::draping) {
+            config.insert("contour_interval".to_owned(), json!(interval_m / self.exaggeration));
+        }
         if !scene.objects.is_empty() {
             let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();
             config.insert("object_triangles".to_owned(), json!(triangles));
@@ -413,10 +376,11 @@ impl Study for Setup {
                 .everyday(),
             parameter::crease_angle(field!(Setup.crease_deg)),
             Parameter::new("drape", field!(Setup.drape))
-                .placeholder("FILE.png")
                 .help(
-                    "Picture over the first map in place of the colour ramp, PNG, north up: where a world file beside it \
-                     (.pgw or .wld) says, in the map's own coordinates, or without one its corners on the map's",
+                    "Over the land in place of the colour ramp: a picture over the first map, PNG, north up, where a world file \
+                     beside it (.pgw or .wld) says, in the map's own coordinates, or without one its corners on the map's; \
+                     contours, lines of equal height over the ramp, M metres apart or at most 25 of them, every fifth wide; slope, \
+                     colours by the angle of the surface, 0 to 60 degrees; hypsometric, an atlas's colours by height, blue below 0 m",
                 )
                 .cost(Cost::Buffers),
         ];

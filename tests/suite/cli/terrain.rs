@@ -84,6 +84,35 @@ fn a_drape_lies_where_its_world_file_says() {
         .refused(2, &["photo.pgw", "no coordinates"]);
 }
 
+/// The interval that suits the map stands in the record, in true metres however much it is exaggerated; a file's name is no word.
+#[test]
+fn drapes_are_drawn_of_the_land_itself() {
+    let out = folder();
+    let rows: String =
+        (0..9).map(|row| (0..9).map(|column| format!("{} ", 10 * column + row)).collect::<String>() + "\n").collect();
+    file(&out, "ramp.asc", format!("ncols 9\nnrows 9\nxllcorner 0\nyllcorner 0\ncellsize 10\n{rows}"));
+    let config = |options: &str| {
+        let bench = "bench --json --quiet --variant gpu-compute --exaggeration 3 --map ramp.asc";
+        let ended = small(bench).args(ONCE).args(options).inside(out.path()).run().succeeded();
+        ended.json()["runs"][0]["config"].clone()
+    };
+    let suiting = config("--drape contours");
+    assert_eq!((&suiting["drape"], &suiting["contour_interval"]), (&"contours".into(), &5.0.into()));
+    let given = config("--drape contours:2.5");
+    assert_eq!((&given["drape"]["contours"], &given["contour_interval"]), (&2.5.into(), &2.5.into()));
+    let draw = |options: &str| {
+        let scene = "render --quiet --camera top --haze 0 --map ramp.asc --image land.png";
+        small(scene).args(options).inside(out.path()).run().succeeded();
+        fs::read(out.path().join("land.png")).unwrap()
+    };
+    let pictures = ["", "--drape contours", "--drape contours:20", "--drape slope", "--drape hypsometric"].map(draw);
+    assert_eq!(pictures.iter().collect::<BTreeSet<_>>().len(), pictures.len());
+    for drape in ["contours:0", "contours:-1", "contours:x"] {
+        small("render --resolution 16").args(&format!("--drape={drape}")).run().misused(&["--drape"]);
+    }
+    small("render --resolution 16 --drape slopes").inside(out.path()).run().refused(2, &["slopes"]);
+}
+
 #[test]
 fn the_mesh_of_a_map_that_is_too_large_is_a_row_without_times() {
     let out = folder();

@@ -1,0 +1,183 @@
+//! What a user lays over the land in place of the colour ramp.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use serde_json::{Value as Json, json};
+
+use super::drape::{Drape, Draping};
+use crate::image::read_png;
+use crate::measure::Error;
+use crate::measure::parameter::{Shape, Value, parse_finite};
+use crate::scene::{HeightMap, world_file};
+
+/// What lies over the land.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DrapeSource {
+    /// PNG over the first map.
+    Picture(PathBuf),
+    /// Lines of equal height, so many metres apart; without a number as many as suit the maps.
+    Contours(Option<f32>),
+    /// Colours by the angle of the surface.
+    Slope,
+    /// Colours by height.
+    Hypsometric,
+}
+
+/// The most lines that maps have from their lowest place to their highest where no distance is given.
+const MOST_LINES: f64 = 25.0;
+
+impl Value for DrapeSource {
+    const SHAPE: Shape = Shape::single("FILE.png|contours[:M]|slope|hypsometric");
+
+    fn parse(texts: &[&OsStr]) -> Result<Self, String> {
+        let text = match texts {
+            [text] => text.to_str().unwrap_or_default(),
+            _ => "",
+        };
+        match (text, text.strip_prefix("contours:")) {
+            ("contours", _) => Ok(DrapeSource::Contours(None)),
+            ("slope", _) => Ok(DrapeSource::Slope),
+            ("hypsometric", _) => Ok(DrapeSource::Hypsometric),
+            (_, Some(metres)) => match parse_finite(metres)? {
+                interval_m if (1e-3..=1e6).contains(&interval_m) => Ok(DrapeSource::Contours(Some(interval_m))),
+                _ => Err("its lines must be 0.001 to 1000000 metres apart".to_owned()),
+            },
+            _ => PathBuf::parse(texts).map(DrapeSource::Picture),
+        }
+    }
+
+    fn text(&self) -> String {
+        match self {
+            DrapeSource::Picture(path) => path.text(),
+            DrapeSource::Contours(None) => "contours".to_owned(),
+            DrapeSource::Contours(Some(interval_m)) => format!("contours:{interval_m}"),
+            DrapeSource::Slope => "slope".to_owned(),
+            DrapeSource::Hypsometric => "hypsometric".to_owned(),
+        }
+    }
+
+    fn json(&self) -> Json {
+        match self {
+            DrapeSource::Contours(Some(interval_m)) => json!({"contours": interval_m}),
+            _ => json!(self.text()),
+        }
+    }
+
+    fn files(&self) -> Vec<PathBuf> {
+        match self {
+            DrapeSource::Picture(path) => vec![path.clone()],
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl DrapeSource {
+    /// Over maps whose heights are `exaggeration` times the true ones, which lines and colours count.
+    ///
+    /// # Errors
+    /// [`Error::Image`] and [`Error::Input`] of a picture.
+    pub(super) fn load(&self, maps: &[HeightMap], exaggeration: f32) -> Result<Drape, Error> {
+        let draping = match self {
+            DrapeSource::Picture(path) => {
+                return match maps.first() {
+                    Some(map) => load_picture(path, map),
+                    None => Ok(Drape::white()),
+                };
+            }
+            DrapeSource::Contours(Some(interval_m)) => Draping::Contours { interval_m: interval_m * exaggeration },
+            DrapeSource::Contours(None) => {
+                let (low_m, high_m) = maps.iter().map(HeightMap::range_m).fold(
+                    (f32::INFINITY, f32::NEG_INFINITY),
+                    |(low_m, high_m), (lowest_m, highest_m)| (low_m.min(lowest_m), high_m.max(highest_m)),
+                );
+                let range_m = f64::from(high_m - low_m) / f64::from(exaggeration);
+                Draping::Contours { interval_m: suiting_interval_m(range_m) * exaggeration }
+            }
+            DrapeSource::Slope => Draping::Slope,
+            DrapeSource::Hypsometric => Draping::Hypsometric { scale: exaggeration },
+        };
+        Ok(Drape::of_land(draping))
+    }
+}
+
+/// 1, 2 or 5 times a power of ten, the smallest by which [`MOST_LINES`] are not passed.
+fn suiting_interval_m(range_m: f64) -> f32 {
+    let least_m = (range_m / MOST_LINES).max(1e-3);
+    let power_m = 10_f64.powf(least_m.log10().floor());
+    // Powers of ten are no round numbers in binary.
+    let fits = |factor: &f64| factor * power_m >= least_m * (1.0 - 1e-9);
+    ([1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0) * power_m) as f32
+}
+
+/// The picture, where its world file says or with its corners on the map's.
+fn load_picture(path: &Path, map: &HeightMap) -> Result<Drape, Error> {
+    let picture = read_png(path)?;
+    let drape = Drape::new(picture.width(), picture.height(), picture.pixels().as_chunks().0.to_vec())?;
+    let Some((world_file, coordinates)) = world_file::beside(path)? else { return Ok(drape) };
+    let Some(of_map) = map.coordinates() else {
+        let message = format!(
+            "{} places {}, but the first map has no coordinates; take a map that has, or move that file away to lay the \
+             picture's corners on the map's",
+            world_file.display(),
+            path.display()
+        );
+        return Err(Error::Input(message));
+    };
+    let (corners, map_corners) =
+        (coordinates.corners(picture.width(), picture.height()), of_map.corners(map.width(), map.height()));
+    // The same meridian may have two names.
+    let apart_deg = (map_corners[0] + map_corners[1] - corners[0] - corners[1]).x / 2.0;
+    let turns = if map.geographic().is_some() { (apart_deg / 360.0).round() } else { 0.0 };
+    let [first, last] = corners.map(|corner| of_map.node(corner + DVec2::new(360.0 * turns, 0.0)));
+    let end = DVec2::new((map.width() - 1).into(), (map.height() - 1).into());
+    if last.cmple(DVec2::ZERO).any() || first.cmpge(end).any() {
+        let shown = |number: f64| (number * 1e6).round() / 1e6;
+        let span = |[a, b]: [DVec2; 2]| {
+            format!("{} to {} east, {} to {} north", shown(a.x), shown(b.x), shown(b.y), shown(a.y))
+        };
+        let message = format!(
+            "{} places {} beside the first map: it lies at {}, the map at {}; both have to be in the same coordinates",
+            world_file.display(),
+            path.display(),
+            span(corners),
+            span(map_corners)
+        );
+        return Err(Error::Input(message));
+    }
+    Ok(drape.placed(first.as_vec2(), (last - first).as_vec2()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_drapes_and_all_else_is_a_file() {
+        let parse = |text: &str| DrapeSource::parse(&[OsStr::new(text)]);
+        for (text, expected) in [
+            ("contours", DrapeSource::Contours(None)),
+            ("contours:12.5", DrapeSource::Contours(Some(12.5))),
+            ("slope", DrapeSource::Slope),
+            ("hypsometric", DrapeSource::Hypsometric),
+            ("./slope", DrapeSource::Picture("./slope".into())),
+        ] {
+            assert_eq!(parse(text).as_ref(), Ok(&expected));
+            assert_eq!(expected.text(), text);
+            assert_eq!(expected.files().len(), usize::from(text.starts_with('.')));
+        }
+        for text in ["contours:", "contours:0", "contours:-5", "contours:nan", "contours:inf", "contours:1e7", "contours:x"] {
+            assert!(parse(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn lines_are_round_numbers_of_metres_apart() {
+        for (range_m, expected_m) in
+            [(0.0, 1e-3), (0.7, 0.05), (25.0, 1.0), (26.0, 2.0), (1800.0, 100.0), (8849.0, 500.0), (1e5, 5000.0)]
+        {
+            assert_eq!(suiting_interval_m(range_m), expected_m, "{range_m} m");
+        }
+    }
+}
