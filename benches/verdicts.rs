@@ -25,8 +25,13 @@ fn main() -> ExitCode {
         }
     }
     for (processes, spread) in [(10, 0.01), (10, 0.02), (10, 0.03), (20, 0.03)] {
-        let found = slower(trials, processes, spread);
+        let [found, failed, undecided] = slower(trials, processes, spread);
         bound("a pass that is 10 % slower is SLOWER in at least 95 %", found >= 0.95);
+        // What is beyond the limit may be undecided, and is let through as rarely as the error allows.
+        bound("the gate lets 10 % through 5 % in at most 5 %", failed + undecided >= 0.95);
+        if spread == 0.01 {
+            bound("the gate fails 10 % against 5 % in at least 95 %", failed >= 0.95);
+        }
     }
     for drift in [0.0, 0.05] {
         for factor in [1.0, 1.1] {
@@ -68,8 +73,8 @@ fn processes_alike(trials: usize, processes: usize, spread: f64) -> [f64; 2] {
     [part(same, trials), part(wrong, trials)]
 }
 
-/// One quantity 10 % slower: how often it is SLOWER, and, printed, its standing against a limit of 5 %.
-fn slower(trials: usize, processes: usize, spread: f64) -> f64 {
+/// One quantity 10 % slower: how often it is SLOWER, beyond a limit of 5 %, and undecided against it.
+fn slower(trials: usize, processes: usize, spread: f64) -> [f64; 3] {
     let (mut found, mut failed, mut undecided) = (0, 0, 0);
     for seed in 0..trials {
         let (evidence, verdicts) = family(seed as u64, processes, spread, 1.1);
@@ -85,7 +90,7 @@ fn slower(trials: usize, processes: usize, spread: f64) -> f64 {
         percent(failed, trials),
         percent(undecided, trials)
     );
-    part(found, trials)
+    [part(found, trials), part(failed, trials), part(undecided, trials)]
 }
 
 /// A family with its second member `factor` times as slow on side B.
@@ -108,19 +113,9 @@ fn blocks(trials: usize, drift: f64, factor: f64) -> f64 {
     let (mut same, mut wrong, mut found, mut used) = (0, 0, 0, 0);
     for seed in 0..trials {
         let mut noise = Noise::new(seed as u64);
-        let levels = levels(&mut noise, drift);
-        let side = |noise: &mut Noise, places: [usize; 2], shift: f64| -> Vec<f64> {
-            let own = noise.process_log_medians(2 * levels.len(), 0.01, 0.01);
-            let pairs = levels.iter().zip(own.chunks_exact(2));
-            pairs.map(|(level, own)| 0.5 * (own[0] + own[1] + level[places[0]] + level[places[1]]) + shift).collect()
-        };
-        let members: Vec<Vec<f64>> = (0..MEMBERS)
-            .map(|index| {
-                let shift = if index == 1 { factor.ln() } else { 0.0 };
-                let (a, b) = (side(&mut noise, [0, 3], 0.0), side(&mut noise, [1, 2], shift));
-                b.iter().zip(a).map(|(b, a)| b - a).collect()
-            })
-            .collect();
+        let levels = noise.block_levels(LOOKS[LOOKS.len() - 1], drift);
+        let members: Vec<Vec<f64>> =
+            (0..MEMBERS).map(|index| noise.block_differences(&levels, if index == 1 { factor } else { 1.0 })).collect();
         let rules = Rules { error: Rules::default().error / LOOKS.len() as f64, ..Rules::default() };
         for look in LOOKS {
             let evidence: Vec<Evidence> =
@@ -145,16 +140,4 @@ fn blocks(trials: usize, drift: f64, factor: f64) -> f64 {
         used as f64 / trials as f64
     );
     part(wrong, trials)
-}
-
-/// The machine's speed in each block's four processes: a ramp over the block, and in one block of ten a step of 5 %.
-fn levels(noise: &mut Noise, drift: f64) -> Vec<[f64; 4]> {
-    (0..LOOKS[LOOKS.len() - 1])
-        .map(|_| {
-            let slope = drift / 4.0 * (1.0 + 0.5 * noise.normal());
-            let step = if drift > 0.0 && noise.uniform() < 0.1 { 0.05 } else { 0.0 };
-            let at = (4.0 * noise.uniform()) as usize;
-            [0, 1, 2, 3].map(|place| slope * place as f64 + if place > at { step } else { 0.0 })
-        })
-        .collect()
 }

@@ -44,6 +44,14 @@ pub fn pixel_rate(format: vk::Format, blends: bool) -> Option<String> {
 /// # Errors
 /// Any error of the Vulkan layer.
 pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
+    measure_some(machine, |_| true)
+}
+
+/// Measures the limits whose names are wanted: as the record's samples have them, `copy_gb_s` and so on.
+///
+/// # Errors
+/// Any error of the Vulkan layer.
+pub fn measure_some(machine: &mut Machine, is_wanted: impl Fn(&str) -> bool) -> Result<Limits, Error> {
     let Machine { recorder, shaders, .. } = machine;
     let mut loads = vec![
         ("copy_gb_s".to_owned(), loads::copy(shaders, COPY_BYTES)?),
@@ -63,6 +71,7 @@ pub fn measure(machine: &mut Machine) -> Result<Limits, Error> {
             }
         }
     }
+    loads.retain(|(name, _)| is_wanted(name));
     for (_, load) in &mut loads {
         load.grow(recorder)?;
     }
@@ -146,14 +155,16 @@ impl Workload {
     fn grow(&mut self, recorder: &mut Recorder) -> Result<(), Error> {
         // The first use compiles the pipeline.
         self.run_ms(recorder)?;
-        while self.times < 1 << 14 && self.run_ms(recorder)?.is_some_and(|ms| ms < LEAST_MS) {
-            self.times *= 2;
+        while let Some(ms) = self.run_ms(recorder)?.filter(|&ms| ms < LEAST_MS && self.times < 1 << 14) {
+            self.times = (f64::from(self.times) * (LEAST_MS / ms).min(2.0)).ceil() as u32;
         }
         Ok(())
     }
 
     /// Adds a sample; none without timestamps.
     fn sample(&mut self, recorder: &mut Recorder) -> Result<(), Error> {
+        // Once unseen: after another load, threads, clocks and caches are still as that one left them.
+        self.run_ms(recorder)?;
         if let Some(ms) = self.run_ms(recorder)? {
             let times = f64::from(self.times);
             self.samples.push(self.amount.map_or(ms / times, |amount| amount * times / ms * 1e-6));

@@ -5,7 +5,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::program::{ONCE, assert_schema, caustics, device, folder, read_json, sha256};
+use super::program::{ONCE, assert_schema, burning, caustics, device, folder, gas, lava, read_json, sha256, terrain};
 
 const BOTH: &str = "--variant level-map,volumetric";
 
@@ -132,6 +132,38 @@ fn the_limits_of_the_device_are_measured_and_every_pass_is_set_against_them() {
     let combine = run["passes"].as_array().unwrap().iter().find(|pass| pass["name"] == "combine").unwrap();
     assert_eq!(combine["bytes"]["uncertain"], serde_json::json!([]), "{combine}");
     assert_eq!(combine["bytes"]["read"].as_u64().unwrap() % (64 * 64), 0, "{combine}");
+}
+
+/// The pass's share of its floor as the table prints it.
+fn printed_share(pass: &Value) -> Option<String> {
+    let (floor, gpu) = (pass["floor_ms"].as_f64()?, pass["gpu_ms"]["median"].as_f64()?);
+    (gpu > 0.0).then(|| format!("{:.0} % {}", 100.0 * floor / gpu, pass["bound"].as_str().unwrap()))
+}
+
+#[test]
+fn every_papers_passes_have_a_floor_and_the_table_says_how_near_they_come() {
+    let papers = [
+        lava("bench --size 32x24 --particles 300 --radius 0.2 --density 12x6x6 --splats 40x10"),
+        gas("bench --size 24x16 --steps 6 --table 6"),
+        burning("bench --size 32x24 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10"),
+        terrain("bench --size 32x24 --resolution 17"),
+    ];
+    for program in papers {
+        let out = folder();
+        let options = "--json r.json --frames 1 --repeat 1 --warmup 1";
+        let ended = program.on_test_device().inside(out.path()).args(options).run().succeeded();
+        assert!(ended.stdout.contains("share of limit"), "{}", ended.stdout);
+        let record = read_json(&out.path().join("r.json"));
+        let passes = record["runs"][0]["passes"].as_array().unwrap();
+        for pass in passes.iter().filter(|pass| pass["kind"] != "host") {
+            assert!(pass["floor_ms"].as_f64().is_some_and(|floor| floor > 0.0), "{pass}");
+            let Some(share) = printed_share(pass) else { continue };
+            let name = pass["name"].as_str().unwrap();
+            let is_row = |line: &str| line.trim_start().starts_with(name) && line.contains(&share);
+            assert!(ended.stdout.lines().any(is_row), "{name}: {share} in\n{}", ended.stdout);
+        }
+        assert!(passes.iter().filter_map(printed_share).count() >= 3);
+    }
 }
 
 #[test]

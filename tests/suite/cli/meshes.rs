@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use fumarole::scene::random::Random;
 
-use super::program::{ONCE, burning, caustics, entries, file, folder, gas};
+use super::program::{ONCE, burning, caustics, entries, file, folder, gas, lava, terrain};
 
 fn refuse(path: &Path, parts: &[&str]) {
     let name = path.file_name().unwrap().to_str().unwrap();
@@ -125,6 +125,15 @@ fn files_beyond_the_device_are_refused_unread() {
     program.run().refused(2, &["--levels", "limit of"]);
     let program = gas("bench --object").arg(sparse(85_000_000)).on_test_device();
     program.run().refused(2, &["--object", "2720000000", "limit of"]);
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 100000000\nproperty list uchar int vertex_indices\nend_header\n";
+    let ply = file(&out, "many.ply", header);
+    File::options().append(true).open(&ply).unwrap().set_len(header.len() as u64 + 36 + 13 * 100_000_000).unwrap();
+    let drawn = [(caustics("bench"), "--mesh"), (lava("bench"), "--object"), (terrain("bench"), "--object")];
+    for (program, option) in drawn {
+        let program = program.arg(option).arg(&ply).on_test_device();
+        program.run().refused(2, &[option, "2400000000", "limit of"]);
+    }
     // Reading them would take many times as long.
     assert!(started.elapsed().as_secs_f64() < 10.0, "{:?}", started.elapsed());
 }

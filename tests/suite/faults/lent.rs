@@ -4,7 +4,7 @@
 use serde_json::Value;
 
 use super::{Layer, Report};
-use crate::cli::program::{Ended, ONCE, Program, assert_schema, caustics, gas, lava};
+use crate::cli::program::{Ended, ONCE, Program, assert_schema, burning, caustics, gas, lava, terrain};
 use crate::drivers::{layer_manifest, library};
 
 /// Runs with `extensions` played, under the current Khronos layer.
@@ -76,6 +76,9 @@ fn labels_and_pipelines_carry_pass_and_section() {
         caustics("bench --variant level-map").tiny(),
         lava("bench --size 32x24 --particles 100 --radius 0.3 --density 8x4x4 --splats 10x5").on_test_device(),
         gas("bench --size 24x16 --steps 4 --variant table").on_test_device(),
+        burning("bench --size 32x24 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10")
+            .on_test_device(),
+        terrain("bench --size 32x24 --resolution 17").on_test_device(),
     ];
     for program in programs {
         let layer = Layer::new();

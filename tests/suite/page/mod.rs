@@ -80,6 +80,31 @@ fn the_page_loads_in_silence_and_has_its_structure() {
 }
 
 #[test]
+fn the_command_of_every_number_is_copied_at_a_click() {
+    beside_others(|| {
+        let (_out, page, _) = report(None);
+        let mut browser = Browser::start();
+        let permissions = json!({"permissions": ["clipboardReadWrite", "clipboardSanitizedWrite"]});
+        browser.ask("Browser.grantPermissions", permissions);
+        browser.ask("Emulation.setFocusEmulationEnabled", json!({"enabled": true}));
+        browser.open(&page);
+        let count = browser.value("document.querySelectorAll('button.copy').length").as_u64().unwrap();
+        assert!(count >= 1);
+        for index in 0..count {
+            let copied = browser.value(&format!(
+                "(async () => {{ const button = document.querySelectorAll('button.copy')[{index}]; button.click(); \
+                 while (button.textContent !== 'Copied') await new Promise((later) => setTimeout(later, 5)); \
+                 const code = button.parentElement.querySelector('code').textContent; \
+                 return [await navigator.clipboard.readText(), code]; }})()"
+            ));
+            assert_eq!(copied[0], copied[1]);
+            assert!(copied[0].as_str().unwrap().contains("fumarole"), "{copied}");
+        }
+        assert!(browser.console.is_empty(), "{:?}", browser.console);
+    });
+}
+
+#[test]
 fn the_pages_numbers_are_the_records_in_the_browser() {
     beside_others(|| {
         let (_out, page, record) = report(None);
