@@ -1,13 +1,11 @@
 // The pass `illumination` of one pixel: Lambert's law under the sun and the sky, the ground's colour by height or from what is
 // draped over it, haze by distance. The paper names the pass and no model of light.
 
-#include "terrain/light.glsl"
-#include "terrain/tints.glsl"
+// Before this file stand light.glsl and one for what is draped over the land.
 
 layout(set = 0, binding = 1) uniform texture2D depth;
 layout(set = 0, binding = 2) uniform texture2D normal;
 layout(set = 0, binding = 4) uniform texture2D shadow; // a single texel where none are thrown
-layout(set = 0, binding = 5) uniform texture2D drape;
 
 // Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
 const vec3 TINTS[6] = vec3[](vec3(0.22, 0.30, 0.10), vec3(0.10, 0.20, 0.06), vec3(0.24, 0.20, 0.10),
@@ -27,18 +25,6 @@ vec3 sky(vec3 direction) {
     return mix(light.haze_color, vec3(0.16, 0.34, 0.68), pow(up, 0.5));
 }
 
-// The draped picture at a fraction of its sides, between its texels' middles.
-vec3 draped(vec2 fraction) {
-    vec2 size = vec2(textureSize(drape, 0));
-    vec2 texel = clamp(fraction * size - 0.5, vec2(0.0), size - 1.0);
-    ivec2 a = ivec2(texel);
-    ivec2 b = min(a + 1, ivec2(size) - 1);
-    vec2 uv = texel - vec2(a);
-    vec3 north = mix(texelFetch(drape, a, 0).xyz, texelFetch(drape, ivec2(b.x, a.y), 0).xyz, uv.x);
-    vec3 south = mix(texelFetch(drape, ivec2(a.x, b.y), 0).xyz, texelFetch(drape, b, 0).xyz, uv.x);
-    return mix(north, south, uv.y);
-}
-
 vec3 albedo_at(int surface, vec3 facing, float height) {
     vec3 tint = surface == 1 ? BASE_TINT : tint_at(height);
     // Nothing grows on a cliff.
@@ -51,19 +37,12 @@ vec4 color_of(ivec2 pixel) {
     float sunlit = texelFetch(shadow, min(pixel, textureSize(shadow, 0) - 1), 0).x;
     vec3 direction = view_direction(vec2(pixel));
     int surface = int(hit.w) & 7;
-    int map = (int(hit.w) >> 8) & 15;
     vec3 color = sky(direction);
     if (surface != 0) {
         float height = (facing.w - light.lowest_m) / max(light.highest_m - light.lowest_m, 1.0e-6);
         vec3 albedo = albedo_at(surface, facing.xyz, height);
-        vec2 fraction = (hit.yz - light.drape_corner) / light.drape_cells;
-        // A picture with a place of its own ends at its border; the other has its corners on the map's.
-        bool is_over = light.draping == DRAPED || all(equal(clamp(fraction, vec2(0.0), vec2(1.0)), fraction));
-        if ((light.draping == DRAPED || light.draping == PLACED) && is_over && surface == 2 && map == 0) {
-            albedo = draped(fraction);
-        }
-        if (light.draping > PLACED && surface == 2) {
-            albedo = tinted(albedo, direction, hit.x, facing);
+        if (surface == 2) {
+            albedo = under_drape(albedo, direction, hit, facing);
         }
         color = lit_color(albedo, facing.xyz, sunlit, hit.x * length(direction));
     }

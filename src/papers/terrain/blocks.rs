@@ -132,8 +132,7 @@ host_block! {
         pub drape_corner: Vec2,
         /// World, metres.
         pub eye: Vec3,
-        /// 0 without a drape; 1 with a picture whose corners lie on the first map's, 2 with one in a place of its own; 3 with lines
-        /// of equal height, 4 with colours by slope, 5 by height.
+        /// 0 without a picture; 1 with one whose corners lie on the first map's, 2 with one in a place of its own.
         pub draping: i32,
         /// Of a curved base, world, metres. This and the axis are 0 over a plane.
         pub base_center: Vec3,
@@ -276,12 +275,9 @@ impl LightBlock {
             drape_corner: corner + Vec2::new(repeated as f32, 0.0),
             eye: rays.eye.as_vec3(),
             draping: match scene.draping {
-                None => 0,
                 Some(Draping::WholeMap) => 1,
                 Some(Draping::Placed { .. }) => 2,
-                Some(Draping::Contours { .. }) => 3,
-                Some(Draping::Slope) => 4,
-                Some(Draping::Hypsometric { .. }) => 5,
+                _ => 0,
             },
             base_center: curve.map_or(Vec3::ZERO, |(ground, curve)| {
                 ground.to_frame.inverse().transform_point3(curve.center()).as_vec3()

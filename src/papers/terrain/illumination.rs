@@ -16,6 +16,7 @@ use super::parameters::Parameters;
 use super::scene::DeviceScene;
 use super::stage::{Build, PixelPass};
 use super::tints::tinted;
+use crate::gpu::bindings::Resource;
 use crate::gpu::{Error, Frame, ImageView, Load, PassInfo};
 
 /// Hypsometric tints, linear: meadow, forest, heath, rock, ash, and the pale summit.
@@ -43,14 +44,21 @@ pub fn illumination(
     [depth, normal, shadow]: [&Arc<ImageView>; 3],
 ) -> Result<PixelPass, Error> {
     let target = build.image("picture", vk::Format::R8G8B8A8_UNORM)?;
-    let resources = [
+    let resources: [(_, Resource); 4] = [
         ("light", (&scene.light).into()),
         ("depth", depth.into()),
         ("normal", normal.into()),
         ("shadow", shadow.into()),
-        ("drape", (&scene.drape).into()),
     ];
-    let pass = build.pass(("illumination", "4"), "illumination", (&target, Load::Discard), &resources)?;
+    let picture: [(_, Resource); 1] = [("drape", (&scene.drape).into())];
+    let (program, others) = match scene.draping {
+        None | Some(Draping::WholeMap | Draping::Placed { .. }) => ("illumination-picture", &picture[..]),
+        Some(Draping::Contours { .. }) => ("illumination-contours", &[][..]),
+        Some(Draping::Slope) => ("illumination-slope", &[][..]),
+        Some(Draping::Hypsometric { .. }) => ("illumination-hypsometric", &[][..]),
+    };
+    let resources = [&resources[..], others].concat();
+    let pass = build.pass(("illumination", "4"), program, (&target, Load::Discard), &resources)?;
     Ok(PixelPass { stage: build.stage, passes: vec![pass], target })
 }
 

@@ -116,6 +116,8 @@ pub struct DeviceScene {
     pub light: Arc<Buffer>,
     /// The draped picture; a white texel without one.
     pub drape: Arc<ImageView>,
+    /// What lies over the land, if anything does.
+    pub draping: Option<Draping>,
     /// A single texel, of the sky: what is found before the first map.
     pub no_hits: Arc<ImageView>,
 }
@@ -147,6 +149,7 @@ impl DeviceScene {
             })
         };
         let maps = maps.iter().enumerate().map(map).collect::<Result<_, Error>>()?;
+        let draping = drape.map(Drape::draping);
         let drape = drape.map_or_else(|| Cow::Owned(Drape::white()), Cow::Borrowed);
         let srgb = vk::Format::R8G8B8A8_SRGB;
         let drape = texels(device, &format!("{label}/drape"), srgb, drape.size(), |first_row, bytes| {
@@ -158,7 +161,7 @@ impl DeviceScene {
             bytes.copy_from_slice(bytemuck::bytes_of(&texel));
         })?;
         let light = block_buffer::<LightBlock>(device, &format!("{label}/light"))?;
-        Ok(DeviceScene { maps, light, drape, no_hits })
+        Ok(DeviceScene { maps, light, drape, draping, no_hits })
     }
 
     /// # Errors

@@ -1,4 +1,4 @@
-//! Drapes that are drawn of the land itself, as `shaders/terrain/tints.glsl` has them: lines of equal height, colours by slope and by
+//! Drapes that are drawn of the land itself, as `shaders/terrain/drape-*.glsl` have them: lines of equal height, colours by slope and by
 //! height.
 
 use glam::{Vec2, Vec3, Vec4};
@@ -15,10 +15,10 @@ const MOST_APART_PX: f32 = 1e4;
 
 /// At 0, 15, 30, 45 and 60 degrees, linear: level, grassy, loose, rocky, sheer.
 const SLOPES: [Vec3; 5] = [
-    Vec3::new(0.55, 0.60, 0.50),
-    Vec3::new(0.35, 0.50, 0.15),
-    Vec3::new(0.70, 0.50, 0.05),
-    Vec3::new(0.60, 0.08, 0.03),
+    Vec3::new(0.42, 0.45, 0.40),
+    Vec3::new(0.28, 0.40, 0.12),
+    Vec3::new(0.52, 0.36, 0.04),
+    Vec3::new(0.50, 0.07, 0.03),
     Vec3::new(0.16, 0.02, 0.16),
 ];
 
@@ -26,14 +26,14 @@ const SLOPES: [Vec3; 5] = [
 const HYPSOMETRIC: [(f32, Vec3); 10] = [
     (-6000.0, Vec3::new(0.01, 0.03, 0.12)),
     (-200.0, Vec3::new(0.05, 0.16, 0.35)),
-    (0.0, Vec3::new(0.22, 0.42, 0.55)),
+    (0.0, Vec3::new(0.18, 0.35, 0.46)),
     (0.0, Vec3::new(0.10, 0.26, 0.10)),
-    (200.0, Vec3::new(0.28, 0.42, 0.14)),
-    (500.0, Vec3::new(0.62, 0.58, 0.25)),
-    (1000.0, Vec3::new(0.50, 0.33, 0.12)),
-    (2000.0, Vec3::new(0.30, 0.15, 0.06)),
+    (200.0, Vec3::new(0.22, 0.34, 0.11)),
+    (500.0, Vec3::new(0.44, 0.41, 0.17)),
+    (1000.0, Vec3::new(0.38, 0.25, 0.09)),
+    (2000.0, Vec3::new(0.24, 0.12, 0.05)),
     (3500.0, Vec3::new(0.32, 0.26, 0.24)),
-    (5000.0, Vec3::new(0.75, 0.75, 0.76)),
+    (5000.0, Vec3::new(0.56, 0.56, 0.57)),
 ];
 
 /// The land's colour under such a drape; `facing` is the normal and the height over the base.
