@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 layout(std430, set = 0, binding = 0) buffer Sums {
-    uint list[];
+    uvec4 list[]; // two texels each
 } sums;
 
 layout(std430, set = 0, binding = 1) buffer Straddling {
@@ -17,14 +17,14 @@ layout(std430, set = 0, binding = 2) buffer Unfinished {
 } unfinished;
 
 layout(push_constant) uniform Empty {
-    uint words; // of the sums
+    uint pairs; // of texels
     uint threads; // which take them in turn
 } empty;
 
 void main() {
     uint at = gl_GlobalInvocationID.x;
-    for (uint word = at; word < empty.words; word += empty.threads) {
-        sums.list[word] = 0u;
+    for (uint pair = at; pair < empty.pairs; pair += empty.threads) {
+        sums.list[pair] = uvec4(0u);
     }
     if (at == 0u) {
         straddling.count = 0u;

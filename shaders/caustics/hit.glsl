@@ -29,6 +29,10 @@ layout(std430, set = 0, binding = 3) readonly buffer Pyramid {
     vec2 list[]; // least and greatest height, level after level, row by row
 } pyramid;
 
+layout(std430, set = 0, binding = 10) readonly buffer Levels {
+    uvec2 list[]; // first entry of the pyramid's levels, and entries a side
+} levels;
+
 // Steps of a ray through the position map, of a texel each: more than a map has texels along a side.
 const int MOST_STEPS = 32768;
 // Steps that are left out together where the ray passes above all that is near.
@@ -79,18 +83,18 @@ void climb(vec2 one, vec2 other, uint widest, out uvec2 from, out uvec2 to, out 
     vec2 last = vec2(float(plane.map_size) - 1.0);
     from = uvec2(clamp(min(one, other) - 1.0, vec2(0.0), last));
     to = uvec2(clamp(max(one, other) + 1.0, vec2(0.0), last));
-    first = 0u;
-    level_size = plane.map_size;
-    for (uint level = 0u; level < 16u; level++) {
-        uvec2 span = to - from;
-        if (max(span.x, span.y) <= widest || level + 1u >= plane.levels) {
-            break;
-        }
-        from /= 2u;
-        to /= 2u;
-        first += level_size * level_size;
-        level_size = (level_size + 1u) / 2u;
-    }
+    uvec2 span = to - from;
+    uint longest = max(span.x, span.y);
+    // By halves until it is no wider, and once more where its ends lie so.
+    uint level = longest > widest ? uint(findMSB(longest / (widest + 1u))) : 0u;
+    level += uint(any(greaterThan((to >> level) - (from >> level), uvec2(widest))));
+    level += uint(any(greaterThan((to >> level) - (from >> level), uvec2(widest))));
+    level = min(level, plane.levels - 1u);
+    from >>= level;
+    to >>= level;
+    uvec2 at = levels.list[level];
+    first = at.x;
+    level_size = at.y;
 }
 
 // Least and greatest height near a rectangle of texels, from the four entries of the pyramid that hold it. Where nothing is, the
@@ -129,4 +133,29 @@ vec2 heights_within(vec2 one, vec2 other) {
 vec2 place_at(vec3 origin, vec2 slope, float height) {
     vec2 place = origin.xz + slope * (origin.y - plane.middle - height) - plane.center;
     return place * plane.texels_per_m + 0.5 * float(plane.map_size);
+}
+
+// Of the differences on two sides of a texel the mean, or the lesser where an edge lies on one side.
+float difference(float before, float here, float after) {
+    float one = here - before;
+    float other = after - here;
+    if (!is_receiver(before)) {
+        return is_receiver(after) ? other : 0.0;
+    }
+    if (!is_receiver(after)) {
+        return one;
+    }
+    float lesser = min(abs(one), abs(other));
+    float greater = max(abs(one), abs(other));
+    return greater > 4.0 * lesser + sqrt(plane.texel_area_m2) ? (abs(one) < abs(other) ? one : other) : 0.5 * (one + other);
+}
+
+// How the surface rises from a texel to the next, along U and along W, metres; level where the texel holds no receiver.
+vec2 steepness_at(ivec2 texel) {
+    float here = height_at(texel);
+    if (!is_receiver(here)) {
+        return vec2(0.0);
+    }
+    return vec2(difference(height_at(texel - ivec2(1, 0)), here, height_at(texel + ivec2(1, 0))),
+        difference(height_at(texel - ivec2(0, 1)), here, height_at(texel + ivec2(0, 1))));
 }

@@ -13,11 +13,8 @@ layout(std430, set = 0, binding = 4) readonly buffer Rays {
 } rays;
 
 layout(std430, set = 0, binding = 5) buffer Landings {
-    vec4 list[]; // place in texels, height, and 1 / cos theta_t e^(-K d) for the surface there; -1 for one that does not land whole, -2 without light
+    vec4 list[]; // place in texels, height, and 1 / cos theta_t e^(-K d); -1 for a ray that does not land, -2 without light
 } landings;
-
-// A beam that a surface turns away from farther is left to the planes: what its light is divided by is too small to be known.
-const float GRAZING = 0.25;
 
 // The first place where a ray meets the receiver: texels in x and y, the height in z, and in w 1, or 0 where it meets nothing that
 // the map holds. A receiver is solid below what the light sees of it: what enters by its side is lost.
@@ -83,34 +80,6 @@ vec4 first_hit(vec3 origin, vec2 slope) {
     return vec4(place_at(origin, slope, met), met, 1.0);
 }
 
-// Of the differences on two sides of a texel the mean, or the lesser where an edge lies on one side.
-float difference(float before, float here, float after) {
-    float one = here - before;
-    float other = after - here;
-    if (!is_receiver(before)) {
-        return is_receiver(after) ? other : 0.0;
-    }
-    if (!is_receiver(after)) {
-        return one;
-    }
-    float lesser = min(abs(one), abs(other));
-    float greater = max(abs(one), abs(other));
-    return greater > 4.0 * lesser + sqrt(plane.texel_area_m2) ? (abs(one) < abs(other) ? one : other) : 0.5 * (one + other);
-}
-
-// What light that lands on a map's texel is divided by: a beam of slope s lights 1 / (1 + s . grad h) of the map's area that it
-// lights across V, and I_c is flux per area perpendicular to the beam, whatever the surface's slope (eq. 4-18).
-float turned(vec2 place, vec2 slope) {
-    ivec2 texel = ivec2(floor(place));
-    float here = height_at(texel);
-    if (!is_receiver(here)) {
-        return 1.0;
-    }
-    float along_u = difference(height_at(texel - ivec2(1, 0)), here, height_at(texel + ivec2(1, 0)));
-    float along_w = difference(height_at(texel - ivec2(0, 1)), here, height_at(texel + ivec2(0, 1)));
-    return 1.0 + dot(vec2(along_u, along_w) * plane.texels_per_m, slope);
-}
-
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= plane.vertices) {
@@ -123,12 +92,11 @@ void main() {
         vec4 hit = first_hit(ray.origin, ray.slope);
         landing.w = -1.0;
         if (hit.w > 0.0) {
-            float divisor = turned(hit.xy, ray.slope);
             vec2 place = (hit.xy - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
             landing.xyz = hit.xyz;
-            if (divisor >= GRAZING && reaches(vec3(place.x, hit.z + plane.middle, place.y), ray.origin)) {
+            if (reaches(vec3(place.x, hit.z + plane.middle, place.y), ray.origin)) {
                 float descent = max(ray.origin.y - plane.middle - hit.z, 0.0);
-                landing.w = exp(-plane.absorption_per_m * (descent * ray.secant)) * ray.secant / divisor;
+                landing.w = exp(-plane.absorption_per_m * (descent * ray.secant)) * ray.secant;
             }
         }
     }

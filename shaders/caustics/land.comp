@@ -37,6 +37,31 @@ bool lies_flat(vec3 a, vec3 b, vec3 c) {
     return true;
 }
 
+// A beam of slope s lights 1 / (1 + s . grad h) of the map's area that it lights across V. Farther from 1 it is left to the planes of
+// the texels: what is divided by changes too much from texel to texel there.
+const float TURNED = 0.2;
+// Least area of a triangle, of the square of its longest side, that its own corners tell the surface's slope by.
+const float LEAST_AREA = 0.05;
+
+// What light that lands is divided by: I_c is flux per area perpendicular to the beam, whatever the surface's slope (eq. 4-18).
+// Between the corners' own places, so that an error of the rays' depth moves the light and changes none of it.
+float divisor(Ray ray_a, Ray ray_b, Ray ray_c, vec3 a, vec3 b, vec3 c) {
+    vec2 to_b = b.xy - a.xy;
+    vec2 to_c = c.xy - a.xy;
+    float there = to_b.x * to_c.y - to_b.y * to_c.x;
+    float longest = max(dot(to_b, to_b), max(dot(to_c, to_c), dot(to_b - to_c, to_b - to_c)));
+    if (abs(there) < LEAST_AREA * longest || longest < 0.01) {
+        vec2 slope = (ray_a.slope + ray_b.slope + ray_c.slope) / 3.0;
+        return 1.0 + dot(steepness_at(ivec2(floor((a.xy + b.xy + c.xy) / 3.0))) * plane.texels_per_m, slope);
+    }
+    // On the plane across V at their mean height.
+    vec3 rise = vec3(a.z, b.z, c.z) - (a.z + b.z + c.z) / 3.0;
+    vec2 back = ray_a.slope * rise.x;
+    to_b += (ray_b.slope * rise.y - back) * plane.texels_per_m;
+    to_c += (ray_c.slope * rise.z - back) * plane.texels_per_m;
+    return (to_b.x * to_c.y - to_b.y * to_c.x) / there;
+}
+
 void list_it(uint triangle, vec2 heights) {
     uint at = atomicAdd(straddling.count, 1u);
     straddling.list[at] = Straddler(triangle, heights.x, heights.y);
@@ -64,7 +89,9 @@ Landed landed(uint triangle, Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, ve
         return whole;
     }
     vec2 rectangle = min(high, vec2(size)) - max(low, vec2(0.0)) + 2.0;
-    if (least < 0.0 || rectangle.x * rectangle.y > MOST_TEXELS || !lies_flat(a.xyz, b.xyz, c.xyz)) {
+    bool is_one = least >= 0.0 && rectangle.x * rectangle.y <= MOST_TEXELS;
+    float turned = is_one ? divisor(ray_a, ray_b, ray_c, a.xyz, b.xyz, c.xyz) : 0.0;
+    if (abs(turned - 1.0) > TURNED || !lies_flat(a.xyz, b.xyz, c.xyz)) {
         vec2 heights = heights_met(ray_a, ray_b, ray_c);
         if (heights.x <= heights.y) {
             list_it(triangle, heights);
@@ -79,7 +106,7 @@ Landed landed(uint triangle, Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, ve
     widen(whole.p, whole.q, whole.r);
     whole.low = min(whole.p, min(whole.q, whole.r));
     whole.high = max(whole.p, max(whole.q, whole.r));
-    whole.light = flux / area_of(whole.p, whole.q, whole.r);
+    whole.light = flux / (area_of(whole.p, whole.q, whole.r) * turned);
     return whole;
 }
 

@@ -2,8 +2,8 @@
 #pragma variants SHADOW=off,on
 
 // The triangles of the refined water that do not land whole on one surface (section 6.3), by reference planes as in section 4.4, of
-// which each texel has its own, at its height: it takes the part of the beam that it covers there, where nothing of the receiver
-// stands in the beam's way.
+// which each texel has its own, at its height and as steep as the surface there: it takes the part of the beam that it covers, where
+// nothing of the receiver stands in the beam's way.
 
 layout(local_size_x = 64) in;
 
@@ -16,6 +16,11 @@ layout(local_size_x = 64) in;
 // Invocations that share a triangle's rows of texels, and triangles that they take one after the other at the most.
 const uint SHARING = 8u;
 const uint IN_TURN = 16u;
+// A texel's plane is level where a beam would light more than 1 / this of its width there, where the surface is steeper than this or
+// would move the beam by more than a texel, and under beams that it would hardly move.
+const float LEAST_TURNED = 0.25;
+const float STEEPEST = 8.0;
+const float LEAST_MOVED = 0.3;
 
 // Set where the driver leaves a loop before its end.
 bool is_cut = false;
@@ -61,14 +66,27 @@ void main() {
         Ray a = rays.list[indices.list[3u * straddler.triangle]];
         Ray b = rays.list[indices.list[3u * straddler.triangle + 1u]];
         Ray c = rays.list[indices.list[3u * straddler.triangle + 2u]];
-        vec2 top_a = place_at(a.origin, a.slope, straddler.top);
-        vec2 top_b = place_at(b.origin, b.slope, straddler.top);
-        vec2 top_c = place_at(c.origin, c.slope, straddler.top);
-        vec2 end_a = place_at(a.origin, a.slope, straddler.bottom);
-        vec2 end_b = place_at(b.origin, b.slope, straddler.bottom);
-        vec2 end_c = place_at(c.origin, c.slope, straddler.bottom);
-        vec2 low = min(min(top_a, min(top_b, top_c)), min(end_a, min(end_b, end_c))) - LEAST_WIDTH;
-        vec2 high = max(max(top_a, max(top_b, top_c)), max(end_a, max(end_b, end_c))) + LEAST_WIDTH;
+        // Places of the rays at height 0, and how they move with each metre of descent, in texels.
+        vec2 at_a = place_at(a.origin, a.slope, 0.0);
+        vec2 at_b = place_at(b.origin, b.slope, 0.0);
+        vec2 at_c = place_at(c.origin, c.slope, 0.0);
+        vec2 lean_a = a.slope * plane.texels_per_m;
+        vec2 lean_b = b.slope * plane.texels_per_m;
+        vec2 lean_c = c.slope * plane.texels_per_m;
+        vec2 top_a = at_a - lean_a * straddler.top;
+        vec2 top_b = at_b - lean_b * straddler.top;
+        vec2 top_c = at_c - lean_c * straddler.top;
+        vec2 end_a = at_a - lean_a * straddler.bottom;
+        vec2 end_b = at_b - lean_b * straddler.bottom;
+        vec2 end_c = at_c - lean_c * straddler.bottom;
+        vec2 slope = (a.slope + b.slope + c.slope) / 3.0;
+        vec2 lean = (lean_a + lean_b + lean_c) / 3.0;
+        // By which a beam may be moved across a texel, in texels.
+        float steepest = STEEPEST * max(abs(slope.x), abs(slope.y));
+        float most_moved = steepest < LEAST_MOVED ? 0.0 : min(steepest, 1.0);
+        float reach = LEAST_WIDTH + 0.5 * most_moved;
+        vec2 low = min(min(top_a, min(top_b, top_c)), min(end_a, min(end_b, end_c))) - reach;
+        vec2 high = max(max(top_a, max(top_b, top_c)), max(end_a, max(end_b, end_c))) + reach;
         ivec2 from = ivec2(clamp(low, vec2(0.0), vec2(last)));
         ivec2 to = ivec2(clamp(high, vec2(0.0), vec2(last)));
         // Where its way is long, the beam keeps to a strip along it.
@@ -80,11 +98,10 @@ void main() {
         vec3 end_off = abs(vec3(dot(end_a - start, across), dot(end_b - start, across), dot(end_c - start, across)));
         vec3 off = max(top_off, end_off);
         // A texel's corner lies 0.71 from its centre.
-        float half_strip = max(off.x, max(off.y, off.z)) + LEAST_WIDTH + 0.71;
+        float half_strip = max(off.x, max(off.y, off.z)) + reach + 0.71;
 
         float lowest = min(a.origin.y, min(b.origin.y, c.origin.y)) - plane.middle;
         vec3 origin = (a.origin + b.origin + c.origin) / 3.0;
-        vec2 slope = (a.slope + b.slope + c.slope) / 3.0;
         float secant = (a.secant + b.secant + c.secant) / 3.0;
         vec3 face = face_of(a, b, c);
         float flux = max(-dot(face, a.incident + b.incident + c.incident) / 3.0, 0.0) * secant;
@@ -102,11 +119,21 @@ void main() {
                 if (!is_receiver(height) || height >= lowest) {
                     continue;
                 }
-                vec2 p = place_at(a.origin, a.slope, height) - vec2(texel);
-                vec2 q = place_at(b.origin, b.slope, height) - vec2(texel);
-                vec2 r = place_at(c.origin, c.slope, height) - vec2(texel);
-                if (any(lessThan(max(p, max(q, r)), vec2(-LEAST_WIDTH))) || any(greaterThan(min(p, min(q, r)), vec2(1.0 + LEAST_WIDTH)))) {
+                vec2 p = at_a - lean_a * height - vec2(texel);
+                vec2 q = at_b - lean_b * height - vec2(texel);
+                vec2 r = at_c - lean_c * height - vec2(texel);
+                if (any(lessThan(max(p, max(q, r)), vec2(-reach))) || any(greaterThan(min(p, min(q, r)), vec2(1.0 + reach)))) {
                     continue;
+                }
+                float turned = 1.0;
+                vec2 steepness = most_moved > 0.0 ? steepness_at(texel) : vec2(0.0);
+                float across_it = 1.0 + dot(steepness, lean);
+                if (across_it > LEAST_TURNED && (abs(steepness.x) + abs(steepness.y)) * max(abs(lean.x), abs(lean.y)) < most_moved) {
+                    // From the level plane to the one as steep as the surface, where the beam lights 1 / turned of the area.
+                    turned = across_it;
+                    p -= lean * (dot(p - 0.5, steepness) / turned);
+                    q -= lean * (dot(q - 0.5, steepness) / turned);
+                    r -= lean * (dot(r - 0.5, steepness) / turned);
                 }
                 widen(p, q, r);
                 Row row;
@@ -122,7 +149,7 @@ void main() {
                 vec2 beside = (place - 0.5 * float(plane.map_size)) / plane.texels_per_m + plane.center;
                 vec3 point = vec3(beside.x, height + plane.middle, beside.y);
                 if (reaches(point, vec3(beside - slope * descent, origin.y).xzy)) {
-                    add_light(texel, share * flux * exp(-plane.absorption_per_m * (descent * secant)));
+                    add_light(texel, share * flux / turned * exp(-plane.absorption_per_m * (descent * secant)));
                 }
             }
             is_cut = is_cut || x <= int(columns.y);

@@ -37,7 +37,7 @@ host_block! {
 
 host_block! {
     struct EmptyConstants {
-        words: u32,
+        pairs: u32,
         threads: u32,
     }
 }
@@ -111,6 +111,7 @@ impl HitMap {
                 .with("position_map", position_map)
                 .with("nearest", context.nearest)
                 .with("pyramid", &position_pyramid.heights)
+                .with("levels", &position_pyramid.table)
                 .with("rays", &volumes.rays)
         };
         let (intersect, straddle) = match shadows {
@@ -181,11 +182,12 @@ impl HitMap {
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         let constants = HitConstants { absorption_per_m, ..self.constants };
         let HitConstants { map_size, triangles, vertices, .. } = constants;
-        let words = 2 * map_size * map_size;
+        // Four words together.
+        let pairs = (map_size * map_size).div_ceil(2);
         self.position_pyramid.record(frame)?;
         frame.compute(&self.empty_sums, |dispatch| {
-            let threads = words.min(EMPTYING);
-            dispatch.constants(&EmptyConstants { words, threads }).threads(threads, 1, 1);
+            let threads = pairs.min(EMPTYING);
+            dispatch.constants(&EmptyConstants { pairs, threads }).threads(threads, 1, 1);
         })?;
         let sharing = triangles.div_ceil(IN_TURN) * SHARING;
         // Two triangles a cell, which are landed together.
@@ -200,9 +202,10 @@ impl HitMap {
     }
 }
 
-/// Two words a texel, which 32 bits must count.
+/// Two words a texel, of an even number of texels, which 32 bits must count.
 fn sum_words(context: Context<'_>) -> Result<u32, Error> {
-    let (wanted, limit) = (2 * u64::from(context.parameters.map_size).pow(2), u64::from(u32::MAX));
+    let pairs = u64::from(context.parameters.map_size).pow(2).div_ceil(2);
+    let (wanted, limit) = (4 * pairs, u64::from(u32::MAX));
     u32::try_from(wanted).map_err(|_| {
         let object = context.name("landed-light");
         Error::Limit { object, what: "words of light", wanted, limit }.set_by("map-size")

@@ -23,6 +23,8 @@ pub struct PositionPyramid {
     pass: Pass,
     /// Two heights an entry, metres of box space, level after level.
     pub heights: Arc<Buffer>,
+    /// First entry and entries a side of each level.
+    pub table: Arc<Buffer>,
 }
 
 impl PositionPyramid {
@@ -40,7 +42,10 @@ impl PositionPyramid {
             .with("nearest", context.nearest)
             .with("pyramid", &heights)
             .build(context.shaders)?;
-        Ok(PositionPyramid { levels, pass, heights })
+        let places: Vec<u32> = levels.iter().flat_map(|level| [level.to, level.to_size]).collect();
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let table = context.upload("pyramid-levels", usage, bytemuck::cast_slice(&places))?;
+        Ok(PositionPyramid { levels, pass, heights, table })
     }
 
     pub fn level_count(&self) -> u32 {

@@ -63,7 +63,7 @@ pub fn bowl() -> ReceiverInput {
 }
 
 /// The mesh scaled to 2 m and set on the pool's floor.
-fn sunk(mesh: &Mesh) -> ReceiverInput {
+pub fn sunk(mesh: &Mesh) -> ReceiverInput {
     let bounds = mesh.bounds();
     let scale = 2.0 / bounds.diagonal().max_element();
     let foot = Vec3::new(bounds.center().x, bounds.min.y, bounds.center().z) * scale;

@@ -18,6 +18,35 @@ pub fn flat_water_intensity(direction: DVec3, medium: Medium, distance_m: f64) -
     Some(direction.y / refracted.y * (-medium.absorption_per_m * distance_m).exp())
 }
 
+/// Intensity by eq. 4-18 at `point` for a point light at `position` over flat water at y = 0, and where the ray that reaches
+/// the point enters the water; `None` for a point or a light on the wrong side of it.
+///
+/// A ring of water of radius ρ around the light's foot lights a ring of radius R = ρ + D tan θ_t of the plane D below
+/// it: A_w = 2π ρ dρ and A_d = 2π R dR, so that I_c = (ρ dρ / R dR) (cos θ_i / cos θ_t) e^(-K d).
+pub fn flat_water_point_intensity(position: DVec3, point: DVec3, medium: Medium) -> Option<(f64, DVec3)> {
+    let (height, depth) = (position.y, -point.y);
+    if height <= 0.0 || depth <= 0.0 {
+        return None;
+    }
+    let across = DVec2::new(point.x - position.x, point.z - position.z);
+    let reach = across.length().max(1e-9);
+    let sine = |rho: f64| rho / rho.hypot(height) / medium.refraction_index;
+    let tangent = |rho: f64| sine(rho) / (1.0 - sine(rho).powi(2)).sqrt();
+    let (mut low, mut high) = (0.0, reach);
+    for _ in 0..60 {
+        let middle = (low + high) / 2.0;
+        if middle + depth * tangent(middle) < reach { low = middle } else { high = middle }
+    }
+    let rho = (low + high) / 2.0;
+    let step = 1e-6 * height;
+    let widening = 1.0 + depth * (tangent(rho + step) - tangent(rho - step)) / (2.0 * step);
+    let (cos_incident, cos_refracted) = (height / rho.hypot(height), (1.0 - sine(rho).powi(2)).sqrt());
+    let transmitted = (-medium.absorption_per_m * depth / cos_refracted).exp();
+    let entry = DVec2::new(position.x, position.z) + across * (rho / reach);
+    let intensity = rho / (reach * widening) * cos_incident / cos_refracted * transmitted;
+    Some((intensity, DVec3::new(entry.x, 0.0, entry.y)))
+}
+
 /// The flux that passes the water under unit intensity, Σ A_w cos θ_i (Φ_i of eq. 4-17), in m²; cos θ_i is the mean of
 /// a triangle's corners.
 pub fn flux_through_water(volumes: &[IlluminationVolume]) -> f64 {
