@@ -1,7 +1,7 @@
 #version 450
 
-// The kept pairs as one list of indices, plane after plane and triangle after triangle as the level map draws them (section 6.1). An
-// index names a vertex of the water and a plane: vertex + plane x vertices.
+// The kept pairs as one list of indices (section 6.1), triangle after triangle: on each plane they keep the level map's order, and no
+// texel is lit from two planes. An index names a vertex of the water and a plane: vertex + plane x vertices.
 
 layout(local_size_x = 64) in;
 
@@ -28,24 +28,21 @@ layout(std430, set = 0, binding = 4) buffer Pairs {
 } pairs;
 
 void main() {
-    uint word = gl_GlobalInvocationID.x;
-    uint plane = gl_GlobalInvocationID.y;
-    if (word >= cull.words || plane >= cull.planes) {
+    uint triangle = 64u * workgroup() + gl_LocalInvocationID.x;
+    if (triangle >= cull.triangles) {
         return;
     }
-    uint at = plane * cull.words + word;
-    uint bits = kept.list[at];
-    uint next = 3u * (before.list[at] + blocks.list[at / 256u]);
-    if (bits == 0u) {
-        return;
-    }
-    // One round a pair, 32 at the most.
-    for (uint round = 0u; round < 32u && bits != 0u; round++) {
-        uint corner = 3u * (32u * word + uint(findLSB(bits)));
-        pairs.list[next] = indices.list[corner] + plane * cull.vertices;
-        pairs.list[next + 1u] = indices.list[corner + 1u] + plane * cull.vertices;
-        pairs.list[next + 2u] = indices.list[corner + 2u] + plane * cull.vertices;
-        next += 3u;
-        bits &= bits - 1u;
+    uvec3 corners = uvec3(indices.list[3u * triangle], indices.list[3u * triangle + 1u], indices.list[3u * triangle + 2u]);
+    uint next = 3u * (before.list[triangle] + blocks.list[triangle / 256u]);
+    for (uint word = 0u; word < cull.words; word++) {
+        uint bits = kept.list[triangle * cull.words + word];
+        while (bits != 0u) {
+            uvec3 pair = corners + (32u * word + uint(findLSB(bits))) * cull.vertices;
+            pairs.list[next] = pair.x;
+            pairs.list[next + 1u] = pair.y;
+            pairs.list[next + 2u] = pair.z;
+            next += 3u;
+            bits &= bits - 1u;
+        }
     }
 }

@@ -1,6 +1,7 @@
 #version 450
 
-// The pairs before each word in its block of 256 words, and those of each block: the first step of a list in order (section 6.1).
+// The pairs before each triangle's in its block of 256 triangles, and those of each block: the first step of a list in order
+// (section 6.1).
 
 layout(local_size_x = 256) in;
 
@@ -11,7 +12,7 @@ layout(std430, set = 0, binding = 0) readonly buffer Kept {
 } kept;
 
 layout(std430, set = 0, binding = 1) buffer Before {
-    uint list[]; // pairs of the block before each word
+    uint list[]; // pairs of the block before each triangle's
 } before;
 
 layout(std430, set = 0, binding = 2) buffer Blocks {
@@ -21,12 +22,13 @@ layout(std430, set = 0, binding = 2) buffer Blocks {
 shared uint sums[256];
 
 void main() {
-    uint word = gl_GlobalInvocationID.x;
     uint lane = gl_LocalInvocationID.x;
-    uint all_words = cull.words * cull.planes;
+    uint triangle = 256u * workgroup() + lane;
     uint own = 0u;
-    if (word < all_words) {
-        own = uint(bitCount(kept.list[word]));
+    if (triangle < cull.triangles) {
+        for (uint word = 0u; word < cull.words; word++) {
+            own += uint(bitCount(kept.list[triangle * cull.words + word]));
+        }
     }
     sums[lane] = own;
     barrier();
@@ -39,10 +41,10 @@ void main() {
         sums[lane] += add;
         barrier();
     }
-    if (word < all_words) {
-        before.list[word] = sums[lane] - own;
+    if (triangle < cull.triangles) {
+        before.list[triangle] = sums[lane] - own;
     }
-    if (lane == 255u) {
-        blocks.list[word / 256u] = sums[255];
+    if (lane == 255u && workgroup() < cull.blocks) {
+        blocks.list[workgroup()] = sums[255];
     }
 }

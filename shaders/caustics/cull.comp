@@ -1,10 +1,10 @@
 #version 450
 
 // The pairs of water triangle and plane that may light a texel of the plane's own cell (section 6.1). An invocation has one triangle
-// and 32 planes: the group as a whole is held against the least and greatest height that the position map has where the triangle
-// passes it, then groups of 8 planes, then single planes, and at last single texels.
+// and 128 planes: the group as a whole is held against the least and greatest height that the position map has where the triangle
+// passes it, then groups of 32 and of 8 planes, then single planes, and at last the texels that it passes, each of which has one plane.
 
-layout(local_size_x = 32) in;
+layout(local_size_x = 64) in;
 
 #include "caustics/cull.glsl"
 
@@ -31,42 +31,44 @@ layout(std430, set = 0, binding = 4) readonly buffer Cells {
 } cells;
 
 layout(std430, set = 0, binding = 5) buffer Kept {
-    uint list[]; // a bit for each pair, plane after plane
+    uint list[]; // a bit for each pair, triangle after triangle
 } kept;
 
+layout(std430, set = 0, binding = 6) readonly buffer Levels {
+    uvec2 list[]; // first entry of the pyramid's levels, and entries a side
+} levels;
+
 const uint GROUP = 8u;
+// Groups of 32 planes of an invocation.
+const uint PARTS = 4u;
 const vec2 NOWHERE = vec2(1.0e30, -1.0e30);
 
-// Turns through the pyramid beyond which a pair is kept unseen: a driver may end all loops of an invocation after 65,535 together.
-const uint MOST_TURNS = 512u;
+// Texels beyond which the planes of a group of 32 are kept unseen: a driver may end all loops of an invocation after 65,535 turns
+// together.
+const uint MOST_TEXELS = 8192u;
+// Of a cell's height: nearer to a boundary the cell's own numbers decide.
+const float NEAR = 2.0e-3;
 
-shared uint masks[32];
-shared uint firsts[32]; // first entry of each level of the pyramid
-shared uint sizes[32]; // entries a side
-
-// A rectangle of texels, and what a rasteriser's rounding and single precision may add to it.
+// A rectangle of texels.
 struct Rectangle {
     uvec2 from;
     uvec2 to;
     bool is_empty;
 };
 
-Rectangle rectangle(vec2 low, vec2 high) {
+// The texels between two places and so far around.
+Rectangle rectangle(vec2 low, vec2 high, float slack) {
     float size = float(cull.map_size);
-    // A texel for the rasteriser's rounding, and what single precision leaves of places far away.
-    vec2 farthest = max(abs(low), abs(high));
-    float slack = 1.0 + 1.0e-5 * max(farthest.x, farthest.y);
     low -= slack;
     high += slack;
     bool meets_map = low.x < size && low.y < size && high.x >= 0.0 && high.y >= 0.0;
     return Rectangle(uvec2(clamp(low, vec2(0.0), vec2(size - 1.0))), uvec2(clamp(high, vec2(0.0), vec2(size - 1.0))), !meets_map);
 }
 
-// The finest level on which a rectangle is no more than two entries wide and high, or the one above it.
-uint level_of(Rectangle texels) {
-    uvec2 span = texels.to - texels.from;
-    uint longest = max(span.x, span.y);
-    return longest > 1u ? min(uint(findMSB(longest - 1u)) + 1u, cull.levels - 1u) : 0u;
+// What single precision leaves of places far away, and a rasteriser's rounding.
+float slack_at(vec2 low, vec2 high) {
+    vec2 farthest = max(abs(low), abs(high));
+    return 0.1 + 1.0e-5 * max(farthest.x, farthest.y);
 }
 
 // Least and greatest height, of those that the four entries around the rectangle have in common with the heights from `lower` to
@@ -76,14 +78,16 @@ vec2 heights_within(Rectangle texels, float lower, float upper) {
     if (texels.is_empty) {
         return found;
     }
-    uint level = level_of(texels);
-    uint first = firsts[level];
-    uint level_size = sizes[level];
+    // The finest level on which it is no more than two entries wide and high, or the one above it.
+    uvec2 span = texels.to - texels.from;
+    uint longest = max(span.x, span.y);
+    uint level = longest > 1u ? min(uint(findMSB(longest - 1u)) + 1u, cull.levels - 1u) : 0u;
+    uvec2 at_level = levels.list[level];
     texels.from >>= level;
     texels.to >>= level;
     for (uint i = 0u; i < 4u; i++) {
         uvec2 at = uvec2((i & 1u) == 0u ? texels.from.x : texels.to.x, i < 2u ? texels.from.y : texels.to.y);
-        vec2 range = pyramid.list[first + at.y * level_size + at.x];
+        vec2 range = pyramid.list[at_level.x + at.y * at_level.y + at.x];
         if (range.x < upper && range.y >= lower) {
             found = vec2(min(found.x, range.x), max(found.y, range.y));
         }
@@ -91,180 +95,161 @@ vec2 heights_within(Rectangle texels, float lower, float upper) {
     return found;
 }
 
-// The sides of a triangle, each by its inner normal and what it adds: not below 0 inside.
-struct Sides {
-    vec3 x;
-    vec3 y;
-    vec3 added;
-    vec3 reach; // by which a point a texel away along x and along y may be further inside
+vec2 texel_place(Ray ray, float height) {
+    vec2 place = ray.origin.xz + ray.slope * (ray.origin.y - height) - cull.center;
+    return place * cull.texels_per_m + 0.5 * float(cull.map_size);
+}
+
+// The three rays of a triangle: places on the box's uppermost plane in texels, and how they move from each plane to the next.
+struct Beam {
+    vec2 a;
+    vec2 b;
+    vec2 c;
+    vec2 a_step;
+    vec2 b_step;
+    vec2 c_step;
 };
 
-// True where the square around a middle may have a point inside.
-bool touches(Sides sides, vec2 middle, float half_side) {
-    vec3 inside = sides.x * middle.x + sides.y * middle.y + sides.added + sides.reach * half_side;
-    return min(inside.x, min(inside.y, inside.z)) >= 0.0;
+// All places of a beam from a plane to another, texels.
+void hull(Beam beam, float from, float to, out vec2 low, out vec2 high) {
+    vec2 a = beam.a + beam.a_step * from;
+    vec2 b = beam.b + beam.b_step * from;
+    vec2 c = beam.c + beam.c_step * from;
+    float on = to - from;
+    vec2 a_last = a + beam.a_step * on;
+    vec2 b_last = b + beam.b_step * on;
+    vec2 c_last = c + beam.c_step * on;
+    low = min(min(a, min(b, c)), min(a_last, min(b_last, c_last)));
+    high = max(max(a, max(b, c)), max(a_last, max(b_last, c_last)));
 }
 
-// Every second bit of a number, from the lowest on.
-uint every_second(uint bits) {
-    bits &= 0x55555555u;
-    bits = (bits | (bits >> 1u)) & 0x33333333u;
-    bits = (bits | (bits >> 2u)) & 0x0f0f0f0fu;
-    bits = (bits | (bits >> 4u)) & 0x00ff00ffu;
-    return (bits | (bits >> 8u)) & 0x0000ffffu;
+// Least and greatest height of the cells from one to another where the beam passes them.
+vec2 heights_met(Beam beam, uint from, uint to) {
+    vec2 low;
+    vec2 high;
+    hull(beam, float(from), float(to), low, high);
+    return heights_within(rectangle(low, high, 0.9 + slack_at(low, high)), cells.list[to].lower, cells.list[from].upper);
 }
 
-// True where a triangle may cover a sample of a texel whose height lies in the cell: down the pyramid from the entries that hold
-// the triangle, in Morton order.
-bool covers(vec2 a, vec2 b, vec2 c, Cell cell) {
-    Rectangle texels = rectangle(min(a, min(b, c)), max(a, max(b, c)));
+// The planes from `from` on and before `to` that the beam may light: it is straight from the first to the last and so lies between
+// its ends; heights that it meets there bound the planes, and these the way.
+void narrow(Beam beam, inout uint from, inout uint to) {
+    if (from < to) {
+        vec2 heights = heights_met(beam, from, to - 1u);
+        // A cell more on each side for what rounding may do.
+        vec2 places = (cull.top - heights.yx) * cull.cells_per_m;
+        uint above = uint(clamp(places.x - 1.0, 0.0, float(cull.planes)));
+        uint under = uint(clamp(places.y + 2.0, 0.0, float(cull.planes)));
+        from = max(from, above);
+        to = heights.x > heights.y ? from : min(to, under);
+    }
+}
+
+// Of some planes from `base` on, those of which the beam may cover a sample of a texel whose height lies in the cell: by the texels
+// that it passes from the first plane to the last, of which each has one plane.
+uint covered(Beam beam, uint base, uint planes) {
+    vec2 low;
+    vec2 high;
+    hull(beam, float(base + uint(findLSB(planes))), float(base + uint(findMSB(planes))), low, high);
+    float slack = slack_at(low, high);
+    Rectangle texels = rectangle(low, high, slack);
+    uvec2 span = texels.to - texels.from + 1u;
     if (texels.is_empty) {
-        return false;
+        return 0u;
     }
-    vec2 farthest = max(abs(a), max(abs(b), abs(c)));
-    // What rounding adds, of a rasteriser and here.
-    float slack = 0.1 + 1.0e-5 * max(farthest.x, farthest.y);
-    float turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) < 0.0 ? -1.0 : 1.0;
-    Sides sides;
-    sides.x = turn * vec3(a.y - b.y, b.y - c.y, c.y - a.y);
-    sides.y = turn * vec3(b.x - a.x, c.x - b.x, a.x - c.x);
-    // From the first corner, where numbers are small.
-    sides.added = -vec3(0.0, sides.x.y * (b.x - a.x) + sides.y.y * (b.y - a.y), 0.0);
-    sides.reach = abs(sides.x) + abs(sides.y);
+    if (max(span.x, span.y) > MOST_TEXELS || span.x * span.y > MOST_TEXELS) {
+        return planes;
+    }
+    // The square of the samples of a texel.
+    float half_side = 0.5 - cull.inset + slack;
+    uint found = 0u;
+    uint count = span.x * span.y;
+    uvec2 texel = texels.from;
+    uint at = texel.y * cull.map_size + texel.x;
+    for (uint i = 0u; i < count; i++) {
+        float height = pyramid.list[at].x;
+        vec2 middle = vec2(texel) + 0.5;
+        bool ends = texel.x >= texels.to.x;
+        texel = ends ? uvec2(texels.from.x, texel.y + 1u) : uvec2(texel.x + 1u, texel.y);
+        at += ends ? cull.map_size + 1u - span.x : 1u;
 
-    uint top = level_of(texels);
-    if (top > 14u) {
-        return true; // beyond what 32 bits number
+        float place = (cull.top - height) * cull.cells_per_m;
+        float plane = clamp(floor(place), -1.0, float(cull.planes));
+        if (abs(place - round(place)) < NEAR && place > -0.5) {
+            Cell cell = cells.list[min(uint(max(plane, 0.0)), cull.planes - 1u)];
+            plane += height < cell.lower ? 1.0 : (height >= cell.upper ? -1.0 : 0.0);
+            plane = clamp(plane, 0.0, float(cull.planes - 1u));
+        }
+        // From the texel's middle, where numbers are small.
+        vec2 p = beam.a + beam.a_step * plane - middle;
+        vec2 q = beam.b + beam.b_step * plane - middle;
+        vec2 r = beam.c + beam.c_step * plane - middle;
+        vec2 to_q = q - p;
+        vec2 to_r = r - q;
+        vec2 to_p = p - r;
+        // How far it is on the inner side of each side of the triangle, and what the square adds.
+        float turn = to_q.x * to_r.y < to_q.y * to_r.x ? -1.0 : 1.0;
+        vec3 inside = turn * vec3(to_q.y * p.x - to_q.x * p.y, to_r.y * q.x - to_r.x * q.y, to_p.y * r.x - to_p.x * r.y);
+        vec3 added = half_side * vec3(abs(to_q.x) + abs(to_q.y), abs(to_r.x) + abs(to_r.y), abs(to_p.x) + abs(to_p.y));
+        inside += added;
+        vec2 least = min(p, min(q, r));
+        vec2 most = max(p, max(q, r));
+        bool is_met = min(inside.x, min(inside.y, inside.z)) >= 0.0 && max(least.x, least.y) <= half_side
+            && min(most.x, most.y) >= -half_side;
+        uint bit = uint(plane + 1.0) - base;
+        found |= is_met && bit > 0u && bit < 33u ? 1u << (bit - 1u) : 0u;
     }
-    uvec2 base = (texels.from >> top) << top;
-    uint end = 4u << (2u * top);
-    uint place = 0u; // of the first texel of an entry
-    uint level = top;
-    for (uint turns = 0u; turns < MOST_TURNS && place < end; turns++) {
-        uvec2 texel = base + uvec2(every_second(place), every_second(place >> 1u));
-        uvec2 at = texel >> level;
-        uint size = sizes[level];
-        bool is_met = all(lessThanEqual(texel, texels.to)) && max(at.x, at.y) < size;
-        if (is_met) {
-            vec2 range = pyramid.list[firsts[level] + at.y * size + at.x];
-            float entry = float(1u << level);
-            // The square of the samples of the entry's texels.
-            is_met = range.x < cell.upper && range.y >= cell.lower
-                && touches(sides, vec2(texel) + 0.5 * entry - a, 0.5 * entry - cull.inset + slack);
-        }
-        if (is_met && level == 0u) {
-            return true;
-        }
-        if (is_met) {
-            level--;
-        } else {
-            place += 1u << (2u * level);
-            level = min(uint(findLSB(place)) / 2u, top);
-        }
-    }
-    return place < end;
+    return found & planes;
 }
 
 void main() {
-    uint word = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    uint lane = gl_LocalInvocationID.x;
-    uint triangle = 32u * word + lane;
-    uint base = 32u * gl_WorkGroupID.z;
-    uint from = base;
-    uint to = min(base + 32u, cull.planes);
-    uint mask = 0u;
-    uint first_entry = 0u;
-    uint level_size = cull.map_size;
-    for (uint level = 0u; level < min(lane, cull.levels); level++) {
-        first_entry += level_size * level_size;
-        level_size = (level_size + 1u) / 2u;
+    uint triangle = 64u * workgroup() + gl_LocalInvocationID.x;
+    if (triangle >= cull.triangles) {
+        return;
     }
-    firsts[lane] = first_entry;
-    sizes[lane] = level_size;
-    barrier();
-    if (word < cull.words && triangle < cull.triangles) {
-        Ray a = rays.list[indices.list[3u * triangle]];
-        Ray b = rays.list[indices.list[3u * triangle + 1u]];
-        Ray c = rays.list[indices.list[3u * triangle + 2u]];
-        // Without a lit corner nothing is lit. With an unlit one far away, rounding leaves light at the others, as in the level map.
-        bool enters = max(a.enters, max(b.enters, c.enters)) > 0.0;
-        float highest = max(a.origin.y, max(b.origin.y, c.origin.y));
-        if (!enters) {
-            to = from;
+    uint base = 32u * PARTS * gl_WorkGroupID.z;
+    Ray a = rays.list[indices.list[3u * triangle]];
+    Ray b = rays.list[indices.list[3u * triangle + 1u]];
+    Ray c = rays.list[indices.list[3u * triangle + 2u]];
+    float top = cells.list[0].height;
+    vec2 texels = cull.texels_per_m / cull.cells_per_m;
+    Beam beam =
+        Beam(texel_place(a, top), texel_place(b, top), texel_place(c, top), a.slope * texels, b.slope * texels, c.slope * texels);
+    float highest = max(a.origin.y, max(b.origin.y, c.origin.y));
+    // Without a lit corner nothing is lit. With an unlit one far away, rounding leaves light at the others, as in the level map.
+    bool enters = max(a.enters, max(b.enters, c.enters)) > 0.0;
+    uint first = base;
+    uint end = enters ? min(base + 32u * PARTS, cull.planes) : base;
+    for (uint round = 0u; round < 3u * steps.groups; round++) {
+        narrow(beam, first, end);
+    }
+    for (uint part_base = base; part_base < min(base + 32u * PARTS, cull.planes); part_base += 32u) {
+        uint from = max(first, part_base);
+        uint to = min(end, part_base + 32u);
+        if (steps.groups == 1u) {
+            narrow(beam, from, to);
         }
-        // The way from the first plane to the last is linear, and so lies between its ends: heights that it meets bound the planes, and
-        // these the way.
-        for (uint round = 0u; round < 3u * steps.groups; round++) {
-            if (from < to) {
-                float first = cells.list[from].height;
-                float last = cells.list[to - 1u].height;
-                vec2 a_first = texel_place(a, first);
-                vec2 b_first = texel_place(b, first);
-                vec2 c_first = texel_place(c, first);
-                vec2 a_last = texel_place(a, last);
-                vec2 b_last = texel_place(b, last);
-                vec2 c_last = texel_place(c, last);
-                vec2 low = min(min(a_first, min(b_first, c_first)), min(a_last, min(b_last, c_last)));
-                vec2 high = max(max(a_first, max(b_first, c_first)), max(a_last, max(b_last, c_last)));
-                vec2 heights = heights_within(rectangle(low, high), cells.list[to - 1u].lower, cells.list[from].upper);
-                // A cell more on each side for what rounding may do.
-                vec2 places = (cull.top - heights.yx) * cull.cells_per_m;
-                uint above = uint(clamp(places.x - 1.0, 0.0, float(cull.planes)));
-                uint under = uint(clamp(places.y + 2.0, 0.0, float(cull.planes)));
-                from = max(from, above);
-                to = heights.x > heights.y ? from : min(to, under);
-            }
-        }
+        uint mask = 0u;
         for (uint group = from / GROUP * GROUP; group < to && from < to; group += GROUP) {
-            uint first = max(from, group);
-            uint end = min(to, group + GROUP);
+            uint group_first = max(from, group);
+            uint group_end = min(to, group + GROUP);
             bool may_meet = true;
             if (steps.groups == 1u) {
-                float upper_height = cells.list[first].height;
-                float lower_height = cells.list[end - 1u].height;
-                vec2 a_first = texel_place(a, upper_height);
-                vec2 b_first = texel_place(b, upper_height);
-                vec2 c_first = texel_place(c, upper_height);
-                vec2 a_last = texel_place(a, lower_height);
-                vec2 b_last = texel_place(b, lower_height);
-                vec2 c_last = texel_place(c, lower_height);
-                vec2 low = min(min(a_first, min(b_first, c_first)), min(a_last, min(b_last, c_last)));
-                vec2 high = max(max(a_first, max(b_first, c_first)), max(a_last, max(b_last, c_last)));
-                vec2 heights = heights_within(rectangle(low, high), cells.list[end - 1u].lower, cells.list[first].upper);
+                vec2 heights = heights_met(beam, group_first, group_end - 1u);
                 may_meet = heights.x <= heights.y;
             }
-            if (may_meet) {
-                for (uint plane = first; plane < end; plane++) {
-                    Cell cell = cells.list[plane];
-                    if (highest > cell.height) {
-                        vec2 at_a = texel_place(a, cell.height);
-                        vec2 at_b = texel_place(b, cell.height);
-                        vec2 at_c = texel_place(c, cell.height);
-                        bool is_kept = true;
-                        if (steps.planes == 1u) {
-                            vec2 low = min(at_a, min(at_b, at_c));
-                            vec2 high = max(at_a, max(at_b, at_c));
-                            vec2 heights = heights_within(rectangle(low, high), cell.lower, cell.upper);
-                            is_kept = heights.x <= heights.y;
-                        }
-                        if (is_kept && steps.texels == 1u) {
-                            is_kept = covers(at_a, at_b, at_c, cell);
-                        }
-                        mask |= is_kept ? 1u << (plane - base) : 0u;
-                    }
+            for (uint plane = group_first; plane < group_end && may_meet; plane++) {
+                bool is_kept = highest > cells.list[plane].height;
+                if (is_kept && steps.planes == 1u) {
+                    vec2 heights = heights_met(beam, plane, plane);
+                    is_kept = heights.x <= heights.y;
                 }
+                mask |= is_kept ? 1u << (plane - part_base) : 0u;
             }
         }
-    }
-    // From planes of a triangle to triangles of a plane.
-    masks[lane] = mask;
-    barrier();
-    uint plane = base + lane;
-    if (word < cull.words && plane < cull.planes) {
-        uint bits = 0u;
-        for (uint i = 0u; i < 32u; i++) {
-            bits |= (masks[i] >> lane & 1u) << i;
+        if (mask != 0u && steps.texels == 1u) {
+            mask = covered(beam, part_base, mask);
         }
-        kept.list[plane * cull.words + word] = bits;
+        kept.list[triangle * cull.words + part_base / 32u] = mask;
     }
 }

@@ -1,5 +1,4 @@
-// Culling of pairs of water triangle and plane (section 6.1): what its passes share. A word holds 32 neighbouring triangles, a bit
-// each.
+// Culling of pairs of water triangle and plane (section 6.1): what its passes share. A word holds 32 planes of a triangle, a bit each.
 
 #include "caustics/ray.glsl"
 #include "caustics/cell.glsl"
@@ -13,13 +12,13 @@ layout(push_constant) uniform Cull {
     uint map_size; // texels a side
     uint levels; // of the position map's pyramid
     uint triangles;
-    uint words; // a plane
+    uint words; // a triangle
     uint planes;
-    uint blocks; // of 256 words
+    uint blocks; // of 256 triangles
     uint vertices; // of the water
 } cull;
 
-vec2 texel_place(Ray ray, float height) {
-    vec2 place = ray.origin.xz + ray.slope * (ray.origin.y - height) - cull.center;
-    return place * cull.texels_per_m + 0.5 * float(cull.map_size);
+// Of a workgroup among all, which lie in rows.
+uint workgroup() {
+    return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
 }

@@ -19,6 +19,9 @@ layout(location = 0) out vec4 surface; // point of the water that the ray left, 
 layout(location = 1) out vec3 weight;
 layout(location = 2) flat out vec2 accepted; // heights of the plane's cell: lowest, and first no longer accepted
 
+// The level map and its culling place a triangle alike, bit for bit.
+invariant gl_Position;
+
 void main() {
     uint at = uint(gl_VertexIndex) / plane.vertices;
     Ray ray = rays.list[uint(gl_VertexIndex) - at * plane.vertices];

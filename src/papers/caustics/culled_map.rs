@@ -15,12 +15,14 @@ use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 use crate::measure::parameter::Choice;
 
-/// Triangles of a word.
+/// Planes of a word.
 const WORD: u32 = 32;
-/// Words of a block.
+/// Triangles of a block.
 const BLOCK: u32 = 256;
+/// Triangles of the other workgroups.
+const WORKGROUP: u32 = 64;
 /// Planes of an invocation.
-const GROUP: u32 = 32;
+const GROUP: u32 = 128;
 /// Workgroups in a row: no device allows fewer.
 const ROW: u32 = 65_535;
 
@@ -153,9 +155,9 @@ impl CulledMap {
 
         let position_pyramid = PositionPyramid::new(context, position_map)?;
         let triangles = water.grid.triangle_count();
-        let words = triangles.div_ceil(WORD);
-        let all_words = u64::from(words) * uniform.len() as u64;
-        let blocks = all_words.div_ceil(u64::from(BLOCK));
+        let words = (uniform.len() as u32).div_ceil(WORD);
+        let all_words = u64::from(words) * u64::from(triangles);
+        let blocks = triangles.div_ceil(BLOCK);
         let indices = 3 * u64::from(triangles) * uniform.len() as u64;
         // An index names a vertex and a plane.
         let names = u64::from(water.grid.vertex_count()) * uniform.len() as u64;
@@ -179,8 +181,8 @@ impl CulledMap {
         let steps =
             context.upload("culling-steps", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&steps))?;
         let kept = buffer("culled-kept", 4 * all_words, none)?;
-        let before = buffer("culled-before", 4 * all_words, none)?;
-        let block_sums = buffer("culled-blocks", 4 * blocks, none)?;
+        let before = buffer("culled-before", 4 * u64::from(triangles), none)?;
+        let block_sums = buffer("culled-blocks", 4 * u64::from(blocks), none)?;
         let arguments = buffer("culled-arguments", 20, vk::BufferUsageFlags::INDIRECT_BUFFER)?;
         let pairs = buffer("culled-pairs", 4 * indices, vk::BufferUsageFlags::INDEX_BUFFER)?;
 
@@ -220,6 +222,7 @@ impl CulledMap {
                 .with("indices", &water.indices)
                 .with("steps", &steps)
                 .with("pyramid", &position_pyramid.heights)
+                .with("levels", &position_pyramid.table)
                 .with("cells", &cells)
                 .with("kept", &kept)
                 .build(shaders)?,
@@ -251,7 +254,7 @@ impl CulledMap {
                 triangles,
                 words,
                 planes: uniform.len() as u32,
-                blocks: blocks as u32,
+                blocks,
                 vertices,
             },
             draw: DrawConstants {
@@ -273,13 +276,18 @@ impl CulledMap {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         self.position_pyramid.record(frame)?;
-        let CullConstants { words, planes, blocks, .. } = self.constants;
-        let rows = words.div_ceil(ROW);
+        let CullConstants { triangles, planes, blocks, .. } = self.constants;
+        let rows = |threads: u32, workgroup: u32| {
+            let workgroups = threads.div_ceil(workgroup);
+            let rows = workgroups.div_ceil(ROW);
+            [workgroup * workgroups.div_ceil(rows), rows]
+        };
+        let ([x, y], [blocks_x, blocks_y]) = (rows(triangles, WORKGROUP), rows(blocks * BLOCK, BLOCK));
         let steps = [
-            (&self.cull, [WORD * words.div_ceil(rows), rows, planes.div_ceil(GROUP)]),
-            (&self.cull_count, [blocks * BLOCK, 1, 1]),
+            (&self.cull, [x, y, planes.div_ceil(GROUP)]),
+            (&self.cull_count, [blocks_x, blocks_y, 1]),
             (&self.cull_sum, [1, 1, 1]),
-            (&self.cull_compact, [words, planes, 1]),
+            (&self.cull_compact, [x, y, 1]),
         ];
         for (pass, [x, y, z]) in steps {
             frame.compute(pass, |dispatch| {

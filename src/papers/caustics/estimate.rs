@@ -48,10 +48,10 @@ impl Parameters {
         let (of_map, of_planes, of_pixel) = match variant {
             Variant::LevelMap => (maps, 0.0, NUMBER + LIGHT + NUMBER),
             Variant::LevelMapSmart => (maps + NUMBER * texels, 0.0, NUMBER + LIGHT + NUMBER),
-            // The pyramid of heights, two a texel; a bit twice and three indices a pair of triangle and plane.
+            // The pyramid of heights, two a texel; a bit and three indices a pair of triangle and plane, and a count a triangle.
             Variant::Culled => (
                 maps + 2.0 * NUMBER * texels * 4.0 / 3.0,
-                planes * water_triangles * (3.0 * NUMBER + 2.0 / 8.0) + water_triangles,
+                water_triangles * (planes * 3.0 * NUMBER + ((planes / 32.0).ceil() + 1.0) * NUMBER),
                 NUMBER + LIGHT + NUMBER,
             ),
             // The pyramid, and two words of light a texel; where the water's vertices land, which triangles straddle, and where.
