@@ -59,21 +59,19 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// How many steps slow the pass down as much as is aimed at: the pass's time grows linearly with them.
+/// How many steps slow the pass down as much as is aimed at: its time grows linearly with them, so that many more, which
+/// stand out of any noise, tell what one takes.
 fn calibrate(folder: &Path, changed: &Path) -> Result<u32> {
-    let mut steps = 200.0;
-    for _ in 0..3 {
-        slow_down(changed, steps as u32)?;
-        let mut ratios = Vec::new();
-        for _ in 0..5 {
-            let before = pass_ms(folder, "")?;
-            let after = pass_ms(folder, &format!("--shader-dir {}", changed.display()))?;
-            ratios.push(after / before - 1.0);
-        }
-        let slower = median(&ratios).filter(|&slower| slower > 0.005).ok_or("more steps take no longer")?;
-        steps = (steps * SLOWER / slower).clamp(1.0, 5_000.0);
+    const MANY: u32 = 10_000;
+    slow_down(changed, MANY)?;
+    let mut ratios = Vec::new();
+    for _ in 0..7 {
+        let before = pass_ms(folder, "")?;
+        let after = pass_ms(folder, &format!("--shader-dir {}", changed.display()))?;
+        ratios.push(after / before - 1.0);
     }
-    Ok(steps as u32)
+    let slower = median(&ratios).filter(|&slower| slower > SLOWER).ok_or("more steps take no longer")?;
+    Ok((f64::from(MANY) * SLOWER / slower) as u32)
 }
 
 /// Copies the shaders, with a loop of `steps` at the start of the one.

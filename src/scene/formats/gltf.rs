@@ -165,9 +165,11 @@ fn is_version_1(bytes: &[u8]) -> bool {
     }
     #[derive(serde::Deserialize)]
     struct Asset {
-        version: String,
+        /// A text, and in early files a number.
+        version: serde_json::Value,
     }
-    serde_json::from_slice(bytes).is_ok_and(|root: Root| root.asset.version.starts_with("1."))
+    serde_json::from_slice(bytes)
+        .is_ok_and(|root: Root| root.asset.version.to_string().trim_matches('"').starts_with('1'))
 }
 
 /// A document and the binary chunk beside it.

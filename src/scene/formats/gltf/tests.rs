@@ -260,6 +260,8 @@ fn buffers_of_one_file_share_it() {
 
 #[test]
 fn version_1_is_named() {
-    let json = r#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}, "buffers": {}}"#;
-    assert!(parse(json.as_bytes(), Path::new("")).unwrap_err().to_string().contains("glTF 1.0"));
+    for version in [r#""1.0""#, "1"] {
+        let json = format!(r#"{{"asset": {{"version": {version}}}, "meshes": {{"a": {{}}}}, "buffers": {{}}}}"#);
+        assert!(parse(json.as_bytes(), Path::new("")).unwrap_err().to_string().contains("glTF 1.0"));
+    }
 }

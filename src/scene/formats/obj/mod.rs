@@ -219,6 +219,8 @@ mod tests {
         }
         let forward = parse(format!("\u{feff}f 1 2 3 4\n{SQUARE}").as_bytes());
         assert_eq!(forward.unwrap(), plain);
+        let latin_1 = [SQUARE.as_bytes(), b"# \xa9\nusemtl Terraind\xe6k\nf 1 2 3 4\n"].concat();
+        assert_eq!(parse(&latin_1).unwrap(), plain);
     }
 
     #[test]

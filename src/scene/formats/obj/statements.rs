@@ -1,6 +1,7 @@
 //! The statements of a piece of an OBJ file that make polygons.
 
 use glam::{Vec2, Vec3};
+use std::borrow::Cow;
 
 use crate::scene::polygon::Arities;
 use crate::scene::tags::Level;
@@ -99,19 +100,15 @@ pub fn is_whole(line: &[u8]) -> bool {
 }
 
 impl Piece {
-    /// Parses whole lines.
+    /// Parses whole lines, of UTF-8 or Latin-1.
     ///
     /// Faces that would be beyond the file's end are kept: what they name may follow.
     pub fn parse(bytes: &[u8], keeps_tags: bool) -> Self {
         let mut piece = Piece { keeps_tags, ..Piece::default() };
+        // Exporters of older systems write names in Latin-1, of which every byte is a character.
         let text = match std::str::from_utf8(bytes) {
-            Ok(text) => text,
-            Err(error) => {
-                let line = 1 + memchr::memchr_iter(b'\n', &bytes[..error.valid_up_to()]).count();
-                let reason = "it is not UTF-8 text; convert the file to UTF-8".to_owned();
-                piece.fault = Some((line, Reason::Text(reason)));
-                return piece;
-            }
+            Ok(text) => Cow::Borrowed(text),
+            Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
         };
         let mut lines = text.lines();
         while let Some(line) = lines.next() {

@@ -118,6 +118,9 @@ fn plain(message: &str) -> String {
     let mut parts = parts.map(|part| part.trim_start_matches("Error: ").trim_end_matches(['.', ':', ',', ' ']));
     let first = parts.next().unwrap_or("it is not understood");
     let part = if first == "Couldn't read element line" { parts.next_back().unwrap_or(first) } else { first };
+    if part == "Couldn't parse line" {
+        return "it is no comment, obj_info, element or property of a PLY header".to_owned();
+    }
     if part.starts_with("Expected element of type") {
         return "a value is missing".to_owned();
     }

@@ -285,8 +285,13 @@ mod tests {
         let cut = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
                    property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 ";
         for (rest, line, reason) in [
-            ("element vertex x\nend_header\n", 3, "Couldn't parse line"),
-            ("element vertex 3\nproperty foo x\nend_header\n", 4, "Couldn't parse line"),
+            ("element vertex x\nend_header\n", 3, "it is no comment, obj_info, element or property of a PLY header"),
+            ("Made by hand\n", 3, "it is no comment, obj_info, element or property of a PLY header"),
+            (
+                "element vertex 3\nproperty foo x\nend_header\n",
+                4,
+                "it is no comment, obj_info, element or property of a PLY header",
+            ),
             ("format binary_little_endian 1.0\n", 3, "Found contradicting format definition"),
             ("property float x\n", 3, "it is not understood"),
             (&format!("{cut}\n3 0 1 2\n\n"), 12, "a value is missing"),
