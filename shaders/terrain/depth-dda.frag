@@ -1,14 +1,14 @@
 #version 450
 
-#pragma variants INTERPOLATION=bilinear,bicubic LOD=pixel,exact
+#pragma variants BASE=plane,curved INTERPOLATION=bilinear,bicubic LOD=pixel,exact
 
 #extension GL_EXT_samplerless_texture_functions : require
 
 #include "terrain/terrain.glsl"
-#include "terrain/base-plane.glsl"
+#include "terrain/base-{BASE}.glsl"
 #include "terrain/interpolation.glsl"
 #include "terrain/leaf-{LOD}.glsl"
-#include "terrain/traversal-dda.glsl"
+#include "terrain/traversal-dda-{BASE}.glsl"
 #include "terrain/depth.glsl"
 
 layout(location = 0) out vec4 depth;

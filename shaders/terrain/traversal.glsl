@@ -9,19 +9,7 @@
 // Before this file stand one for the base, one for the interpolation and one for where subdivision ends.
 
 #include "terrain/crossing.glsl"
-
-// A subsegment of one unit is intersected whatever it touches. Single precision counts them exactly.
-const int WHOLE = 1 << 23;
-
-vec3 point_on(Subsegment subsegment, float fraction) {
-    return mix(subsegment.near, subsegment.far, fraction);
-}
-
-// The smallest number of levels above the data whose texels are as large as the extent, in nodes.
-int shift_for(float extent) {
-    int exponent = ((floatBitsToInt(extent) + 0x7fffff) >> 23) - 127;
-    return clamp(exponent, 0, map.top);
-}
+#include "terrain/halves.glsl"
 
 // A height above everything that interpolation reads between two places; far below all heights where no map is.
 float highest_below(vec2 low, vec2 high, int shift) {

@@ -191,9 +191,6 @@ impl Terrain {
                 (Stage::Fragment, Traversal::Halving)
             }
         };
-        if let Some(problem) = variant.refusal(parameters.base) {
-            return Err(Error::Pass { pass: format!("{label}/depth"), problem: problem.into() });
-        }
         let build = Build { shaders, label, parameters, stage, traversal };
         let scene = Scene::new(parameters, inputs);
         let on_device = |drape| DeviceScene::new(shaders, label, parameters, &scene.maps, (drape, traversal));

@@ -42,13 +42,6 @@ impl Variant {
     pub fn is_rasterised(self) -> bool {
         matches!(self, Variant::Mesh | Variant::MeshLod)
     }
-
-    /// Reason why it cannot draw a base.
-    pub fn refusal(self, base: Base) -> Option<&'static str> {
-        let is_dda = matches!(self, Variant::DdaCompute | Variant::DdaFragment);
-        (is_dda && base != Base::Plane)
-            .then_some("rays from cell to cell are straight; give `base` plane, or variant gpu-compute or gpu-fragment")
-    }
 }
 
 impl measure::Variant for Variant {

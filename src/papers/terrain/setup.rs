@@ -233,10 +233,6 @@ impl Study for Setup {
         self.parameters.estimate(variant, &inputs, map)
     }
 
-    fn refusal(&self, variant: Variant) -> Option<&'static str> {
-        variant.refusal(self.parameters.base)
-    }
-
     fn promised_triangles(&self) -> Result<u64, Error> {
         Ok(promised_triangles(self.objects.iter().map(|object| &object.mesh))?)
     }

@@ -54,7 +54,7 @@ impl Build<'_> {
         let Parameters { base, interpolation, .. } = self.parameters;
         match self.traversal {
             Traversal::Halving => format!("{pass}-{}-{}", base.kind(), interpolation.name()),
-            Traversal::Cells => format!("{pass}-dda-{}", interpolation.name()),
+            Traversal::Cells => format!("{pass}-dda-{}-{}", base.kind(), interpolation.name()),
         }
     }
 

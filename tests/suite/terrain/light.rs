@@ -15,7 +15,6 @@ use glam::{DVec2, DVec3, Mat4, Vec3};
 
 use super::drawing::{Drawing, Painter, differing};
 use super::maps::map;
-use super::oracle::is_cast_by;
 use super::world::{Relief, Stand, World, random_map};
 use crate::common::gpu_test;
 
@@ -45,8 +44,7 @@ fn shadows_fall_where_the_oracle_s_rays_meet_a_map() {
                 let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
                 let paint = |variant| Painter::new(device, Compiler::Glslang, variant, &parameters, &inputs);
                 let mut painters = [Variant::GpuCompute, Variant::GpuFragment, Variant::Cpu].map(paint);
-                let dda = [Variant::DdaCompute, Variant::DdaFragment].into_iter().filter(|v| is_cast_by(*v, base));
-                let mut dda: Vec<Painter> = dda.map(paint).collect();
+                let mut dda = [Variant::DdaCompute, Variant::DdaFragment].map(paint);
                 let (mut lit, mut dark) = (0, 0);
                 for camera in cameras {
                     let rays = Rays::new(&camera, SIZE.0, SIZE.1);

@@ -29,11 +29,6 @@ struct Trial {
     tally: Tally,
 }
 
-/// Rays that go from cell to cell are straight.
-pub fn is_cast_by(variant: Variant, base: Base) -> bool {
-    base == Base::Plane || !matches!(variant, Variant::DdaCompute | Variant::DdaFragment)
-}
-
 /// All variants, and the pictures so far.
 pub struct Trials<'a> {
     device: &'a Arc<Device>,
@@ -73,9 +68,6 @@ impl<'a> Trials<'a> {
         let inputs = Inputs { maps: &world.maps, ..Inputs::default() };
         let parameters = Parameters { lod: *lod, ..world.parameters(cameras[0].0, *size) };
         for Trial { variant, compiler, tally: sum } in trials {
-            if !is_cast_by(*variant, world.base) {
-                continue;
-            }
             let mut painter = Painter::new(device, *compiler, *variant, &parameters, &inputs);
             for (camera, stand, judge) in &judges {
                 let mut tally = judge.tally(&painter.from(*camera));

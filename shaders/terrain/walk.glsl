@@ -1,10 +1,10 @@
-// The traversal of the variants `dda-compute` and `dda-fragment`, beside the paper's: blocks of cells are walked one after the
+// A straight line through the levels, for the variants `dda-compute` and `dda-fragment`: blocks of cells are walked one after the
 // other, from border to border. A texel of a level k above the data bounds the surface over all of its 2^k x 2^k cells, so that
 // one read answers for a step: maximum mipmaps (Tevs, Ihrke, Seidel 2008) and quadtree displacement mapping (Drobot 2010). The
 // ray climbs a level where it leaves a block of the level above as well, and goes at once to where it comes down to a block's
 // height.
 //
-// Before this file stand those of a plane's base, of an interpolation and of a level of detail: a curved base bends rays.
+// Before this file stand one for the base, one for the interpolation and one for where a walk ends.
 
 #include "terrain/crossing.glsl"
 
@@ -43,21 +43,23 @@ ivec3 beyond(ivec2 block, int level, ivec2 forward, vec2 at_border, vec2 place, 
     return ivec3(along_x ? next.x : inside.x, along_x ? inside.y : next.y, min(level + up, map.top));
 }
 
-// The first place where the ray is not above the map's surface, if before `limit_m`; `before` if not.
-Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
-    RaySegment ray = ray_segment(eye, direction, limit_m);
-    Hit hit = before;
-    bool done = !(ray.near_m < ray.far_m);
-    if (!done) {
-        int shift = finest_shift(ray.near_m);
-        int surface = entry_surface(ray, height_at(shift, ray.from.xy));
-        if (surface != 0) {
-            hit = Hit(ray.near_m, ray.from.xy, surface_code(surface, shift, 1));
-            done = true;
-        }
-    }
-    vec3 from = ray.from;
-    vec3 whole = ray.whole;
+// Nodes along u and v, and height; the depth of its ends in metres.
+struct Line {
+    vec3 from;
+    vec3 whole;
+    float near_m;
+    float far_m;
+};
+
+// The fraction of the line at which it meets the surface, -1 where it does not; false where the driver ended the loop.
+struct Met {
+    float t;
+    bool is_certain;
+};
+
+Met walk(Line line, int first_level, inout int steps) {
+    vec3 from = line.from;
+    vec3 whole = line.whole;
     // A ray along the grid never comes to the borders beside it: their part of the ray is beyond its end.
     vec2 never = vec2(abs(whole.x) < 1.0e-6 ? 2.0 : 0.0, abs(whole.y) < 1.0e-6 ? 2.0 : 0.0);
     vec2 inverse = vec2(never.x > 0.0 ? 0.0 : 1.0 / whole.x, never.y > 0.0 ? 0.0 : 1.0 / whole.y);
@@ -66,13 +68,11 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     float margin = terrain.rounding_height;
     ivec2 last_cell = max(map.last - 1, ivec2(0));
     ivec2 cell = clamp(ivec2(floor(from.xy)), ivec2(0), last_cell);
-    int level = max(map.top - 2, 1);
-    int finest = 0;
-    int steps = 0;
+    int level = first_level;
     float t = 0.0; // what is free of the ray
     float end = 0.0; // of the block
     float met = -1.0;
-    bool is_cast = !done;
+    bool done = false;
     while (!done) {
         bool is_last = false;
         while (!is_last && !done) {
@@ -96,13 +96,13 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
                         t = jump;
                         cell = cell_in(block, level, from.xy + t * whole.xy, last_cell);
                     }
-                    is_last = level <= finest_shift(ray.near_m + t * (ray.far_m - ray.near_m));
+                    is_last = level <= finest_shift(line.near_m + t * (line.far_m - line.near_m));
                     level -= is_last ? 0 : 1;
                 }
             }
         }
         if (is_last) {
-            finest = finest_shift(ray.near_m + t * (ray.far_m - ray.near_m));
+            int finest = finest_shift(line.near_m + t * (line.far_m - line.near_m));
             float part = part_in(max(finest, level), cell, from + t * whole, (end - t) * whole);
             done = part >= 0.0;
             met = done ? t + part * (end - t) : -1.0;
@@ -119,12 +119,5 @@ Hit trace(vec3 eye, vec3 direction, float limit_m, Hit before) {
     }
     // Not `!done`: compilers know that the loop ends with it.
     bool is_over = all(greaterThanEqual(cell, ivec2(0))) && all(lessThanEqual(cell, last_cell));
-    if (is_cast && met < 0.0 && t < 1.0 && is_over) {
-        hit = UNFINISHED;
-    }
-    if (met >= 0.0) {
-        float depth_m = depth_at(ray, met);
-        hit = Hit(depth_m, from.xy + met * whole.xy, surface_code(TERRAIN, finest_shift(depth_m), steps));
-    }
-    return hit;
+    return Met(met, met >= 0.0 || t >= 1.0 || !is_over);
 }
