@@ -248,4 +248,19 @@ impl<'a> Dispatch<'a> {
         }
         self
     }
+
+    /// Dispatches as many workgroups as the pass's [indirect](super::pass::PassBuilder::indirect) buffer says.
+    pub fn groups_indirect(&mut self) -> &mut Self {
+        let Some(clamp) = self.commands.inner.body.clamp() else {
+            self.commands.refuse("it has no indirect buffer");
+            return self;
+        };
+        if self.commands.is_ready() {
+            let BodyCommands { device, raw, .. } = self.commands;
+            // SAFETY: as for `threads`; the buffer holds one command, which the kernel before the pass has kept within the
+            // device's limits and which the pass's barrier made visible.
+            unsafe { device.raw.cmd_dispatch_indirect(raw, clamp.clamped.raw, 0) };
+        }
+        self
+    }
 }

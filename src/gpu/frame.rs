@@ -215,7 +215,7 @@ impl Frame<'_> {
     /// # Errors
     /// [`Error::Limit`] for more workgroups than the device takes; otherwise as [`Frame::graphics`].
     pub fn compute(&mut self, pass: &Pass, body: impl FnOnce(&mut Dispatch<'_>)) -> Result<(), Error> {
-        let Body::Compute { local_size } = pass.inner.body else { return Err(not_a(pass, "compute")) };
+        let Body::Compute { local_size, .. } = pass.inner.body else { return Err(not_a(pass, "compute")) };
         self.envelope(pass, |device, commands| {
             let mut dispatch = Dispatch::new(device, commands, &pass.inner, local_size);
             body(&mut dispatch);
@@ -328,7 +328,7 @@ impl Frame<'_> {
         r.open_label(pass.info());
         let device = r.commands.device.clone();
         let commands = r.commands.buffer;
-        if let Body::Graphics { indirect: Some(clamp), .. } = &pass.inner.body {
+        if let Some(clamp) = pass.inner.body.clamp() {
             let kernel = &clamp.pass.inner;
             r.commands.synchronise(name, &kernel.uses)?;
             r.bind(kernel);

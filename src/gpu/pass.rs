@@ -8,7 +8,7 @@ use ash::vk;
 use super::bindings::{Bindings, Resource, Use};
 use super::buffer::{Buffer, BufferView};
 use super::device::Device;
-use super::indirect::ClampDraw;
+use super::indirect::Clamp;
 use super::pass_builder::PassDesc;
 use super::pass_info::{PassInfo, PassKind};
 use super::pipeline::Pipeline;
@@ -58,17 +58,28 @@ pub(crate) enum Body {
         clears: Vec<vk::ClearValue>,
         vertices: Option<BufferView>,
         indices: Option<BufferView>,
-        indirect: Option<Box<ClampDraw>>,
+        indirect: Option<Box<Clamp>>,
         bounds: DrawBounds,
     },
     Compute {
         /// Threads of a workgroup.
         local_size: [u32; 3],
+        indirect: Option<Box<Clamp>>,
     },
     Copy {
         from: Resource,
         to: Arc<Buffer>,
     },
+}
+
+impl Body {
+    /// The kernel before the commands, where their parameters lie on the device.
+    pub fn clamp(&self) -> Option<&Clamp> {
+        match self {
+            Body::Graphics { indirect, .. } | Body::Compute { indirect, .. } => indirect.as_deref(),
+            Body::Copy { .. } => None,
+        }
+    }
 }
 
 /// Elements in the buffers that the draws of a pass fetch from.

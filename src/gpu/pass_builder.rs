@@ -11,7 +11,7 @@ use super::buffer::{Buffer, BufferView};
 use super::error::Error;
 use super::executable::executables;
 use super::image::ImageView;
-use super::indirect::ClampDraw;
+use super::indirect::Clamp;
 use super::pass::{Body, DrawBounds, Inner, Pass};
 use super::pass_check;
 use super::pass_info::{PassInfo, PassKind};
@@ -49,7 +49,7 @@ pub(crate) struct PassDesc {
     pub vertex_rate: vk::VertexInputRate,
     /// Index buffer of 32-bit indices.
     pub indices: Option<BufferView>,
-    /// Arguments of an indirect draw.
+    /// Arguments of an indirect draw or dispatch.
     pub indirect: Option<BufferView>,
     /// Primitives that vertices make up.
     pub topology: Topology,
@@ -212,9 +212,10 @@ impl PassBuilder {
         self
     }
 
-    /// The buffer that [`Draw::indices_indirect`](super::Draw::indices_indirect) takes its parameters from: a
-    /// `VkDrawIndexedIndirectCommand` at its start, in a storage buffer. A kernel of the pass's own keeps it inside the
-    /// index buffer first.
+    /// The buffer that [`Draw::indices_indirect`](super::Draw::indices_indirect) or
+    /// [`Dispatch::groups_indirect`](super::Dispatch::groups_indirect) takes its parameters from: a
+    /// `VkDrawIndexedIndirectCommand` or a `VkDispatchIndirectCommand` at its start, in a storage buffer. A kernel of the
+    /// pass's own keeps it inside the index buffer, or within the device's limits, first.
     pub fn indirect(mut self, buffer: &Arc<Buffer>) -> Self {
         self.desc.indirect = Some(buffer.view());
         self
@@ -353,16 +354,16 @@ pub(super) fn finish(
     uses.extend(desc.fixed_function_uses());
     pass_check::uses(device, desc.name, &uses)?;
     let body = match render_pass {
-        None => Body::Compute { local_size: pass_check::local_size(device, &desc, &pipeline.program)? },
+        None => {
+            let local_size = pass_check::local_size(device, &desc, &pipeline.program)?;
+            pass_check::parameters(&desc, size_of::<vk::DispatchIndirectCommand>())?;
+            Body::Compute { local_size, indirect: Clamp::of_dispatch(shaders, &desc)?.map(Box::new) }
+        }
         Some(render_pass) => {
             let extent = pass_check::extent(device, &desc)?;
             pass_check::fetches(device, &desc, stride_bytes)?;
             let bounds = DrawBounds::new(&desc, stride_bytes);
-            let indirect = ClampDraw::new(shaders, &desc, bounds)?;
-            if let Some(clamp) = &indirect {
-                let resource = (&clamp.clamped).into();
-                uses.push(Use { resource, access: Access::IndirectRead, discard: false });
-            }
+            let indirect = Clamp::of_draw(shaders, &desc, bounds)?;
             Body::Graphics {
                 framebuffer: Framebuffer::new(device, desc.name, &render_pass, &desc.targets, extent)?,
                 render_pass,
@@ -375,6 +376,9 @@ pub(super) fn finish(
             }
         }
     };
+    if let Some(clamp) = body.clamp() {
+        uses.push(Use { resource: (&clamp.clamped).into(), access: Access::IndirectRead, discard: false });
+    }
     let mut info = desc.describe(&pipeline.program, &uses);
     info.executables = executables(device, desc.name, &pipeline)?;
     device.name(pipeline.raw, &info.label());

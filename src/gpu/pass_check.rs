@@ -40,7 +40,6 @@ pub(super) fn stages(device: &Device, desc: &PassDesc, modules: &[Arc<ShaderModu
         || desc.targets.extent.is_some()
         || desc.vertices.is_some()
         || desc.indices.is_some()
-        || desc.indirect.is_some()
         || desc.counting.is_some();
     if desc.kind == PassKind::Compute && draws {
         return Err(desc.problem("a compute pass has neither attachments nor vertices"));
@@ -250,16 +249,20 @@ pub(super) fn fetches(device: &Device, desc: &PassDesc, stride_bytes: u32) -> Re
         let last = (vertices.len_bytes() / u64::from(stride_bytes)).saturating_sub(1);
         check_limit(desc, "index of a vertex", last, device.physical().largest_index())?;
     }
-    if let Some(parameters) = &desc.indirect {
-        let wanted = size_of::<vk::DrawIndexedIndirectCommand>() as u64;
-        let is_indirect = parameters.buffer.usage().contains(vk::BufferUsageFlags::INDIRECT_BUFFER);
-        if parameters.len_bytes() < wanted || !is_indirect {
-            let name = parameters.buffer.name();
-            return Err(desc.problem(format!("{name} is no indirect buffer of {wanted} bytes")));
-        }
-        if desc.indices.is_none() {
-            return Err(desc.problem("draws indices by an indirect buffer, and no index buffer is bound"));
-        }
+    parameters(desc, size_of::<vk::DrawIndexedIndirectCommand>())?;
+    if desc.indirect.is_some() && desc.indices.is_none() {
+        return Err(desc.problem("draws indices by an indirect buffer, and no index buffer is bound"));
+    }
+    Ok(())
+}
+
+/// The buffer that indirect commands take their `wanted` bytes of parameters from was made for it.
+pub(super) fn parameters(desc: &PassDesc, wanted: usize) -> Result<(), Error> {
+    let Some(parameters) = &desc.indirect else { return Ok(()) };
+    let is_indirect = parameters.buffer.usage().contains(vk::BufferUsageFlags::INDIRECT_BUFFER);
+    if parameters.len_bytes() < wanted as u64 || !is_indirect {
+        let name = parameters.buffer.name();
+        return Err(desc.problem(format!("{name} is no indirect buffer of {wanted} bytes")));
     }
     Ok(())
 }

@@ -83,6 +83,56 @@ fn a_buffer_that_holds_no_parameters_is_refused() {
             let message = built.map(|_| ()).unwrap_err().to_string();
             assert_eq!(message, format!("pass draw: {name} is no indirect buffer of 20 bytes"));
         }
+        let tiny = Buffer::new(device, BufferDesc::new("tiny", 8).usage(usage)).unwrap();
+        for (parameters, name) in [(&vertices, "vertices"), (&tiny, "tiny")] {
+            let pass = Pass::compute("advance", "", "test/advance.comp").constants::<Advance>();
+            let pass = pass.with("Values", &storage_buffer(device, "numbers", &[0.0; 64]));
+            let message = pass.indirect(parameters).build(&library).map(|_| ()).unwrap_err().to_string();
+            assert_eq!(message, format!("pass advance: {name} is no indirect buffer of 12 bytes"));
+        }
+    });
+}
+
+#[test]
+fn an_indirect_dispatch_takes_what_the_last_pass_wrote_within_the_devices_limits() {
+    gpu_test(|device| {
+        let library = shaders(device);
+        let groups = |name: &str, groups: [u32; 3]| {
+            let usage = vk::BufferUsageFlags::INDIRECT_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
+            upload(device, name, usage, bytemuck::cast_slice(&groups)).unwrap()
+        };
+        let (numbers, wanted) = (storage_buffer(device, "numbers", &[0.0; 256]), groups("wanted", [0; 3]));
+        let pass = Pass::compute("advance", "", "test/advance.comp").constants::<Advance>().with("Values", &numbers);
+        let advance = pass.clone().indirect(&wanted).build(&library).unwrap();
+        assert!(advance.info().reads.contains(&"wanted".to_owned()));
+        let run_by = |count: [u32; 3]| {
+            let refill = Pass::copy("refill", "", &groups("more", count), &wanted);
+            let sample = run(device, Mode::Plain, |frame| {
+                frame.copy(&refill)?;
+                frame.compute(&advance, |dispatch| {
+                    dispatch.constants(&Advance { value_count: 256, step: 1.0 }).groups_indirect();
+                })
+            });
+            assert_eq!(sample.unwrap().passes[1].calls, 1);
+            values(device, &numbers)
+        };
+        assert_eq!(run_by([0, 1, 1]), [0.0; 256]);
+        let expected: Vec<f32> = (0..256).map(|i| f32::from(u8::from(i < 128))).collect();
+        assert_eq!(run_by([2, 1, 1]), expected);
+        // Nothing ends where four billion workgroups do not become as many as the device takes.
+        let limit = device.physical().limits.max_compute_work_group_count[2];
+        if limit < 1 << 17 {
+            let most = 1.0 + limit as f32;
+            assert!(run_by([1, 1, u32::MAX])[..64].iter().all(|&value| value > 1.0 && value <= most));
+        }
+
+        let without = pass.build(&library).unwrap();
+        let refused = run(device, Mode::Plain, |frame| {
+            frame.compute(&without, |dispatch| {
+                dispatch.constants(&Advance { value_count: 1, step: 1.0 }).groups_indirect();
+            })
+        });
+        assert_eq!(refused.unwrap_err().to_string(), "pass advance: it has no indirect buffer");
     });
 }
 
