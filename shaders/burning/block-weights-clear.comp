@@ -1,6 +1,6 @@
 #version 450
 
-// Before the vertices are counted. The combustion counters of 5.4 go on.
+// Before a tick's events are counted. What the vertices amount to, and the combustion counters of 5.4, go on.
 
 layout(local_size_x = 64) in;
 
@@ -16,10 +16,7 @@ void main() {
     if (block >= constants.block_count) {
         return;
     }
-    blocks[block].live = 0;
-    blocks[block].ready = 0;
     blocks[block].pitch_sign = 0;
     blocks[block].yaw_sign = 0;
     blocks[block].roll_sign = 0;
-    blocks[block].heated = 0;
 }

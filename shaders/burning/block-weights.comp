@@ -5,12 +5,14 @@
 // The weight of a block is the number of its live vertices (3.5.1). A vertex that is consumed or goes to another block
 // unbalances the block that it was in; the direction follows from its position about the block's midpoint (3.5.2),
 // or is random, which 3.5.1 finds adequate for games.
-// Integer sums, so that the order of threads cannot matter.
+// What a vertex amounts to is kept, and its block's counts change by what that does: vertices that the tick cannot have
+// changed are not visited. Integer sums, so that the order of threads cannot matter.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/chunks.glsl"
 #include "burning/flammability.glsl"
 #include "burning/grid.glsl"
 #include "burning/blocks.glsl"
@@ -45,16 +47,40 @@ layout(set = 0, binding = 24, std430) readonly buffer Alive {
     uint alive[];
 };
 
-shared uint live_count;
-shared uint ready_count;
+layout(set = 0, binding = 95, std430) buffer Counted {
+    uint counted[]; // of vertices: the block that they count in times 8, and as what
+};
+
+// What a vertex counts as.
+const uint LIVE = 1u;
+const uint LIVE_READY = 2u;
+const uint HEATED = 4u;
+
+shared int live_change;
+shared int ready_change;
+
+void count(uint word, int change) {
+    uint block = word / 8u;
+    if ((word & LIVE) != 0u) {
+        atomicAdd(live_change, change);
+        atomicAdd(blocks[block].live, change);
+    }
+    if ((word & LIVE_READY) != 0u) {
+        atomicAdd(ready_change, change);
+        atomicAdd(blocks[block].ready, change);
+    }
+    if ((word & HEATED) != 0u) {
+        atomicAdd(blocks[block].heated, change);
+    }
+}
 
 void main() {
     if (gl_LocalInvocationID.x == 0u) {
-        live_count = 0u;
-        ready_count = 0u;
+        live_change = 0;
+        ready_change = 0;
     }
     barrier();
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element_visited();
     if (vertex < constants.vertex_count) {
         VertexState now = new_state[vertex];
         uint label = labels[vertex];
@@ -63,16 +89,14 @@ void main() {
         cells[vertex] = cell;
         if (alive[vertex] == 1u) {
             bool is_live = now.left > 0.0;
-            if (is_live) {
-                atomicAdd(live_count, 1u);
-                atomicAdd(blocks[cell].live, 1);
-                if (label == READY) {
-                    atomicAdd(ready_count, 1u);
-                    atomicAdd(blocks[cell].ready, 1);
-                }
-            }
-            if (label >= READY) {
-                atomicAdd(blocks[cell].heated, 1);
+            uint word = 8u * cell + (is_live ? LIVE : 0u);
+            word += is_live && label == READY ? LIVE_READY : 0u;
+            word += label >= READY ? HEATED : 0u;
+            uint before = counted[vertex];
+            if (word != before) {
+                count(before, -1);
+                count(word, 1);
+                counted[vertex] = word;
             }
             // The combustion counter of a block goes up once in each tick with active vertices (5.4).
             if (label == DEFORMED && old_state[vertex].left > constants.retire_at * flammability_of(vertex)) {
@@ -98,7 +122,7 @@ void main() {
     }
     barrier();
     if (gl_LocalInvocationID.x == 0u) {
-        atomicAdd(clock.live_vertices, live_count);
-        atomicAdd(clock.ready_vertices, ready_count);
+        atomicAdd(clock.live_vertices, uint(live_change));
+        atomicAdd(clock.ready_vertices, uint(ready_change));
     }
 }

@@ -1,6 +1,7 @@
 #version 450
 
-// The directions and gaps of the meetings that were found: one thread each, before parts move.
+// The directions and gaps of the meetings that were found: one thread each, before parts move. Whether they do so in the
+// next tick is not known yet.
 
 layout(local_size_x = 64) in;
 
@@ -40,8 +41,15 @@ layout(set = 0, binding = 77, std430) buffer Met {
     vec4 met[];
 };
 
+layout(set = 0, binding = 97, std430) buffer Moving {
+    uint moving[3];
+};
+
 void main() {
     uint thread = gl_GlobalInvocationID.x;
+    if (thread == 0u) {
+        moving[0] = 0u;
+    }
     if (thread >= MOST_PARTS * MEETINGS) {
         return;
     }

@@ -48,6 +48,11 @@ layout(set = 0, binding = 77, std430) readonly buffer Met {
     vec4 met[]; // direction from what is met, gap
 };
 
+layout(set = 0, binding = 97, std430) buffer Moving {
+    uint moving[3]; // workgroups over the vertices while a part moves, else 0
+};
+
+const uint GROUP = 64u; // of the passes over the vertices
 const float TICK_S = 1.0 / 60.0;
 const float GRAVITY = 9.81; // diagonals a second squared
 const float FRICTION = 0.6;
@@ -237,4 +242,5 @@ void main() {
     part.spin = spin;
     part.energy = now;
     parts[index] = part;
+    moving[0] = (constants.vertex_count + GROUP - 1u) / GROUP;
 }

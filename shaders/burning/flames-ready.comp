@@ -4,10 +4,11 @@
 // is made of the list does not depend on it. Of a block with very many a random half of LISTED or so is listed: the list
 // is searched at each birth, and lavapipe ends the loops of a shader after 65,535 iterations.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/chunks.glsl"
 #include "burning/flames.glsl"
 #include "burning/vertices.glsl"
 
@@ -56,7 +57,7 @@ bool is_chosen(uint vertex, uint block) {
 }
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element_visited();
     if (vertex >= constants.vertex_count) {
         return;
     }

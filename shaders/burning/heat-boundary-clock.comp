@@ -19,6 +19,4 @@ void main() {
     clock.radius = constants.growth_per_tick * float(clock.growth_ticks);
     clock.active_vertices = 0u;
     clock.active_triangles = 0u;
-    clock.live_vertices = 0u;
-    clock.ready_vertices = 0u;
 }

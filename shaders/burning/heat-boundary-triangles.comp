@@ -1,11 +1,15 @@
 #version 450
 
-// A triangle belongs to the innermost area that one of its vertices has reached (3.3).
+#pragma variants CONSUMED=leaves,stays
 
-layout(local_size_x = 64) in;
+// A triangle belongs to the innermost area that one of its vertices has reached (3.3). A chunk has burnt out when none of
+// its triangles can become active any more and, where they leave, those that burn have left.
+
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/chunks.glsl"
 #include "burning/flammability.glsl"
 #include "burning/vertices.glsl"
 
@@ -33,32 +37,55 @@ layout(set = 0, binding = 24, std430) readonly buffer Alive {
     uint alive[];
 };
 
+layout(set = 0, binding = 93, std430) buffer Finished {
+    uint finished[]; // of chunks
+};
+
+#ifdef CONSUMED_LEAVES
+layout(set = 0, binding = 13, std430) readonly buffer Removed {
+    uint removed[];
+};
+#endif
+
 shared uint active_count;
+shared uint open_count;
 
 void main() {
     if (gl_LocalInvocationID.x == 0u) {
         active_count = 0u;
+        open_count = 0u;
     }
     barrier();
-    uint triangle = gl_GlobalInvocationID.x;
+    uint triangle = element_visited();
     if (triangle < constants.triangle_count) {
         uint highest = OUTSIDE;
         bool is_active = false;
+        bool is_open = false;
         for (uint corner = 0u; corner < 3u; corner++) {
             uint vertex = triangles[3u * triangle + corner];
             uint label = labels[vertex];
             highest = max(highest, label);
-            if (label == DEFORMED && old_state[vertex].left > constants.retire_at * flammability_of(vertex) && alive[vertex] == 1u) {
-                is_active = true;
-            }
+            float flammability = flammability_of(vertex);
+            bool burns = flammability > 0.0 && old_state[vertex].left > constants.retire_at * flammability;
+            is_active = is_active || (burns && label == DEFORMED && alive[vertex] == 1u);
+            is_open = is_open || burns;
+#ifdef CONSUMED_LEAVES
+            is_open = is_open || (flammability > 0.0 && removed[triangle] == 0u);
+#endif
         }
         triangle_labels[triangle] = highest;
         if (is_active) {
             atomicAdd(active_count, 1u);
         }
+        if (is_open) {
+            atomicAdd(open_count, 1u);
+        }
     }
     barrier();
-    if (gl_LocalInvocationID.x == 0u && active_count > 0u) {
-        atomicAdd(clock.active_triangles, active_count);
+    if (gl_LocalInvocationID.x == 0u) {
+        finished[chunk_visited()] = open_count == 0u ? 1u : 0u;
+        if (active_count > 0u) {
+            atomicAdd(clock.active_triangles, active_count);
+        }
     }
 }

@@ -1,12 +1,13 @@
 #version 450
 
-// The areas of the heat boundary (3.3; with the virtual one of 4.3). R knows the irregularity already: inside is R <= r
-// + offset.
+// The areas of the heat boundary (3.3), and whether a chunk has burnt out.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/areas.glsl"
+#include "burning/chunks.glsl"
 #include "burning/flammability.glsl"
 #include "burning/vertices.glsl"
 
@@ -30,41 +31,39 @@ layout(set = 0, binding = 24, std430) readonly buffer Alive {
     uint alive[];
 };
 
-shared uint active_count;
+layout(set = 0, binding = 93, std430) buffer Finished {
+    uint finished[]; // of chunks
+};
 
-uint area_of(float distance_to_boundary) {
-    float r = clock.radius;
-    float width = constants.area_width;
-    if (distance_to_boundary <= r - 2.0 * width) {
-        return DEFORMED;
-    }
-    if (distance_to_boundary <= r - width) {
-        return READY;
-    }
-    if (distance_to_boundary <= r) {
-        return INITIAL;
-    }
-    // Chapter 3 has no virtual area; nothing of it reads this label.
-    return distance_to_boundary <= r + 2.0 * width ? VIRTUAL : OUTSIDE;
-}
+shared uint active_count;
+shared uint open_count;
 
 void main() {
     if (gl_LocalInvocationID.x == 0u) {
         active_count = 0u;
+        open_count = 0u;
     }
     barrier();
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element_visited();
     if (vertex < constants.vertex_count) {
+        float flammability = flammability_of(vertex);
         // What does not burn is heated alone.
-        uint innermost = flammability_of(vertex) > 0.0 ? DEFORMED : INITIAL;
-        uint label = min(area_of(rest[vertex].boundary_distance), innermost);
+        uint innermost = flammability > 0.0 ? DEFORMED : INITIAL;
+        uint label = min(area_of(rest[vertex].boundary_distance, clock.radius), innermost);
         labels[vertex] = label;
-        if (label == DEFORMED && old_state[vertex].left > constants.retire_at * flammability_of(vertex) && alive[vertex] == 1u) {
-            atomicAdd(active_count, 1u);
+        if (flammability > 0.0 && old_state[vertex].left > constants.retire_at * flammability) {
+            atomicAdd(open_count, 1u);
+            if (label == DEFORMED && alive[vertex] == 1u) {
+                atomicAdd(active_count, 1u);
+            }
         }
     }
     barrier();
-    if (gl_LocalInvocationID.x == 0u && active_count > 0u) {
-        atomicAdd(clock.active_vertices, active_count);
+    if (gl_LocalInvocationID.x == 0u) {
+        // Its last change is copied to the other state in this tick.
+        finished[chunk_visited()] = open_count == 0u ? 1u : 0u;
+        if (active_count > 0u) {
+            atomicAdd(clock.active_vertices, active_count);
+        }
     }
 }

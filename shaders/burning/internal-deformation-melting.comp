@@ -3,9 +3,10 @@
 // Internal deformation of what melts (6.3): flow-true vertices follow the base points, and the fractional folding keeps
 // the edges around them in range; the others are fixed points. Appendix C's code does otherwise and yields to the text.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
+#include "burning/chunks.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
 #include "burning/meltability.glsl"
@@ -60,8 +61,8 @@ layout(set = 0, binding = 52, std430) buffer Flows {
 };
 
 layout(push_constant, std430) uniform Slice {
-    uint first;
-    uint count;
+    uint number; // of the slices of a tick (3.7.2): each takes its turn of the chunks
+    uint division;
 } slice;
 
 // Displacement of the base points around the vertex's position at rest, interpolated between the blocks' middles. A
@@ -197,10 +198,10 @@ float fall_of(uint vertex) {
 }
 
 void main() {
-    if (gl_GlobalInvocationID.x >= slice.count) {
+    uint vertex = element_visited();
+    if (gl_WorkGroupID.x % slice.division != slice.number || vertex >= constants.vertex_count) {
         return;
     }
-    uint vertex = slice.first + gl_GlobalInvocationID.x;
     VertexState before = old_state[vertex];
     uint label = labels[vertex];
     if (label < READY || alive[vertex] == 0u) {

@@ -9,9 +9,10 @@
 // inside out. Ours ends at a char's depth, three quarters of the solid's volume over its surface (a quarter of a ball's
 // radius): what lies deeper stays enclosed.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
+#include "burning/chunks.glsl"
 #include "burning/block-levels.glsl"
 #include "burning/displacement.glsl"
 #include "burning/flammability.glsl"
@@ -55,8 +56,8 @@ layout(set = 0, binding = 83, std430) readonly buffer RestCells {
 };
 
 layout(push_constant, std430) uniform Slice {
-    uint first;
-    uint count;
+    uint number; // of the slices of a tick (3.7.2): each takes its turn of the chunks
+    uint division;
 } slice;
 
 // The position that the displaced corner `d` of triangle ABC is drawn to; B is the corner, C and A follow it in the
@@ -81,10 +82,10 @@ vec3 within_char(vec3 position, vec3 at_rest, float fallen) {
 }
 
 void main() {
-    if (gl_GlobalInvocationID.x >= slice.count) {
+    uint vertex = element_visited();
+    if (gl_WorkGroupID.x % slice.division != slice.number || vertex >= constants.vertex_count) {
         return;
     }
-    uint vertex = slice.first + gl_GlobalInvocationID.x;
     VertexState before = old_state[vertex];
     if (labels[vertex] != DEFORMED || before.left <= constants.retire_at * flammability_of(vertex) || alive[vertex] == 0u) {
         new_state[vertex] = before;

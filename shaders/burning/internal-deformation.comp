@@ -4,9 +4,10 @@
 // positions through its incidence list and takes the mean of what its triangles ask for, so that the order of threads
 // cannot matter.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
+#include "burning/chunks.glsl"
 #include "burning/block-levels.glsl"
 #include "burning/displacement.glsl"
 #include "burning/flammability.glsl"
@@ -46,15 +47,15 @@ layout(set = 0, binding = 83, std430) readonly buffer RestCells {
 };
 
 layout(push_constant, std430) uniform Slice {
-    uint first;
-    uint count;
+    uint number; // of the slices of a tick (3.7.2): each takes its turn of the chunks
+    uint division;
 } slice;
 
 void main() {
-    if (gl_GlobalInvocationID.x >= slice.count) {
+    uint vertex = element_visited();
+    if (gl_WorkGroupID.x % slice.division != slice.number || vertex >= constants.vertex_count) {
         return;
     }
-    uint vertex = slice.first + gl_GlobalInvocationID.x;
     VertexState before = old_state[vertex];
     if (labels[vertex] != DEFORMED || before.left <= 0.0 || alive[vertex] == 0u) {
         new_state[vertex] = before;

@@ -1,6 +1,6 @@
 #version 450
 
-// Before a tick's volume and weights are summed.
+// Before a tick's weights are summed, and the puddle's volume.
 
 layout(local_size_x = 64) in;
 
@@ -20,7 +20,6 @@ void main() {
         melted[thread] = 0u;
     }
     if (thread == 0u) {
-        film.mesh_volume = 0;
         film.puddle_volume = film.spread_volume;
         film.spread_volume = 0u;
         film.evaporated_before = film.evaporated;

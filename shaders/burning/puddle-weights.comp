@@ -2,9 +2,10 @@
 
 // Where what the mesh loses comes down: below the vertices that melt, by how far they sink in the tick.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
+#include "burning/chunks.glsl"
 #include "burning/puddle.glsl"
 #include "burning/vertices.glsl"
 
@@ -36,8 +37,11 @@ const float STEPS_A_DIAGONAL = 65536.0;
 const float MOST_STEPS = 256.0;
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.x;
-    if (vertex >= constants.vertex_count || labels[vertex] < READY || alive[vertex] == 0u) {
+    uint vertex = element_visited();
+    if (vertex >= constants.vertex_count) {
+        return;
+    }
+    if (labels[vertex] < READY || alive[vertex] == 0u) {
         return;
     }
     vec3 position = new_state[vertex].position;

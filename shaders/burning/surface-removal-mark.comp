@@ -6,10 +6,11 @@
 // are kept and its block is needed: some neighbour with weight has no other neighbour with weight, and would come off.
 // Where parts fall, none is kept; what is consumed leaves ash on the ground below it, and so do parts beyond the most.
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
+#include "burning/chunks.glsl"
 #include "burning/flammability.glsl"
 #include "burning/grid.glsl"
 #include "burning/blocks.glsl"
@@ -84,8 +85,11 @@ void leave_ash(uvec3 at) {
 #endif
 
 void main() {
-    uint triangle = gl_GlobalInvocationID.x;
-    if (triangle >= constants.triangle_count || removed[triangle] == 1u) {
+    uint triangle = element_visited();
+    if (triangle >= constants.triangle_count) {
+        return;
+    }
+    if (removed[triangle] == 1u) {
         return;
     }
     uvec3 at = uvec3(triangles[3u * triangle], triangles[3u * triangle + 1u], triangles[3u * triangle + 2u]);

@@ -3,7 +3,7 @@
 use super::buffers::Buffers;
 use super::model::Model;
 use super::parameters::Variant;
-use super::ping_pong::{PingPong, build, new, old};
+use super::ping_pong::{PingPong, Work, build, new, old};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
 /// Makes the pass.
@@ -26,5 +26,5 @@ pub fn block_rotation(
         .with("Blocks", &buffers.blocks)
         .with("BlockConstants", &buffers.block_levels);
     let rotations = [old("OldRotations", &buffers.rotations), new("NewRotations", &buffers.rotations)];
-    Ok(PingPong::new([(build(shaders, rotate, &rotations)?, model.block_count())]))
+    Ok(PingPong::new([(build(shaders, rotate, &rotations)?, Work::Threads(model.block_count()))]))
 }

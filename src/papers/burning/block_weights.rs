@@ -3,10 +3,10 @@
 use super::buffers::Buffers;
 use super::model::Model;
 use super::parameters::Parameters;
-use super::ping_pong::{PingPong, build, new, old};
+use super::ping_pong::{PingPong, Work, build, new, old};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
-/// Makes the pass.
+/// Makes the pass. Where triangles are refined, vertices come to be anywhere, and it visits all.
 ///
 /// # Errors
 /// Those of the Vulkan layer.
@@ -14,6 +14,7 @@ pub fn block_weights(
     shaders: &ShaderLibrary,
     parameters: &Parameters,
     buffers: &Buffers,
+    is_refined: bool,
     model: &Model,
 ) -> Result<PingPong<2>, Error> {
     let step = |shader: &str| {
@@ -31,10 +32,16 @@ pub fn block_weights(
         .with("Labels", &buffers.labels)
         .with("Cells", &buffers.cells)
         .with("Clock", &buffers.clock)
+        .with("Counted", &buffers.counted)
         .with("Alive", &buffers.alive);
+    let chunks = &buffers.vertex_chunks;
+    let count = match is_refined {
+        false => chunks.changing(count),
+        true => chunks.visiting(count, &chunks.all(shaders, "vertices-all")?),
+    };
     let states = [old("OldState", &buffers.states), new("NewState", &buffers.states)];
     Ok(PingPong::new([
-        (build(shaders, clear, &[])?, model.block_count()),
-        (build(shaders, count, &states)?, model.vertex_count()),
+        (build(shaders, clear, &[])?, Work::Threads(model.block_count())),
+        (build(shaders, count, &states)?, Work::Indirect),
     ]))
 }

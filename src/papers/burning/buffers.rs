@@ -6,8 +6,9 @@ use std::sync::Arc;
 use ash::vk;
 use glam::Vec3;
 
+use super::chunks::ChunkBuffers;
 use super::materials::MaterialLevels;
-use super::model::Model;
+use super::model::{Chunks, Model};
 use super::parameters::{Parameters, TICKS_PER_S, Variant};
 use crate::gpu::transfer::{copy_buffers, upload};
 use crate::gpu::{Buffer, BufferDesc, Device, Error, ShaderLibrary};
@@ -163,6 +164,12 @@ pub struct Buffers {
     pub states: [Arc<Buffer>; 2],
     /// uint\[N\]: area of the boundary, 0 to 4.
     pub labels: Arc<Buffer>,
+    /// The vertices as the boundary reaches them.
+    pub vertex_chunks: ChunkBuffers,
+    /// Likewise the finest triangles.
+    pub triangle_chunks: ChunkBuffers,
+    /// uint\[N\]: the block that each vertex counts in times 8, and as what.
+    pub counted: Arc<Buffer>,
     /// uint\[T\]: the highest of the three vertices'.
     pub triangle_labels: Arc<Buffer>,
     /// uint\[T\]: 1 where the triangle has left the stream.
@@ -243,6 +250,12 @@ impl Buffers {
         for (&cell, _) in model.rest_cells.iter().zip(&alive).filter(|&(_, &alive)| alive == 1) {
             counts[cell as usize].live += 1;
         }
+        let counted: Vec<u32> = model.rest_cells.iter().zip(&alive).map(|(cell, alive)| 8 * cell + alive).collect();
+        let live_vertices = alive.iter().sum();
+        let clock = Counts { live_vertices, ..Counts::default() };
+        let distance = |vertex: u32| model.rest[vertex as usize].boundary_distance;
+        let vertex_chunks = Chunks::of_vertices(model.rest.iter().map(|vertex| vertex.boundary_distance));
+        let triangle_chunks = Chunks::of_triangles(&model.triangles, distance);
         let (uniform, block) = (vk::BufferUsageFlags::UNIFORM_BUFFER, constants(variant, parameters, model));
         let mut buffers = Buffers {
             constants: upload(device, &name("constants"), uniform, bytemuck::bytes_of(&block))?,
@@ -261,6 +274,9 @@ impl Buffers {
             block_levels: uploaded("block-levels", bytemuck::cast_slice(&block_levels))?,
             states: pair("state", bytemuck::cast_slice(&before))?,
             labels: zeros("labels", 4 * vertices)?,
+            vertex_chunks: ChunkBuffers::new(shaders, &name("vertices"), &vertex_chunks)?,
+            triangle_chunks: ChunkBuffers::new(shaders, &name("triangles"), &triangle_chunks)?,
+            counted: list("counted", &counted)?,
             triangle_labels: zeros("triangle-labels", 4 * triangles)?,
             removed: zeros("removed", 4 * triangles)?,
             cells: list("cells", &model.rest_cells)?,
@@ -269,7 +285,7 @@ impl Buffers {
             base_displacements: pair("base-displacements", &vec![0; 16 * blocks])?,
             flows: uploaded("flows", bytemuck::cast_slice(&flows))?,
             alive: list("alive", &alive)?,
-            clock: zeros("clock", size_of::<Counts>())?,
+            clock: uploaded("clock", bytemuck::bytes_of(&clock))?,
             mapped: empty("mapped", 16 * vertices, plain)?,
             normals: empty("normals", 16 * corners, plain)?,
             colors: empty("colors", 16 * corners, plain)?,
@@ -282,8 +298,10 @@ impl Buffers {
             arguments: empty("arguments", 20, vk::BufferUsageFlags::INDIRECT_BUFFER)?,
             start: Vec::new(),
         };
-        let Buffers { labels, triangle_labels, removed, cells, blocks, flows, alive, clock, .. } = &buffers;
-        let kept = [labels, triangle_labels, removed, cells, blocks, flows, alive, clock].into_iter();
+        let Buffers { labels, triangle_labels, removed, cells, blocks, flows, alive, clock, counted, .. } = &buffers;
+        let finished = [&buffers.vertex_chunks.finished, &buffers.triangle_chunks.finished];
+        let kept = [labels, triangle_labels, removed, cells, blocks, flows, alive, clock, counted];
+        let kept = kept.into_iter().chain(finished);
         let pairs = [&buffers.states, &buffers.rotations, &buffers.base_displacements];
         let kept: Vec<_> = kept.chain(pairs.into_iter().flatten()).cloned().collect();
         for buffer in kept {
@@ -293,7 +311,7 @@ impl Buffers {
     }
 
     /// The object, its blocks and the constants: the simulation reads them and no pass writes them.
-    pub fn unchanging(&self) -> [&Arc<Buffer>; 14] {
+    pub fn unchanging(&self) -> [&Arc<Buffer>; 18] {
         [
             &self.constants,
             &self.rest,
@@ -309,6 +327,10 @@ impl Buffers {
             &self.flammabilities,
             &self.meltabilities,
             &self.block_levels,
+            &self.vertex_chunks.order,
+            &self.vertex_chunks.spans,
+            &self.triangle_chunks.order,
+            &self.triangle_chunks.spans,
         ]
     }
 

@@ -6,7 +6,7 @@ use super::buffers::{BlockCounts, RestVertex, VertexState};
 use super::flames::{Group, Particle};
 use super::model::Division;
 use super::parameters::{Parameters, Variant};
-use super::{draw_ground, falling, parts, puddle};
+use super::{chunks, draw_ground, falling, parts, puddle};
 use crate::measure::estimate::Estimate;
 use crate::scene::Mesh;
 
@@ -14,7 +14,7 @@ use crate::scene::Mesh;
 const NUMBER: f64 = 4.0;
 const VECTOR: f64 = 16.0;
 /// Passes of a tick, and of a frame beside them.
-const PASSES: u64 = 28;
+const PASSES: u64 = 38;
 
 /// Vertices, edges and triangles of a mesh.
 #[derive(Clone, Copy)]
@@ -63,6 +63,9 @@ impl Parameters {
         // Four lists of three numbers and the stream; labels and marks twice; statuses of all levels' triangles twice.
         let statuses = if variant.refines() && levels > 0 { 2.0 * NUMBER * 4.0 / 3.0 } else { 0.0 };
         let of_triangle = 5.0 * 3.0 * NUMBER + 4.0 * NUMBER + statuses;
+        // What a vertex counts as, twice, and the orders of the chunks.
+        let of_vertex = of_vertex + NUMBER * (3.0 + chunks::WORDS);
+        let of_triangle = of_triangle + NUMBER * (1.0 + chunks::WORDS);
         let (collapses, has_puddle) = (self.collapses(variant), self.has_puddle(variant));
         let if_so = |condition: bool, bytes: u32| if condition { f64::from(bytes) } else { 0.0 };
         let of_vertex = of_vertex + NUMBER * if_so(collapses, parts::NUMBERS_OF_VERTEX);

@@ -7,7 +7,8 @@ use ash::vk;
 use super::buffers::Buffers;
 use super::model::Model;
 use super::parts::{MOST_PARTS, Parts};
-use super::ping_pong::{PingPong, build, new};
+use super::ping_pong::{self, PingPong, Work, new};
+use crate::gpu::transfer::upload;
 use crate::gpu::{Buffer, BufferDesc, Error, Pass, ShaderLibrary};
 
 /// Words of a part's contacts (`burning/contacts.glsl`).
@@ -19,14 +20,14 @@ const MEETINGS: u32 = 8;
 /// Of the buffers.
 pub(super) const BYTES: u32 = 4 * WORDS * MOST_PARTS + 4 * ENTRIES + 16 * MEETINGS * MOST_PARTS;
 
-/// Makes the pass.
+/// Makes the pass. Where parts meet is looked for while one of them moves alone.
 ///
 /// # Errors
 /// Those of the Vulkan layer.
 pub fn falling(
     shaders: &ShaderLibrary,
     label: &str,
-    buffers: &Buffers,
+    buffers: &mut Buffers,
     parts: &Parts,
     model: &Model,
 ) -> Result<PingPong<6>, Error> {
@@ -37,23 +38,28 @@ pub fn falling(
     let contacts = empty("contacts", 4 * WORDS * MOST_PARTS)?;
     let lying = empty("lying", 4 * ENTRIES)?;
     let met = empty("met", 16 * MEETINGS * MOST_PARTS)?;
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER;
+    let moving =
+        upload(shaders.device(), &format!("{label}/moving"), usage, bytemuck::cast_slice::<u32, u8>(&[0, 1, 1]))?;
+    buffers.keep(shaders, &moving)?;
     let step = |shader: &str| Pass::compute("falling", "", &format!("burning/{shader}.comp"));
     let placed = |shader: &str| {
         step(shader).with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Parts", &parts.parts)
     };
     let newest = [new("NewState", &buffers.states), new("NewRotations", &buffers.rotations)];
     let found = |shader: &str| placed(shader).with("PartOf", &parts.part_of).with("Lying", &lying);
-    let touched = |shader: &str| build(shaders, found(shader).with("Contacts", &contacts), &newest);
+    let touched = |shader: &str| found(shader).with("Contacts", &contacts);
+    let build = |pass, swapped: &[_]| ping_pong::build(shaders, pass, swapped);
     let clear = step("falling-clear").with("Contacts", &contacts).with("Lying", &lying);
-    let meet = found("falling-meetings").with("Contacts", &contacts).with("Met", &met);
+    let meet = touched("falling-meetings").with("Met", &met).with("Moving", &moving);
     let known = placed("falling").with("Searching", &parts.progress).with("Sums", &parts.sums);
-    let fall = known.with("Contacts", &contacts).with("Met", &met);
+    let fall = known.with("Contacts", &contacts).with("Met", &met).with("Moving", &moving);
     Ok(PingPong::new([
-        (build(shaders, clear, &[])?, ENTRIES.max(WORDS * MOST_PARTS)),
-        (build(shaders, found("falling-lying"), &newest)?, model.vertex_count()),
-        (touched("falling-contacts-heights")?, model.vertex_count()),
-        (touched("falling-contacts-vertices")?, model.vertex_count()),
-        (build(shaders, meet, &newest)?, MOST_PARTS * MEETINGS),
-        (build(shaders, fall, &newest)?, MOST_PARTS),
+        (build(clear, &[])?, Work::Threads(ENTRIES.max(WORDS * MOST_PARTS))),
+        (build(found("falling-lying").indirect(&moving), &newest)?, Work::Indirect),
+        (build(touched("falling-contacts-heights"), &newest)?, Work::Threads(model.vertex_count())),
+        (build(touched("falling-contacts-vertices").indirect(&moving), &newest)?, Work::Indirect),
+        (build(meet, &newest)?, Work::Threads(MOST_PARTS * MEETINGS)),
+        (build(fall, &newest)?, Work::Threads(MOST_PARTS)),
     ]))
 }

@@ -10,7 +10,7 @@ use super::draw::Draw;
 use super::model::Model;
 use super::parameters::Parameters;
 use super::parts::Parts;
-use super::ping_pong::{PingPong, build, new};
+use super::ping_pong::{PingPong, Work, build, new};
 use crate::gpu::transfer::{update, upload};
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
@@ -60,7 +60,7 @@ host_block! {
 
 /// The pass with its buffers.
 pub struct Flames {
-    steps: PingPong<3>,
+    steps: PingPong<4>,
     /// The uniform block of `burning/billboards.glsl`.
     pub(super) billboards: Arc<Buffer>,
     /// [`Group`] of each block, and an end.
@@ -109,6 +109,9 @@ impl Flames {
             .with("Clock", &buffers.clock)
             .with("Groups", &groups)
             .with("Listed", &listed);
+        let chunks = &buffers.vertex_chunks;
+        let near = chunks.list(shaders, &name("vertices-ready"))?;
+        let visit = chunks.listing(step("burning/chunks-visited-ready.comp"), &near).with("Clock", &buffers.clock);
         let list = step("burning/flames-ready.comp")
             .with("Labels", &buffers.labels)
             .with("Cells", &buffers.cells)
@@ -117,6 +120,7 @@ impl Flames {
             .with("Groups", &groups)
             .with("Listed", &listed)
             .with("Ready", &ready);
+        let list = chunks.visiting(list, &near);
         let burn = match parts {
             None => step("burning/flames-whole.comp"),
             Some(parts) => step("burning/flames-parts.comp").with("PartOf", &parts.part_of).with("Parts", &parts.parts),
@@ -132,9 +136,10 @@ impl Flames {
         let state = new("NewState", &buffers.states);
         let rotations = new("NewRotations", &buffers.rotations);
         let steps = PingPong::new([
-            (build(shaders, share, &[])?, 1),
-            (build(shaders, list, &[state])?, model.vertex_count()),
-            (build(shaders, burn, &[state, rotations])?, particle_count),
+            (build(shaders, visit, &[])?, chunks.lists()),
+            (build(shaders, share, &[])?, Work::Threads(1)),
+            (build(shaders, list, &[state])?, Work::Indirect),
+            (build(shaders, burn, &[state, rotations])?, Work::Threads(particle_count)),
         ]);
         Ok(Some(Flames { steps, billboards, groups, particles, particle_count }))
     }

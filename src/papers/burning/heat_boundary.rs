@@ -1,35 +1,58 @@
-//! `heat-boundary` (3.3): the clock, and the areas of vertices and triangles.
+//! `heat-boundary` (3.3): the clock, what the tick visits, and the areas of vertices and triangles.
 
 use super::buffers::Buffers;
-use super::model::Model;
-use super::ping_pong::{PingPong, build, old};
+use super::parameters::Variant;
+use super::parts::Parts;
+use super::ping_pong::{PingPong, Work, build, old};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
 /// Makes the pass.
 ///
 /// # Errors
 /// Those of the Vulkan layer.
-pub fn heat_boundary(shaders: &ShaderLibrary, buffers: &Buffers, model: &Model) -> Result<PingPong<3>, Error> {
+pub fn heat_boundary(
+    shaders: &ShaderLibrary,
+    variant: Variant,
+    buffers: &Buffers,
+    parts: Option<&Parts>,
+) -> Result<PingPong<5>, Error> {
+    let Buffers { vertex_chunks, triangle_chunks, .. } = buffers;
     let step = |shader: &str| {
-        Pass::compute("heat-boundary", "3.3", shader)
+        Pass::compute("heat-boundary", "3.3", &format!("burning/{shader}.comp"))
             .with("constants", &buffers.constants)
             .with("Clock", &buffers.clock)
     };
-    let of_burning = |shader: &str| step(shader).with("Flammabilities", &buffers.flammabilities);
+    let clock = step("heat-boundary-clock");
+    let melts = variant == Variant::Melting;
+    let burning = if melts { "chunks-visited-melting" } else { "chunks-visited-burning" };
+    let changing_vertices = vertex_chunks.listing(step(burning), &vertex_chunks.changed);
+    let changing_vertices = changing_vertices.with("Finished", &vertex_chunks.finished);
+    let changing_triangles = match parts {
+        None => step(burning),
+        Some(parts) => step("chunks-visited-parts").with("Searching", &parts.progress),
+    };
+    let changing_triangles = triangle_chunks.listing(changing_triangles, &triangle_chunks.changed);
+    let changing_triangles = changing_triangles.with("Finished", &triangle_chunks.finished);
     let old_state = [old("OldState", &buffers.states)];
-    let clock = step("burning/heat-boundary-clock.comp");
-    let vertices = of_burning("burning/heat-boundary-vertices.comp")
-        .with("Rest", &buffers.rest)
-        .with("Labels", &buffers.labels)
-        .with("Alive", &buffers.alive);
-    let triangles = of_burning("burning/heat-boundary-triangles.comp")
-        .with("Triangles", &buffers.triangles)
-        .with("Labels", &buffers.labels)
-        .with("TriangleLabels", &buffers.triangle_labels)
-        .with("Alive", &buffers.alive);
+    let labelled = |shader: &str| {
+        step(shader)
+            .with("Flammabilities", &buffers.flammabilities)
+            .with("Labels", &buffers.labels)
+            .with("Alive", &buffers.alive)
+    };
+    let vertices = labelled("heat-boundary-vertices").with("Rest", &buffers.rest);
+    let vertices = vertex_chunks.changing(vertices).with("Finished", &vertex_chunks.finished);
+    let triangles = match variant.removes() {
+        true => labelled("heat-boundary-triangles-leaves").with("Removed", &buffers.removed),
+        false => labelled("heat-boundary-triangles-stays"),
+    };
+    let triangles = triangles.with("Triangles", &buffers.triangles).with("TriangleLabels", &buffers.triangle_labels);
+    let triangles = triangle_chunks.changing(triangles).with("Finished", &triangle_chunks.finished);
     Ok(PingPong::new([
-        (build(shaders, clock, &[])?, 1),
-        (build(shaders, vertices, &old_state)?, model.vertex_count()),
-        (build(shaders, triangles, &old_state)?, model.triangle_count()),
+        (build(shaders, clock, &[])?, Work::Threads(1)),
+        (build(shaders, changing_vertices, &[])?, vertex_chunks.lists()),
+        (build(shaders, changing_triangles, &[])?, triangle_chunks.lists()),
+        (build(shaders, vertices, &old_state)?, Work::Indirect),
+        (build(shaders, triangles, &old_state)?, Work::Indirect),
     ]))
 }

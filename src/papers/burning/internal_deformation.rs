@@ -8,10 +8,10 @@ use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
 use crate::host_block;
 
 host_block! {
-    /// The vertices of one frame of a tick that is spread over several (3.7.2), as push constants.
+    /// The frame of a tick that is spread over several (3.7.2), as push constants.
     struct Slice {
-        first: u32,
-        count: u32,
+        number: u32,
+        division: u32,
     }
 }
 
@@ -20,7 +20,6 @@ pub struct InternalDeformation {
     /// Of what melts: moves the base points, which guide the vertices, before them.
     base_points: Option<[Pass; 2]>,
     vertices: [Pass; 2],
-    vertex_count: u32,
     block_count: u32,
     /// Frames that a tick is spread over.
     time_division: u32,
@@ -46,7 +45,9 @@ impl InternalDeformation {
                 .with("constants", &buffers.constants)
                 .with("Labels", &buffers.labels)
         };
-        let mut vertices = step(shader)
+        let mut vertices = buffers
+            .vertex_chunks
+            .changing(step(shader))
             .constants::<Slice>()
             .with("Triangles", &buffers.triangles)
             .with("IncidenceOffsets", &buffers.incidence_offsets)
@@ -86,8 +87,7 @@ impl InternalDeformation {
                 [[even, even_vertices], [odd, odd_vertices]].map(Pass::steps);
             (base_points, vertices) = (Some([even, odd]), [even_vertices, odd_vertices]);
         }
-        let (vertex_count, block_count) = (model.vertex_count(), model.block_count());
-        Ok(InternalDeformation { base_points, vertices, vertex_count, block_count, time_division })
+        Ok(InternalDeformation { base_points, vertices, block_count: model.block_count(), time_division })
     }
 
     /// Records slice `slice` of the tick that writes the state of index `tick`.
@@ -102,11 +102,8 @@ impl InternalDeformation {
                 dispatch.threads(self.block_count, 1, 1);
             })?;
         }
-        let begin =
-            |slice: u32| (u64::from(self.vertex_count) * u64::from(slice) / u64::from(self.time_division)) as u32;
-        let (first, count) = (begin(slice), begin(slice + 1) - begin(slice));
         frame.compute(&self.vertices[tick], |dispatch| {
-            dispatch.constants(&Slice { first, count }).threads(count, 1, 1);
+            dispatch.constants(&Slice { number: slice, division: self.time_division }).groups_indirect();
         })
     }
 }

@@ -18,6 +18,7 @@ mod axes;
 mod block_rotation;
 mod block_weights;
 mod buffers;
+mod chunks;
 mod draw;
 mod draw_fire;
 mod draw_ground;
@@ -74,6 +75,7 @@ use crate::measure::{Paper, Target};
 use crate::scene::{Camera, Mesh};
 
 pub use self::buffers::{BlockCounts, Buffers, Counts, RestVertex, VertexState};
+pub use self::chunks::{ChunkBuffers, Visits};
 pub use self::flames::{Flames, Group, Particle};
 pub use self::framing::seen_from;
 pub use self::parameters::{Look, Material, Parameters, Shading, TICKS_PER_S, Variant};
@@ -96,7 +98,7 @@ pub struct Burning {
     model: Model,
     buffers: Buffers,
     loading: Option<Loading>,
-    heat_boundary: PingPong<3>,
+    heat_boundary: PingPong<5>,
     refinement: Option<Refinement>,
     internal_deformation: InternalDeformation,
     block_weights: PingPong<2>,
@@ -147,9 +149,9 @@ impl Burning {
         let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
         let has_parts = parameters.collapses(variant);
         let parts = has_parts.then(|| Parts::new(shaders, label, &mut buffers, &model)).transpose()?;
-        let falling = parts.as_ref().map(|parts| falling(shaders, label, &buffers, parts, &model)).transpose()?;
+        let falling = parts.as_ref().map(|parts| falling(shaders, label, &mut buffers, parts, &model)).transpose()?;
         let has_puddle = parameters.has_puddle(variant);
-        let puddle = has_puddle.then(|| Puddle::new(shaders, label, &mut buffers, &model)).transpose()?;
+        let puddle = has_puddle.then(|| Puddle::new(shaders, label, &mut buffers)).transpose()?;
         let draw_puddle =
             puddle.as_ref().map(|puddle| DrawPuddle::new(shaders, label, &buffers, &draw, puddle)).transpose()?;
         let ash = parameters.has_ash(variant).then(|| ash(shaders, label, &mut buffers)).transpose()?;
@@ -161,7 +163,7 @@ impl Burning {
             device: device.clone(),
             variant,
             loading: (!parameters.preload).then(|| Loading::new(device, &buffers)).transpose()?,
-            heat_boundary: heat_boundary(shaders, &buffers, &model)?,
+            heat_boundary: heat_boundary(shaders, variant, &buffers, parts.as_ref())?,
             internal_deformation: InternalDeformation::new(
                 shaders,
                 variant,
@@ -169,7 +171,7 @@ impl Burning {
                 &buffers,
                 &model,
             )?,
-            block_weights: block_weights(shaders, parameters, &buffers, &model)?,
+            block_weights: block_weights(shaders, parameters, &buffers, refinement.is_some(), &model)?,
             block_rotation: block_rotation(shaders, variant, &buffers, &model)?,
             flames,
             vertex_mapping: vertex_mapping(shaders, &buffers, parts.as_ref(), &model)?,

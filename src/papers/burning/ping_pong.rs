@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::chunks::ChunkCount;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Buffer, Error, Frame, Pass, ShaderLibrary};
 
@@ -31,17 +32,28 @@ pub fn build(shaders: &ShaderLibrary, pass: PassBuilder, swapped: &[Swapped<'_>]
     Ok([even, odd.build(shaders)?])
 }
 
+/// The threads of a dispatch.
+#[derive(Clone, Copy)]
+pub enum Work {
+    /// As many.
+    Threads(u32),
+    /// What the pass's indirect buffer says.
+    Indirect,
+    /// The one workgroup that lists chunks, of so many.
+    Lists(ChunkCount),
+}
+
 /// The dispatches of a pass in order, for each ping-pong index of the tick.
 pub struct PingPong<const STEPS: usize> {
     passes: [[Pass; STEPS]; 2],
-    threads: [u32; STEPS],
+    work: [Work; STEPS],
 }
 
 impl<const STEPS: usize> PingPong<STEPS> {
-    /// One pass to the paper, of steps with their numbers of threads.
-    pub fn new(steps: [([Pass; 2], u32); STEPS]) -> Self {
+    /// One pass to the paper, of steps with their threads.
+    pub fn new(steps: [([Pass; 2], Work); STEPS]) -> Self {
         let passes = [0, 1].map(|tick| Pass::steps(steps.each_ref().map(|(passes, _)| passes[tick].clone())));
-        PingPong { passes, threads: steps.map(|(_, threads)| threads) }
+        PingPong { passes, work: steps.map(|(_, work)| work) }
     }
 
     /// Records the steps of the tick that writes the buffers of index `tick`.
@@ -49,9 +61,13 @@ impl<const STEPS: usize> PingPong<STEPS> {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, tick: usize) -> Result<(), Error> {
-        self.passes[tick].iter().zip(self.threads).try_for_each(|(pass, threads)| {
+        self.passes[tick].iter().zip(self.work).try_for_each(|(pass, work)| {
             frame.compute(pass, |dispatch| {
-                dispatch.threads(threads, 1, 1);
+                match work {
+                    Work::Threads(threads) => dispatch.threads(threads, 1, 1),
+                    Work::Indirect => dispatch.groups_indirect(),
+                    Work::Lists(count) => dispatch.constants(&count).threads(1, 1, 1),
+                };
             })
         })
     }

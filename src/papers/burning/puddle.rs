@@ -6,8 +6,7 @@ use ash::vk;
 
 use super::buffers::Buffers;
 use super::draw::Draw;
-use super::model::Model;
-use super::ping_pong::{self, PingPong, new, old};
+use super::ping_pong::{self, PingPong, Work, new, old};
 use crate::gpu::transfer::upload;
 use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, Load, Pass, ShaderLibrary};
 use crate::host_block;
@@ -39,8 +38,6 @@ host_block! {
 pub const PUDDLE_CELLS: u32 = 128;
 /// Of the square that they cover about the object's base, diagonals.
 pub const PUDDLE_HALF_WIDTH: f32 = 1.28;
-/// Triangles that a thread sums up (`burning/puddle-volume.comp`).
-const RUN: u32 = 16;
 
 /// Of the buffers: heights twice over, what has melted, and the corners of the drawn cells.
 pub(super) const BYTES: u32 = 4 * PUDDLE_CELLS * PUDDLE_CELLS * (2 * 2 + 1 + 6);
@@ -57,7 +54,7 @@ pub struct Puddle {
 impl Puddle {
     /// # Errors
     /// Those of the Vulkan layer.
-    pub fn new(shaders: &ShaderLibrary, label: &str, buffers: &mut Buffers, model: &Model) -> Result<Self, Error> {
+    pub fn new(shaders: &ShaderLibrary, label: &str, buffers: &mut Buffers) -> Result<Self, Error> {
         let cells = PUDDLE_CELLS * PUDDLE_CELLS;
         let zeros = |name: &str, bytes: usize| {
             let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -66,27 +63,33 @@ impl Puddle {
         let heights = [zeros("puddle-a", 4 * cells as usize)?, zeros("puddle-b", 4 * cells as usize)?];
         let film = zeros("film", size_of::<Film>())?;
         let melted = zeros("melted", 4 * cells as usize)?;
-        for buffer in heights.iter().chain([&film]) {
+        let volumes = buffers.triangle_chunks.word(shaders, &format!("{label}/chunk-volumes"))?;
+        for buffer in heights.iter().chain([&film, &volumes]) {
             buffers.keep(shaders, buffer)?;
         }
         let step = |name: &str| Pass::compute("puddle", "", &format!("burning/{name}.comp")).with("Films", &film);
         let clear = step("puddle-clear").with("Melted", &melted);
-        let volume = step("puddle-volume").with("constants", &buffers.constants).with("Triangles", &buffers.triangles);
+        let volume = step("puddle-volume")
+            .with("constants", &buffers.constants)
+            .with("Triangles", &buffers.triangles)
+            .with("Volumes", &volumes);
+        let volume = buffers.triangle_chunks.changing(volume);
         let weights = step("puddle-weights")
             .with("constants", &buffers.constants)
             .with("Labels", &buffers.labels)
             .with("Alive", &buffers.alive)
             .with("Melted", &melted);
+        let weights = buffers.vertex_chunks.changing(weights);
         let spread = step("puddle").with("constants", &buffers.constants).with("Melted", &melted);
         let [before, after] = [old("OldState", &buffers.states), new("NewState", &buffers.states)];
         let rising = [old("OldHeights", &heights), new("NewHeights", &heights)];
         let build = |pass, swapped: &[_]| ping_pong::build(shaders, pass, swapped);
         let steps = PingPong::new([
-            (build(clear, &[])?, cells),
-            (build(volume, &[after])?, model.triangle_count().div_ceil(RUN)),
-            (build(step("puddle-start"), &[])?, 1),
-            (build(weights, &[before, after])?, model.vertex_count()),
-            (build(spread, &rising)?, cells),
+            (build(clear, &[])?, Work::Threads(cells)),
+            (build(volume, &[after])?, Work::Indirect),
+            (build(step("puddle-start"), &[])?, Work::Threads(1)),
+            (build(weights, &[before, after])?, Work::Indirect),
+            (build(spread, &rising)?, Work::Threads(cells)),
         ]);
         Ok(Puddle { steps, heights, film })
     }

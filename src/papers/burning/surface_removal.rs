@@ -40,7 +40,6 @@ pub struct SurfaceRemoval {
     steps: [[Pass; 4]; 2],
     /// Consumed triangles leave the stream.
     removes: bool,
-    triangle_count: u32,
     /// Threads of the compaction's first and last phase: finest triangles, or runs of nodes of the refinement pattern.
     threads: u32,
     /// Numbers that the compaction's second phase scans.
@@ -87,6 +86,7 @@ impl SurfaceRemoval {
             .with("Triangles", &buffers.triangles)
             .with("Removed", &buffers.removed)
             .with("Clock", &buffers.clock);
+        let mark = buffers.triangle_chunks.changing(mark);
         let marks = ping_pong::build(shaders, mark, &[new("NewState", &buffers.states)])?;
         let over_all = |shader: &str| {
             let step = step(shader).with("Removed", &buffers.removed).with("GroupSums", &sums);
@@ -114,7 +114,6 @@ impl SurfaceRemoval {
         Ok(SurfaceRemoval {
             steps: marks.map(|mark| Pass::steps([mark, count.clone(), scan.clone(), write.clone()])),
             removes: variant.removes(),
-            triangle_count,
             threads,
             sum_count,
             leaves: refinement.map(|refinement| Leaves { level_of_detail: refinement.level_of_detail }),
@@ -131,7 +130,7 @@ impl SurfaceRemoval {
         }
         let [mark, ..] = &self.steps[tick];
         frame.compute(mark, |dispatch| {
-            dispatch.threads(self.triangle_count, 1, 1);
+            dispatch.groups_indirect();
         })
     }
 

@@ -3,7 +3,7 @@
 use super::buffers::Buffers;
 use super::model::Model;
 use super::parts::Parts;
-use super::ping_pong::{PingPong, build, new};
+use super::ping_pong::{PingPong, Work, build, new};
 use crate::gpu::{Error, Pass, ShaderLibrary};
 
 /// Makes the pass; where parts fall, it moves them.
@@ -26,5 +26,5 @@ pub fn vertex_mapping(
     let map = map.with("Flammabilities", &buffers.flammabilities);
     let map = map.with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Mapped", &buffers.mapped);
     let newest = [new("NewState", &buffers.states), new("NewRotations", &buffers.rotations)];
-    Ok(PingPong::new([(build(shaders, map, &newest)?, model.vertex_count())]))
+    Ok(PingPong::new([(build(shaders, map, &newest)?, Work::Threads(model.vertex_count()))]))
 }

@@ -18,3 +18,4 @@ mod solid;
 mod textures;
 mod time;
 mod twin;
+mod visits;

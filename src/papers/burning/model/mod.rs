@@ -2,6 +2,7 @@
 
 mod blocks;
 mod boundary;
+mod chunks;
 mod count;
 mod division;
 mod incidence;
@@ -19,6 +20,7 @@ use crate::gpu::Error;
 use crate::scene::{Bounds, Mesh};
 
 pub use self::blocks::Grid;
+pub use self::chunks::{CHUNK, Chunks};
 pub use self::count::with_triangles;
 pub use self::division::Division;
 pub use self::incidence::Incidence;
