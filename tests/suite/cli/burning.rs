@@ -478,6 +478,8 @@ fn an_experiment_refuses_what_it_would_not_heed() {
         ("limits --active-limit 5", "--active-limit"),
         ("limits --no-preload", "--no-preload"),
         ("limits --counts 5", "--counts"),
+        ("active --flammability 5", "--flammability"),
+        ("active --first-frame 5", "--first-frame"),
         ("scaling --triangles 50", "--triangles"),
         ("scaling --counts 2", "--triangles 2"),
         ("sequence --json", "--json"),

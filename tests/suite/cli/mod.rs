@@ -6,6 +6,7 @@ mod ab;
 mod arguments;
 mod bench;
 mod burning;
+mod burning_active;
 mod burning_dumps;
 mod burning_materials;
 mod compare;

@@ -1,5 +1,6 @@
 //! The dissertation's tables and figures, with its own numbers.
 
+mod active;
 mod contact_sheets;
 pub mod presets;
 mod rates;
@@ -12,7 +13,7 @@ use self::rates::{CLAIMS, Claim};
 use self::refining::{Measured, is_half_refined};
 use self::sweeps::Limited;
 pub use self::timeline::snapshot;
-use self::timeline::{Snapshot, busiest_tick, follow};
+use self::timeline::{Snapshot, busiest_tick, follow, reaches};
 use super::setup::Setup;
 use super::{Look, Parameters, Variant};
 use crate::field;
@@ -125,6 +126,19 @@ pub fn all() -> Vec<Experiment<Setup>> {
             options: &["counts"],
             refuses: &[OWN_OBJECTS, ("triangles", "this experiment sweeps them; give `counts`")],
             run: scaling,
+        },
+        Experiment {
+            name: "active",
+            help: "1 to 70 % of the vertices active, of 1,000,000 triangles: times of each simulation pass",
+            options: &[],
+            refuses: &[
+                OWN_OBJECTS,
+                OWN_FRAMES,
+                OWN_STEP,
+                ("flammability", "this experiment sweeps it"),
+                ("active-limit", "this experiment has its own boundary"),
+            ],
+            run: active_share,
         },
     ]
 }
@@ -304,5 +318,16 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
     let table = sweeps::scaling_table(&swept.rows);
     context.save(&context.file("-rates.csv"), table.csv().as_bytes())?;
     let svg = sweeps::scaling_plot(&swept.rows)?;
+    publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
+}
+
+fn active_share(context: &mut Context<'_>) -> Result<(), Error> {
+    let setup = context.over(of_the_text(active::setup()))?;
+    let mut machine = context.open()?;
+    let reaches = reaches(&mut machine, &setup, Variant::Shell)?;
+    let swept = context.sweep(&mut machine, &active::points(&setup, reaches))?;
+    let table = active::table(&swept.rows);
+    context.save(&context.file("-passes.csv"), table.csv().as_bytes())?;
+    let svg = active::plot(&swept.rows)?;
     publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
 }

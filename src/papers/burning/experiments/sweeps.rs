@@ -12,16 +12,18 @@ use crate::report::plot::{LineChart, Scale, Series};
 use crate::report::record::{ExperimentRow, Run};
 
 /// The passes that advance the state.
-const SIMULATION: [&str; 5] =
+pub const SIMULATION: [&str; 5] =
     ["heat-boundary", "refinement", "internal-deformation", "block-weights", "block-rotation"];
 
-fn gpu_ms(run: &Run, names: &[&str]) -> Option<f64> {
+/// Sum of the medians of passes; `None` without any of them.
+pub fn gpu_ms(run: &Run, names: &[&str]) -> Option<f64> {
     let passes = run.passes.iter().filter(|p| names.contains(&p.name.as_str()));
     let times: Vec<f64> = passes.filter_map(|p| p.gpu_ms.as_ref().map(|s| s.median)).collect();
     (!times.is_empty()).then(|| times.iter().sum())
 }
 
-fn result(run: &Run, name: &str) -> Value {
+/// What a run counted.
+pub fn result(run: &Run, name: &str) -> Value {
     run.results.get(name).cloned().unwrap_or(Value::Null)
 }
 

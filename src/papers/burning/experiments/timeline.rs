@@ -47,13 +47,10 @@ pub fn follow(
     watch: &mut Watch<'_>,
     is_enough: impl Fn(&Snapshot) -> bool,
 ) -> Result<Vec<Snapshot>, Error> {
-    let parameters = Parameters { first_frame: 0, ..setup.parameters.clone() };
-    let study = Setup { parameters, ..setup.clone() };
-    let scene = study.load()?;
-    let mut paper = build(machine, &study, &scene, variant)?.paper;
+    let mut paper = at_rest(machine, setup, variant)?;
     let distances = || paper.model().rest.iter().map(|r| f64::from(r.boundary_distance));
     let (nearest, farthest) = (distances().fold(f64::INFINITY, f64::min), distances().fold(0.0, f64::max));
-    let p = &study.parameters;
+    let p = &setup.parameters;
     let ticks_to = |radius: f64| radius / f64::from(p.speed_per_s) * TICKS_PER_S;
     if ticks_to(nearest) >= f64::from(MOST_TICKS) {
         return Err(Error::Input(format!(
@@ -80,6 +77,22 @@ pub fn follow(
             return Ok(snapshots);
         }
     }
+}
+
+fn at_rest(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Burning, Error> {
+    let parameters = Parameters { first_frame: 0, ..setup.parameters.clone() };
+    let study = Setup { parameters, ..setup.clone() };
+    let scene = study.load()?;
+    Ok(build(machine, &study, &scene, variant)?.paper)
+}
+
+/// The radii at which the boundary reaches the vertices.
+///
+/// # Errors
+/// What loading and the Vulkan layer answer.
+pub fn reaches(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Vec<f64>, Error> {
+    let paper = at_rest(machine, setup, variant)?;
+    Ok(paper.model().rest.iter().map(|rest| f64::from(rest.boundary_distance)).collect())
 }
 
 /// The counts of the device, read back.
