@@ -88,10 +88,12 @@ impl DrapeSource {
             }
             DrapeSource::Contours(Some(interval_m)) => Draping::Contours { interval_m: interval_m * exaggeration },
             DrapeSource::Contours(None) => {
-                let (low_m, high_m) = maps.iter().map(HeightMap::range_m).fold(
-                    (f32::INFINITY, f32::NEG_INFINITY),
-                    |(low_m, high_m), (lowest_m, highest_m)| (low_m.min(lowest_m), high_m.max(highest_m)),
-                );
+                let (low_m, high_m) = maps
+                    .iter()
+                    .map(HeightMap::range_m)
+                    .fold((f32::INFINITY, f32::NEG_INFINITY), |(low_m, high_m), (lowest_m, highest_m)| {
+                        (low_m.min(lowest_m), high_m.max(highest_m))
+                    });
                 let range_m = f64::from(high_m - low_m) / f64::from(exaggeration);
                 Draping::Contours { interval_m: suiting_interval_m(range_m) * exaggeration }
             }
@@ -167,7 +169,9 @@ mod tests {
             assert_eq!(expected.text(), text);
             assert_eq!(expected.files().len(), usize::from(text.starts_with('.')));
         }
-        for text in ["contours:", "contours:0", "contours:-5", "contours:nan", "contours:inf", "contours:1e7", "contours:x"] {
+        for text in
+            ["contours:", "contours:0", "contours:-5", "contours:nan", "contours:inf", "contours:1e7", "contours:x"]
+        {
             assert!(parse(text).is_err(), "{text}");
         }
     }

@@ -15,7 +15,13 @@ fn the_buffers_hold_what_the_shaders_read() {
     for shader in ["mesh.vert", "mesh.frag", "mesh-base-plane.frag", "mesh-base-curved.frag"] {
         check_block::<TerrainBlock>(&format!("terrain/{shader}"), "terrain");
     }
-    let lit = ["illumination-picture.comp", "illumination-contours.frag", "object.frag", "object-depth.frag", "occlusion-whole.comp"];
+    let lit = [
+        "illumination-picture.comp",
+        "illumination-contours.frag",
+        "object.frag",
+        "object-depth.frag",
+        "occlusion-whole.comp",
+    ];
     for shader in lit {
         check_block::<LightBlock>(&format!("terrain/{shader}"), "light");
     }

@@ -23,8 +23,8 @@ use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
 use crate::measure::{Error, Paper, ParameterError};
 use crate::papers::terrain::{
-    Collider, Drape, DrapeSource, Draping, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement, Terrain, Variant,
-    View, WRITTEN,
+    Collider, Drape, DrapeSource, Draping, Inputs, Interpolation, MapInput, NEEDS, ObjectSource, Parameters, Placement,
+    Terrain, Variant, View, WRITTEN,
 };
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{HeightMap, HeightMapSource, Mesh, Voids, promised_triangles, volcano};

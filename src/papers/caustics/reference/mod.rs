@@ -30,9 +30,7 @@ mod tracer;
 mod water;
 
 pub use caustics_map::{CausticsMap, cast, caustics_map, combine, volumetric};
-pub use flux::{
-    flat_water_intensity, flat_water_point_intensity, flux_in_map, flux_reaching_box, flux_through_water,
-};
+pub use flux::{flat_water_intensity, flat_water_point_intensity, flux_in_map, flux_reaching_box, flux_through_water};
 pub use illumination::{IlluminationVolume, Intersection, illumination_volumes, intensity, intersection_triangle};
 pub use landed::{LandedTriangle, landed_map};
 pub use light::{AIR, Medium, ReferenceLight, refract, transmitted};
