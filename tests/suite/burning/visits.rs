@@ -155,7 +155,7 @@ fn the_visits_follow_the_fire() {
         for _ in 0..12 {
             fire.ticks(25);
             let buffers = fire.paper.buffers();
-            let lists = [(&buffers.vertex_chunks, vertices, 0.12), (&buffers.triangle_chunks, triangles, 0.2)];
+            let lists = [(&buffers.vertex_chunks, vertices, 0.25), (&buffers.triangle_chunks, triangles, 0.6)];
             let share = |count: usize, of: usize| count as f64 / of as f64;
             let active = share(fire.state().counts.active_vertices as usize, vertices);
             for (chunks, count, more) in lists {

@@ -146,7 +146,7 @@ fn every_papers_passes_have_a_floor_and_the_table_says_how_near_they_come() {
         lava("bench --size 32x24 --particles 300 --radius 0.2 --density 12x6x6 --splats 40x10"),
         gas("bench --size 24x16 --steps 6 --table 6"),
         burning("bench --size 32x24 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10"),
-        terrain("bench --size 32x24 --resolution 17"),
+        terrain("bench --variant gpu-fragment --size 32x24 --resolution 17"),
     ];
     for program in papers {
         let out = folder();

@@ -57,7 +57,12 @@ fn assert_faults_are_told(paper: &Paper) {
             continue;
         }
         let report = layer.report(&ended);
-        let name = report.failed.unwrap_or_else(|| panic!("{what}: nothing failed"));
+        let Some(name) = report.failed else {
+            // A wait is asked again where the machine is slow, and the run that was counted had more of them.
+            assert!(report.calls < call, "{what}: nothing failed in {} calls", report.calls);
+            ended.succeeded();
+            continue;
+        };
         let what = format!("{what} ({name})");
         assert_eq!(report.alive, [""; 0], "{what}: {}", ended.stderr);
         if name == HARMLESS && failure != "lost" {

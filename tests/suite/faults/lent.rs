@@ -78,7 +78,7 @@ fn labels_and_pipelines_carry_pass_and_section() {
         gas("bench --size 24x16 --steps 4 --variant table").on_test_device(),
         burning("bench --size 32x24 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10")
             .on_test_device(),
-        terrain("bench --size 32x24 --resolution 17").on_test_device(),
+        terrain("bench --variant gpu-fragment --size 32x24 --resolution 17").on_test_device(),
     ];
     for program in programs {
         let layer = Layer::new();

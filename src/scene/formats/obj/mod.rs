@@ -270,9 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn other_encodings_and_missing_faces_are_refused() {
-        let latin = [SQUARE.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
-        assert_eq!(parse(&latin).unwrap_err().place, Place::Line(5));
+    fn wide_texts_and_missing_faces_are_refused() {
         let wide: Vec<u8> = "\u{feff}v 0 0 0".encode_utf16().flat_map(u16::to_le_bytes).collect();
         assert!(parse(&wide).unwrap_err().reason.contains("UTF-16"));
         assert!(square_with("").unwrap_err().reason.contains("no faces"));
