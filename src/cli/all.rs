@@ -1,4 +1,4 @@
-//! `all`: every paper's quick benchmark, one record and a picture of each.
+//! `all`: every paper's quick benchmark, one record and a picture of each variant.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -59,7 +59,7 @@ struct Measured {
 
 pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     if arguments.output.image.is_some() {
-        let message = "--image: every paper has a picture; they go into --out, and render writes one by name";
+        let message = "--image: every variant has a picture; they go into --out, and render writes one by name";
         return Err(Failure::Input(message.into()));
     }
     let json = arguments.output.json.clone().unwrap_or_else(|| arguments.output.out.join("fumarole.json"));
@@ -151,8 +151,8 @@ fn measure_quick<S: Study>(
     if measured.limits.is_none() {
         measured.limits = Some(limits::measure(machine)?);
     }
-    let picture = output.out.join(format!("{paper}.png"));
-    outcome::check_file(&picture)?;
+    let pictures = bench::picture_files(&output.out.join(format!("{paper}.png")), variants);
+    pictures.iter().try_for_each(|picture| outcome::check_file(picture))?;
     let loaded = load(study)?;
     let limits = measured.limits.as_ref();
     let bench = Bench { study, loaded: &loaded, variants, schedule: SCHEDULE, limits };
@@ -161,9 +161,12 @@ fn measure_quick<S: Study>(
     for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
         *warning = spelling::options(warning);
     }
-    if let (Some(&variant), Some(run)) = (variants.first(), runs.first_mut()) {
-        run.image = Some(bench::write_picture(machine, study, &loaded, variant, 0, &picture)?);
-        outcome::wrote(output, &picture);
+    for (index, ((&variant, picture), run)) in variants.iter().zip(&pictures).zip(&mut runs).enumerate() {
+        if index > 0 && interrupted().load(Ordering::Relaxed) {
+            break;
+        }
+        run.image = Some(bench::write_picture(machine, study, &loaded, variant, 0, picture)?);
+        outcome::wrote(output, picture);
     }
     measured.runs.extend(runs);
     measured.traces.extend(traces);

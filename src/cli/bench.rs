@@ -2,13 +2,14 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use super::failure::Failure;
 use super::options::{CaptureTool, CommonArgs, DepthArgs, MeasureArgs, OutputArgs};
 use super::outcome;
 use super::processes;
 use super::spelling;
-use super::watch::{patiently, watched};
+use super::watch::{interrupted, patiently, watched};
 use crate::content;
 use crate::gpu::{Mode, RenderDoc};
 use crate::measure::bench::{Bench, Loaded, build, load_for};
@@ -34,10 +35,13 @@ pub fn publish<S: Study>(
     variants: &[S::Variant],
 ) -> Result<(), Failure> {
     let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = common;
+    let mut pictures = output.image.iter().flat_map(|named| picture_files(named, variants));
+    pictures.try_for_each(|path| outcome::check_file(&path))?;
     if *processes > 1 {
         let record = processes::run(*processes, output.quiet)?;
-        // The first process has written the picture and the trace.
-        output.image.iter().chain(&output.trace).for_each(|path| outcome::wrote(output, path));
+        // The first process has written the pictures and the trace.
+        let pictures = record.runs.iter().filter_map(|run| Some(Path::new(&run.image.as_ref()?.path)));
+        pictures.chain(output.trace.as_deref()).for_each(|path| outcome::wrote(output, path));
         return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
     }
     let (record, traces, failed) = measure(study, variants, common, depth)?;
@@ -92,15 +96,20 @@ fn measure<S: Study>(
     }
     // A picture that fails throws no measurement away.
     let mut failed = None;
-    if let (Some(path), Some(&variant), Some(run)) = (&output.image, variants.first(), runs.first_mut()) {
-        match write_picture(&mut machine, study, &loaded, variant, schedule.frames - 1, path) {
+    let files = output.image.iter().flat_map(|named| picture_files(named, variants));
+    let first_runs = runs.iter_mut().step_by(alternatives.len().max(1));
+    for (index, ((&variant, file), run)) in variants.iter().zip(files).zip(first_runs).enumerate() {
+        if index > 0 && interrupted().load(Ordering::Relaxed) {
+            break;
+        }
+        match write_picture(&mut machine, study, &loaded, variant, schedule.frames - 1, &file) {
             Ok(image) => {
                 run.image = Some(image);
-                outcome::wrote(output, path);
+                outcome::wrote(output, &file);
             }
             Err(failure) => {
                 run.warnings.push(format!("without a picture: {failure}"));
-                failed = Some(failure);
+                failed.get_or_insert(failure);
             }
         }
     }
@@ -157,6 +166,23 @@ fn capture_frame<S: Study>(
 
 fn file_sha256(path: &Path) -> Result<String, Failure> {
     content::file_sha256(path).map_err(|e| Failure::Running(format!("reading {} again: {e}", path.display())))
+}
+
+/// Files of the variants' pictures: the first gets the name that was given, the others' have the variant before its ending.
+pub fn picture_files<V: Variant>(named: &Path, variants: &[V]) -> Vec<PathBuf> {
+    let of = |(index, variant): (usize, &V)| {
+        if index == 0 {
+            return named.to_owned();
+        }
+        let mut name = named.file_stem().unwrap_or_default().to_owned();
+        name.push(format!("-{}", variant.as_str()));
+        if let Some(ending) = named.extension() {
+            name.push(".");
+            name.push(ending);
+        }
+        named.with_file_name(name)
+    };
+    variants.iter().enumerate().map(of).collect()
 }
 
 /// Renders a frame after the measurement and writes it.

@@ -219,7 +219,7 @@ pub struct OutputArgs {
     /// Write a trace for chrome://tracing and Perfetto
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
-    /// Write the last frame's picture; of several variants, the first one's
+    /// Write the last frame's picture; of several variants the first one's, the others' beside it as FILE-VARIANT.png
     #[arg(long, value_name = "FILE.png")]
     pub image: Option<PathBuf>,
     /// Print nothing but errors and what was asked for on standard output

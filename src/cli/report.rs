@@ -179,11 +179,12 @@ fn add_record(contents: &mut Contents, path: &Path, record: Record) {
             None => {}
             Some(Err(problem)) => contents.warnings.push(problem),
             Some(Ok((png, decoded))) => {
-                let base = found.iter().find(|(other, _)| record.runs[other.run].paper == run.paper);
-                let difference = base.and_then(|(other, base)| {
-                    let difference = image::compare(base, &decoded, None).ok()?;
-                    Some(PictureDifference { base: other.run, mean: difference.mean, p99: difference.p99 })
-                });
+                let difference =
+                    found.iter().filter(|(other, _)| record.runs[other.run].paper == run.paper).find_map(|(other, base)| {
+                        // Of another size it has none.
+                        let difference = image::compare(base, &decoded, None).ok()?;
+                        Some(PictureDifference { base: other.run, mean: difference.mean, p99: difference.p99 })
+                    });
                 found.push((Picture { run: index, png, difference }, decoded));
             }
         }

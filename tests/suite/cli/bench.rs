@@ -172,8 +172,9 @@ fn every_file_is_written_and_well_formed() {
     let files = "--json r/a.json --csv r/a.csv --trace r/a.trace --image r/a.png";
     let options = "--frames 3 --repeat 1 --warmup 1 --no-limits";
     let ended = caustics("bench").inside(out.path()).tiny().args(options).args(BOTH).args(files).run().succeeded();
-    let written: BTreeSet<&str> = ended.stderr.lines().collect();
-    assert_eq!(written, ["wrote r/a.csv", "wrote r/a.json", "wrote r/a.png", "wrote r/a.trace"].into());
+    let written: BTreeSet<String> = ended.stderr.lines().map(str::to_owned).collect();
+    let wrote = |name: &str| format!("wrote {name}");
+    assert_eq!(written, ["r/a.csv", "r/a.json", "r/a.png", "r/a-volumetric.png", "r/a.trace"].map(wrote).into());
     let path = |ending: &str| out.path().join(format!("r/a.{ending}"));
     let record = read_json(&path("json"));
     assert_schema(&record);
@@ -211,13 +212,15 @@ fn every_file_is_written_and_well_formed() {
 
     let picture = fumarole::image::read_png(&path("png")).unwrap();
     assert_eq!((picture.width(), picture.height()), (96, 64));
-    let recorded = &record["runs"][0]["image"];
-    assert_eq!(recorded["path"], "r/a.png");
-    assert_eq!(recorded["sha256"], sha256(&path("png")).as_str());
-    assert!(record["runs"][1]["image"].is_null(), "the first variant's alone");
-    // It is the last frame's, as `render` shows it.
-    caustics("render --quiet --frame 2 --image last.png").inside(out.path()).tiny().run().succeeded();
-    assert_eq!(sha256(&out.path().join("last.png")), sha256(&path("png")));
+    // Each variant's is the last frame's, as `render` shows it; the first has the name that was given.
+    for (run, (variant, name)) in [("level-map", "r/a.png"), ("volumetric", "r/a-volumetric.png")].iter().enumerate() {
+        let recorded = &record["runs"][run]["image"];
+        assert_eq!(recorded["path"], *name);
+        assert_eq!(recorded["sha256"], sha256(&out.path().join(name)).as_str());
+        let render = caustics("render --quiet --frame 2 --image last.png --variant").arg(variant);
+        render.inside(out.path()).tiny().run().succeeded();
+        assert_eq!(recorded["sha256"], sha256(&out.path().join("last.png")).as_str(), "{variant}");
+    }
 }
 
 /// Every stamped frame has the host's work, its waits and the device's work on one clock: what the device does lies inside
@@ -268,14 +271,19 @@ fn fresh_processes_are_numbered_and_the_first_writes_the_picture() {
     let out = folder();
     let files = "--json a.json --csv a.csv --trace a.trace --image a.png";
     let program = caustics("bench --processes 2").inside(out.path()).tiny().args(ONCE).args(BOTH);
-    program.args(files).run().succeeded();
+    let ended = program.args(files).run().succeeded();
+    for (run, name) in ["a.png", "a-volumetric.png"].iter().enumerate() {
+        assert!(ended.stderr.contains(&format!("wrote {name}\n")), "{}", ended.stderr);
+        let recorded = read_json(&out.path().join("a.json"))["runs"][run]["image"].clone();
+        assert_eq!(recorded["sha256"], sha256(&out.path().join(name)).as_str());
+    }
     let record = read_json(&out.path().join("a.json"));
     assert_schema(&record);
     let runs = record["runs"].as_array().unwrap();
     let found: Vec<(u64, &str)> =
         runs.iter().map(|run| (run["process"].as_u64().unwrap(), run["variant"].as_str().unwrap())).collect();
     assert_eq!(found, [(0, "level-map"), (0, "volumetric"), (1, "level-map"), (1, "volumetric")]);
-    assert_eq!(runs[0]["image"]["sha256"], sha256(&out.path().join("a.png")).as_str());
+    assert!(runs[2..].iter().all(|run| run["image"].is_null()), "the first process has drawn them");
     assert!(!read_json(&out.path().join("a.trace"))["traceEvents"].as_array().unwrap().is_empty());
     let count: usize = runs.iter().map(|run| run["passes"].as_array().unwrap().len()).sum();
     assert_eq!(fs::read_to_string(out.path().join("a.csv")).unwrap().lines().count(), 1 + count);

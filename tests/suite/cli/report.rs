@@ -2,8 +2,17 @@
 
 use std::fs;
 
+use fumarole::image::read_png;
+
 use super::compare::record_of;
 use super::program::{ONCE, caustics, file, folder, fumarole};
+
+/// The number of the record that the page shows after some text.
+fn shown_after(page: &str, text: &str) -> f64 {
+    let rest = page.split_once(text).unwrap_or_else(|| panic!("no {text}")).1;
+    let number = rest.strip_prefix("<span data-value=\"").unwrap_or_else(|| panic!("no number after {text}"));
+    number.split('"').next().unwrap().parse().unwrap()
+}
 
 #[test]
 fn a_folder_becomes_a_page_with_pictures_plots_and_numbers() {
@@ -26,11 +35,21 @@ fn a_folder_becomes_a_page_with_pictures_plots_and_numbers() {
             assert!(text.contains(&format!("<td>{}</td>", pass["name"].as_str().unwrap())));
         }
     }
-    assert_eq!(text.matches("data:image/png").count(), 1);
+    // Each variant's picture, the second over the first under a divider, with their difference as it is.
+    assert_eq!(text.matches("data:image/png").count(), 2);
+    assert_eq!(text.matches("<div class=\"divided\">").count(), 1);
+    let [first, second] = ["run.png", "run-volumetric.png"].map(|name| read_png(&path(name)).unwrap());
+    let difference = fumarole::image::compare(&first, &second, None).unwrap();
+    assert!(difference.mean > 0.0, "the methods draw different pictures");
+    let caption = &text[text.find("CIE Luv difference").unwrap()..];
+    let [mean, p99] = ["mean ", "99th percentile "].map(|name| shown_after(caption, name));
+    assert_eq!([mean, p99], [difference.mean, difference.p99]);
+    assert!(caption.contains(&format!(">{:.3}</span>", difference.mean)), "{caption}");
     assert_eq!(text.matches("data:image/svg+xml").count(), 1);
 
     // A picture that has changed since is not shown as the record's.
     fs::write(path("run.png"), "other").unwrap();
+    fs::remove_file(path("run-volumetric.png")).unwrap();
     let ended = fumarole("report").arg(path("run.json")).arg("--output").arg(&page).run().succeeded();
     assert!(ended.stderr.contains("changed since"), "{}", ended.stderr);
     assert!(!fs::read_to_string(&page).unwrap().contains("data:image/png"));
