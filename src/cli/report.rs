@@ -14,7 +14,7 @@ use crate::content;
 use crate::file;
 use crate::image::{self, Rgba8};
 use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
-use crate::report::html::{Contents, Picture, PictureDifference, Plot, Source, page};
+use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Source, name, page};
 use crate::report::json::{self, ReadError};
 use crate::report::{Record, Run};
 
@@ -66,9 +66,11 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
     if let (Some(a), Some(b)) = (&arguments.a, &arguments.b) {
         let (a, b) = (a.read()?, b.read()?);
         contents.verdicts.extend(sections(&compare(&a, &b, &Options::default())?));
-        for input in a.into_iter().chain(b) {
-            add_record(&mut contents, Path::new(&input.name), input.record);
-        }
+        let [a, b] = [a, b].map(|side| {
+            let records = side.into_iter().map(|input| add_record(&mut contents, Path::new(&input.name), input.record));
+            records.flatten().collect::<Vec<_>>()
+        });
+        contents.pairs.extend(pairs(&a, &b));
     }
     if contents.records.is_empty() && contents.plots.is_empty() {
         return Err(Failure::Input("report: no record and no plot was found; write one with --json".into()));
@@ -101,6 +103,7 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
     files.sort();
     let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
     let mut verdicts = None;
+    let mut drawn: HashMap<&str, Vec<Drawn>> = HashMap::new();
     for path in &files {
         let ending = path.extension().unwrap_or_default();
         if ending == "svg" {
@@ -116,10 +119,14 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
         } else if ending == "json" {
             match json::read(path) {
                 Ok(record) => {
-                    if let Some(side) = ["ab-a.json", "ab-b.json"].into_iter().find(|side| path.ends_with(side)) {
+                    let side = ["ab-a.json", "ab-b.json"].into_iter().find(|side| path.ends_with(side));
+                    if let Some(side) = side {
                         sides.insert(side, by_process(path, &record));
                     }
-                    add_record(contents, path, record);
+                    let pictures = add_record(contents, path, record);
+                    if let Some(side) = side {
+                        drawn.insert(side, pictures);
+                    }
                 }
                 // Other documents of ours lie there too.
                 Err(ReadError::WrongSchema { .. }) => {}
@@ -134,6 +141,9 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
         }
     }
     contents.verdicts.extend(verdicts.iter().flat_map(|comparison| named_sections(folder, comparison)));
+    if let (Some(_), Some(a), Some(b)) = (&verdicts, drawn.get("ab-a.json"), drawn.get("ab-b.json")) {
+        contents.pairs.extend(pairs(a, b));
+    }
     Ok(())
 }
 
@@ -172,7 +182,31 @@ fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-fn add_record(contents: &mut Contents, path: &Path, record: Record) {
+/// A run's picture, as one side of a comparison has drawn it.
+struct Drawn {
+    run: String,
+    png: Vec<u8>,
+    picture: Rgba8,
+}
+
+/// What both sides have drawn, in the order of A; of several processes a side the first one's.
+fn pairs(a: &[Drawn], b: &[Drawn]) -> Vec<Pair> {
+    let mut pairs: Vec<Pair> = vec![];
+    for a in a {
+        let Some(b) = b.iter().find(|b| b.run == a.run) else { continue };
+        // Of one size, or their runs would not be called alike.
+        if let (false, Ok(difference)) =
+            (pairs.iter().any(|pair| pair.title == a.run), image::compare(&a.picture, &b.picture, None))
+        {
+            let (mean, p99) = (difference.mean, difference.p99);
+            pairs.push(Pair { title: a.run.clone(), pngs: [a.png.clone(), b.png.clone()], mean, p99 });
+        }
+    }
+    pairs
+}
+
+/// Adds a record with its pictures, which it gives back.
+fn add_record(contents: &mut Contents, path: &Path, record: Record) -> Vec<Drawn> {
     let mut found: Vec<(Picture, Rgba8)> = vec![];
     for (index, run) in record.runs.iter().enumerate() {
         match picture(path, run) {
@@ -189,8 +223,13 @@ fn add_record(contents: &mut Contents, path: &Path, record: Record) {
             }
         }
     }
-    let pictures = found.into_iter().map(|(picture, _)| picture).collect();
+    let (mut pictures, mut drawn) = (vec![], vec![]);
+    for (picture, decoded) in found {
+        drawn.push(Drawn { run: name(&record.runs[picture.run]), png: picture.png.clone(), picture: decoded });
+        pictures.push(picture);
+    }
     contents.records.push(Source { name: path.display().to_string(), record, pictures });
+    drawn
 }
 
 /// A run's picture, if it is still the one that the record names: where it was written, or beside the record.

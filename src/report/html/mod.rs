@@ -23,6 +23,8 @@ pub struct Contents {
     pub title: String,
     /// Verdicts on two sides, first on the page.
     pub verdicts: Vec<Section>,
+    /// Pictures of what both sides have drawn, below the verdicts.
+    pub pairs: Vec<Pair>,
     /// Records in the order in which they are shown.
     pub records: Vec<Source>,
     /// Plots of experiments.
@@ -72,6 +74,18 @@ pub struct PictureDifference {
     pub p99: f64,
 }
 
+/// The pictures of one run by both sides of a comparison.
+pub struct Pair {
+    /// The run's name.
+    pub title: String,
+    /// The PNG files' bytes, A's and B's.
+    pub pngs: [Vec<u8>; 2],
+    /// Mean CIE Luv difference over the pixels.
+    pub mean: f64,
+    /// Its 99th percentile.
+    pub p99: f64,
+}
+
 /// A plot of an experiment.
 pub struct Plot {
     /// Name of its file.
@@ -80,9 +94,14 @@ pub struct Plot {
     pub svg: Vec<u8>,
 }
 
-/// A run's name: paper, variant, preset, and what tells repeated ones apart.
-fn title(run: &Run) -> String {
+/// A run's name: paper, variant, preset, size.
+pub fn name(run: &Run) -> String {
     let preset = run.preset.as_ref().map_or_else(String::new, |preset| format!(", {preset}"));
+    format!("{} {}{preset}: {} × {}", run.paper, run.variant, run.width, run.height)
+}
+
+/// The same with what tells repeated ones apart.
+fn title(run: &Run) -> String {
     let process = if run.process > 0 { format!(", process {}", run.process) } else { String::new() };
-    format!("{} {}{preset}: {} × {}{process}", run.paper, run.variant, run.width, run.height)
+    format!("{}{process}", name(run))
 }

@@ -6,7 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
 use super::run::{number, run};
-use super::{Contents, Picture, Section, Source, title};
+use super::{Contents, Pair, Picture, Section, Source, title};
 use crate::report::record::Record;
 
 const STYLE: &str = include_str!("style.css");
@@ -32,7 +32,9 @@ pub fn page(contents: &Contents) -> String {
                 header { h1 { (contents.title) } (navigation(contents)) }
                 main {
                     @if !contents.verdicts.is_empty() {
-                        section id="verdicts" { h2 { "Verdicts" } @for verdict in &contents.verdicts { (section(verdict)) } }
+                        section id="verdicts" { h2 { "Verdicts" } @for verdict in &contents.verdicts { (section(verdict)) }
+                            @if !contents.pairs.is_empty() { div.pictures { @for pair in &contents.pairs { (sides(pair)) } } }
+                        }
                     }
                     @for (index, source) in contents.records.iter().enumerate() { (record(source, index)) }
                     @if !contents.plots.is_empty() {
@@ -178,6 +180,35 @@ fn experiment(record: &Record) -> Markup {
     }
 }
 
+/// What both sides have drawn of a run.
+fn sides(pair: &Pair) -> Markup {
+    let [a, b] = [("A", &pair.pngs[0]), ("B", &pair.pngs[1])].map(|(side, png)| {
+        html! { img src=(data("image/png", png)) alt=(format!("picture of {} by side {side}", pair.title)); }
+    });
+    html! {
+        figure {
+            (divided(&a, &b))
+            figcaption { (pair.title) ", left A, right B; " (luv_difference(pair.mean, pair.p99)) }
+        }
+    }
+}
+
+/// A picture with another over it, right of a divider that moves.
+fn divided(base: &Markup, over: &Markup) -> Markup {
+    html! {
+        div.divided {
+            (base)
+            div.over { (over) }
+            input type="range" min="0" max="100" value="50"
+                aria-label="divider: left of it the one picture, right of it the other";
+        }
+    }
+}
+
+fn luv_difference(mean: f64, p99: f64) -> Markup {
+    html! { "CIE Luv difference: mean " (number(mean, 3)) ", 99th percentile " (number(p99, 3)) }
+}
+
 /// Pictures; one that has a difference lies over what it is compared with, under a divider.
 fn pictures(source: &Source) -> Markup {
     let name = |at: usize| source.record.runs.get(at).map_or_else(String::new, title);
@@ -190,16 +221,11 @@ fn pictures(source: &Source) -> Markup {
                 figure {
                     @if let Some(difference) = &picture.difference {
                         @if let Some(base) = source.pictures.iter().find(|other| other.run == difference.base) {
-                            div.divided {
-                                (image(base))
-                                div.over { (image(picture)) }
-                                input type="range" min="0" max="100" value="50"
-                                    aria-label="divider: left of it the one picture, right of it the other";
-                            }
+                            (divided(&image(base), &image(picture)))
                         }
                         figcaption {
-                            (name(picture.run)) " over " (name(difference.base)) "; CIE Luv difference: mean "
-                            (number(difference.mean, 3)) ", 99th percentile " (number(difference.p99, 3))
+                            "Left " (name(difference.base)) ", right " (name(picture.run)) "; "
+                            (luv_difference(difference.mean, difference.p99))
                         }
                     } @else {
                         (image(picture))

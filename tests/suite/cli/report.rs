@@ -2,10 +2,11 @@
 
 use std::fs;
 
-use fumarole::image::read_png;
+use fumarole::image::{Rgba8, read_png, write_png};
+use serde_json::json;
 
 use super::compare::record_of;
-use super::program::{ONCE, caustics, file, folder, fumarole};
+use super::program::{ONCE, caustics, file, folder, fumarole, sha256};
 
 /// The number of the record that the page shows after some text.
 fn shown_after(page: &str, text: &str) -> f64 {
@@ -77,9 +78,13 @@ fn verdicts_come_first_and_nothing_to_show_is_refused() {
 fn two_records_a_side_are_joined_for_their_verdicts() {
     let out = folder();
     let side = |name: &str, factor: f64| {
+        let picture = out.path().join(format!("{name}.png"));
+        let shades = (0..96 * 64).flat_map(|at| [(at % 96) as u8, (100.0 * factor) as u8, (at / 96) as u8, 255]);
+        write_png(&picture, &Rgba8::new(96, 64, shades.collect()).unwrap()).unwrap();
         let paths = [0, 1].map(|number| {
             let mut record = record_of(3, factor * (1.0 + 0.001 * f64::from(number)));
             record["runs"].as_array_mut().unwrap().retain(|run| run["variant"] == "level-map");
+            record["runs"][0]["image"] = json!({"path": picture, "sha256": sha256(&picture)});
             file(&out, &format!("{name}{number}.json"), record.to_string()).to_str().unwrap().to_owned()
         });
         paths.join(",")
@@ -91,4 +96,10 @@ fn two_records_a_side_are_joined_for_their_verdicts() {
     let place = |part: &str| text.find(part).unwrap_or_else(|| panic!("no {part}"));
     assert!(place("SLOWER: frame B / A 1.5") < place("<h3>caustics level-map: 96 × 64</h3><p class=\"frame\">"));
     assert!(text.contains("6 processes"), "of two records of three each");
+    // What both have drawn lies once under a divider, with the verdicts.
+    assert_eq!(text.matches("<div class=\"divided\">").count(), 1);
+    let [a, b] = ["a.png", "b.png"].map(|name| read_png(&out.path().join(name)).unwrap());
+    let difference = fumarole::image::compare(&a, &b, None).unwrap();
+    let caption = &text[place("left A, right B")..place("class=\"record\"")];
+    assert_eq!(["mean ", "99th percentile "].map(|n| shown_after(caption, n)), [difference.mean, difference.p99]);
 }
