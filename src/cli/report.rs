@@ -1,10 +1,12 @@
-//! `report`: records, pictures and plots as one page.
+//! `report`: records, tables, pictures and plots as one page.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde::Deserialize;
+use serde::de::{DeserializeOwned, IgnoredAny};
 
 use super::ab::VERDICTS_FILE;
 use super::compare::{Side, parse_side};
@@ -14,13 +16,16 @@ use crate::content;
 use crate::file;
 use crate::image::{self, Rgba8};
 use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
-use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Source, name, page};
+use crate::report::html::{
+    Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page,
+};
 use crate::report::json::{self, ReadError};
+use crate::report::tables::{self, Tables};
 use crate::report::{Record, Run};
 
 #[derive(Debug, Clone, Args)]
 pub struct ReportArgs {
-    /// Records, or folders with records and plots
+    /// Records, tables and comparisons, or folders with them and with plots
     #[arg(value_name = "DIR|FILE.json")]
     sources: Vec<PathBuf>,
     /// Records of side A, comma-separated, for verdicts
@@ -39,8 +44,10 @@ pub struct ReportArgs {
 
 /// Largest plot that is shown, bytes.
 const MAX_PLOT_BYTES: u64 = 16 << 20;
-/// Largest comparison that is shown, bytes.
-const MAX_VERDICTS_BYTES: u64 = 16 << 20;
+/// Largest comparison, and largest tables, that are shown, bytes.
+const MAX_DOCUMENT_BYTES: u64 = 16 << 20;
+/// Cells of a table that are shown.
+const MAX_CELLS: usize = 1 << 17;
 /// Largest picture that is shown, bytes.
 const MAX_PICTURE_BYTES: u64 = 64 << 20;
 
@@ -59,8 +66,13 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
         if source.is_dir() {
             add_folder(&mut contents, source)?;
         } else {
-            let record = json::read(source)?;
-            add_record(&mut contents, source, record);
+            match document(source)? {
+                Document::Record(record) => {
+                    add_record(&mut contents, source, *record);
+                }
+                Document::Tables(tables) => add_tables(&mut contents, source, *tables),
+                Document::Verdicts(verdicts) => contents.verdicts.extend(named_sections(source, &verdicts)),
+            }
         }
     }
     if let (Some(a), Some(b)) = (&arguments.a, &arguments.b) {
@@ -72,8 +84,8 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
         });
         contents.pairs.extend(pairs(&a, &b));
     }
-    if contents.records.is_empty() && contents.plots.is_empty() {
-        return Err(Failure::Input("report: no record and no plot was found; write one with --json".into()));
+    if [contents.records.len(), contents.tables.len(), contents.plots.len(), contents.verdicts.len()] == [0; 4] {
+        return Err(Failure::Input("report: no record, no table and no plot was found; write one with --json".into()));
     }
     write(&contents, &arguments.output, arguments.quiet)
 }
@@ -94,7 +106,8 @@ fn write(contents: &Contents, output: &Path, quiet: bool) -> Result<(), Failure>
     Ok(())
 }
 
-/// All records and plots of a folder by their names; what `ab` left there is compared.
+/// All records, tables, comparisons and plots of a folder by their names; what `ab` left there is compared. What is ours and
+/// is not shown is named in a warning.
 fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
     let failed = |e: std::io::Error| Failure::Input(format!("listing the folder {}: {e}", folder.display()));
     let mut files = fs::read_dir(folder)
@@ -103,6 +116,7 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
     files.sort();
     let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
     let mut verdicts = None;
+    let mut foreign: BTreeMap<String, Vec<String>> = BTreeMap::new();
     let mut drawn: HashMap<&str, Vec<Drawn>> = HashMap::new();
     for path in &files {
         let ending = path.extension().unwrap_or_default();
@@ -111,14 +125,10 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
                 Ok(svg) => contents.plots.push(Plot { name: name_of(path), svg }),
                 Err(e) => contents.warnings.push(format!("{}: {e}", path.display())),
             }
-        } else if path.ends_with(VERDICTS_FILE) {
-            match comparison(path) {
-                Ok(comparison) => verdicts = Some(comparison),
-                Err(e) => contents.warnings.push(e),
-            }
         } else if ending == "json" {
-            match json::read(path) {
-                Ok(record) => {
+            match document(path) {
+                Ok(Document::Record(record)) => {
+                    let record = *record;
                     let side = ["ab-a.json", "ab-b.json"].into_iter().find(|side| path.ends_with(side));
                     if let Some(side) = side {
                         sides.insert(side, by_process(path, &record));
@@ -128,7 +138,17 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
                         drawn.insert(side, pictures);
                     }
                 }
-                // Other documents of ours lie there too.
+                Ok(Document::Tables(tables)) => add_tables(contents, path, *tables),
+                Ok(Document::Verdicts(found)) if path.ends_with(VERDICTS_FILE) => verdicts = Some(*found),
+                Ok(Document::Verdicts(found)) => contents.verdicts.extend(named_sections(path, &found)),
+                Err(ReadError::WrongSchema { found, .. }) if found.starts_with("\"fumarole.") => {
+                    foreign.entry(found).or_default().push(name_of(path));
+                }
+                Err(ReadError::WrongSchema { .. }) if is_older_table(path) => {
+                    let problem = "tables of an older program, which the page does not show; run the experiment again";
+                    contents.warnings.push(format!("{}: {problem}", path.display()));
+                }
+                // Others' documents, and traces, lie there too.
                 Err(ReadError::WrongSchema { .. }) => {}
                 Err(e) => contents.warnings.push(e.to_string()),
             }
@@ -140,6 +160,12 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
             Err(e) => contents.warnings.push(e.to_string()),
         }
     }
+    contents.warnings.extend(foreign.iter().map(|(schema, names)| {
+        let folder = folder.display();
+        let (first, more) = (&names[0], names.len() - 1);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("{folder}: the page does not show documents of schema {schema}: {first}{more}")
+    }));
     contents.verdicts.extend(verdicts.iter().flat_map(|comparison| named_sections(folder, comparison)));
     if let (Some(_), Some(a), Some(b)) = (&verdicts, drawn.get("ab-a.json"), drawn.get("ab-b.json")) {
         contents.pairs.extend(pairs(a, b));
@@ -147,22 +173,64 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The verdicts that `ab` left.
-fn comparison(path: &Path) -> Result<Comparison, String> {
-    let text = file::read_text(path, MAX_VERDICTS_BYTES).map_err(|e| format!("{}: {e}", path.display()))?;
-    let comparison: Comparison = json::document(&text, path).map_err(|e| e.to_string())?;
-    match comparison.schema == compare::SCHEMA {
-        true => Ok(comparison),
-        false => Err(format!("{}: its schema is {}, not {}", path.display(), comparison.schema, compare::SCHEMA)),
+/// A document that the page shows.
+enum Document {
+    Record(Box<Record>),
+    Tables(Box<Tables>),
+    Verdicts(Box<Comparison>),
+}
+
+/// Reads a document of any schema that the page shows.
+///
+/// # Errors
+/// As [`json::read`].
+fn document(path: &Path) -> Result<Document, ReadError> {
+    let is = |found: &str, schema: &str| found.trim_matches('"') == schema;
+    match json::read(path) {
+        Err(ReadError::WrongSchema { found, .. }) if is(&found, tables::SCHEMA) => {
+            Ok(Document::Tables(Box::new(whole(path)?)))
+        }
+        Err(ReadError::WrongSchema { found, .. }) if is(&found, compare::SCHEMA) => {
+            Ok(Document::Verdicts(Box::new(whole(path)?)))
+        }
+        read => Ok(Document::Record(Box::new(read?))),
     }
 }
 
-fn named_sections(folder: &Path, comparison: &Comparison) -> Vec<crate::report::html::Section> {
+fn whole<T: DeserializeOwned>(path: &Path) -> Result<T, ReadError> {
+    let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
+    json::document(&file::read_text(path, MAX_DOCUMENT_BYTES).map_err(unreadable)?, path)
+}
+
+/// True for what experiments without runs wrote before their document had a schema.
+fn is_older_table(path: &Path) -> bool {
+    #[derive(Deserialize)]
+    struct Header {
+        experiment: Option<IgnoredAny>,
+        environment: Option<IgnoredAny>,
+        table: Option<IgnoredAny>,
+    }
+    let text = file::read_text(path, MAX_DOCUMENT_BYTES).unwrap_or_default();
+    let header = serde_json::from_str::<Header>(&text);
+    header.is_ok_and(|header| header.experiment.and(header.environment).and(header.table).is_some())
+}
+
+fn named_sections(source: &Path, comparison: &Comparison) -> Vec<Section> {
     let mut sections = sections(comparison);
     if let Some(first) = sections.first_mut() {
-        first.title = format!("{}: {}", folder.display(), first.title);
+        first.title = format!("{}: {}", source.display(), first.title);
     }
     sections
+}
+
+/// Adds tables, unless a page of them would be too large.
+fn add_tables(contents: &mut Contents, path: &Path, document: Tables) {
+    let cells = document.all().map(|table| table.columns.len().max(1).saturating_mul(table.rows.len()));
+    let name = path.display().to_string();
+    match cells.max().unwrap_or(0) {
+        0..=MAX_CELLS => contents.tables.push(TableSource { name, document }),
+        cells => contents.warnings.push(format!("{name}: a table of {cells} cells is too large for a page; see its CSV")),
+    }
 }
 
 /// A joined record as one input a process, in their order.

@@ -2,8 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::{Value, json};
-
 use super::error::Error;
 use super::limits;
 use super::machine::{Machine, MachineOptions};
@@ -18,6 +16,7 @@ use crate::image::{self, Raster, Rgba8};
 use crate::report::plot::PlotError;
 use crate::report::record::Run;
 use crate::report::table::Style;
+use crate::report::tables::{self, Tables};
 use crate::report::{Record, csv, environment, json as writer};
 
 /// One table or figure of a paper.
@@ -293,7 +292,7 @@ impl<S: Study> Context<'_, S> {
         self.publish_tables(machine, table, &[])
     }
 
-    /// The same with more tables after it, each under a name of its own in the JSON and at the end of its CSV file's name.
+    /// The same with more tables after it, each under a name of its own in the document and at the end of its CSV file's name.
     ///
     /// # Errors
     /// [`Error::Output`].
@@ -303,13 +302,17 @@ impl<S: Study> Context<'_, S> {
         table: &ResultTable,
         more: &[(&str, ResultTable)],
     ) -> Result<(), Error> {
-        let mut document: Value = json!({
-            "experiment": self.name, "environment": machine.environment(),
-            "command": environment::command(), "table": table.json(),
-        });
+        let document = Tables {
+            schema: tables::SCHEMA.to_owned(),
+            paper: S::PAPER.to_owned(),
+            experiment: self.name.to_owned(),
+            environment: machine.environment(),
+            command: environment::command(),
+            table: table.document(),
+            more: more.iter().map(|(name, table)| ((*name).to_owned(), table.document())).collect(),
+        };
         let mut printed = table.render(self.console.style());
-        for (name, table) in more {
-            document[name] = table.json();
+        for (_, table) in more {
             printed.push_str(&format!("\n{}", table.render(self.console.style())));
         }
         let text = json_text(&document)?;

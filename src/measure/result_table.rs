@@ -1,11 +1,12 @@
 //! Tables of experiments that time nothing.
 
 use csv::Terminator;
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 
 use crate::report::csv::lines;
 use crate::report::plot::{BarChart, BarSeries, LineChart, PlotError, Scale, Series};
 use crate::report::table::{Align, Style, Table};
+use crate::report::tables::{self, shown};
 
 /// A table of an experiment that times nothing: for the console and, row by row, for JSON and CSV.
 pub struct ResultTable {
@@ -86,12 +87,16 @@ impl ResultTable {
         chart.to_svg()
     }
 
-    /// One object a row.
-    pub fn json(&self) -> Value {
-        let object = |row: &Vec<Value>| -> Map<String, Value> {
-            self.columns.iter().zip(row).map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
+    /// For the document: the cells of each row by their columns.
+    pub fn document(&self) -> tables::Rows {
+        let row = |row: &Vec<Value>| {
+            tables::Row(self.columns.iter().zip(row).map(|(name, value)| ((*name).to_owned(), value.clone())).collect())
         };
-        json!({"title": self.title, "rows": self.rows.iter().map(object).collect::<Vec<_>>()})
+        tables::Rows {
+            title: self.title.to_owned(),
+            columns: self.columns.iter().map(|&name| name.to_owned()).collect(),
+            rows: self.rows.iter().map(row).collect(),
+        }
     }
 
     /// Comma-separated, with a header.
@@ -102,18 +107,10 @@ impl ResultTable {
     }
 }
 
-fn shown(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        Value::Number(number) if number.is_f64() => format!("{:.4}", number.as_f64().unwrap_or(f64::NAN)),
-        other => other.to_string(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn bars_are_called_by_the_columns_before_them() {

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Map, Value, json};
 
 use super::record::*;
+use super::tables::{Row, Rows, SCHEMA, Tables};
 use crate::measure::statistics::summarize;
 
 fn object(value: Value) -> Map<String, Value> {
@@ -197,4 +198,31 @@ pub fn full() -> Record {
     };
     let command = vec!["gas".to_owned(), "bench".to_owned()];
     Record::new(environment, command, vec![run])
+}
+
+/// An experiment's tables.
+pub fn tables() -> Tables {
+    let row = |value| Row(object(value));
+    let table = Rows {
+        title: "Table 5-2: polygons of the models".to_owned(),
+        columns: ["mesh", "triangles", "thesis", "note"].map(str::to_owned).to_vec(),
+        rows: vec![
+            row(json!({"mesh": "teapot", "triangles": 6320, "thesis": 6320.5, "note": null})),
+            row(json!({"mesh": "sphere", "triangles": 960, "thesis": null, "note": null})),
+        ],
+    };
+    let smallest = Rows {
+        title: "The smallest".to_owned(),
+        columns: vec!["frame ms".to_owned()],
+        rows: vec![row(json!({"frame ms": 0.125}))],
+    };
+    Tables {
+        schema: SCHEMA.to_owned(),
+        paper: "caustics".to_owned(),
+        experiment: "5-2".to_owned(),
+        environment: environment(),
+        command: ["fumarole", "caustics", "experiment", "5-2"].map(str::to_owned).to_vec(),
+        table,
+        more: BTreeMap::from([("smallest".to_owned(), smallest)]),
+    }
 }

@@ -7,7 +7,8 @@
 //! ```text
 //! Record --> console (String)     json (String, and back)     csv (String)
 //! TraceRun --> trace (String)   plot::LineChart, plot::BarChart --> SVG (String)
-//! Records, pictures, plots --> html::page (String)
+//! Tables (of experiments without runs) --> json (String, and back)
+//! Records, Tables, pictures, plots --> html::page (String)
 //! any text --> file::write (temporary file, renamed)
 //! ```
 
@@ -26,6 +27,7 @@ pub mod profile;
 pub mod record;
 pub mod stress;
 pub mod table;
+pub mod tables;
 pub mod text;
 pub mod trace;
 

@@ -1,6 +1,6 @@
 //! Records as one page that opens from disk, without a network: for each run its passes as bars and as a table, the
 //! paper's rows beside ours, memory, limits, environment and the command of every number; pictures under a divider; the
-//! plots of experiments; verdicts first where two sides are compared.
+//! tables and plots of experiments; verdicts first where two sides are compared.
 //!
 //! Everything that comes from a record is escaped by the template; pictures and plots are images, which run nothing; the
 //! page's policy lets no script run but its own.
@@ -8,6 +8,7 @@
 mod bars;
 mod page;
 mod run;
+mod tables;
 #[cfg(test)]
 mod tests;
 
@@ -15,6 +16,7 @@ pub use page::page;
 
 use super::record::{Record, Run};
 use super::table::Table;
+use super::tables::Tables;
 
 /// All that a page shows.
 #[derive(Default)]
@@ -27,6 +29,8 @@ pub struct Contents {
     pub pairs: Vec<Pair>,
     /// Records in the order in which they are shown.
     pub records: Vec<Source>,
+    /// Tables of experiments without runs, after the records.
+    pub tables: Vec<TableSource>,
     /// Plots of experiments.
     pub plots: Vec<Plot>,
     /// Files that could not be shown, one line each.
@@ -51,6 +55,14 @@ pub struct Source {
     pub record: Record,
     /// The runs' pictures, as far as they are there unchanged.
     pub pictures: Vec<Picture>,
+}
+
+/// Tables of an experiment with the file that they came from.
+pub struct TableSource {
+    /// Path of the file.
+    pub name: String,
+    /// Its contents.
+    pub document: Tables,
 }
 
 /// A run's picture.

@@ -6,8 +6,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
 use super::run::{number, run};
+use super::tables::tables;
 use super::{Contents, Pair, Picture, Section, Source, title};
-use crate::report::record::Record;
+use crate::report::record::{Environment, Record};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
@@ -37,6 +38,7 @@ pub fn page(contents: &Contents) -> String {
                         }
                     }
                     @for (index, source) in contents.records.iter().enumerate() { (record(source, index)) }
+                    @for (index, source) in contents.tables.iter().enumerate() { (tables(source, &format!("tables-{index}"))) }
                     @if !contents.plots.is_empty() {
                         section id="plots" {
                             h2 { "Plots of the experiments" }
@@ -74,6 +76,9 @@ fn navigation(contents: &Contents) -> Markup {
                     a href=(format!("#run-{index}-{at}")) { (item.paper) " " (item.variant) }
                 }
             }
+            @for (index, source) in contents.tables.iter().enumerate() {
+                a href=(format!("#tables-{index}")) { (source.document.paper) " " (source.document.experiment) }
+            }
             @if !contents.plots.is_empty() { a href="#plots" { "Plots" } }
         }
     }
@@ -101,7 +106,8 @@ fn record(source: &Source, index: usize) -> Markup {
     html! {
         section.record {
             h2 { (source.name) }
-            (environment(record))
+            (command(&record.command))
+            (environment(&record.environment))
             (experiment(record))
             (pictures(source))
             @for (at, item) in record.runs.iter().enumerate() { (run(item, &format!("run-{index}-{at}"))) }
@@ -115,10 +121,18 @@ fn shell_words(command: &[String]) -> String {
     command.iter().map(quoted).collect::<Vec<_>>().join(" ")
 }
 
-fn environment(record: &Record) -> Markup {
-    let (device, host, build) = (&record.environment.device, &record.environment.host, &record.environment.build);
+/// A command to copy, if there is one.
+pub(super) fn command(words: &[String]) -> Markup {
+    html! {
+        @if !words.is_empty() {
+            p.command { code { (shell_words(words)) } button.copy type="button" { "Copy" } }
+        }
+    }
+}
+
+pub(super) fn environment(environment: &Environment) -> Markup {
+    let (device, host, build) = (&environment.device, &environment.host, &environment.build);
     let text = |value: &Option<String>| value.clone().unwrap_or_default();
-    let command = shell_words(&record.command);
     let rows = [
         ("device", format!("{} ({})", device.name, device.kind.name())),
         ("driver", format!("{} {}", text(&device.driver), text(&device.driver_version))),
@@ -126,18 +140,15 @@ fn environment(record: &Record) -> Markup {
         ("processor", text(&host.cpu)),
         ("cores", host.logical_cores.map_or_else(String::new, |cores| cores.to_string())),
         ("LP_NUM_THREADS", host.lp_num_threads.map_or_else(String::new, |threads| threads.to_string())),
-        ("layers", record.environment.layers.join(", ")),
+        ("layers", environment.layers.join(", ")),
         ("program", format!("{} {} {}", build.version, text(&build.git_commit), text(&build.profile))),
         ("CPU governor", text(&host.cpu_governor)),
-        ("loader", text(&record.environment.loader)),
+        ("loader", text(&environment.loader)),
         ("compiler of the program", text(&build.rustc)),
         ("SHA-256 of the program", text(&build.executable_sha256)),
-        ("measured", record.environment.date.clone()),
+        ("measured", environment.date.clone()),
     ];
     html! {
-        @if !record.command.is_empty() {
-            p.command { code { (command) } button.copy type="button" { "Copy" } }
-        }
         details {
             summary { "Environment" }
             table { tbody {

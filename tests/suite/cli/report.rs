@@ -3,10 +3,10 @@
 use std::fs;
 
 use fumarole::image::{Rgba8, read_png, write_png};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::compare::record_of;
-use super::program::{ONCE, caustics, file, folder, fumarole, sha256};
+use super::program::{ONCE, caustics, file, folder, fumarole, read_json, sha256};
 
 /// The number of the record that the page shows after some text.
 fn shown_after(page: &str, text: &str) -> f64 {
@@ -26,7 +26,9 @@ fn a_folder_becomes_a_page_with_pictures_plots_and_numbers() {
     file(&out, "broken.json", "{");
     let page = path("page.html");
     let ended = fumarole("report").arg(out.path()).arg("--output").arg(&page).run().succeeded();
-    assert!(ended.stderr.contains("broken.json"), "what could not be read is named: {}", ended.stderr);
+    for name in ["broken.json", "other.json"] {
+        assert!(ended.stderr.contains(name), "what could not be read is named: {}", ended.stderr);
+    }
     let text = fs::read_to_string(&page).unwrap();
     let record: serde_json::Value = serde_json::from_str(&fs::read_to_string(path("run.json")).unwrap()).unwrap();
     for run in record["runs"].as_array().unwrap() {
@@ -54,6 +56,82 @@ fn a_folder_becomes_a_page_with_pictures_plots_and_numbers() {
     let ended = fumarole("report").arg(path("run.json")).arg("--output").arg(&page).run().succeeded();
     assert!(ended.stderr.contains("changed since"), "{}", ended.stderr);
     assert!(!fs::read_to_string(&page).unwrap().contains("data:image/png"));
+}
+
+/// What the console prints of an experiment without runs stands on the page, with the document's own digits.
+#[test]
+fn tables_of_experiments_stand_on_the_page_as_they_are_printed() {
+    let out = folder();
+    let printed = caustics("experiment 5-2 --out").arg(out.path()).on_test_device().run().succeeded().stdout;
+    let document = read_json(&out.path().join("caustics-5-2.json"));
+    assert_table_schema(&document);
+    let page = out.path().join("page.html");
+    fumarole("report --quiet").arg(out.path()).arg("--output").arg(&page).run().succeeded();
+    let text = fs::read_to_string(&page).unwrap();
+    let section = text.split_once("<section class=\"record tables\"").expect("the tables have a section").1;
+    assert!(section.contains(document["table"]["title"].as_str().unwrap()));
+    let headings = ["mesh", "triangles", "thesis"].map(|name| format!("<button type=\"button\">{name}</button></th>"));
+    assert!(section.contains(&headings.join("<th class=\"number\">")), "{section}");
+    let rows = document["table"]["rows"].as_array().unwrap();
+    for row in rows {
+        let mesh = row["mesh"].as_str().unwrap();
+        let numbers = [&row["triangles"], &row["thesis"]].map(|number| match number {
+            Value::Null => "<td class=\"number\"></td>".to_owned(),
+            number => format!("<td class=\"number\" data-value=\"{number}\" title=\"{number}\">{number}</td>"),
+        });
+        assert!(section.contains(&format!("<tr><td>{mesh}</td>{}</tr>", numbers.concat())), "{row} in {section}");
+        let words: Vec<String> = [&row["mesh"], &row["triangles"], &row["thesis"]]
+            .into_iter()
+            .filter(|cell| !cell.is_null())
+            .map(|cell| cell.as_str().map_or_else(|| cell.to_string(), str::to_owned))
+            .collect();
+        assert!(printed.lines().any(|line| line.split_whitespace().eq(&words)), "{words:?} in {printed}");
+    }
+    assert!(rows.len() > 2 && rows.iter().any(|row| row["thesis"].is_u64()), "{rows:?}");
+    assert!(section.contains("caustics experiment 5-2 --out"), "its command is there");
+
+    // By itself, too; too large a one is left to its CSV.
+    fumarole("report --quiet").arg(out.path().join("caustics-5-2.json")).arg("-o").arg(&page).run().succeeded();
+    assert!(fs::read_to_string(&page).unwrap().contains("record tables"));
+    let mut large = document;
+    large["table"]["rows"] = vec![json!({}); 60_000].into();
+    file(&out, "caustics-5-2.json", large.to_string());
+    let ended = fumarole("report").arg(out.path()).arg("-o").arg(&page).run().succeeded();
+    assert!(ended.stderr.contains("180000 cells is too large"), "{}", ended.stderr);
+}
+
+/// What is ours and is not shown is named once; what is not ours is nobody's business.
+#[test]
+fn nothing_of_ours_is_left_out_in_silence() {
+    let out = folder();
+    file(&out, "plot.svg", "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    file(&out, "a.json", "{\"schema\": \"fumarole.part/1\"}");
+    file(&out, "b.json", "{\"schema\": \"fumarole.part/1\"}");
+    file(&out, "later.json", "{\"schema\": \"fumarole.table/2\"}");
+    file(&out, "older.json", "{\"experiment\": \"5-2\", \"environment\": {}, \"command\": [], \"table\": {}}");
+    file(&out, "trace.json", "{\"traceEvents\": []}");
+    let page = out.path().join("page.html");
+    let ended = fumarole("report").arg(out.path()).arg("--output").arg(&page).run().succeeded();
+    let said = ["schema \"fumarole.part/1\": a.json and 1 more", "\"fumarole.table/2\": later.json", "older.json: tables of"];
+    for part in said {
+        assert_eq!(ended.stderr.matches(part).count(), 1, "{part} in {}", ended.stderr);
+    }
+    assert!(!ended.stderr.contains("trace.json"), "{}", ended.stderr);
+    let text = fs::read_to_string(&page).unwrap();
+    assert_eq!(text.matches("class=\"warning\"").count(), 3, "{text}");
+}
+
+fn assert_table_schema(document: &Value) {
+    let read = |text: &str| serde_json::from_str::<Value>(text).unwrap();
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.table-1.json"));
+    let bench = read(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.bench-1.json")));
+    let mut schema = read(&text.replace("fumarole.bench-1.json#", "#"));
+    for (name, part) in bench["$defs"].as_object().unwrap() {
+        schema["$defs"][name] = part.clone();
+    }
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> = validator.iter_errors(document).map(|e| format!("{}: {e}", e.instance_path())).collect();
+    assert!(errors.is_empty(), "{errors:#?}");
 }
 
 #[test]

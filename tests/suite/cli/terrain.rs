@@ -41,8 +41,16 @@ fn table_1_is_written_with_growth_beside_the_paper_s() {
         [(&runs[0], 128, 1.0), (&runs[2], 512, 2033.6 / 802.65), (&runs[3], 512, 42.51 / 21.09)]
     {
         assert_eq!(run["config"]["resolution"], resolution);
-        assert!((run["experiment"]["paper"].as_f64().unwrap() - growth).abs() < 1e-9, "{}", run["experiment"]);
+        let paper = &run["results"]["growth"]["paper"];
+        assert!((paper.as_f64().unwrap() - growth).abs() < 1e-9, "{paper}");
     }
+    // The row of the table is the time over that of the processor, measured in turn, with its interval.
+    assert_eq!(runs[2]["experiment"]["row"], "512 samples a side: growth");
+    let (row, over_cpu) = (&runs[3]["experiment"], &runs[3]["results"]["over_cpu"]);
+    assert_eq!(row["row"], "512 samples a side: over cpu");
+    assert!((row["paper"].as_f64().unwrap() - 42.51 / 2033.6).abs() < 1e-9, "{row}");
+    assert_eq!((&row["ours"], &row["interval"]), (&over_cpu["ratio"], &over_cpu["interval"]));
+    assert!(row["interval"][0].as_f64().unwrap() <= row["interval"][1].as_f64().unwrap(), "{row}");
     assert!(ended.stdout.contains("growth"), "{}", ended.stdout);
 }
 

@@ -35,6 +35,11 @@ fn paper_ms(variant: &str, side: f64) -> Option<f64> {
     }
 }
 
+/// How a run's time grew since the first point, or how the paper's did.
+fn growth(run: &Run, whose: &str) -> Option<f64> {
+    run.results.get("growth")?.get(whose)?.as_f64()
+}
+
 /// The share of each level in what a run read.
 fn shares_of(run: &Run) -> Option<Vec<f64>> {
     run.results.get("levels")?.as_array()?.iter().map(Value::as_f64).collect()
@@ -129,7 +134,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Notes in every run's record how it grew since the first point, beside the paper's growth where it prints one.
+    /// Notes in every run's record how it grew since the first point, and its time over that of `cpu`, measured in turn,
+    /// beside the paper's where it prints them. The row of the table is the latter where there is one: it has an interval.
     pub fn new(axis: Axis, mut rows: Vec<Row>) -> Self {
         let firsts: Vec<(String, f64, Option<f64>)> = rows
             .iter()
@@ -145,6 +151,7 @@ impl Outcome {
             let ours = row.run.median_frame_ms().map(|ms| ms / first_ms);
             let paper_of = |x| paper_ms(variant, x).filter(|_| axis == Axis::Map);
             let paper = paper_of(row.x).zip(paper_of(*first_x)).map(|(ms, first)| ms / first);
+            row.run.results.insert("growth".into(), json!({"ours": ours, "paper": paper}));
             row.run.experiment = Some(ExperimentRow {
                 row: format!("{} {}: growth", row.label, axis.label()),
                 paper,
@@ -155,11 +162,29 @@ impl Outcome {
         }
         let mut outcome = Outcome { axis, rows };
         for index in 0..outcome.rows.len() {
-            let against = outcome.against_cpu(&outcome.rows[index]);
-            let value = against.map(|ratio| json!({"ratio": ratio.ratio, "interval": ratio.interval}));
-            outcome.rows[index].run.results.insert("over_cpu".into(), json!(value));
+            let row = &outcome.rows[index];
+            let (against, paper) = (outcome.against_cpu(row), outcome.paper_over_cpu(row));
+            let label = format!("{} {}: over cpu", row.label, axis.label());
+            let run = &mut outcome.rows[index].run;
+            let value = against.as_ref().map(|ratio| json!({"ratio": ratio.ratio, "interval": ratio.interval}));
+            run.results.insert("over_cpu".into(), json!(value));
+            if let Some(Ratio { ratio: ours, interval, .. }) = against {
+                run.experiment = Some(ExperimentRow {
+                    row: label,
+                    paper,
+                    ours: Some(ours),
+                    interval: Some(interval),
+                    ratio: paper.map(|paper| ours / paper),
+                });
+            }
         }
         outcome
+    }
+
+    /// The paper's time of a variant over that of `cpu`; of table 1 alone.
+    fn paper_over_cpu(&self, row: &Row) -> Option<f64> {
+        let (ours, cpu) = paper_ms(&row.run.variant, row.x).zip(paper_ms("cpu", row.x))?;
+        (self.axis == Axis::Map).then_some(ours / cpu)
     }
 
     /// A variant's time over that of `cpu` at the same point.
@@ -197,17 +222,15 @@ impl Outcome {
         for row in &self.rows {
             let run = &row.run;
             let figure = |name: &str| run.results.get(name).and_then(Value::as_f64);
-            let growth = run.experiment.as_ref();
             let against = self.against_cpu(row);
-            let paper = paper_ms(&run.variant, row.x).zip(paper_ms("cpu", row.x)).map(|(ours, cpu)| ours / cpu);
-            let paper = paper.filter(|_| against.is_some() && self.axis == Axis::Map);
+            let paper = self.paper_over_cpu(row).filter(|_| against.is_some());
             let device_mib = run.memory.device_bytes.map(|bytes| bytes as f64 / f64::from(1 << 20));
             table.push(vec![
                 row.label.clone(),
                 run.variant.clone(),
                 number(run.median_frame_ms(), 2),
-                number(growth.and_then(|g| g.ours), 2),
-                number(growth.and_then(|g| g.paper), 2),
+                number(growth(run, "ours"), 2),
+                number(growth(run, "paper"), 2),
                 number(against.as_ref().map(|r| r.ratio), 3),
                 interval(against.as_ref().map(|r| r.interval)),
                 number(paper, 3),
@@ -293,7 +316,7 @@ impl Outcome {
             });
             series.push(Series {
                 name: format!("{}, the paper's growth", variant.as_str()),
-                points: points(&|row| Some(row.run.experiment.as_ref()?.paper? * first_ms?)),
+                points: points(&|row| Some(growth(&row.run, "paper")? * first_ms?)),
                 reference: true,
             });
         }
