@@ -161,6 +161,8 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
             }
         }
     }
+    comparison.a_commands = vec![arguments.command(Side::A)?];
+    comparison.b_commands = vec![arguments.command(Side::B)?];
     // What the page of a report shows: compared again, without the options of this call, it might be decided otherwise.
     file::write(&verdicts, outcome::text(&comparison)?.as_bytes())?;
     if !arguments.quiet {
@@ -248,27 +250,51 @@ impl AbArgs {
         Ok(Some(compare(&a, &b, &self.verdict.options(Design::Blocks).for_blocks(&a, &b))?))
     }
 
-    /// Measures one side in a fresh process.
-    fn measure(&self, side: Side, process: usize) -> Result<Record, Failure> {
-        let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
-        let chosen = self.binary.iter().rev().find(|(of, _)| *of == side);
-        let program = chosen.map_or_else(std::env::current_exe, |(_, path)| Ok(path.clone())).map_err(failed)?;
-        let file = crate::file::temporary().map_err(failed)?;
-        let words = if side == Side::A { &self.a.0 } else { &self.b.0 };
+    /// The program that was named for a side.
+    fn binary(&self, side: Side) -> Option<&PathBuf> {
+        self.binary.iter().rev().find(|(of, _)| *of == side).map(|(_, path)| path)
+    }
+
+    fn variables(&self, side: Side) -> impl Iterator<Item = &(String, String)> {
+        self.env.iter().filter(move |(of, _)| *of == side).map(|(_, variable)| variable)
+    }
+
+    /// What a side's program is given, but for where its record goes.
+    fn words(&self, side: Side) -> Result<Vec<OsString>, Failure> {
+        let own = if side == Side::A { &self.a.0 } else { &self.b.0 };
         let (paper, options) = match &self.common[..] {
             [paper, verb, rest @ ..] if verb == "bench" => (paper, rest),
             [paper, rest @ ..] => (paper, rest),
             [] => return Err(Failure::Input("ab: name a paper, as in: ab --b \"--seed 2\" gas".to_owned())),
         };
+        let words = [paper.clone(), "bench".into()].into_iter().chain(options.iter().cloned());
+        Ok(words.chain(own.iter().map(OsString::from)).collect())
+    }
+
+    /// The command that measures a side once, as a shell takes it.
+    fn command(&self, side: Side) -> Result<Vec<String>, Failure> {
+        let own = std::env::args_os().next().unwrap_or_else(|| "fumarole".into());
+        let program = self.binary(side).map_or(own, |path| path.clone().into_os_string());
+        let mut variables: Vec<String> =
+            self.variables(side).map(|(name, value)| format!("{name}={value}")).collect();
+        if !variables.is_empty() {
+            variables.insert(0, "env".to_owned());
+        }
+        let words = std::iter::once(program).chain(self.words(side)?);
+        Ok(variables.into_iter().chain(words.map(|word| word.to_string_lossy().into_owned())).collect())
+    }
+
+    /// Measures one side in a fresh process.
+    fn measure(&self, side: Side, process: usize) -> Result<Record, Failure> {
+        let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
+        let program = self.binary(side).map_or_else(std::env::current_exe, |path| Ok(path.clone())).map_err(failed)?;
+        let file = crate::file::temporary().map_err(failed)?;
         let mut command = Command::new(&program);
         command
-            .arg(paper)
-            .arg("bench")
-            .args(options)
-            .args(words)
+            .args(self.words(side)?)
             .args(["--process", &process.to_string(), "--quiet", "--json"])
             .arg(file.path())
-            .envs(self.env.iter().filter(|(of, _)| *of == side).map(|(_, variable)| variable.clone()))
+            .envs(self.variables(side).cloned())
             .stdin(Stdio::null());
         let ended = finish(&mut command, interrupted()).map_err(|e| {
             Failure::Input(format!("side {side:?}: starting {}: {e}; name a build of fumarole", program.display()))

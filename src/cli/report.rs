@@ -117,18 +117,21 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
     let mut sides: HashMap<&str, Vec<Input>> = HashMap::new();
     let mut verdicts = None;
     let mut foreign: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut commands: Vec<(String, Vec<String>)> = vec![];
+    let first_plot = contents.plots.len();
     let mut drawn: HashMap<&str, Vec<Drawn>> = HashMap::new();
     for path in &files {
         let ending = path.extension().unwrap_or_default();
         if ending == "svg" {
             match file::read(path, MAX_PLOT_BYTES) {
-                Ok(svg) => contents.plots.push(Plot { name: name_of(path), svg }),
+                Ok(svg) => contents.plots.push(Plot { name: name_of(path), svg, command: vec![] }),
                 Err(e) => contents.warnings.push(format!("{}: {e}", path.display())),
             }
         } else if ending == "json" {
             match document(path) {
                 Ok(Document::Record(record)) => {
                     let record = *record;
+                    commands.push((stem_of(path), record.command.clone()));
                     let side = ["ab-a.json", "ab-b.json"].into_iter().find(|side| path.ends_with(side));
                     if let Some(side) = side {
                         sides.insert(side, by_process(path, &record));
@@ -138,7 +141,10 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
                         drawn.insert(side, pictures);
                     }
                 }
-                Ok(Document::Tables(tables)) => add_tables(contents, path, *tables),
+                Ok(Document::Tables(tables)) => {
+                    commands.push((stem_of(path), tables.command.clone()));
+                    add_tables(contents, path, *tables);
+                }
                 Ok(Document::Verdicts(found)) if path.ends_with(VERDICTS_FILE) => verdicts = Some(*found),
                 Ok(Document::Verdicts(found)) => contents.verdicts.extend(named_sections(path, &found)),
                 Err(ReadError::WrongSchema { found, .. }) if found.starts_with("\"fumarole.") => {
@@ -159,6 +165,9 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
             Ok(comparison) => verdicts = Some(comparison),
             Err(e) => contents.warnings.push(e.to_string()),
         }
+    }
+    for plot in &mut contents.plots[first_plot..] {
+        plot.command = command_of(&plot.name, &commands);
     }
     contents.warnings.extend(foreign.iter().map(|(schema, names)| {
         let folder = folder.display();
@@ -248,6 +257,18 @@ fn by_process(path: &Path, record: &Record) -> Vec<Input> {
 
 fn name_of(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn stem_of(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The command of the document beside a plot: `gas-1-tables.svg` is drawn with `gas-1.json`, and not with `gas.json` where
+/// both are there.
+fn command_of(plot: &str, commands: &[(String, Vec<String>)]) -> Vec<String> {
+    let is_its = |stem: &str| plot.strip_prefix(stem).is_some_and(|rest| rest.starts_with(['-', '.']));
+    let found = commands.iter().filter(|(stem, _)| is_its(stem)).max_by_key(|(stem, _)| stem.len());
+    found.map_or_else(Vec::new, |(_, command)| command.clone())
 }
 
 /// A run's picture, as one side of a comparison has drawn it.

@@ -57,15 +57,30 @@ pub fn markdown(comparison: &Comparison) -> String {
 
 /// The same for the page of a report.
 pub fn sections(comparison: &Comparison) -> Vec<Section> {
-    let compared = Section { title: "What is compared".to_owned(), lines: differences(comparison), table: None };
+    let side = |name: &'static str, commands: &[Vec<String>]| -> Vec<_> {
+        commands.iter().map(|command| (name.to_owned(), command.clone())).collect()
+    };
+    let whole = (!comparison.command.is_empty()).then(|| ("Compared by".to_owned(), comparison.command.clone()));
+    let sides = [side("A by", &comparison.a_commands), side("B by", &comparison.b_commands)].concat();
+    let compared = Section {
+        title: "What is compared".to_owned(),
+        commands: whole.into_iter().chain(sides).collect(),
+        lines: differences(comparison),
+        table: None,
+    };
     let runs = comparison.runs.iter().map(|run| Section {
         title: title(run),
+        commands: vec![],
         lines: vec![headline(run, comparison, Style::default())],
         table: (!run.passes.is_empty()).then(|| passes(run)),
     });
     let rest = missing(comparison).chain(comparison.warnings.iter().map(|warning| format!("Warning: {warning}")));
-    let legend =
-        Section { title: "How to read it".to_owned(), lines: rest.chain([legend(comparison)]).collect(), table: None };
+    let legend = Section {
+        title: "How to read it".to_owned(),
+        commands: vec![],
+        lines: rest.chain([legend(comparison)]).collect(),
+        table: None,
+    };
     std::iter::once(compared).chain(runs).chain([legend]).collect()
 }
 

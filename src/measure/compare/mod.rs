@@ -28,6 +28,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::statistics::median;
+use crate::report::environment;
 use crate::report::record::{Record, Run};
 use matching::Configuration;
 
@@ -103,6 +104,15 @@ pub struct Comparison {
     pub a: Vec<String>,
     /// Files of side B.
     pub b: Vec<String>,
+    /// The command line that compared, program name first; empty in what older programs wrote.
+    #[serde(default)]
+    pub command: Vec<String>,
+    /// The command lines that measured A, each once.
+    #[serde(default)]
+    pub a_commands: Vec<Vec<String>>,
+    /// The command lines that measured B, each once.
+    #[serde(default)]
+    pub b_commands: Vec<Vec<String>>,
     /// Order of the measurement, which decides the test.
     pub design: Design,
     /// Probability with which an interval holds the true ratio, 0 to 1.
@@ -254,6 +264,9 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         schema: SCHEMA.to_owned(),
         a: names(a),
         b: names(b),
+        command: environment::command(),
+        a_commands: commands(a),
+        b_commands: commands(b),
         design: options.design,
         confidence: 1.0 - options.rules.error,
         margin: options.rules.margin,
@@ -265,6 +278,17 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         only_in_b: matched.only_in_b,
         warnings: matched.warnings,
     })
+}
+
+/// The commands of a side's records, each once.
+fn commands(side: &[Input]) -> Vec<Vec<String>> {
+    let mut commands: Vec<Vec<String>> = vec![];
+    for command in side.iter().map(|input| &input.record.command).filter(|command| !command.is_empty()) {
+        if !commands.contains(command) {
+            commands.push(command.clone());
+        }
+    }
+    commands
 }
 
 /// Refuses times below zero.

@@ -41,6 +41,8 @@ pub struct Contents {
 pub struct Section {
     /// Heading.
     pub title: String,
+    /// Commands that its numbers come from, each with what it did.
+    pub commands: Vec<(String, Vec<String>)>,
     /// Lines of text.
     pub lines: Vec<String>,
     /// A table, where there is one.
@@ -104,6 +106,8 @@ pub struct Plot {
     pub name: String,
     /// The SVG file's bytes.
     pub svg: Vec<u8>,
+    /// The command line that it comes from; empty where that is not known.
+    pub command: Vec<String>,
 }
 
 /// A run's name: paper, variant, preset, size.

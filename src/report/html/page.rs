@@ -46,6 +46,7 @@ pub fn page(contents: &Contents) -> String {
                                 figure {
                                     img src=(data("image/svg+xml", &plot.svg)) alt=(format!("plot {}", plot.name));
                                     figcaption { (plot.name) }
+                                    (command("", &plot.command))
                                 }
                             }
                         }
@@ -87,6 +88,7 @@ fn navigation(contents: &Contents) -> Markup {
 fn section(section: &Section) -> Markup {
     html! {
         h3 { (section.title) }
+        @for (label, words) in &section.commands { (command(label, words)) }
         @for line in &section.lines { p { (line) } }
         @if let Some(table) = &section.table {
             div.wide tabindex="0" role="region" aria-label=(section.title) { table.sortable {
@@ -106,7 +108,7 @@ fn record(source: &Source, index: usize) -> Markup {
     html! {
         section.record {
             h2 { (source.name) }
-            (command(&record.command))
+            (command("", &record.command))
             (environment(&record.environment))
             (experiment(record))
             (pictures(source))
@@ -121,11 +123,11 @@ fn shell_words(command: &[String]) -> String {
     command.iter().map(quoted).collect::<Vec<_>>().join(" ")
 }
 
-/// A command to copy, if there is one.
-pub(super) fn command(words: &[String]) -> Markup {
+/// A command to copy, if there is one, after what it did.
+pub(super) fn command(label: &str, words: &[String]) -> Markup {
     html! {
         @if !words.is_empty() {
-            p.command { code { (shell_words(words)) } button.copy type="button" { "Copy" } }
+            p.command { @if !label.is_empty() { span { (label) } } code { (shell_words(words)) } button.copy type="button" { "Copy" } }
         }
     }
 }

@@ -13,7 +13,7 @@ pub(super) fn tables(source: &TableSource, id: &str) -> Markup {
     html! {
         section.record.tables id=(id) {
             h2 { (source.name) }
-            (command(&document.command))
+            (command("", &document.command))
             (environment(&document.environment))
             @for table in document.all() { (rows(table)) }
         }

@@ -68,8 +68,24 @@ fn a_hostile_record_is_text() {
     let mut table = Table::new(&[(hostile, Align::Left)]);
     table.push(vec![hostile.to_owned()]);
     contents.verdicts =
-        vec![Section { title: hostile.to_owned(), lines: vec![hostile.to_owned()], table: Some(table) }];
-    contents.plots = vec![Plot { name: hostile.to_owned(), svg: b"<svg onload='alert(1)'/>".to_vec() }];
+        vec![Section {
+            title: hostile.to_owned(),
+            commands: vec![(hostile.to_owned(), vec![hostile.to_owned()])],
+            lines: vec![hostile.to_owned()],
+            table: Some(table),
+        }];
+    let svg = b"<svg onload='alert(1)'/>".to_vec();
+    contents.plots = vec![Plot { name: hostile.to_owned(), svg, command: vec![hostile.to_owned()] }];
+    contents.pairs = vec![Pair { title: hostile.to_owned(), pngs: [vec![], vec![]], mean: 0.0, p99: 0.0 }];
+    let mut document = example::tables();
+    document.command = vec![hostile.to_owned()];
+    document.experiment = hostile.to_owned();
+    document.environment.device.name = hostile.to_owned();
+    document.table.title = hostile.to_owned();
+    document.table.columns.push(hostile.to_owned());
+    document.table.rows[0].0.insert(hostile.to_owned(), hostile.into());
+    document.table.rows[1].0.insert("mesh".to_owned(), hostile.into());
+    contents.tables = vec![TableSource { name: hostile.to_owned(), document }];
     contents.warnings = vec![hostile.to_owned()];
     let text = page(&contents);
     assert_eq!(text.matches("<script>").count(), 1, "{text}");

@@ -26,6 +26,17 @@ fn sides_are_measured_in_turn_and_both_records_kept() {
     let report = read_json(&report);
     assert_eq!(report["schema"], "fumarole.compare/2");
     assert_eq!(report["design"], "blocks");
+    // Each side's own command, as a shell takes it.
+    let command = |side: &str| -> Vec<String> {
+        let words = report[format!("{side}_commands")][0].as_array().unwrap().iter();
+        words.map(|word| word.as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(command("a")[..2], ["env", "LP_NUM_THREADS=2"]);
+    let of_b = command("b");
+    assert_eq!(of_b[..2], ["env", "LP_NUM_THREADS=1"]);
+    assert!(of_b[2].ends_with("fumarole") && of_b[3..5] == ["caustics", "bench"], "{of_b:?}");
+    assert!(of_b.ends_with(&["--waves", "2", "--seed", "7"].map(str::to_owned)), "{of_b:?}");
+    assert!(report["command"].as_array().unwrap().contains(&"--env".into()), "{}", report["command"]);
     let run = &report["runs"][0];
     assert_eq!((&run["a_processes"], &run["b_processes"]), (&4.into(), &4.into()));
     // Two blocks are too few for any verdict at this error.

@@ -100,6 +100,39 @@ fn tables_of_experiments_stand_on_the_page_as_they_are_printed() {
     assert!(ended.stderr.contains("180000 cells is too large"), "{}", ended.stderr);
 }
 
+/// Plots and verdicts have the command that they come from, and a comparison that was kept is shown as it is.
+#[test]
+fn plots_and_kept_comparisons_have_their_commands() {
+    let out = folder();
+    let place = |name: &str| out.path().join(name);
+    for name in ["gas", "gas-1", "gas-12"] {
+        let mut record = record_of(1, 1.0);
+        record["command"] = json!(["fumarole", "made", name]);
+        file(&out, &format!("{name}.json"), record.to_string());
+    }
+    for name in ["gas-1", "gas-1-tables", "gas-12", "lava-1"] {
+        file(&out, &format!("{name}.svg"), "<svg xmlns='http://www.w3.org/2000/svg'/>");
+    }
+    let compare = fumarole("compare gas.json gas-1.json --json kept.json").inside(out.path());
+    compare.run().succeeded();
+    let kept = read_json(&place("kept.json"));
+    assert_eq!(kept["a_commands"], json!([["fumarole", "made", "gas"]]));
+    assert_eq!(kept["b_commands"], json!([["fumarole", "made", "gas-1"]]));
+    assert_eq!(kept["command"].as_array().unwrap()[1..], ["compare", "gas.json", "gas-1.json", "--json", "kept.json"]);
+    fumarole("report --quiet . -o page.html").inside(out.path()).run().succeeded();
+    let text = fs::read_to_string(place("page.html")).unwrap();
+    let plots = text.split_once("id=\"plots\"").unwrap().1;
+    for (plot, made) in [("gas-1", Some("gas-1")), ("gas-1-tables", Some("gas-1")), ("gas-12", Some("gas-12")), ("lava-1", None)] {
+        let rest = plots.split_once(&format!("<figcaption>{plot}.svg</figcaption>")).unwrap().1;
+        let code = made.map(|name| format!("<p class=\"command\"><code>fumarole made {name}</code>"));
+        assert!(rest.starts_with(code.as_deref().unwrap_or("</figure>")), "{plot}: {rest}");
+    }
+    let verdicts = &text[text.find("id=\"verdicts\"").unwrap()..text.find("class=\"record\"").unwrap()];
+    let shown = |label: &str, command: &str| verdicts.contains(&format!("<span>{label}</span><code>{command}</code>"));
+    assert!(shown("A by", "fumarole made gas") && shown("B by", "fumarole made gas-1"), "{verdicts}");
+    assert!(verdicts.contains("compare gas.json gas-1.json --json kept.json</code>"), "{verdicts}");
+}
+
 /// What is ours and is not shown is named once; what is not ours is nobody's business.
 #[test]
 fn nothing_of_ours_is_left_out_in_silence() {
