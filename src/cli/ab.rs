@@ -275,8 +275,7 @@ impl AbArgs {
     fn command(&self, side: Side) -> Result<Vec<String>, Failure> {
         let own = std::env::args_os().next().unwrap_or_else(|| "fumarole".into());
         let program = self.binary(side).map_or(own, |path| path.clone().into_os_string());
-        let mut variables: Vec<String> =
-            self.variables(side).map(|(name, value)| format!("{name}={value}")).collect();
+        let mut variables: Vec<String> = self.variables(side).map(|(name, value)| format!("{name}={value}")).collect();
         if !variables.is_empty() {
             variables.insert(0, "env".to_owned());
         }

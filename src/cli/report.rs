@@ -16,9 +16,7 @@ use crate::content;
 use crate::file;
 use crate::image::{self, Rgba8};
 use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
-use crate::report::html::{
-    Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page,
-};
+use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page};
 use crate::report::json::{self, ReadError};
 use crate::report::tables::{self, Tables};
 use crate::report::{Record, Run};
@@ -238,7 +236,9 @@ fn add_tables(contents: &mut Contents, path: &Path, document: Tables) {
     let name = path.display().to_string();
     match cells.max().unwrap_or(0) {
         0..=MAX_CELLS => contents.tables.push(TableSource { name, document }),
-        cells => contents.warnings.push(format!("{name}: a table of {cells} cells is too large for a page; see its CSV")),
+        cells => {
+            contents.warnings.push(format!("{name}: a table of {cells} cells is too large for a page; see its CSV"))
+        }
     }
 }
 
@@ -302,12 +302,13 @@ fn add_record(contents: &mut Contents, path: &Path, record: Record) -> Vec<Drawn
             None => {}
             Some(Err(problem)) => contents.warnings.push(problem),
             Some(Ok((png, decoded))) => {
-                let difference =
-                    found.iter().filter(|(other, _)| record.runs[other.run].paper == run.paper).find_map(|(other, base)| {
+                let difference = found.iter().filter(|(other, _)| record.runs[other.run].paper == run.paper).find_map(
+                    |(other, base)| {
                         // Of another size it has none.
                         let difference = image::compare(base, &decoded, None).ok()?;
                         Some(PictureDifference { base: other.run, mean: difference.mean, p99: difference.p99 })
-                    });
+                    },
+                );
                 found.push((Picture { run: index, png, difference }, decoded));
             }
         }

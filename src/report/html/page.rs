@@ -222,15 +222,18 @@ fn luv_difference(mean: f64, p99: f64) -> Markup {
     html! { "CIE Luv difference: mean " (number(mean, 3)) ", 99th percentile " (number(p99, 3)) }
 }
 
-/// Pictures; one that has a difference lies over what it is compared with, under a divider.
+/// Pictures; one that has a difference lies over what it is compared with, which is not shown alone, under a divider.
 fn pictures(source: &Source) -> Markup {
     let name = |at: usize| source.record.runs.get(at).map_or_else(String::new, title);
     let image = |picture: &Picture| {
         html! { img src=(data("image/png", &picture.png)) alt=(format!("picture of {}", name(picture.run))); }
     };
+    let is_base = |picture: &Picture| {
+        source.pictures.iter().any(|other| other.difference.is_some_and(|difference| difference.base == picture.run))
+    };
     html! {
         div.pictures {
-            @for picture in &source.pictures {
+            @for picture in source.pictures.iter().filter(|picture| !is_base(picture)) {
                 figure {
                     @if let Some(difference) = &picture.difference {
                         @if let Some(base) = source.pictures.iter().find(|other| other.run == difference.base) {

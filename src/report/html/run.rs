@@ -60,7 +60,7 @@ fn cell(value: Option<f64>, digits: usize) -> Markup {
 
 type Column = (&'static str, fn(&Pass, &Run) -> Option<f64>, usize);
 
-const COLUMNS: [Column; 17] = [
+const COLUMNS: [Column; 18] = [
     ("GPU ms", |pass, _| Some(pass.gpu_ms.as_ref()?.median), 4),
     ("± MAD", |pass, _| pass.gpu_ms.as_ref()?.mad, 4),
     ("% of frame", |pass, run| Some(100.0 * super::bars::milliseconds(pass)? / run.median_frame_ms()?), 1),
@@ -71,6 +71,7 @@ const COLUMNS: [Column; 17] = [
     ("calls", |pass, _| Some(f64::from(pass.calls)), 0),
     ("vertices", |pass, _| Some(pass.statistics.as_ref()?.vertices? as f64), 0),
     ("primitives", |pass, _| Some(pass.statistics.as_ref()?.primitives? as f64), 0),
+    ("clipped primitives", |pass, _| Some(pass.statistics.as_ref()?.clipped_primitives? as f64), 0),
     ("fragments", |pass, _| Some(pass.statistics.as_ref()?.fragments? as f64), 0),
     ("invocations", |pass, _| Some(pass.statistics.as_ref()?.compute_invocations? as f64), 0),
     ("samples", |pass, _| Some(pass.statistics.as_ref()?.samples_passed? as f64), 0),

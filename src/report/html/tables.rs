@@ -3,8 +3,8 @@
 use maud::{Markup, html};
 use serde_json::Value;
 
-use super::page::{command, environment};
 use super::TableSource;
+use super::page::{command, environment};
 use crate::report::tables::{Rows, shown};
 
 /// Heading, command, environment and the tables, with the columns and cells that the console prints.
@@ -22,8 +22,7 @@ pub(super) fn tables(source: &TableSource, id: &str) -> Markup {
 
 fn rows(table: &Rows) -> Markup {
     let is_number = |name: &str| table.rows.iter().all(|row| row.cell(name).is_number() || row.cell(name).is_null());
-    let columns: Vec<(&str, bool)> =
-        table.shown_columns().into_iter().map(|name| (name, is_number(name))).collect();
+    let columns: Vec<(&str, bool)> = table.shown_columns().into_iter().map(|name| (name, is_number(name))).collect();
     html! {
         h3 { (table.title) }
         div.wide tabindex="0" role="region" aria-label=(table.title) { table.sortable {

@@ -67,13 +67,12 @@ fn a_hostile_record_is_text() {
     run.memory.by_resource[0].name = hostile.to_owned();
     let mut table = Table::new(&[(hostile, Align::Left)]);
     table.push(vec![hostile.to_owned()]);
-    contents.verdicts =
-        vec![Section {
-            title: hostile.to_owned(),
-            commands: vec![(hostile.to_owned(), vec![hostile.to_owned()])],
-            lines: vec![hostile.to_owned()],
-            table: Some(table),
-        }];
+    contents.verdicts = vec![Section {
+        title: hostile.to_owned(),
+        commands: vec![(hostile.to_owned(), vec![hostile.to_owned()])],
+        lines: vec![hostile.to_owned()],
+        table: Some(table),
+    }];
     let svg = b"<svg onload='alert(1)'/>".to_vec();
     contents.plots = vec![Plot { name: hostile.to_owned(), svg, command: vec![hostile.to_owned()] }];
     contents.pairs = vec![Pair { title: hostile.to_owned(), pngs: [vec![], vec![]], mean: 0.0, p99: 0.0 }];

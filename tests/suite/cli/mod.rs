@@ -9,7 +9,7 @@ mod burning;
 mod burning_active;
 mod burning_dumps;
 mod burning_materials;
-mod compare;
+pub mod compare;
 pub mod depth;
 mod devices;
 mod dumps;

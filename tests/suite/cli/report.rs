@@ -79,7 +79,10 @@ fn tables_of_experiments_stand_on_the_page_as_they_are_printed() {
             Value::Null => "<td class=\"number\"></td>".to_owned(),
             number => format!("<td class=\"number\" data-value=\"{number}\" title=\"{number}\">{number}</td>"),
         });
-        assert!(section.contains(&format!("<tr><td>{mesh}</td>{}</tr>", numbers.concat())), "{row} in {section}");
+        assert!(
+            section.contains(&format!("<tr><td class=\"\">{mesh}</td>{}</tr>", numbers.concat())),
+            "{row} in {section}"
+        );
         let words: Vec<String> = [&row["mesh"], &row["triangles"], &row["thesis"]]
             .into_iter()
             .filter(|cell| !cell.is_null())
@@ -98,6 +101,33 @@ fn tables_of_experiments_stand_on_the_page_as_they_are_printed() {
     file(&out, "caustics-5-2.json", large.to_string());
     let ended = fumarole("report").arg(out.path()).arg("-o").arg(&page).run().succeeded();
     assert!(ended.stderr.contains("180000 cells is too large"), "{}", ended.stderr);
+}
+
+/// Records of this schema from before limits had samples and five more of them, before primitives were counted behind the
+/// clipper, and before rows had intervals.
+#[test]
+fn older_records_are_shown() {
+    let out = folder();
+    let frozen: Value = serde_json::from_str(include_str!("../../data/record.json")).unwrap();
+    let mut older = frozen.clone();
+    let run = &mut older["runs"][0];
+    run["limits"] = json!({"copy_gb_s": 6.5, "fma_gflops": 40.25, "fill_gpix_s": 0.75, "blend_gpix_s": 0.375});
+    run["experiment"] = json!({"row": "teapot, 31 planes", "paper": 2.0, "ours": 1.5, "ratio": 0.8125});
+    assert!(run["passes"][1]["statistics"]["clipped_primitives"].is_null());
+    for (name, record) in [("frozen.json", &frozen), ("older.json", &older)] {
+        let path = file(&out, name, record.to_string());
+        let page = out.path().join("page.html");
+        let ended = fumarole("report").arg(path).arg("--output").arg(&page).run().succeeded();
+        assert!(!ended.stderr.contains("warning"), "{}", ended.stderr);
+        let text = fs::read_to_string(&page).unwrap();
+        let numbers = [115.8080865, 5.2033655, 0.009504499999999999, 3851.0, 797_344.0, 77808.0];
+        let of_older = [6.5, 40.25, 0.75, 0.375, 2.0, 1.5, 0.8125];
+        let expected = numbers.iter().chain(of_older.iter().filter(|_| name == "older.json"));
+        for number in expected {
+            assert!(text.contains(&format!("data-value=\"{number}")), "{number} of {name}");
+        }
+        assert!(!text.contains("clipped primitives"));
+    }
 }
 
 /// Plots and verdicts have the command that they come from, and a comparison that was kept is shown as it is.
@@ -122,7 +152,9 @@ fn plots_and_kept_comparisons_have_their_commands() {
     fumarole("report --quiet . -o page.html").inside(out.path()).run().succeeded();
     let text = fs::read_to_string(place("page.html")).unwrap();
     let plots = text.split_once("id=\"plots\"").unwrap().1;
-    for (plot, made) in [("gas-1", Some("gas-1")), ("gas-1-tables", Some("gas-1")), ("gas-12", Some("gas-12")), ("lava-1", None)] {
+    for (plot, made) in
+        [("gas-1", Some("gas-1")), ("gas-1-tables", Some("gas-1")), ("gas-12", Some("gas-12")), ("lava-1", None)]
+    {
         let rest = plots.split_once(&format!("<figcaption>{plot}.svg</figcaption>")).unwrap().1;
         let code = made.map(|name| format!("<p class=\"command\"><code>fumarole made {name}</code>"));
         assert!(rest.starts_with(code.as_deref().unwrap_or("</figure>")), "{plot}: {rest}");
@@ -145,7 +177,8 @@ fn nothing_of_ours_is_left_out_in_silence() {
     file(&out, "trace.json", "{\"traceEvents\": []}");
     let page = out.path().join("page.html");
     let ended = fumarole("report").arg(out.path()).arg("--output").arg(&page).run().succeeded();
-    let said = ["schema \"fumarole.part/1\": a.json and 1 more", "\"fumarole.table/2\": later.json", "older.json: tables of"];
+    let said =
+        ["schema \"fumarole.part/1\": a.json and 1 more", "\"fumarole.table/2\": later.json", "older.json: tables of"];
     for part in said {
         assert_eq!(ended.stderr.matches(part).count(), 1, "{part} in {}", ended.stderr);
     }
