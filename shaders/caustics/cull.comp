@@ -1,4 +1,5 @@
 #version 450
+#pragma variants PLANES=even,fitted
 
 // The pairs of water triangle and plane that may light a texel of the plane's own cell (section 6.1). An invocation has one triangle
 // and 128 planes: the group as a whole is held against the least and greatest height that the position map has where the triangle
@@ -46,8 +47,6 @@ const vec2 NOWHERE = vec2(1.0e30, -1.0e30);
 // Texels beyond which the planes of a group of 32 are kept unseen: a driver may end all loops of an invocation after 65,535 turns
 // together.
 const uint MOST_TEXELS = 8192u;
-// Of a cell's height: nearer to a boundary the cell's own numbers decide.
-const float NEAR = 2.0e-3;
 
 // A rectangle of texels.
 struct Rectangle {
@@ -100,25 +99,39 @@ vec2 texel_place(Ray ray, float height) {
     return place * cull.texels_per_m + 0.5 * float(cull.map_size);
 }
 
-// The three rays of a triangle: places on the box's uppermost plane in texels, and how they move from each plane to the next.
+// The plane whose cell holds a height of the receiver's, of equal cells from a first to a last: the height is so many of them under the
+// first one's top. Nearer to a boundary than single precision tells, in cells, the cell's own numbers decide.
+float by_cell(float place, float height, float first, float last, float near) {
+    float plane = clamp(first + floor(place), first, last);
+    if (abs(place - round(place)) < near) {
+        Cell cell = cells.list[uint(plane)];
+        plane += height < cell.lower ? 1.0 : (height >= cell.upper ? -1.0 : 0.0);
+    }
+    return clamp(plane, first, last);
+}
+
+#include "caustics/planes-{PLANES}.glsl"
+
+// The three rays of a triangle: places on the uppermost plane in texels, and how they move with each unit of descent.
 struct Beam {
     vec2 a;
     vec2 b;
     vec2 c;
-    vec2 a_step;
-    vec2 b_step;
-    vec2 c_step;
+    vec2 a_lean;
+    vec2 b_lean;
+    vec2 c_lean;
 };
 
 // All places of a beam from a plane to another, texels.
 void hull(Beam beam, float from, float to, out vec2 low, out vec2 high) {
-    vec2 a = beam.a + beam.a_step * from;
-    vec2 b = beam.b + beam.b_step * from;
-    vec2 c = beam.c + beam.c_step * from;
-    float on = to - from;
-    vec2 a_last = a + beam.a_step * on;
-    vec2 b_last = b + beam.b_step * on;
-    vec2 c_last = c + beam.c_step * on;
+    float first = descent_to(from);
+    float on = descent_to(to) - first;
+    vec2 a = beam.a + beam.a_lean * first;
+    vec2 b = beam.b + beam.b_lean * first;
+    vec2 c = beam.c + beam.c_lean * first;
+    vec2 a_last = a + beam.a_lean * on;
+    vec2 b_last = b + beam.b_lean * on;
+    vec2 c_last = c + beam.c_lean * on;
     low = min(min(a, min(b, c)), min(a_last, min(b_last, c_last)));
     high = max(max(a, max(b, c)), max(a_last, max(b_last, c_last)));
 }
@@ -136,12 +149,15 @@ vec2 heights_met(Beam beam, uint from, uint to) {
 void narrow(Beam beam, inout uint from, inout uint to) {
     if (from < to) {
         vec2 heights = heights_met(beam, from, to - 1u);
+        if (heights.x > heights.y) {
+            to = from;
+            return;
+        }
         // A cell more on each side for what rounding may do.
-        vec2 places = (cull.top - heights.yx) * cull.cells_per_m;
-        uint above = uint(clamp(places.x - 1.0, 0.0, float(cull.planes)));
-        uint under = uint(clamp(places.y + 2.0, 0.0, float(cull.planes)));
+        uint above = uint(max(plane_of(heights.y) - 1.0, 0.0));
+        uint under = uint(plane_of(heights.x)) + 2u;
         from = max(from, above);
-        to = heights.x > heights.y ? from : min(to, under);
+        to = min(to, under);
     }
 }
 
@@ -173,17 +189,13 @@ uint covered(Beam beam, uint base, uint planes) {
         texel = ends ? uvec2(texels.from.x, texel.y + 1u) : uvec2(texel.x + 1u, texel.y);
         at += ends ? cull.map_size + 1u - span.x : 1u;
 
-        float place = (cull.top - height) * cull.cells_per_m;
-        float plane = clamp(floor(place), -1.0, float(cull.planes));
-        if (abs(place - round(place)) < NEAR && place > -0.5) {
-            Cell cell = cells.list[min(uint(max(plane, 0.0)), cull.planes - 1u)];
-            plane += height < cell.lower ? 1.0 : (height >= cell.upper ? -1.0 : 0.0);
-            plane = clamp(plane, 0.0, float(cull.planes - 1u));
-        }
+        bool is_held = height < 1.0e29;
+        float plane = is_held ? plane_of(height) : 0.0;
+        float descent = descent_to(plane);
         // From the texel's middle, where numbers are small.
-        vec2 p = beam.a + beam.a_step * plane - middle;
-        vec2 q = beam.b + beam.b_step * plane - middle;
-        vec2 r = beam.c + beam.c_step * plane - middle;
+        vec2 p = beam.a + beam.a_lean * descent - middle;
+        vec2 q = beam.b + beam.b_lean * descent - middle;
+        vec2 r = beam.c + beam.c_lean * descent - middle;
         vec2 to_q = q - p;
         vec2 to_r = r - q;
         vec2 to_p = p - r;
@@ -196,8 +208,8 @@ uint covered(Beam beam, uint base, uint planes) {
         vec2 most = max(p, max(q, r));
         bool is_met = min(inside.x, min(inside.y, inside.z)) >= 0.0 && max(least.x, least.y) <= half_side
             && min(most.x, most.y) >= -half_side;
-        uint bit = uint(plane + 1.0) - base;
-        found |= is_met && bit > 0u && bit < 33u ? 1u << (bit - 1u) : 0u;
+        uint bit = uint(plane) - base;
+        found |= is_held && is_met && bit < 32u ? 1u << bit : 0u;
     }
     return found & planes;
 }
@@ -212,14 +224,14 @@ void main() {
     Ray b = rays.list[indices.list[3u * triangle + 1u]];
     Ray c = rays.list[indices.list[3u * triangle + 2u]];
     float top = cells.list[0].height;
-    vec2 texels = cull.texels_per_m / cull.cells_per_m;
+    vec2 texels = descent_texels();
     Beam beam =
         Beam(texel_place(a, top), texel_place(b, top), texel_place(c, top), a.slope * texels, b.slope * texels, c.slope * texels);
     float highest = max(a.origin.y, max(b.origin.y, c.origin.y));
     // Without a lit corner nothing is lit. With an unlit one far away, rounding leaves light at the others, as in the level map.
     bool enters = max(a.enters, max(b.enters, c.enters)) > 0.0;
     uint first = base;
-    uint end = enters ? min(base + 32u * PARTS, cull.planes) : base;
+    uint end = enters ? min(base + 32u * PARTS, plane_count()) : base;
     for (uint round = 0u; round < 3u * steps.groups; round++) {
         narrow(beam, first, end);
     }

@@ -13,9 +13,11 @@ layout(push_constant) uniform Cull {
     uint levels; // of the position map's pyramid
     uint triangles;
     uint words; // a triangle
-    uint planes;
+    uint planes; // that there is room for
     uint blocks; // of 256 triangles
     uint vertices; // of the water
+    uint depth_levels; // of smart slicing
+    float depth_levels_per_m;
 } cull;
 
 // Of a workgroup among all, which lie in rows.

@@ -102,6 +102,14 @@ impl CausticsMap {
         }
     }
 
+    /// Where smart slicing on the device placed the planes, of the variant `culled`.
+    pub fn smart_cells(&self) -> Option<&Arc<Buffer>> {
+        match &self.drawing {
+            Drawing::Culled(culled) => culled.smart_cells(),
+            Drawing::All { .. } | Drawing::Hit(_) => None,
+        }
+    }
+
     /// Fails where light of the last frame is missing.
     ///
     /// # Errors

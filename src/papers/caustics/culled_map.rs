@@ -7,14 +7,17 @@ use ash::vk;
 use glam::DVec3;
 
 use super::intersections::{OptionConstants, Options, Scope};
-use super::planes;
+use super::planes::{self, Cell};
 use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
-use super::resources::BLACK;
+use super::resources::{BLACK, Context};
+use super::smart_planes::SmartPlanes;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 use crate::measure::parameter::Choice;
 
+/// Numbers of a [`CellBlock`].
+pub const CELL_FLOATS: u32 = 4;
 /// Planes of a word.
 const WORD: u32 = 32;
 /// Triangles of a block.
@@ -50,6 +53,8 @@ host_block! {
         planes: u32,
         blocks: u32,
         vertices: u32,
+        depth_levels: u32,
+        depth_levels_per_m: f32,
     }
 }
 
@@ -115,8 +120,20 @@ impl Choice for CullSteps {
     ];
 }
 
+/// A [`CellBlock`] for each of the uniform planes; the box's centre is at `middle_m` from the rays' reference point.
+fn uniform_cells(context: Context<'_>, lit: &LitReceiver, middle_m: f64) -> Result<Arc<Buffer>, Error> {
+    let mut cells = Vec::new();
+    planes::slice(lit.aligned.extent.y, lit.planes, &mut cells);
+    let block =
+        |cell: &Cell| CellBlock { height: cell.height(middle_m), lower: cell.lower, upper: cell.upper, _pad: 0.0 };
+    let blocks: Vec<CellBlock> = cells.iter().map(block).collect();
+    context.upload("plane-cells", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::cast_slice(&blocks))
+}
+
 /// Passes of one receiver under one light.
 pub struct CulledMap {
+    /// Planes by the position map; uniform ones without.
+    smart_planes: Option<SmartPlanes>,
     position_pyramid: PositionPyramid,
     cull: Pass,
     cull_count: Pass,
@@ -143,33 +160,31 @@ impl CulledMap {
         let Scope { context, volumes, water, shadows, .. } = scope;
         let shaders = context.shaders;
         let offset = lit.aligned.center - volumes.reference;
-        let mut uniform = Vec::new();
-        planes::slice(lit.aligned.extent.y, lit.planes, &mut uniform);
-        let height = |cell: &planes::Cell| (offset.y + f64::from(cell.plane)) as f32;
-        let cells: Vec<CellBlock> = uniform
-            .iter()
-            .map(|cell| CellBlock { height: height(cell), lower: cell.lower, upper: cell.upper, _pad: 0.0 })
-            .collect();
-        let cells =
-            context.upload("plane-cells", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::cast_slice(&cells))?;
+        let smart = |epsilon_m| SmartPlanes::new(context, lit, epsilon_m, offset.y, position_map);
+        let smart_planes = context.parameters.smart_on_device().map(smart).transpose()?;
+        let (cells, planes) = match &smart_planes {
+            Some(smart) => (smart.cells.clone(), smart.most()),
+            None => (uniform_cells(context, lit, offset.y)?, lit.planes),
+        };
 
         let position_pyramid = PositionPyramid::new(context, position_map)?;
         let triangles = water.grid.triangle_count();
-        let words = (uniform.len() as u32).div_ceil(WORD);
+        let words = planes.div_ceil(WORD);
         let all_words = u64::from(words) * u64::from(triangles);
         let blocks = triangles.div_ceil(BLOCK);
-        let indices = 3 * u64::from(triangles) * uniform.len() as u64;
+        let indices = 3 * u64::from(triangles) * u64::from(planes);
         // An index names a vertex and a plane.
-        let names = u64::from(water.grid.vertex_count()) * uniform.len() as u64;
+        let names = u64::from(water.grid.vertex_count()) * u64::from(planes);
+        let set_by = if smart_planes.is_some() { "levels` or `planes" } else { "planes" };
         let (limit, wanted) = (u64::from(context.device().physical().largest_index()), names.max(indices));
         if wanted > limit {
             let object = context.name("culled-pairs");
-            return Err(Error::Limit { object, what: "index of a vertex on a plane", wanted, limit }.set_by("planes"));
+            return Err(Error::Limit { object, what: "index of a vertex on a plane", wanted, limit }.set_by(set_by));
         }
         let buffer = |name: &str, bytes: u64, usage| {
             let usage = usage | vk::BufferUsageFlags::STORAGE_BUFFER;
             Buffer::new(context.device(), BufferDesc::new(context.name(name), bytes).usage(usage))
-                .map_err(|error| error.set_by("planes"))
+                .map_err(|error| error.set_by(set_by))
         };
         let none = vk::BufferUsageFlags::empty();
         let taken = context.parameters.cull;
@@ -216,8 +231,15 @@ impl CulledMap {
         if let Some(shadows) = shadows {
             caustics_map = caustics_map.with("shadow_map", &shadows.map);
         }
+        let cull = match &smart_planes {
+            None => kernel("cull", "caustics/cull-even.comp"),
+            Some(smart) => kernel("cull", "caustics/cull-fitted.comp")
+                .with("bounds", &smart.bounds)
+                .with("sliced", &smart.sliced)
+                .with("placed", &smart.placed),
+        };
         Ok(CulledMap {
-            cull: kernel("cull", "caustics/cull.comp")
+            cull: cull
                 .with("rays", &volumes.rays)
                 .with("indices", &water.indices)
                 .with("steps", &steps)
@@ -247,15 +269,17 @@ impl CulledMap {
                 center,
                 texels_per_m: [(texels / extent.x) as f32, (texels / extent.z) as f32],
                 top: (lit.aligned.extent.y / 2.0) as f32,
-                cells_per_m: (uniform.len() as f64 / lit.aligned.extent.y) as f32,
+                cells_per_m: (f64::from(lit.planes) / lit.aligned.extent.y) as f32,
                 inset: 0.5 / context.parameters.coverage as f32,
                 map_size: context.parameters.map_size,
                 levels: position_pyramid.level_count(),
                 triangles,
                 words,
-                planes: uniform.len() as u32,
+                planes,
                 blocks,
                 vertices,
+                depth_levels: context.parameters.smart.levels,
+                depth_levels_per_m: (f64::from(context.parameters.smart.levels) / lit.aligned.extent.y) as f32,
             },
             draw: DrawConstants {
                 center,
@@ -267,7 +291,13 @@ impl CulledMap {
             },
             options: options.map(|options| options.of_receiver(lit, volumes)),
             position_pyramid,
+            smart_planes,
         })
+    }
+
+    /// Where smart slicing placed the planes of the last frame: a [`CellBlock`] each, zero where there is none.
+    pub fn smart_cells(&self) -> Option<&Arc<Buffer>> {
+        self.smart_planes.as_ref().map(|smart| &smart.cells)
     }
 
     /// Finds the pairs, and draws them after clearing the map; the light has passed water of that absorption.
@@ -276,6 +306,7 @@ impl CulledMap {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         self.position_pyramid.record(frame)?;
+        self.smart_planes.as_ref().map_or(Ok(()), |smart| smart.record(frame))?;
         let CullConstants { triangles, planes, blocks, .. } = self.constants;
         let rows = |threads: u32, workgroup: u32| {
             let workgroups = threads.div_ceil(workgroup);

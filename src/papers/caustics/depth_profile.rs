@@ -1,10 +1,11 @@
 //! Pass `depth-profile` (section 4.7.2, figure 5-9): the levels of the box that hold the receiver, counted on the host
 //! in the position map, and the planes that smart slicing places there.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::parameters::{Parameters, SmartParameters};
-use super::planes::{Cell, SmartPlacement, slice, slice_between};
+use super::planes::{Cell, Fit, SmartPlacement, fit_into, slice, threshold};
 use super::receiver::LitReceiver;
 use crate::gpu::{Buffer, Error, Frame, PassInfo};
 
@@ -85,14 +86,14 @@ impl Profile {
         }
     }
 
-    /// Runs of neighbouring valid levels: the sub-boxes, as first level and end.
-    fn sub_boxes(&self) -> impl Iterator<Item = (u32, u32)> {
+    /// Runs of neighbouring valid levels: the sub-boxes.
+    fn sub_boxes(&self) -> impl Iterator<Item = Range<usize>> {
         let is_valid = |level: usize| self.histogram.get(level).is_some_and(|&texels| texels > 0);
         let mut next = 0;
         std::iter::from_fn(move || {
             let first = (next..self.histogram.len()).find(|&level| is_valid(level))?;
             next = (first..).find(|&level| !is_valid(level))?;
-            Some((first as u32, next as u32))
+            Some(first..next)
         })
     }
 
@@ -103,16 +104,11 @@ impl Profile {
             let kept = self.levels.iter().zip(&self.histogram).filter(|(_, texels)| **texels > 0);
             return cells.extend(kept.map(|(cell, _)| *cell));
         };
-        let levels = self.histogram.len() as f64;
-        let uniform = || height / (2.0 * f64::from(planes.saturating_sub(1)));
-        let epsilon = epsilon_m.map_or_else(uniform, f64::from);
-        for (first, end) in self.sub_boxes() {
-            // Eq. 4-21: h_i = h hr_i. Eq. 4-22 prints the ratio for the height; table 5-4 fits planes, at least one.
-            // The last factor absorbs the rounding of a quotient that should be whole.
-            let height_i = height * f64::from(end - first) / levels;
-            let count = (height_i / (2.0 * epsilon) * (1.0 - 1e-9)).ceil().clamp(1.0, 4096.0);
-            let boundary = |level: u32| height / 2.0 - height * f64::from(level) / levels;
-            slice_between(boundary(first), boundary(end), count as u32, first == 0, cells);
+        let epsilon = threshold(height, planes, epsilon_m);
+        for sub_box in self.sub_boxes() {
+            let fit = Fit::new(height, self.levels.len() as u32, sub_box.len() as u32, epsilon);
+            let on_top = sub_box.start == 0;
+            fit_into(&self.levels[sub_box], height, on_top, fit, cells);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::bounding_box::{Axes, ReceiverBox};
 use super::parameters::{Parameters, Variant};
+use super::planes::{Fit, most_fitted, threshold};
 use super::receiver::ReceiverInput;
 use super::water::{Grid, cells};
 use crate::measure::estimate::Estimate;
@@ -32,6 +33,17 @@ impl Parameters {
         let pixels = f64::from(self.width) * f64::from(self.height);
         let texels = f64::from(self.map_size).powi(2);
         let planes = f64::from(self.planes);
+        // Smart slicing on the device has room for the most that the levels may ask for; no padded box is higher than its mesh is
+        // long.
+        let culled = match self.smart_on_device() {
+            Some(epsilon_m) => {
+                let lengths = receivers.iter().map(|r| f64::from(r.mesh.bounds().diagonal().length()));
+                let height = 1.002 * lengths.fold(0.0, f64::max);
+                let epsilon = threshold(height, self.planes, epsilon_m);
+                f64::from(most_fitted(&Fit::of_each(height, self.smart.levels, epsilon)))
+            }
+            None => planes,
+        };
         let coverage = f64::from(self.coverage).powi(2);
         let water_map = self.water_map.as_ref().map_or(0, |map| size_of_val(map.coefficients())) as f64;
         // Halves of halves, down to four triangles.
@@ -43,6 +55,7 @@ impl Parameters {
         let by_planes = match variant {
             Variant::Volumetric => "map-size` or `planes",
             Variant::Hit => "water-triangles",
+            Variant::Culled if self.smart_on_device().is_some() => "water-triangles`, `levels` or `planes",
             _ => "water-triangles` or `planes",
         };
         let (of_map, of_planes, of_pixel) = match variant {
@@ -51,7 +64,7 @@ impl Parameters {
             // The pyramid of heights, two a texel; a bit and three indices a pair of triangle and plane, and a count a triangle.
             Variant::Culled => (
                 maps + 2.0 * NUMBER * texels * 4.0 / 3.0,
-                water_triangles * (planes * 3.0 * NUMBER + ((planes / 32.0).ceil() + 1.0) * NUMBER),
+                water_triangles * (culled * 3.0 * NUMBER + ((culled / 32.0).ceil() + 1.0) * NUMBER),
                 NUMBER + LIGHT + NUMBER,
             ),
             // The pyramid, and two words of light a texel; where the water's vertices land, which triangles straddle, and where.

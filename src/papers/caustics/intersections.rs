@@ -62,7 +62,7 @@ impl PlaneConstants {
         PlaneConstants {
             center: [offset.x as f32, offset.z as f32],
             to_clip: [(2.0 / extent.x) as f32, (2.0 / extent.z) as f32],
-            height: (offset.y + f64::from(cell.plane)) as f32,
+            height: cell.height(offset.y),
             lower: cell.lower,
             upper: cell.upper,
             absorption_per_m: lit.absorption_per_m,

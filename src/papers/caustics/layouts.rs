@@ -2,7 +2,9 @@
 
 use super::culled_map::{CellBlock, StepsBlock};
 use super::illumination_volumes::Ray;
+use super::planes::Fit;
 use super::receiver::BoxBlock;
+use super::smart_planes::{PlacedBlock, SubBoxBlock};
 use super::stencil_volumes::VolumesBlock;
 use super::underwater::CameraBlock;
 use super::view::ViewBlock;
@@ -16,13 +18,24 @@ fn the_buffers_hold_what_the_shaders_read() {
         check_list::<WaveBlock>(shader, "waves");
     }
     check_list::<Ray>("caustics/illumination-volumes.comp", "rays");
-    for shader in ["caustics/cull.comp", "caustics/culled.vert", "caustics/caustics-map-options-kept.vert"] {
-        check_list::<CellBlock>(shader, "cells");
+    for shader in
+        ["cull-even.comp", "cull-fitted.comp", "culled.vert", "caustics-map-options-kept.vert", "smart-planes.comp"]
+    {
+        check_list::<CellBlock>(&format!("caustics/{shader}"), "cells");
     }
-    for shader in ["caustics/cull.comp", "caustics/culled.vert"] {
+    for shader in ["caustics/cull-even.comp", "caustics/cull-fitted.comp", "caustics/culled.vert"] {
         check_list::<Ray>(shader, "rays");
     }
-    check_block::<StepsBlock>("caustics/cull.comp", "steps");
+    for shader in ["caustics/cull-even.comp", "caustics/cull-fitted.comp"] {
+        check_block::<StepsBlock>(shader, "steps");
+    }
+    for shader in ["caustics/sub-boxes.comp", "caustics/smart-planes.comp"] {
+        check_list::<Fit>(shader, "fits");
+        check_list::<SubBoxBlock>(shader, "sub_boxes");
+    }
+    for shader in ["caustics/sub-boxes.comp", "caustics/smart-planes.comp", "caustics/cull-fitted.comp"] {
+        check_block::<PlacedBlock>(shader, "placed");
+    }
     for shader in
         ["caustics/intersect-off.comp", "caustics/intersect-on.comp", "caustics/land.comp", "caustics/straddle-on.comp"]
     {

@@ -78,6 +78,7 @@ impl LevelMap {
     ) -> Result<Self, Error> {
         let slicing = match variant {
             Variant::LevelMapSmart | Variant::Hit => Slicing::Boxes(BoundingBox::new()),
+            Variant::Culled if context.parameters.smart_on_device().is_some() => Slicing::Boxes(BoundingBox::new()),
             _ => Slicing::Uniform(ReferencePlanes::new()),
         };
         let passes = |lit: &LitReceiver| {

@@ -44,6 +44,7 @@ mod sample_planes;
 pub mod setup;
 mod shadow_map;
 mod slice_images;
+mod smart_planes;
 mod stencil_volumes;
 mod underwater;
 mod view;
@@ -59,6 +60,7 @@ use ash::vk;
 use glam::{DVec2, DVec3};
 
 use self::bounding_box::Axes;
+use self::culled_map::CELL_FLOATS;
 use self::hit_map::LANDING_FLOATS;
 use self::illumination_volumes::{IlluminationVolumes, RAY_FLOATS};
 use self::intersections::Intersections;
@@ -256,7 +258,7 @@ impl Caustics {
     }
 
     /// The planes of each receiver under each light, as the last recorded frame placed them; none for the stencil
-    /// method and for `hit`.
+    /// method, for `hit`, and where the device alone knows them.
     pub fn plane_counts(&self) -> Vec<usize> {
         self.lit_receivers.iter().map(|lit| lit.cells.len()).collect()
     }
@@ -295,13 +297,17 @@ impl Caustics {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }
 
-    /// Where the rays of light `light` land on each receiver, in the variant `hit`.
-    fn landings(&self, light: usize) -> Vec<Target> {
+    /// Where the rays of light `light` land on each receiver, in the variant `hit`; the cells that the device placed on each, by the
+    /// variant `culled` with smart slicing.
+    fn tables(&self, light: usize) -> Vec<Target> {
         let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique else { return Vec::new() };
         let of_light = self.lit_receivers.iter().zip(receivers).filter(|(lit, _)| lit.light == light);
         let named = |(lit, passes): (&LitReceiver, &ReceiverPasses)| {
-            let landings = passes.caustics_map.landings()?;
-            Some(Target::table(numbered("landings", &[lit.light, lit.index]), landings, LANDING_FLOATS))
+            let (name, table, columns) = match passes.caustics_map.landings() {
+                Some(landings) => ("landings", landings, LANDING_FLOATS),
+                None => ("plane-cells", passes.caustics_map.smart_cells()?, CELL_FLOATS),
+            };
+            Some(Target::table(numbered(name, &[lit.light, lit.index]), table, columns))
         };
         of_light.filter_map(named).collect()
     }
@@ -313,12 +319,12 @@ impl Caustics {
             Technique::Volumetric(variant) => variant.receivers.iter().map(|r| r.targets()).collect(),
             Technique::Stencil { .. } => Vec::new(),
         };
-        let landings = self.landings(light);
+        let tables = self.tables(light);
         let of_light = self.lit_receivers.iter().zip(maps).filter(|(lit, _)| lit.light == light);
         let named = |(lit, maps): (&LitReceiver, [(&str, &Arc<ImageView>); 4])| {
             maps.map(|(name, view)| Target::image(numbered(name, &[lit.light, lit.index]), view).of(holds(name)))
         };
-        of_light.flat_map(named).chain(landings).collect()
+        of_light.flat_map(named).chain(tables).collect()
     }
 }
 

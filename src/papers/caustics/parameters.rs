@@ -118,6 +118,8 @@ pub struct Parameters {
     pub intensity: IntensityRule,
     /// Steps of the variant `culled`.
     pub cull: CullSteps,
+    /// The variant `culled` takes the planes of smart slicing, placed on the device.
+    pub culled_smart: bool,
     /// Receivers cast shadows on one another.
     pub shadows: bool,
     /// The water's surface reflects a part of the light.
@@ -162,6 +164,7 @@ impl Default for Parameters {
             coverage: 1,
             intensity: IntensityRule::Face,
             cull: CullSteps::EVERY,
+            culled_smart: false,
             shadows: false,
             fresnel: false,
             refraction_index: 4.0 / 3.0,
@@ -294,7 +297,7 @@ impl Parameters {
             Parameter::new("epsilon", EPSILON)
                 .range(Range::above(0.0))
                 .unit("metres")
-                .help("Acceptance threshold of smart slicing")
+                .help("Acceptance threshold of smart slicing, no less than that of 4,096 planes")
                 .section("eq. 4-22")
                 .default_text("h / (2 (planes - 1)), as in table 5-4")
                 .cost(Cost::Buffers),
@@ -314,6 +317,10 @@ impl Parameters {
                 .cost(Cost::Pipelines),
             Parameter::new("cull", field!(Parameters.cull))
                 .help("Steps by which `culled` finds the pairs of triangle and plane to draw; its light is the same by all of them")
+                .section("6.1")
+                .cost(Cost::Buffers),
+            Parameter::new("smart", field!(Parameters.culled_smart))
+                .help("The variant culled takes the planes of smart slicing, placed on the device without a readback")
                 .section("6.1")
                 .cost(Cost::Buffers),
             Parameter::new("shadows", field!(Parameters.shadows))

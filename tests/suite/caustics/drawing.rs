@@ -1,5 +1,6 @@
 //! One frame of the paper on the device, with everything it drew read back.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use fumarole::gpu::transfer::read_image;
@@ -36,12 +37,27 @@ impl Drawing {
         parameters: &Parameters,
         receivers: &[ReceiverInput],
     ) -> Self {
+        Self::after(FRAME..=FRAME, compiler, device, variant, parameters, receivers)
+    }
+
+    /// The last of some frames, drawn one after the other.
+    pub fn after(
+        frames: RangeInclusive<u32>,
+        compiler: Compiler,
+        device: &Arc<Device>,
+        variant: Variant,
+        parameters: &Parameters,
+        receivers: &[ReceiverInput],
+    ) -> Self {
         parameters.validate().unwrap();
         let shaders = ShaderLibrary::new(device, compiler, None).unwrap();
         let mut paper = Caustics::new(&shaders, "test", variant, parameters, receivers).unwrap();
         let mut recorder = Recorder::new(device).unwrap();
-        let sample = recorder.run(Mode::Plain, |frame| paper.record_picture(frame, FRAME)).unwrap();
-        let passes = sample.passes.clone();
+        let mut passes = Vec::new();
+        for number in frames {
+            let sample = recorder.run(Mode::Plain, |frame| paper.record_picture(frame, number)).unwrap();
+            passes = sample.passes.clone();
+        }
         let targets = paper.targets().into_iter().filter(|target| target.name != "picture");
         let picture = paper.picture();
         let pixels = read_image(device, picture).unwrap();

@@ -97,6 +97,12 @@ fn the_passes_are_those_of_the_thesis() {
         let drawn = [("cull-compact", 1), ("caustics-map", 1), ("combine", 1), ("cast", 1), ("view", 1)];
         let before = [("reference-planes", 1), ("position-diffuse-map", 1)];
         assert_eq!(culled, with_water(&before, &[&found[..], &drawn[..]].concat()));
+        let smart = Parameters { culled_smart: true, ..parameters.clone() };
+        let smart = Drawing::of(device, Variant::Culled, &smart, &[sphere()]);
+        let smart: Vec<_> = smart.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();
+        let placed = [found[0], ("depth-profile", 1), ("sub-boxes", 1), ("smart-planes", 1)];
+        let before = [("bounding-box", 1), ("position-diffuse-map", 1)];
+        assert_eq!(smart, with_water(&before, &[&placed[..], &found[1..], &drawn[..]].concat()));
         let hit = Drawing::of(device, Variant::Hit, &parameters, &[sphere()]);
         let hit: Vec<_> = hit.passes.iter().map(|pass| (pass.info.name, pass.calls)).collect();
         let landed = [("position-pyramid", 7), ("empty-sums", 1), ("intersect", 1), ("land", 1), ("straddle", 1)];
