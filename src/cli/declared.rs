@@ -151,7 +151,8 @@ fn own_command<S: Study>(verb: &Experiment<S>) -> Command {
     finish(command, verb.help)
 }
 
-/// The short help lists everyday options, the long one all of them.
+/// The short help lists everyday options, the long one all of them. An option that is given again takes the place of the first, as
+/// what a side of `ab` sets comes after what both have; lists grow.
 fn finish(command: Command, about: &'static str) -> Command {
     let parameters = ["Device", "Measuring", "In depth", "Output", "Window"];
     let is_everyday = |arg: &Arg| {
@@ -161,6 +162,7 @@ fn finish(command: Command, about: &'static str) -> Command {
     command
         .about(about)
         .long_about(None)
+        .args_override_self(true)
         .disable_help_flag(true)
         .disable_version_flag(true)
         .mut_args(|arg| if is_everyday(&arg) { arg } else { arg.hide_short_help(true) })
@@ -195,7 +197,7 @@ fn variant_list<S: Study>(help: &str, default: &str) -> Arg {
     Arg::new("variant")
         .long("variant")
         .value_name("VARIANT,..")
-        .action(ArgAction::Append)
+        .action(ArgAction::Set)
         .value_delimiter(',')
         .help(format!("{help} [default: {default}]"))
         .value_parser(PossibleValuesParser::new(S::Variant::ALL.iter().map(|v| v.as_str()).chain(["all"])))
@@ -323,32 +325,18 @@ impl<'a, S: Study> Typed<'a, S> {
         self.preset.as_ref().and_then(|preset| preset.variant)
     }
 
-    /// The variants that were named, each once, or else the preset's, or else `usual`; of all and of the usual ones those
-    /// that can draw the set-up.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] for one that was named and cannot.
-    fn variants(&self, setup: &S, usual: &[S::Variant]) -> Result<Vec<S::Variant>, Failure> {
+    /// The variants that were named, each once, or else the preset's, or else `usual`.
+    fn variants(&self, usual: &[S::Variant]) -> Vec<S::Variant> {
         let named: Vec<&String> = self.matches.get_many("variant").into_iter().flatten().collect();
-        let is_able = |variant: &S::Variant| setup.refusal(*variant).is_none();
-        let able = |variants: &[S::Variant]| variants.iter().copied().filter(is_able).collect::<Vec<_>>();
         match (named.as_slice(), self.preset_variant()) {
-            ([], Some(variant)) => checked(setup, vec![variant]),
-            ([], None) => Ok(able(usual)),
-            (names, _) if names.iter().any(|name| *name == "all") => Ok(able(S::Variant::ALL)),
+            ([], Some(variant)) => vec![variant],
+            ([], None) => usual.to_vec(),
+            (names, _) if names.iter().any(|name| *name == "all") => S::Variant::ALL.to_vec(),
             (names, _) => {
                 let is_named = |v: &S::Variant| names.iter().any(|name| *name == v.as_str());
-                checked(setup, S::Variant::ALL.iter().copied().filter(is_named).collect())
+                S::Variant::ALL.iter().copied().filter(is_named).collect()
             }
         }
-    }
-}
-
-/// The variants, if all of them can draw the set-up.
-fn checked<S: Study>(setup: &S, variants: Vec<S::Variant>) -> Result<Vec<S::Variant>, Failure> {
-    match variants.iter().find_map(|&variant| Some((variant, setup.refusal(variant)?))) {
-        Some((variant, reason)) => Err(Failure::Input(format!("--variant {}: {reason}", variant.as_str()))),
-        None => Ok(variants),
     }
 }
 
@@ -367,27 +355,26 @@ fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
         "passes" => {
             let machine = MachineArgs::from_arg_matches(matches)?;
             let setup = typed.resolve_one()?;
-            passes::list(&setup, &typed.variants(&setup, S::Variant::ALL)?, &machine, matches.get_flag("json"))
+            passes::list(&setup, &typed.variants(S::Variant::ALL), &machine, matches.get_flag("json"))
         }
         "bench" => {
             let common = CommonArgs::from_arg_matches(matches)?;
             outcome::check(&common.output)?;
             let setup = typed.resolve()?;
             let depth = DepthArgs::from_arg_matches(matches)?;
-            bench::publish(&common, &depth, &setup, &typed.variants(&setup, S::BENCHED)?)
+            bench::publish(&common, &depth, &setup, &typed.variants(S::BENCHED))
         }
         "render" => {
             let setup = typed.resolve_one()?;
             let name = matches.get_one::<String>("variant");
             let named = name.and_then(|name| S::Variant::ALL.iter().copied().find(|v| v.as_str() == name));
             let variant = named.unwrap_or_else(|| setup.rendered(typed.preset_variant()));
-            checked(&setup, vec![variant])?;
             render::draw(variant, &PictureArgs::from_arg_matches(matches)?, || Ok(setup))
         }
         "stress" => {
             let arguments = StressArgs::from_arg_matches(matches)?;
             let setup = typed.resolve_one()?;
-            let variants = typed.variants(&setup, &[setup.rendered(None)])?;
+            let variants = typed.variants(&[setup.rendered(None)]);
             stress::run(&arguments, setup, variants, &given(matches))
         }
         "experiment" => experiment(matches, &typed),
@@ -395,8 +382,7 @@ fn run_verb<S: Study>(verb: &str, matches: &ArgMatches) -> Result<(), Failure> {
         "worker" => super::worker::run::<S>(matches),
         #[cfg(feature = "window")]
         "view" => {
-            let setup = typed.resolve_one()?;
-            typed.variants(&setup, &[setup.rendered(typed.preset_variant())])?;
+            typed.resolve_one()?;
             super::view::run::<S>(matches)
         }
         verb => own_verb(verb, matches, &typed),

@@ -71,7 +71,7 @@ pub fn foretell(output: &OutputArgs, estimate: &Estimate, machine: &Machine) {
     }
 }
 
-/// Says what makes a picture doubtful.
+/// Says what makes a picture or a trace doubtful.
 pub fn warn(output: &OutputArgs, warning: &str) {
     if !output.quiet {
         say(&format!("warning: {warning}"));
@@ -116,7 +116,13 @@ pub fn publish(output: &OutputArgs, record: &Record, traces: &[TraceRun]) -> Res
     let json = output.json.as_deref().filter(|_| !output.json_to_stdout());
     let saved = json.map_or(Ok(()), |path| save(output, path, text(record)?.as_bytes()));
     let rows = output.csv.as_deref().map_or(Ok(()), |path| save(output, path, csv::to_string(record).as_bytes()));
-    let traced = output.trace.as_deref().map_or(Ok(()), |path| save(output, path, trace::to_string(traces).as_bytes()));
+    let traced = output.trace.as_deref().map_or(Ok(()), |path| {
+        let left_out: u64 = traces.iter().map(|trace| trace.frames_left_out).sum();
+        if left_out > 0 {
+            warn(output, &format!("{} leaves out the last {left_out} frames, too many for a viewer", path.display()));
+        }
+        save(output, path, trace::to_string(traces).as_bytes())
+    });
     printed.and(saved).and(rows).and(traced)
 }
 

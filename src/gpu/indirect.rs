@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::buffer::{Buffer, BufferDesc, BufferView};
+use super::buffer::{Buffer, BufferDesc};
 use super::draw::Dispatch;
 use super::error::Error;
 use super::pass::{DrawBounds, Pass};
-use super::pass_builder::PassDesc;
+use super::pass_builder::{PassBuilder, PassDesc};
 use super::shader::ShaderLibrary;
 
 crate::host_block! {
@@ -50,37 +50,35 @@ pub(crate) struct Clamp {
 impl Clamp {
     /// For the draws that `desc` describes; `None` where none is indirect.
     pub fn of_draw(shaders: &ShaderLibrary, desc: &PassDesc, bounds: DrawBounds) -> Result<Option<Self>, Error> {
-        let Some(wanted) = &desc.indirect else { return Ok(None) };
-        let bytes = size_of::<vk::DrawIndexedIndirectCommand>() as u64;
-        let clamped = Self::buffer(shaders, wanted, bytes)?;
-        let pass = Pass::compute(desc.name, desc.section, "common/clamp-draw.comp")
-            .constants::<DrawLimits>()
-            .with("Wanted", wanted)
-            .with("Clamped", &clamped)
-            .build(shaders)?;
         let at_most = |count: u64| u32::try_from(count).unwrap_or(u32::MAX);
         let limits =
             DrawLimits { index_count: at_most(bounds.indices.unwrap_or(0)), instance_count: at_most(bounds.instances) };
-        Ok(Some(Clamp { pass, limits: Limits::Draw(limits), clamped }))
+        let pass = Pass::compute(desc.name, desc.section, "common/clamp-draw.comp").constants::<DrawLimits>();
+        let bytes = size_of::<vk::DrawIndexedIndirectCommand>();
+        Self::of(shaders, desc, pass, Limits::Draw(limits), bytes)
     }
 
     /// For the dispatches that `desc` describes; `None` where none is indirect.
     pub fn of_dispatch(shaders: &ShaderLibrary, desc: &PassDesc) -> Result<Option<Self>, Error> {
-        let Some(wanted) = &desc.indirect else { return Ok(None) };
-        let bytes = size_of::<vk::DispatchIndirectCommand>() as u64;
-        let clamped = Self::buffer(shaders, wanted, bytes)?;
-        let pass = Pass::compute(desc.name, desc.section, "common/clamp-dispatch.comp")
-            .constants::<DispatchLimits>()
-            .with("Wanted", wanted)
-            .with("Clamped", &clamped)
-            .build(shaders)?;
         let [x, y, z] = shaders.device().physical().limits.max_compute_work_group_count;
-        Ok(Some(Clamp { pass, limits: Limits::Dispatch(DispatchLimits { x, y, z }), clamped }))
+        let pass = Pass::compute(desc.name, desc.section, "common/clamp-dispatch.comp").constants::<DispatchLimits>();
+        let bytes = size_of::<vk::DispatchIndirectCommand>();
+        Self::of(shaders, desc, pass, Limits::Dispatch(DispatchLimits { x, y, z }), bytes)
     }
 
-    fn buffer(shaders: &ShaderLibrary, wanted: &BufferView, bytes: u64) -> Result<Arc<Buffer>, Error> {
+    fn of(
+        shaders: &ShaderLibrary,
+        desc: &PassDesc,
+        pass: PassBuilder,
+        limits: Limits,
+        bytes: usize,
+    ) -> Result<Option<Self>, Error> {
+        let Some(wanted) = &desc.indirect else { return Ok(None) };
         let usage = vk::BufferUsageFlags::INDIRECT_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
-        Buffer::new(shaders.device(), BufferDesc::new(wanted.buffer.name(), bytes).usage(usage))
+        let clamped = BufferDesc::new(wanted.buffer.name(), bytes as u64).usage(usage);
+        let clamped = Buffer::new(shaders.device(), clamped)?;
+        let pass = pass.with("Wanted", wanted).with("Clamped", &clamped).build(shaders)?;
+        Ok(Some(Clamp { pass, limits, clamped }))
     }
 
     /// The kernel's one workgroup, its constants set.

@@ -231,18 +231,20 @@ impl Recorder {
         let (mask, period_ns) = (self.timestamp_mask, self.period_ns);
         let difference_ms = |w: &[u64]| (w[1].wrapping_sub(w[0]) & mask) as f64 * period_ns * 1e-6;
         let timestamps = pool.read()?;
-        if mode == Mode::Bracketed {
-            if let [first, last] = timestamps {
-                *self.sample.bracket_ms.get_or_insert(0.0) += difference_ms(&[*first, *last]);
-            }
-            return Ok(());
-        }
         let mut start_ms = submitted_ms;
         // The device's clock runs on: the first timestamp lies as long before this reading as the ticks between them.
         if let (Some((ticks, moment)), Some(first)) =
             (self.calibration.as_ref().and_then(Calibration::now), timestamps.first())
         {
             start_ms = (moment - started).as_secs_f64() * 1e3 - difference_ms(&[*first, ticks]);
+        }
+        if mode == Mode::Bracketed {
+            if let [first, last] = timestamps {
+                let duration_ms = difference_ms(&[*first, *last]);
+                *self.sample.bracket_ms.get_or_insert(0.0) += duration_ms;
+                self.sample.spans.push(Span { pass: None, start_ms, duration_ms, track: Track::Gpu });
+            }
+            return Ok(());
         }
         for (window, &pass) in timestamps.windows(2).zip(&self.intervals) {
             let duration_ms = difference_ms(window);

@@ -48,8 +48,8 @@ pub enum Format {
     Npy,
     /// PNG. `u8` and `u16` data are stored unchanged (8 and 16 bits; two channels as red and green). Other data becomes
     /// an 8-bit view: `f32` of two to four channels is taken as linear light, clamped to 0..=1 and sRGB-encoded,
-    /// without the fourth channel; one channel of `f32`, and all `u32` and `i32`, is drawn by a linear [`Ramp`]
-    /// common to all channels and layers, which the file's comment tells. A pixel with a value that is not finite, or
+    /// without the fourth channel; one channel of `f32`, [numbers](Raster::of_numbers) in several, and all `u32` and `i32`, are
+    /// drawn by a linear [`Ramp`] common to all channels and layers, which the file's comment tells. A pixel with a value that is not finite, or
     /// that stands for none as it lies far off all others, is magenta. The layers of an array target stand below one another.
     Png,
 }

@@ -162,6 +162,10 @@ pub(super) fn encode(file: &mut impl Write, raster: &Raster) -> io::Result<Optio
         Samples::F32(values) if channels == 1 => {
             (ramped(values, 1, by(Ramp::of(values))).into(), ColorType::Rgb, BitDepth::Eight)
         }
+        Samples::F32(values) if raster.are_numbers() => {
+            let (seen, channels) = view::without_fourth(values, channels);
+            (ramped(&seen, channels, by(Ramp::of(&seen))).into(), ColorType::Rgb, BitDepth::Eight)
+        }
         Samples::F32(values) => (view::linear_light(values, channels).into(), ColorType::Rgb, BitDepth::Eight),
         Samples::U32(values) => {
             (ramped(values, channels, by(Ramp::of(values))).into(), ColorType::Rgb, BitDepth::Eight)

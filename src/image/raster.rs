@@ -83,6 +83,7 @@ impl Shape {
 pub struct Raster {
     shape: Shape,
     samples: Samples,
+    are_numbers: bool,
 }
 
 /// A raster seen as pictures: a table is one layer of one channel, a row a line.
@@ -135,7 +136,16 @@ impl Raster {
                 found: samples.len(),
             });
         }
-        Ok(Self { shape, samples })
+        Ok(Self { shape, samples, are_numbers: false })
+    }
+
+    /// The same, of which several channels of floats are no colours but numbers: coordinates, say.
+    pub fn of_numbers(self) -> Self {
+        Raster { are_numbers: true, ..self }
+    }
+
+    pub(super) fn are_numbers(&self) -> bool {
+        self.are_numbers
     }
 
     pub fn shape(&self) -> Shape {

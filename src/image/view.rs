@@ -1,5 +1,6 @@
 //! 8-bit RGB drawings of data that is no 8-bit picture.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
@@ -10,6 +11,14 @@ use super::srgb;
 pub(super) fn with_blue<T: Copy + Default>(values: &[T]) -> Vec<T> {
     let pixels = values.chunks_exact(2);
     pixels.flat_map(|pixel| [pixel[0], pixel[1], T::default()]).collect()
+}
+
+/// Two or three channels as they are, the first three of four, and how many there are.
+pub(super) fn without_fourth(values: &[f32], channels: usize) -> (Cow<'_, [f32]>, usize) {
+    match channels {
+        4 => (values.chunks_exact(4).flat_map(|pixel| &pixel[..3]).copied().collect(), 3),
+        _ => (values.into(), channels),
+    }
 }
 
 /// Linear light of two to four channels, clamped to 0..=1 and sRGB-encoded; a fourth channel is left out.

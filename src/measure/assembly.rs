@@ -8,7 +8,7 @@ use super::measure::{FrameSpan, MeasuredPass, Measurement, Schedule};
 use super::statistics::{median, repetition_noise, summarize};
 use super::study::Identity;
 use crate::gpu::live::MemoryUse;
-use crate::gpu::{self, PassKind, Work};
+use crate::gpu::{self, Mode, PassKind, Work};
 use crate::report::record::{
     self, InputFile, Limits, Loading, Memory, Pass, ResourceMemory, Run, ShaderBinary, Statistics, Validation,
 };
@@ -173,10 +173,18 @@ fn bytes(work: &Work) -> record::Bytes {
     }
 }
 
-/// The timestamped frames as a trace.
+/// The measured frames as a trace: of plain ones what the host did and waited for, of bracketed ones each submission as well, of
+/// timestamped ones each pass.
 pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
-    let event = |FrameSpan { repetition, frame, frame_start_ms, span }: &FrameSpan| {
-        let mut args = entries([("repetition", (*repetition).into()), ("frame", (*frame).into())]);
+    let event = |FrameSpan { mode, repetition, frame, frame_start_ms, span }: &FrameSpan| {
+        let measured = match mode {
+            Mode::Plain => "plain",
+            Mode::Bracketed => "bracketed",
+            Mode::Timestamped => "timestamped",
+            Mode::Counted => "counted",
+        };
+        let mut args =
+            entries([("mode", measured.into()), ("repetition", (*repetition).into()), ("frame", (*frame).into())]);
         let pass = match span.pass {
             None => None,
             Some(index) => Some(measurement.passes.get(index)?),
@@ -185,7 +193,8 @@ pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
         let name = match (pass, span.track) {
             (Some(pass), _) => pass.info.name,
             (None, gpu::Track::Wait) => "wait for the device",
-            (None, _) => "record",
+            (None, gpu::Track::Gpu) => "submission",
+            (None, gpu::Track::Host) => "record",
         };
         Some(TraceEvent {
             name: name.to_owned(),
@@ -199,7 +208,8 @@ pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
             args,
         })
     };
-    TraceRun { name, events: measurement.spans.iter().filter_map(event).collect() }
+    let events = measurement.spans.iter().filter_map(event).collect();
+    TraceRun { name, events, frames_left_out: measurement.frames_without_spans }
 }
 
 /// Section, calls, bytes and counters of a pass in one frame; what is not known is left out.

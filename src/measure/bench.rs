@@ -162,7 +162,7 @@ pub fn inputs<S: Study>(study: &S) -> Result<Vec<InputFile>, Error> {
 pub struct VariantRun {
     /// The record's run.
     pub run: Run,
-    /// Timeline of its timestamped frames.
+    /// Timeline of its measured frames.
     pub trace: TraceRun,
 }
 

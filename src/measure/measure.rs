@@ -30,6 +30,8 @@ pub const MOST_SPANS: usize = 500_000;
 /// A span of time with the frame that it belongs to.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameSpan {
+    /// What was measured of the frame.
+    pub mode: Mode,
     /// Number of the repetition, from 0.
     pub repetition: u32,
     /// Number of the frame in it, from 0.
@@ -74,8 +76,10 @@ pub struct Measurement {
     pub passes: Vec<MeasuredPass>,
     /// Time of the first frame less the median of the others: what first use costs.
     pub first_frame_ms: f64,
-    /// The passes' spans of time in the timestamped frames, as long as there are fewer than [`MOST_SPANS`].
+    /// The spans of time in the measured frames, as long as there are fewer than [`MOST_SPANS`].
     pub spans: Vec<FrameSpan>,
+    /// Frames whose spans are left out for that.
+    pub frames_without_spans: u64,
 }
 
 /// Progress and interruption of the loop.
@@ -142,9 +146,11 @@ pub fn measure(
                     let sample = recorder.run_unless(watch.interrupted, mode, |frame| paper.record(frame, number));
                     let Some(sample) = finished(sample)? else { return Ok(results) };
                     result.take(mode, sample);
-                    if mode == Mode::Timestamped && result.spans.len() + sample.spans.len() < MOST_SPANS {
-                        let of_frame = |&span| FrameSpan { repetition, frame: number, frame_start_ms, span };
+                    if result.spans.len() + sample.spans.len() < MOST_SPANS {
+                        let of_frame = |&span| FrameSpan { mode, repetition, frame: number, frame_start_ms, span };
                         result.spans.extend(sample.spans.iter().map(of_frame));
+                    } else {
+                        result.frames_without_spans += 1;
                     }
                     tick(expected);
                 }

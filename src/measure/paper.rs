@@ -130,7 +130,12 @@ impl Target {
         Target { kind: Kind::I32, ..Self::table(name, buffer, columns) }
     }
 
-    /// With what a texel or row holds, and its unit.
+    /// True where channels are colours, which a picture shows as they are; others hold numbers, which it draws by a ramp.
+    pub fn is_color(&self) -> bool {
+        self.holds.contains("red, green, blue")
+    }
+
+    /// With what a texel or row holds, and its unit; of a colour with the words red, green, blue.
     pub fn of(self, holds: &'static str) -> Self {
         Target { holds, ..self }
     }

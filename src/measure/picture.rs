@@ -105,7 +105,7 @@ pub fn read_target(device: &Arc<Device>, target: &Target) -> Result<Raster, Erro
                 }
                 _ => Raster::image(width, height, 4, layers, bytes),
             };
-            Ok(raster?)
+            Ok(if target.is_color() { raster? } else { raster?.of_numbers() })
         }
         Resource::Sampler(_) => Err(Error::Input(format!("{} holds no values", target.name))),
     }

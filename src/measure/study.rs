@@ -151,11 +151,6 @@ pub trait Study: Clone + Default + 'static {
         Ok(())
     }
 
-    /// Reason why a variant cannot draw the set-up, with the way out; `None` where it can.
-    fn refusal(&self, _variant: Self::Variant) -> Option<&'static str> {
-        None
-    }
-
     /// The set-ups that a bench measures in turn, in each variant: several where a parameter was given several values for
     /// that. They share the input.
     fn alternatives(&self) -> Vec<Self> {

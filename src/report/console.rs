@@ -215,6 +215,8 @@ mod tests {
              timestamp floor 0.010 ms"
         );
         assert_eq!(line("warning"), "warning: LP_NUM_THREADS is not set");
+        let limits = line("limits of the device: ");
+        assert!(limits.contains("6.50 GB/s ± 8 %"), "{limits}");
         assert!(!text.contains("submission"), "one submission only\n{text}");
     }
 

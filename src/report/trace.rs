@@ -12,6 +12,8 @@ pub struct TraceRun {
     pub name: String,
     /// In any order.
     pub events: Vec<TraceEvent>,
+    /// Measured frames that have no events, being too many for a viewer.
+    pub frames_left_out: u64,
 }
 
 /// One span of time on a track.
@@ -118,6 +120,7 @@ mod tests {
                 event("never", Track::Gpu, f64::NAN, 1.0),
                 event("backwards", Track::Gpu, 1.0, -1.0),
             ],
+            frames_left_out: 0,
         });
         let trace: Value = serde_json::from_str(&to_string(&runs)).unwrap();
         let events = trace["traceEvents"].as_array().unwrap();

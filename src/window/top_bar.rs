@@ -66,19 +66,12 @@ fn show_sides(ui: &mut Ui, face: &mut Interface) {
     let presets = face.session.ready.as_ref().map(|ready| ready.presets.clone()).unwrap_or_default();
     let mut wanted = sides.clone();
     for (index, side) in wanted.iter_mut().enumerate() {
-        let refused = face.session.side(index).map(|side| side.refused.clone()).unwrap_or_default();
         let letter = ["A", "B"][index.min(1)];
         let name = side.variant.clone().unwrap_or_default();
         let combo = ComboBox::from_id_salt(("variant", index)).selected_text(&name).show_ui(ui, |ui| {
             for variant in &variants {
-                let reason = refused.iter().find(|(refused, _)| refused == variant).map(|(_, reason)| reason);
-                let label = egui::Button::selectable(*variant == name, variant);
-                let label = ui.add_enabled(reason.is_none(), label);
-                if label.clicked() {
+                if ui.selectable_label(*variant == name, variant).clicked() {
                     side.variant = Some(variant.clone());
-                }
-                if let Some(reason) = reason {
-                    label.on_disabled_hover_text(reason);
                 }
             }
             ui.separator();
@@ -125,9 +118,7 @@ pub fn toggle_comparison(face: &mut Interface) {
         return;
     }
     let variants = face.session.ready.as_ref().map(|ready| ready.variants.clone()).unwrap_or_default();
-    let refused = face.session.side(0).map(|side| side.refused.clone()).unwrap_or_default();
-    let is_able = |variant: &&String| !refused.iter().any(|(refused, _)| refused == *variant);
-    let other = variants.iter().filter(is_able).find(|variant| Some(*variant) != first.variant.as_ref());
+    let other = variants.iter().find(|variant| Some(*variant) != first.variant.as_ref());
     let second = SideChoice { variant: other.cloned().or_else(|| first.variant.clone()), ..first.clone() };
     face.ask(Request::Sides(vec![first, second]));
     compare::choose(face, face.layout.comparison);

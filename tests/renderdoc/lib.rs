@@ -1,5 +1,6 @@
 //! Stands for RenderDoc in the tests: its in-application interface, as far as it is called, which writes a file for each
-//! capture. The tests load it before the program under RenderDoc's name.
+//! capture. The tests load it before the program under RenderDoc's name. Where their Vulkan layer runs too, the file has the labels
+//! that were begun while it captured.
 
 #![allow(non_snake_case)]
 
@@ -13,10 +14,12 @@ use renderdoc_sys::{RENDERDOC_API_1_6_0, RENDERDOC_DevicePointer, RENDERDOC_Vers
 struct State {
     template: String,
     is_capturing: bool,
+    labels: Vec<String>,
     files: Vec<CString>,
 }
 
-static STATE: Mutex<State> = Mutex::new(State { template: String::new(), is_capturing: false, files: Vec::new() });
+static STATE: Mutex<State> =
+    Mutex::new(State { template: String::new(), is_capturing: false, labels: Vec::new(), files: Vec::new() });
 
 unsafe extern "C" fn set_template(template: *const c_char) {
     // SAFETY: the interface promises a text that ends in a zero.
@@ -25,6 +28,19 @@ unsafe extern "C" fn set_template(template: *const c_char) {
 
 unsafe extern "C" fn start(_: RENDERDOC_DevicePointer, _: RENDERDOC_WindowHandle) {
     STATE.lock().unwrap().is_capturing = true;
+}
+
+/// What the tests' layer calls for each label.
+///
+/// # Safety
+/// `label` is a text that ends in a zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn test_renderdoc_label(label: *const c_char) {
+    let mut state = STATE.lock().unwrap();
+    if state.is_capturing {
+        // SAFETY: the caller's promise.
+        state.labels.push(unsafe { CStr::from_ptr(label) }.to_str().unwrap().to_owned());
+    }
 }
 
 unsafe extern "C" fn end(_: RENDERDOC_DevicePointer, _: RENDERDOC_WindowHandle) -> u32 {
@@ -39,7 +55,8 @@ unsafe extern "C" fn end(_: RENDERDOC_DevicePointer, _: RENDERDOC_WindowHandle) 
         given => given.to_owned(),
     };
     let file = format!("{template}_frame{}.rdc", state.files.len());
-    std::fs::write(&file, "captured").unwrap();
+    let labels = std::mem::take(&mut state.labels);
+    std::fs::write(&file, labels.join("\n")).unwrap();
     state.files.push(CString::new(file).unwrap());
     1
 }

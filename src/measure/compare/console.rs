@@ -94,7 +94,13 @@ fn differences(comparison: &Comparison) -> Vec<String> {
         let same_kind: Vec<&Difference> =
             comparison.differences.iter().filter(|difference| difference.what.starts_with(prefix)).collect();
         if same_kind.len() >= MANY {
-            lines.push(format!("{plural}: {} differ", same_kind.len()));
+            let [first, ..] = same_kind[..] else { continue };
+            // Every pass has another digest, but most often all have one compiler.
+            let are_alike = same_kind.iter().all(|one| (&one.a, &one.b) == (&first.a, &first.b));
+            lines.push(match are_alike {
+                true => line(&format!("{plural} of {} passes", same_kind.len()), first),
+                false => format!("{plural}: {} differ", same_kind.len()),
+            });
         } else if prefix != "shader_compiler of " {
             lines.extend(same_kind.iter().map(|difference| format!("{} differs", difference.what)));
         } else {

@@ -16,6 +16,8 @@ mod matching;
 mod synthetic;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod trials;
 mod within;
 
 pub use console::{markdown, render, sections};

@@ -227,7 +227,7 @@ impl Paper for Lava {
             Target::image("accumulated-depths", self.method.sums())
                 .of("sum of weighted heights in metres in red, sum of weights in alpha"),
             Target::image("normal-height", &self.normal_height.surface)
-                .of("normal in red, green, blue, height in metres in alpha"),
+                .of("x, y, z of the unit normal, height in metres"),
             Target::image("visibility", &self.splatting.depth)
                 .of("distance from the eye and epsilon, as a share of the depth range"),
             Target::image("accumulated-colors", &self.splatting.sums)

@@ -167,8 +167,6 @@ pub struct SideSetup {
     pub values: Vec<String>,
     /// Names of those that were set by hand.
     pub set: Vec<String>,
-    /// Variants that cannot draw it, with the reason.
-    pub refused: Vec<(String, String)>,
     /// Eye and target of the camera, metres or the paper's unit of length.
     pub camera: Option<[f64; 6]>,
     /// The rest of that camera.

@@ -96,9 +96,6 @@ impl Choice {
         }
         let named = side.variant.as_ref().map(|name| variant::<S>(name)).transpose()?;
         let variant = named.unwrap_or_else(|| study.rendered(preset.and_then(|preset| preset.variant)));
-        if let Some(reason) = study.refusal(variant) {
-            return Err(Error::Input(format!("`variant` {}: {reason}", variant.as_str())));
-        }
         let compiler = match side.compiler.as_deref() {
             None | Some("glslang") => Compiler::Glslang,
             Some("naga") => Compiler::Naga,
@@ -131,8 +128,6 @@ impl<S: Study> Resolved<S> {
 
     /// As the window has it.
     pub fn describe(&self, choice: &Choice, camera: Option<Camera>) -> SideSetup {
-        let refused =
-            |&variant: &S::Variant| Some((variant.as_str().to_owned(), self.study.refusal(variant)?.to_owned()));
         SideSetup {
             choice: SideChoice {
                 variant: Some(self.variant.as_str().to_owned()),
@@ -141,7 +136,6 @@ impl<S: Study> Resolved<S> {
             },
             values: self.values(),
             set: choice.typed.iter().map(|typed| typed.name.clone()).collect(),
-            refused: S::Variant::ALL.iter().filter_map(refused).collect(),
             camera: camera.map(|camera| {
                 let [eye, target] = [camera.eye, camera.target].map(|point| point.as_dvec3());
                 [eye.x, eye.y, eye.z, target.x, target.y, target.z]

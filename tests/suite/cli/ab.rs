@@ -1,5 +1,7 @@
 //! `fumarole ab`: two sides in turn.
 
+use std::fs;
+
 use super::program::{ONCE, Program, SCENE, device, folder, fumarole, read_json};
 use super::shaders::{end_cast_with, own_shaders};
 
@@ -80,10 +82,10 @@ fn it_ends_with_the_look_that_decides() {
     let mut left = read_json(&verdicts);
     assert_eq!(left, report);
     left["runs"][0]["frame"]["verdict"] = "FASTER".into();
-    std::fs::write(&verdicts, left.to_string()).unwrap();
+    fs::write(&verdicts, left.to_string()).unwrap();
     let page = out.path().join("page.html");
     fumarole("report --quiet -o").arg(&page).arg(out.path()).run().succeeded();
-    assert!(std::fs::read_to_string(page).unwrap().contains("FASTER"));
+    assert!(fs::read_to_string(page).unwrap().contains("FASTER"));
 }
 
 #[test]
@@ -91,12 +93,32 @@ fn a_side_may_have_another_program_and_changed_shaders() {
     let out = folder();
     let shaders = own_shaders(out.path());
     end_cast_with(&shaders, "color.r += 0.25;");
-    let program = ab("--json --out").arg(out.path()).arg("--binary");
-    let program = program.arg(format!("B:{}", env!("CARGO_BIN_EXE_fumarole")));
+    // The same program but for its digest.
+    let another = out.path().join("another");
+    let mut bytes = fs::read(env!("CARGO_BIN_EXE_fumarole")).unwrap();
+    bytes.push(0);
+    fs::write(&another, bytes).unwrap();
+    fs::set_permissions(&another, fs::metadata(env!("CARGO_BIN_EXE_fumarole")).unwrap().permissions()).unwrap();
+    let program = ab("--json --out").arg(out.path()).arg("--binary").arg(format!("B:{}", another.display()));
     let report = common(program.arg("--b").arg(format!("--shader-dir {}", shaders.display()))).run().succeeded().json();
     let differences = report["differences"].as_array().unwrap().iter();
     let whats: Vec<&str> = differences.map(|difference| difference["what"].as_str().unwrap()).collect();
     assert!(whats.iter().any(|what| what.starts_with("SPIR-V of caustics level-map cast")), "{whats:?}");
+    assert!(whats.contains(&"build.executable_sha256"), "{whats:?}");
+}
+
+/// What a side sets takes the place of what both have.
+#[test]
+fn a_side_s_own_value_comes_after_the_common_one() {
+    let out = folder();
+    let program = ab("--json --out").arg(out.path()).arg("--a").arg("--variant level-map --seed 3");
+    let program = program.arg("--b").arg("--variant level-map --seed 4").args("caustics --variant volumetric --seed 2");
+    let report = program.args(SCENE).args(ONCE).arg("--device").arg(device()).run().succeeded().json();
+    assert_eq!(report["runs"].as_array().unwrap().len(), 1, "{report}");
+    assert_eq!(report["runs"][0]["variant"], "level-map");
+    let differences = report["differences"].as_array().unwrap();
+    let seed = differences.iter().find(|difference| difference["what"] == "seed").expect("the seeds differ");
+    assert_eq!((&seed["a"][0], &seed["b"][0]), (&"3".into(), &"4".into()));
 }
 
 #[test]

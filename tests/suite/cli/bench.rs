@@ -5,7 +5,9 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::program::{ONCE, assert_schema, burning, caustics, device, folder, gas, lava, read_json, sha256, terrain};
+use super::program::{
+    ONCE, assert_schema, burning, caustics, device, folder, fumarole, gas, lava, read_json, sha256, terrain,
+};
 
 const BOTH: &str = "--variant level-map,volumetric";
 
@@ -143,10 +145,14 @@ fn printed_share(pass: &Value) -> Option<String> {
 #[test]
 fn every_papers_passes_have_a_floor_and_the_table_says_how_near_they_come() {
     let papers = [
-        lava("bench --size 32x24 --particles 300 --radius 0.2 --density 12x6x6 --splats 40x10"),
-        gas("bench --size 24x16 --steps 6 --table 6"),
-        burning("bench --size 32x24 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10"),
-        terrain("bench --variant gpu-fragment --size 32x24 --resolution 17"),
+        lava("bench --variant all --size 32x24 --particles 300 --radius 0.2 --density 12x6x6 --splats 40x10"),
+        lava("bench --size 32x24 --simulation sph --particles 300"),
+        gas("bench --variant all --size 24x16 --steps 6 --table 6"),
+        gas("bench --variant none --size 24x16 --steps 6 --density-cache 8"),
+        gas("bench --variant none --size 24x16 --samples 2 --march delta"),
+        caustics("bench --variant all --size 32x24 --map-size 32 --water-triangles 200 --planes 3"),
+        burning("bench --variant all --size 32x24 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10"),
+        terrain("bench --variant all --size 32x24 --resolution 17"),
     ];
     for program in papers {
         let out = folder();
@@ -154,15 +160,17 @@ fn every_papers_passes_have_a_floor_and_the_table_says_how_near_they_come() {
         let ended = program.on_test_device().inside(out.path()).args(options).run().succeeded();
         assert!(ended.stdout.contains("share of limit"), "{}", ended.stdout);
         let record = read_json(&out.path().join("r.json"));
-        let passes = record["runs"][0]["passes"].as_array().unwrap();
-        for pass in passes.iter().filter(|pass| pass["kind"] != "host") {
+        let runs = record["runs"].as_array().unwrap().iter();
+        let passes: Vec<&Value> = runs.flat_map(|run| run["passes"].as_array().unwrap()).collect();
+        for pass in passes.iter().filter(|pass| pass["kind"] != "host" && pass["calls"] != 0) {
             assert!(pass["floor_ms"].as_f64().is_some_and(|floor| floor > 0.0), "{pass}");
+            assert!(pass["bound"].is_string(), "{pass}");
             let Some(share) = printed_share(pass) else { continue };
             let name = pass["name"].as_str().unwrap();
             let is_row = |line: &str| line.trim_start().starts_with(name) && line.contains(&share);
             assert!(ended.stdout.lines().any(is_row), "{name}: {share} in\n{}", ended.stdout);
         }
-        assert!(passes.iter().filter_map(printed_share).count() >= 3);
+        assert!(passes.into_iter().filter_map(printed_share).count() >= 3);
     }
 }
 
@@ -205,7 +213,8 @@ fn every_file_is_written_and_well_formed() {
     let events = trace["traceEvents"].as_array().unwrap();
     let spans: Vec<&Value> = events.iter().filter(|event| event["ph"] == "X").collect();
     let traced: BTreeSet<&str> = spans.iter().map(|span| span["name"].as_str().unwrap()).collect();
-    let expected: BTreeSet<&str> = pass_names.iter().copied().chain(["record", "wait for the device"]).collect();
+    let expected: BTreeSet<&str> =
+        pass_names.iter().copied().chain(["record", "wait for the device", "submission"]).collect();
     assert_eq!(traced, expected);
     assert_timeline(&spans);
     assert!(spans.iter().all(|span| span["ts"].as_f64().unwrap() >= 0.0 && span["dur"].as_f64().unwrap() >= 0.0));
@@ -223,21 +232,36 @@ fn every_file_is_written_and_well_formed() {
     }
 }
 
-/// Every stamped frame has the host's work, its waits and the device's work on one clock: what the device does lies inside
-/// the host's waits, and says of its pass what was counted.
+/// Every measured frame, of the variants in turn, has the host's work and its waits, and where the device was timed its work on the
+/// same clock: what the device does lies inside the host's waits, and says of its pass what was counted.
 fn assert_timeline(spans: &[&Value]) {
     let number = |span: &Value, name: &str| span[name].as_f64().unwrap();
     let frame_of = |span: &Value| {
-        (span["pid"].to_string(), span["args"]["repetition"].to_string(), span["args"]["frame"].to_string())
+        let [mode, repetition, frame] = ["mode", "repetition", "frame"].map(|name| span["args"][name].to_string());
+        (span["pid"].to_string(), mode, repetition, frame)
     };
     let on = |track: &str| spans.iter().filter(|span| span["cat"] == track).collect::<Vec<_>>();
     let frames: BTreeSet<_> = spans.iter().map(|span| frame_of(span)).collect();
-    // Two variants of three frames.
-    assert_eq!(frames.len(), 6);
-    for track in ["host", "wait", "GPU"] {
-        assert_eq!(on(track).iter().map(|span| frame_of(span)).collect::<BTreeSet<_>>(), frames, "{track}");
+    // Two variants of three frames, each plain, timestamped and bracketed.
+    assert_eq!(frames.len(), 18);
+    let timed = frames.iter().filter(|(_, mode, ..)| mode != "\"plain\"").cloned().collect();
+    for (track, expected) in [("host", &frames), ("wait", &frames), ("GPU", &timed)] {
+        assert_eq!(on(track).iter().map(|span| frame_of(span)).collect::<BTreeSet<_>>(), *expected, "{track}");
     }
-    for span in on("GPU") {
+    let mut in_time: Vec<_> = on("host").into_iter().filter(|span| span["name"] == "record").collect();
+    in_time.sort_by(|a, b| number(a, "ts").total_cmp(&number(b, "ts")));
+    let in_turn: Vec<_> = in_time.chunk_by(|a, b| frame_of(a) == frame_of(b)).map(|frame| &frame[0]["pid"]).collect();
+    assert_eq!(in_turn, [1, 2].repeat(9).iter().collect::<Vec<_>>(), "frame by frame, not one variant after the other");
+
+    // Without the device's calibrated clock the first span would begin where the wait does.
+    let first = |track: &str, frame: &_| {
+        let starts = on(track).into_iter().filter(|span| frame_of(span) == *frame).map(|span| number(span, "ts"));
+        starts.fold(f64::INFINITY, f64::min)
+    };
+    assert!(frames.iter().any(|frame| timed.contains(frame) && first("GPU", frame) != first("wait", frame)));
+
+    let is_pass = |span: &&&&Value| span["args"]["mode"] == "timestamped";
+    for span in on("GPU").iter().filter(is_pass) {
         let is_within = |wait: &&&&Value| {
             let (start, end) = (number(wait, "ts") - 300.0, number(wait, "ts") + number(wait, "dur") + 300.0);
             frame_of(wait) == frame_of(span)
@@ -318,4 +342,7 @@ fn the_drivers_threads_are_the_cores_unless_the_user_sets_them() {
     assert!(!warnings.contains("LP_NUM_THREADS"), "{warnings}");
     let record = program().env("LP_NUM_THREADS", "1").run().succeeded().json();
     assert_eq!(record["environment"]["host"]["lp_num_threads"], 1);
+    let record = fumarole("caustics bench --json --quiet --variant level-map").tiny().args(ONCE);
+    let record = record.without("LP_NUM_THREADS").run().succeeded().json();
+    assert_eq!(record["environment"]["host"]["lp_num_threads"], cores);
 }

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 
-use super::program::{Program, caustics, file, folder, fumarole, read_json};
+use super::program::{ONCE, Program, caustics, file, folder, fumarole, read_json, sha256, terrain};
 
 /// One measured record, from which the others are made.
 fn measured() -> &'static Value {
@@ -86,6 +86,67 @@ fn a_regression_beyond_the_limit_ends_with_4() {
     compare(&a, &slower).args("--fail-above 0.5").run().succeeded();
     assert!(compare(&a, &slower).run().succeeded().stdout.contains("SLOWER:"));
     assert!(compare(&slower, &a).args("--fail-above 5%").run().succeeded().stdout.contains("FASTER:"));
+}
+
+/// One pass three times slower under a flat frame fails, unless its share is less than what is asked for.
+#[test]
+fn passes_below_the_least_share_do_not_fail() {
+    let out = folder();
+    let a = file(&out, "a.json", record_of(5, 1.0).to_string());
+    let mut slower = record_of(5, 1.0);
+    for run in slower["runs"].as_array_mut().unwrap() {
+        let passes = run["passes"].as_array_mut().unwrap();
+        scale(&mut passes.iter_mut().find(|pass| pass["name"] == "illumination-volumes").unwrap()["gpu_ms"], 3.0);
+    }
+    let b = file(&out, "b.json", slower.to_string());
+    let ended = compare(&a, &b).args("--fail-above 5% --min-share 0%").run();
+    assert_eq!(ended.status.code(), Some(4), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stdout.contains("regression beyond 5 %: illumination-volumes"), "{}", ended.stdout);
+    compare(&a, &b).args("--fail-above 5% --min-share 80%").run().succeeded();
+}
+
+/// Files count by what they hold, wherever they lie: a mesh, a map, a drape.
+#[test]
+fn files_are_told_by_their_content() {
+    const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    const MAP: &str = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3\n4 5 6\n7 8 9\n";
+    let out = folder();
+    for (name, text) in [
+        ("a.obj", MESH.to_owned()),
+        ("b.obj", MESH.to_owned()),
+        ("moved.obj", MESH.replace("v 1 0 0", "v 2 0 0")),
+        ("a.asc", MAP.to_owned()),
+        ("b.asc", MAP.to_owned()),
+        ("moved.asc", MAP.replace('9', "8")),
+    ] {
+        file(&out, name, text);
+    }
+    for (name, red) in [("a.png", 200), ("b.png", 200), ("moved.png", 100)] {
+        let picture = fumarole::image::Rgba8::new(2, 2, [red, 30, 30, 255].repeat(4)).unwrap();
+        fumarole::image::write_png(&out.path().join(name), &picture).unwrap();
+    }
+    let caustics = |file: &str| caustics("bench --variant level-map --mesh").arg(file).tiny();
+    let terrain =
+        |options: String| terrain("bench --variant gpu-fragment --size 32x24").args(&options).on_test_device();
+    let map = |file: &str| terrain(format!("--map {file}"));
+    let object = |file: &str| terrain(format!("--resolution 17 --object {file}"));
+    let drape = |file: &str| terrain(format!("--resolution 17 --drape {file}"));
+    let papers: [(&str, &dyn Fn(&str) -> Program); 4] =
+        [("obj", &caustics), ("asc", &map), ("obj", &object), ("png", &drape)];
+    for (ending, program) in papers {
+        let record = |name: &str| {
+            let (source, json) = (format!("{name}.{ending}"), format!("{name}.json"));
+            program(&source).args(ONCE).args("--quiet --json").arg(&json).inside(out.path()).run().succeeded();
+            let json = out.path().join(json);
+            let inputs = &read_json(&json)["runs"][0]["inputs"];
+            let digest = sha256(&out.path().join(&source));
+            assert!(inputs.as_array().unwrap().iter().any(|input| input["sha256"] == digest.as_str()), "{inputs}");
+            json
+        };
+        let [a, b, moved] = ["a", "b", "moved"].map(record);
+        compare(&a, &b).run().succeeded();
+        compare(&a, &moved).run().refused(2, &["moved.json"]);
+    }
 }
 
 #[test]

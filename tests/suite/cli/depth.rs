@@ -6,6 +6,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::program::{ONCE, assert_schema, caustics, entries, folder, gas, read_json};
+use crate::faults::Layer;
+use crate::faults::lent::{assert_clean, label};
 
 /// The library that stands for RenderDoc, which `cargo test` builds beside the programs, under RenderDoc's name in `folder`.
 pub fn renderdoc(folder: &Path) {
@@ -91,5 +93,17 @@ fn renderdoc_captures_one_frame_of_each_variant() {
     for name in expected {
         assert!(ended.stderr.contains(&format!("wrote captures/{name}")), "{}", ended.stderr);
     }
+    // One frame, no more and no less, lies between the capture's two ends.
+    let layer = Layer::new();
+    let json = out.path().join("record.json");
+    let bench = under_renderdoc("--variant level-map --out frame --json").arg(&json);
+    let ended = layer.before(bench, false).run().succeeded();
+    assert_clean(&layer.report(&ended));
+    let captured = fs::read_to_string(out.path().join("frame/caustics-level-map_frame0.rdc")).unwrap();
+    let record = read_json(&json);
+    let of_device = record["runs"][0]["passes"].as_array().unwrap().iter().filter(|pass| pass["kind"] != "host");
+    let expected: Vec<String> = of_device.map(label).collect();
+    assert_eq!(captured.lines().collect::<Vec<_>>(), expected);
+
     under_renderdoc("--quiet --variant level-map --out refused").run().refused(2, &["it captured nothing"]);
 }

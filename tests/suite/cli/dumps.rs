@@ -116,3 +116,22 @@ fn a_picture_of_values_masks_sentinels_and_tells_its_ramp() {
     shades.dedup();
     assert!(shades.len() > 16, "{} shades of {told}", shades.len());
 }
+
+/// Coordinates go below 0 and beyond 1, which a picture of light would cut off.
+#[test]
+fn normals_are_drawn_as_numbers_and_colours_as_light() {
+    let out = folder();
+    let dumps = "--dump surface-normal=normal.png --dump surface-albedo=albedo.png";
+    let ended = caustics("render --variant stencil").args(dumps).inside(out.path()).tiny().run().succeeded();
+    let told = |name: &str| {
+        let line = ended.stderr.lines().find(|line| line.starts_with(&format!("wrote {name}"))).unwrap();
+        line.contains("drawn from black to white")
+    };
+    assert!(told("normal.png") && !told("albedo.png"), "{}", ended.stderr);
+    let picture = read_png(&out.path().join("normal.png")).unwrap();
+    let (low, high) = (-1.0, 1.0);
+    let shade = |value: f32| (255.0 * (value - low) / (high - low)).round();
+    let below = picture.pixels().chunks_exact(4).filter(|pixel| f32::from(pixel[0]) < shade(-0.1)).count();
+    let above = picture.pixels().chunks_exact(4).filter(|pixel| f32::from(pixel[0]) > shade(0.1)).count();
+    assert!(below > 20 && above > 20, "{below} to one side, {above} to the other");
+}

@@ -37,4 +37,5 @@ mod slurm;
 mod streams;
 mod stress;
 mod terrain;
+mod terrain_drapes;
 mod vulkan;

@@ -5,7 +5,7 @@ use fumarole::image::{Rgba8, read_png};
 use tempfile::TempDir;
 
 use super::{BURNING, CAUSTICS, GAS, LAVA, Paper, TERRAIN, driver_manifest};
-use crate::cli::program::{ONCE, Program, folder, fumarole};
+use crate::cli::program::{ONCE, Program, SCENE, folder, fumarole};
 
 /// Most that the pictures of two drivers differ on average, of 255: edges of triangles and points fall on other pixels, and
 /// filters have other fractions.
@@ -69,6 +69,22 @@ fn burning_looks_the_same() {
 #[test]
 fn terrain_looks_the_same() {
     assert_same_pictures(&TERRAIN);
+}
+
+/// A driver against another: a side's environment and device are its own.
+#[test]
+fn it_may_be_a_side_of_ab() {
+    let folder = folder();
+    let manifest = driver_manifest(&folder);
+    let mut program = fumarole("ab --blocks 2 --quiet --json --out").arg(folder.path());
+    for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+        program = program.arg("--env").arg(format!("B:{variable}={}", manifest.display()));
+    }
+    let program = program.arg("--b").arg("--device SwiftShader").args("caustics --variant level-map");
+    let report = program.on_test_device().args(SCENE).args(ONCE).run().succeeded().json();
+    let differences = report["differences"].as_array().unwrap();
+    let name = differences.iter().find(|difference| difference["what"] == "device.name").expect("two devices");
+    assert!(name["a"].to_string().contains("llvmpipe") && name["b"].to_string().contains("SwiftShader"), "{name}");
 }
 
 #[test]

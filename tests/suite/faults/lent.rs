@@ -13,7 +13,7 @@ fn lent(layer: &Layer, program: Program, extensions: &str) -> Program {
     layer.before(program, true).env("FUMAROLE_LAYER_LENDS", extensions)
 }
 
-fn assert_clean(report: &Report) {
+pub fn assert_clean(report: &Report) {
     assert!(report.misuses.is_empty(), "{:?}", report.misuses);
     assert!(report.alive.is_empty(), "{:?}", report.alive);
 }
@@ -70,6 +70,14 @@ fn assert_counted(program: Program, kind: &str) -> u64 {
     recordings
 }
 
+/// The label of a pass of a record.
+pub fn label(pass: &Value) -> String {
+    match pass["section"].as_str() {
+        Some(section) => format!("{} ({section})", pass["name"].as_str().unwrap()),
+        None => pass["name"].as_str().unwrap().to_owned(),
+    }
+}
+
 #[test]
 fn labels_and_pipelines_carry_pass_and_section() {
     let programs = [
@@ -87,10 +95,6 @@ fn labels_and_pipelines_carry_pass_and_section() {
         assert_clean(&report);
         let record = ended.json();
         let passes = record["runs"][0]["passes"].as_array().unwrap().iter();
-        let label = |pass: &Value| match pass["section"].as_str() {
-            Some(section) => format!("{} ({section})", pass["name"].as_str().unwrap()),
-            None => pass["name"].as_str().unwrap().to_owned(),
-        };
         let mut sections = 0;
         for pass in passes.filter(|pass| pass["kind"] != "host") {
             sections += u32::from(pass["section"].is_string());

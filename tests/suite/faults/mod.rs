@@ -2,7 +2,7 @@
 
 mod calls;
 mod files;
-mod lent;
+pub mod lent;
 mod masks;
 
 use std::fs;

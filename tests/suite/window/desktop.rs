@@ -132,6 +132,24 @@ fn events_of_a_user_do_what_they_say() {
         display.write("0,3,6,0,0,0");
         display.key(RETURN);
         window.wait("the camera that was typed", |window| camera(window).filter(|camera| camera == "0,3,6,0,0,0"));
+        // Across the view, and along it.
+        window.drag(3, middle, (middle.0 + 40, middle.1 - 30));
+        let panned = window.wait("a camera to one side", |window| {
+            let now = eye_and_offset(window).filter(|(eye, _)| eye[0] != 0.0)?;
+            // Not while it still moves.
+            thread::sleep(Duration::from_millis(300));
+            (eye_and_offset(window) == Some(now)).then_some(now)
+        });
+        let is_near = |a: f64, b: f64| (a - b).abs() < 1e-3;
+        let (eye, offset) = panned;
+        assert!(is_near(offset[0], 0.0) && is_near(offset[1], offset[2] / 2.0), "{panned:?} looks another way");
+        // Where it looks has gone across the view.
+        let target: [f64; 3] = std::array::from_fn(|axis| eye[axis] - offset[axis]);
+        assert!(is_near(target[1] + 2.0 * target[2], 0.0), "{panned:?} is not across the view");
+        display.hold('w' as u32, Duration::from_millis(300));
+        let flown = window.wait("a camera ahead", |window| eye_and_offset(window).filter(|now| *now != panned));
+        let moved: [f64; 3] = std::array::from_fn(|axis| flown.0[axis] - panned.0[axis]);
+        assert!(moved[2] < 0.0 && is_near(moved[0], 0.0) && is_near(moved[1], moved[2] / 2.0), "{moved:?}");
         window.close().succeeded();
     });
 }
@@ -193,6 +211,14 @@ fn camera(window: &Window<'_>) -> Option<String> {
     let controls = window.controls();
     let field = controls.iter().find(|control| control["label"] == "camera")?;
     field["value"].as_str().map(str::to_owned)
+}
+
+/// The camera's eye, and where it lies from its target.
+fn eye_and_offset(window: &Window<'_>) -> Option<([f64; 3], [f64; 3])> {
+    let numbers: Vec<f64> =
+        camera(window)?.split(',').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
+    let [eye, target] = [numbers.first_chunk::<3>()?, numbers.last_chunk::<3>()?];
+    Some((*eye, std::array::from_fn(|axis| eye[axis] - target[axis])))
 }
 
 #[test]

@@ -13,11 +13,12 @@ use serde_json::Value;
 use tempfile::TempDir;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, EventMask, ImageFormat, InputFocus,
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, EventMask, ImageFormat, InputFocus, PropMode,
     Window as WindowId,
 };
 use x11rb::protocol::xtest::ConnectionExt as XtestExt;
 use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as WrapperExt;
 
 use crate::cli::program::{Ended, Running, device, fumarole};
 
@@ -117,6 +118,14 @@ impl Display {
         })
     }
 
+    /// Sets the display's dots per inch, as a desktop's settings do; 96 are a scale of 1.
+    pub fn set_dots_per_inch(&self, dpi: u32) {
+        let text = format!("Xft.dpi:\t{dpi}\n");
+        let (manager, string) = (AtomEnum::RESOURCE_MANAGER, AtomEnum::STRING);
+        let changed = self.connection.change_property8(PropMode::REPLACE, self.root, manager, string, text.as_bytes());
+        changed.unwrap().check().unwrap();
+    }
+
     /// What is on the screen.
     pub fn screenshot(&self) -> Rgba8 {
         let geometry = self.connection.get_geometry(self.root).unwrap().reply().unwrap();
@@ -152,6 +161,14 @@ impl Display {
         let codes: Vec<u8> = symbols.iter().map(|symbol| self.code(*symbol)).collect();
         codes.iter().for_each(|code| self.input(KEY_PRESS, *code, (0, 0)));
         codes.iter().rev().for_each(|code| self.input(KEY_PRESS + 1, *code, (0, 0)));
+    }
+
+    /// Holds a key down.
+    pub fn hold(&self, symbol: u32, time: Duration) {
+        let code = self.code(symbol);
+        self.input(KEY_PRESS, code, (0, 0));
+        thread::sleep(time);
+        self.input(KEY_PRESS + 1, code, (0, 0));
     }
 
     /// Types what no key needs Shift for.
@@ -205,10 +222,21 @@ impl<'a> Window<'a> {
     /// As [`Window::open`], of the program as it is given.
     pub fn start(display: &'a Display, program: crate::cli::program::Program) -> Self {
         let folder = tempfile::tempdir().unwrap();
+        let state = folder.path().to_owned();
+        Self::start_in(display, program, folder, &state)
+    }
+
+    /// As [`Window::open`], with what an earlier window left in the folder of the user's state.
+    pub fn open_again(display: &'a Display, arguments: &str, state: &Path) -> Self {
+        let program = fumarole(&format!("view {arguments} --validate")).arg("--device").arg(device());
+        Self::start_in(display, program, tempfile::tempdir().unwrap(), state)
+    }
+
+    fn start_in(display: &'a Display, program: crate::cli::program::Program, folder: TempDir, state: &Path) -> Self {
         let controls = folder.path().join("controls.json");
         let program = program.arg("--controls").arg(&controls);
         let program = program.env("DISPLAY", &display.name).without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
-        let program = program.env("XDG_STATE_HOME", folder.path()).inside(folder.path()).start();
+        let program = program.env("XDG_STATE_HOME", state).inside(folder.path()).start();
         let mut window = Window { display, program: Some(program), id: 0, controls, folder };
         window.id =
             window.wait("the window", |window| display.find(display.root, "fumarole").filter(|_| window.has("paper")));

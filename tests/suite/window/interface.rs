@@ -69,7 +69,6 @@ fn side_setup(variant: &str) -> SideSetup {
         choice: SideChoice { variant: Some(variant.into()), compiler: Some("glslang".into()), preset: None },
         values: values.map(String::from).to_vec(),
         set: vec!["depth".into()],
-        refused: Vec::new(),
         camera: Some([0.0, 1.0, 5.0, 0.0, 0.0, 0.0]),
         lens: None,
     }

@@ -7,6 +7,7 @@ mod display;
 mod drop;
 mod headless;
 mod interface;
+mod lasting;
 mod painting;
 mod presents;
 mod scene;

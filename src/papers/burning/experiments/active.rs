@@ -3,12 +3,11 @@
 use serde_json::json;
 
 use super::super::setup::Setup;
-use super::sweeps::{SIMULATION, at_tick, gpu_ms, point, result};
+use super::sweeps::{SIMULATION, at_tick, gpu_ms, passes_plot, point, result};
 use crate::measure::Error;
 use crate::measure::result_table::ResultTable;
 use crate::measure::sweep::{Point, Row};
 use crate::papers::burning::{Parameters, TICKS_PER_S};
-use crate::report::plot::{LineChart, Scale, Series};
 use crate::report::record::Run;
 
 /// Shares of the vertices that are active.
@@ -87,22 +86,9 @@ pub fn table(rows: &[Row]) -> ResultTable {
 /// # Errors
 /// [`Error::Plot`].
 pub fn plot(rows: &[Row]) -> Result<String, Error> {
-    let line = |name: &str, passes: &[&str]| {
-        let at = |row: &Row| Some((100.0 * active(&row.run)?, gpu_ms(&row.run, passes)?));
-        Series { name: name.to_owned(), points: rows.iter().filter_map(at).collect(), reference: false }
-    };
-    let mut series: Vec<Series> = SIMULATION.iter().map(|pass| line(pass, &[pass])).collect();
-    series.push(line("simulation", &SIMULATION));
-    series.retain(|s| !s.points.is_empty());
-    let chart = LineChart {
-        title: "Burning: time of a tick by active vertices".to_owned(),
-        x_label: "active vertices, %".to_owned(),
-        y_label: "ms".to_owned(),
-        x_scale: Scale::Log,
-        y_scale: Scale::Log,
-        series,
-    };
-    Ok(chart.to_svg()?)
+    let percent = |run: &Run| Some(100.0 * active(run)?);
+    let labels = ["Burning: time of a tick by active vertices", "active vertices, %"];
+    passes_plot(rows, labels, &percent, ("simulation", &|run| gpu_ms(run, &SIMULATION)))
 }
 
 #[cfg(test)]

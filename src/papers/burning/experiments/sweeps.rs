@@ -251,17 +251,34 @@ pub fn scaling_table(rows: &[Row]) -> ResultTable {
 /// # Errors
 /// [`Error::Plot`].
 pub fn scaling_plot(rows: &[Row]) -> Result<String, Error> {
-    let line = |name: &str, ms: &dyn Fn(&Run) -> Option<f64>| {
-        let points =
-            rows.iter().filter_map(|row| Some((result(&row.run, "active_triangles").as_f64()?, ms(&row.run)?)));
-        Series { name: name.to_owned(), points: points.filter(|(active, _)| *active > 0.0).collect(), reference: false }
+    let active = |run: &Run| result(run, "active_triangles").as_f64();
+    let labels = ["Burning: time of each pass by active triangles", "active triangles"];
+    passes_plot(rows, labels, &active, ("frame", &Run::median_frame_ms))
+}
+
+/// A number of a run, where it has it.
+pub type OfRun<'a> = &'a dyn Fn(&Run) -> Option<f64>;
+
+/// Time of each simulation pass, and one by its name, over `x` above 0; both scales logarithmic.
+///
+/// # Errors
+/// [`Error::Plot`].
+pub fn passes_plot(
+    rows: &[Row],
+    [title, x_label]: [&str; 2],
+    x: OfRun<'_>,
+    whole: (&str, OfRun<'_>),
+) -> Result<String, Error> {
+    let line = |name: &str, ms: OfRun<'_>| {
+        let points = rows.iter().filter_map(|row| Some((x(&row.run)?, ms(&row.run)?)));
+        Series { name: name.to_owned(), points: points.filter(|(x, _)| *x > 0.0).collect(), reference: false }
     };
     let mut series: Vec<Series> = SIMULATION.iter().map(|pass| line(pass, &|run| gpu_ms(run, &[pass]))).collect();
-    series.push(line("frame", &Run::median_frame_ms));
+    series.push(line(whole.0, whole.1));
     series.retain(|s| !s.points.is_empty());
     let chart = LineChart {
-        title: "Burning: time of each pass by active triangles".to_owned(),
-        x_label: "active triangles".to_owned(),
+        title: title.to_owned(),
+        x_label: x_label.to_owned(),
         y_label: "ms".to_owned(),
         x_scale: Scale::Log,
         y_scale: Scale::Log,
