@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{BURNING, CAUSTICS, GAS, LAVA, Paper, TERRAIN, layer_manifest};
+use super::{BURNING, CAUSTICS, CAUSTICS_SMART, GAS, LAVA, Paper, TERRAIN, layer_manifest};
 use crate::cli::program::{ONCE, folder};
 
 /// Compilers of a run's passes.
@@ -14,8 +14,8 @@ fn compilers(run: &serde_json::Value) -> Vec<&str> {
 fn assert_clean(paper: &Paper) {
     let folder = folder();
     for compiler in ["glslang", "naga"] {
-        let program =
-            paper.run("bench --variant all --quiet --json").args(ONCE).args("--shader-compiler").arg(compiler);
+        let program = paper.run("bench --quiet --json").args(ONCE).args("--shader-compiler").arg(compiler);
+        let program = program.args("--variant").arg(paper.variants);
         let ended = paper.under_current_layer(program.on_test_device(), &folder).run().succeeded();
         let record = ended.json();
         let runs = record["runs"].as_array().unwrap();
@@ -42,6 +42,7 @@ fn gas_is_clean() {
 #[test]
 fn caustics_is_clean() {
     assert_clean(&CAUSTICS);
+    assert_clean(&CAUSTICS_SMART);
 }
 
 #[test]

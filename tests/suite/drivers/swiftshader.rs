@@ -4,7 +4,7 @@
 use fumarole::image::{Rgba8, read_png};
 use tempfile::TempDir;
 
-use super::{BURNING, CAUSTICS, GAS, LAVA, Paper, TERRAIN, driver_manifest};
+use super::{BURNING, CAUSTICS, CAUSTICS_SMART, GAS, LAVA, Paper, TERRAIN, driver_manifest};
 use crate::cli::program::{ONCE, Program, SCENE, folder, fumarole};
 
 /// Most that the pictures of two drivers differ on average, of 255: edges of triangles and points fall on other pixels, and
@@ -59,6 +59,7 @@ fn gas_looks_the_same() {
 #[test]
 fn caustics_looks_the_same() {
     assert_same_pictures(&CAUSTICS);
+    assert_same_pictures(&CAUSTICS_SMART);
 }
 
 #[test]
