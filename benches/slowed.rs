@@ -3,7 +3,7 @@
 //!
 //! `cargo bench --bench slowed -- PAIRS BLOCKS`: pairs of equal sides (20 without a number), blocks A B B A in each at most
 //! (20). Fails where the pass is not named, or more than 3 of 20 pairs have a false verdict. On an idle machine: it takes
-//! about a quarter of an hour on lavapipe with 2 cores.
+//! about three quarters of an hour on lavapipe with 2 cores.
 
 use std::error::Error;
 use std::fs;

@@ -119,7 +119,7 @@ pub fn publish(output: &OutputArgs, record: &Record, traces: &[TraceRun]) -> Res
     let traced = output.trace.as_deref().map_or(Ok(()), |path| {
         let left_out: u64 = traces.iter().map(|trace| trace.frames_left_out).sum();
         if left_out > 0 {
-            warn(output, &format!("{} leaves out the last {left_out} frames, too many for a viewer", path.display()));
+            warn(output, &format!("{} leaves out {left_out} frames, too many for a viewer", path.display()));
         }
         save(output, path, trace::to_string(traces).as_bytes())
     });
