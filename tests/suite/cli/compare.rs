@@ -105,6 +105,9 @@ fn passes_below_the_least_share_do_not_fail() {
     compare(&a, &b).args("--fail-above 5% --min-share 80%").run().succeeded();
 }
 
+/// A run that reads the file.
+type Reading<'a> = &'a dyn Fn(&str) -> Program;
+
 /// Files count by what they hold, wherever they lie: a mesh, a map, a drape.
 #[test]
 fn files_are_told_by_their_content() {
@@ -131,8 +134,7 @@ fn files_are_told_by_their_content() {
     let map = |file: &str| terrain(format!("--map {file}"));
     let object = |file: &str| terrain(format!("--resolution 17 --object {file}"));
     let drape = |file: &str| terrain(format!("--resolution 17 --drape {file}"));
-    let papers: [(&str, &dyn Fn(&str) -> Program); 4] =
-        [("obj", &caustics), ("asc", &map), ("obj", &object), ("png", &drape)];
+    let papers: [(&str, Reading<'_>); 4] = [("obj", &caustics), ("asc", &map), ("obj", &object), ("png", &drape)];
     for (ending, program) in papers {
         let record = |name: &str| {
             let (source, json) = (format!("{name}.{ending}"), format!("{name}.json"));
