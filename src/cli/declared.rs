@@ -81,8 +81,11 @@ fn bench_command<S: Study>() -> Command {
     let default = format!("that of a preset made for one, or {benched}");
     let variants = variant_list::<S>("Variants to measure, comma-separated, or all", &default);
     let command = with_scene::<S>(Command::new("bench").arg(variants));
+    // A list in one word, too, takes the place of one before it.
+    let is_joined = |arg: &Arg| arg.get_value_delimiter().is_some();
     finish(
-        DepthArgs::augment_args(CommonArgs::augment_args(command)),
+        DepthArgs::augment_args(CommonArgs::augment_args(command))
+            .mut_args(|arg| if is_joined(&arg) { arg.action(ArgAction::Set) } else { arg }),
         "Time one configuration in one or more variants, interleaved",
     )
 }
@@ -197,7 +200,7 @@ fn variant_list<S: Study>(help: &str, default: &str) -> Arg {
     Arg::new("variant")
         .long("variant")
         .value_name("VARIANT,..")
-        .action(ArgAction::Set)
+        .action(ArgAction::Append)
         .value_delimiter(',')
         .help(format!("{help} [default: {default}]"))
         .value_parser(PossibleValuesParser::new(S::Variant::ALL.iter().map(|v| v.as_str()).chain(["all"])))

@@ -18,7 +18,7 @@ use crate::image::{self, Rgba8};
 use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
 use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page};
 use crate::report::json::{self, ReadError};
-use crate::report::tables::{self, Tables};
+use crate::report::tables::{self, Rows, Tables};
 use crate::report::{Record, Run};
 
 #[derive(Debug, Clone, Args)]
@@ -146,7 +146,7 @@ fn add_folder(contents: &mut Contents, folder: &Path) -> Result<(), Failure> {
                 Ok(Document::Verdicts(found)) if path.ends_with(VERDICTS_FILE) => verdicts = Some(*found),
                 Ok(Document::Verdicts(found)) => contents.verdicts.extend(named_sections(path, &found)),
                 Err(ReadError::WrongSchema { found, .. }) if found.starts_with("\"fumarole.") => {
-                    foreign.entry(found).or_default().push(name_of(path));
+                    foreign.entry(told(&found).to_owned()).or_default().push(name_of(path));
                 }
                 Err(ReadError::WrongSchema { .. }) if is_older_table(path) => {
                     let problem = "tables of an older program, which the page does not show; run the experiment again";
@@ -232,14 +232,24 @@ fn named_sections(source: &Path, comparison: &Comparison) -> Vec<Section> {
 
 /// Adds tables, unless a page of them would be too large.
 fn add_tables(contents: &mut Contents, path: &Path, document: Tables) {
-    let cells = document.all().map(|table| table.columns.len().max(1).saturating_mul(table.rows.len()));
     let name = path.display().to_string();
-    match cells.max().unwrap_or(0) {
-        0..=MAX_CELLS => contents.tables.push(TableSource { name, document }),
-        cells => {
-            contents.warnings.push(format!("{name}: a table of {cells} cells is too large for a page; see its CSV"))
-        }
+    let cells = document.all().map(|table| table.columns.len().max(1).saturating_mul(table.rows.len()));
+    let cells = cells.fold(0_usize, usize::saturating_add);
+    // A heading that stands there twice has its cells twice.
+    let bytes = || document.all().map(Rows::text_bytes).fold(0_usize, usize::saturating_add) as u64;
+    if cells > MAX_CELLS {
+        contents.warnings.push(format!("{name}: tables of {cells} cells are too large for a page; see their CSV"));
+    } else if bytes() > MAX_DOCUMENT_BYTES {
+        contents.warnings.push(format!("{name}: its tables have too much text for a page; see their CSV"));
+    } else {
+        contents.tables.push(TableSource { name, document });
     }
+}
+
+/// A schema as a message tells it, of a file that nobody named.
+fn told(schema: &str) -> &str {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "\"./-".contains(letter);
+    if schema.len() <= 40 && schema.chars().all(is_plain) { schema } else { "of another program" }
 }
 
 /// A joined record as one input a process, in their order.
@@ -298,6 +308,12 @@ fn pairs(a: &[Drawn], b: &[Drawn]) -> Vec<Pair> {
 fn add_record(contents: &mut Contents, path: &Path, record: Record) -> Vec<Drawn> {
     let mut found: Vec<(Picture, Rgba8)> = vec![];
     for (index, run) in record.runs.iter().enumerate() {
+        // Every process of a side of `ab` has drawn the same.
+        let is_run =
+            |other: &Run| (&other.paper, &other.variant, &other.image) == (&run.paper, &run.variant, &run.image);
+        if record.runs[..index].iter().any(is_run) {
+            continue;
+        }
         match picture(path, run) {
             None => {}
             Some(Err(problem)) => contents.warnings.push(problem),

@@ -51,6 +51,12 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// Length of all texts in all columns, bytes.
+    pub fn text_bytes(&self) -> usize {
+        let cells = self.rows.iter().flat_map(|row| self.columns.iter().map(move |name| row.cell(name)));
+        cells.map(|cell| cell.as_str().map_or(0, str::len)).fold(0, usize::saturating_add)
+    }
+
     /// Columns in which a row has something: those that a reader is shown.
     pub fn shown_columns(&self) -> Vec<&str> {
         let is_shown = |name: &&str| self.rows.iter().any(|row| !shown(row.cell(name)).is_empty());
@@ -90,7 +96,7 @@ mod tests {
         let read = |text: &str| -> Value { serde_json::from_str(text).unwrap() };
         let bench = read(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.bench-1.json")));
         let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.table-1.json"));
-        let mut schema = read(&text.replace("fumarole.bench-1.json#", "#"));
+        let mut schema = read(&text.replace("urn:fumarole:bench-1#", "#"));
         jsonschema::meta::validate(&schema).unwrap();
         for (name, definition) in bench["$defs"].as_object().unwrap() {
             schema["$defs"][name] = definition.clone();

@@ -89,7 +89,9 @@ pub fn to_string(runs: &[TraceRun]) -> String {
         }));
     }
     let lines: Vec<String> = events.iter().map(Value::to_string).collect();
-    format!("{{\"displayTimeUnit\": \"ms\", \"traceEvents\": [\n{}\n]}}\n", lines.join(",\n"))
+    let other = json!({"frames_left_out": runs.iter().map(|run| run.frames_left_out).sum::<u64>()});
+    let events = lines.join(",\n");
+    format!("{{\"displayTimeUnit\": \"ms\", \"otherData\": {other}, \"traceEvents\": [\n{events}\n]}}\n")
 }
 
 fn metadata(name: &str, process: usize, thread: u32, args: Value) -> Value {
@@ -150,6 +152,6 @@ mod tests {
     #[test]
     fn no_runs_are_still_a_trace() {
         let trace: Value = serde_json::from_str(&to_string(&[])).unwrap();
-        assert_eq!(trace["traceEvents"], json!([]));
+        assert_eq!((&trace["traceEvents"], &trace["otherData"]["frames_left_out"]), (&json!([]), &json!(0)));
     }
 }

@@ -97,7 +97,7 @@ fn differences(comparison: &Comparison) -> Vec<String> {
             let [first, ..] = same_kind[..] else { continue };
             // Every pass has another digest, but most often all have one compiler.
             let are_alike = same_kind.iter().all(|one| (&one.a, &one.b) == (&first.a, &first.b));
-            lines.push(match are_alike {
+            lines.push(match are_alike && plural == "shader compilers" {
                 true => line(&format!("{plural} of {} passes", same_kind.len()), first),
                 false => format!("{plural}: {} differ", same_kind.len()),
             });

@@ -272,6 +272,17 @@ pub struct Difference {
     pub b: Vec<String>,
 }
 
+/// The commands of a side's records, each once.
+pub(super) fn commands(side: &[Input]) -> Vec<Vec<String>> {
+    let mut commands: Vec<Vec<String>> = vec![];
+    for command in side.iter().map(|input| &input.record.command).filter(|command| !command.is_empty()) {
+        if !commands.contains(command) {
+            commands.push(command.clone());
+        }
+    }
+    commands
+}
+
 /// All that differs between the sides beside their times: environment, program and shaders.
 pub(super) fn differences_between(a: &[Input], b: &[Input]) -> Vec<Difference> {
     let of = |side: &[Input]| {

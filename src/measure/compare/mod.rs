@@ -32,7 +32,7 @@ use serde_json::{Map, Value};
 use super::statistics::median;
 use crate::report::environment;
 use crate::report::record::{Record, Run};
-use matching::Configuration;
+use matching::{Configuration, commands};
 
 /// The value of [`Comparison::schema`].
 pub const SCHEMA: &str = "fumarole.compare/2";
@@ -280,17 +280,6 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         only_in_b: matched.only_in_b,
         warnings: matched.warnings,
     })
-}
-
-/// The commands of a side's records, each once.
-fn commands(side: &[Input]) -> Vec<Vec<String>> {
-    let mut commands: Vec<Vec<String>> = vec![];
-    for command in side.iter().map(|input| &input.record.command).filter(|command| !command.is_empty()) {
-        if !commands.contains(command) {
-            commands.push(command.clone());
-        }
-    }
-    commands
 }
 
 /// Refuses times below zero.

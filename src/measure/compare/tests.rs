@@ -402,26 +402,19 @@ fn what_differs_beside_the_times_is_listed_first() {
 /// Of many passes the compiler that all were compiled by is named, not how many differ.
 #[test]
 fn compilers_of_many_passes_are_named_once() {
-    let record = with_passes(&[5.0; 4], &[1.0; 4], &[1.0; 4]);
     let compiled = |name: &str, compilers: &[&str]| {
-        let mut side = input(name, vec![record.clone()]);
-        let pass = side.record.runs[0].passes[0].clone();
-        let of = |(index, compiler): (usize, &&str)| Pass {
-            name: format!("pass-{index}"),
-            shader_compiler: Some((*compiler).to_owned()),
-            ..pass.clone()
+        let of = |(index, compiler): (usize, &&str)| {
+            let pass = example::pass(&format!("pass-{index}"), PassKind::Graphics);
+            Pass { shader_compiler: Some((*compiler).to_owned()), ..pass }
         };
-        side.record.runs[0].passes = compilers.iter().enumerate().map(of).collect();
-        [side]
+        [input(name, vec![Run { passes: compilers.iter().enumerate().map(of).collect(), ..run_of(&[5.0; 4]) }])]
     };
     let text = |b: &[&str]| {
         let comparison = compared(&compiled("a.json", &["glslang"; 6]), &compiled("b.json", b), None);
         render(&comparison, Style::default())
     };
-    let alike = text(&["naga"; 6]);
-    assert!(alike.contains("shader compilers of 6 passes: A glslang, B naga"), "{alike}");
-    let unlike = text(&["naga", "other", "naga", "other", "naga", "other"]);
-    assert!(unlike.contains("shader compilers: 6 differ"), "{unlike}");
+    assert!(text(&["naga"; 6]).contains("shader compilers of 6 passes: A glslang, B naga"));
+    assert!(text(&["naga", "other"].repeat(3)).contains("shader compilers: 6 differ"));
 }
 
 #[test]

@@ -120,10 +120,10 @@ impl Choice for CullSteps {
     ];
 }
 
-/// A [`CellBlock`] for each of the uniform planes; the box's centre is at `middle_m` from the rays' reference point.
-fn uniform_cells(context: Context<'_>, lit: &LitReceiver, middle_m: f64) -> Result<Arc<Buffer>, Error> {
+/// A [`CellBlock`] for each of so many uniform planes; the box's centre is at `middle_m` from the rays' reference point.
+fn uniform_cells(context: Context<'_>, lit: &LitReceiver, planes: u32, middle_m: f64) -> Result<Arc<Buffer>, Error> {
     let mut cells = Vec::new();
-    planes::slice(lit.aligned.extent.y, lit.planes, &mut cells);
+    planes::slice(lit.aligned.extent.y, planes, &mut cells);
     let block =
         |cell: &Cell| CellBlock { height: cell.height(middle_m), lower: cell.lower, upper: cell.upper, _pad: 0.0 };
     let blocks: Vec<CellBlock> = cells.iter().map(block).collect();
@@ -162,9 +162,11 @@ impl CulledMap {
         let offset = lit.aligned.center - volumes.reference;
         let smart = |epsilon_m| SmartPlanes::new(context, lit, epsilon_m, offset.y, position_map);
         let smart_planes = context.parameters.smart_on_device().map(smart).transpose()?;
+        // Smart slicing takes no fewer for what is far away, as on the host.
+        let planes = if context.parameters.culled_smart { context.parameters.planes } else { lit.planes };
         let (cells, planes) = match &smart_planes {
             Some(smart) => (smart.cells.clone(), smart.most()),
-            None => (uniform_cells(context, lit, offset.y)?, lit.planes),
+            None => (uniform_cells(context, lit, planes, offset.y)?, planes),
         };
 
         let position_pyramid = PositionPyramid::new(context, position_map)?;

@@ -98,7 +98,7 @@ impl SmartPlanes {
     ) -> Result<Self, Error> {
         let (height, levels) = (lit.aligned.extent.y, context.parameters.smart.levels);
         let map_size = context.parameters.map_size;
-        let fits = Fit::of_each(height, levels, planes::threshold(height, lit.planes, epsilon_m));
+        let fits = Fit::of_each(height, levels, planes::threshold(height, context.parameters.planes, epsilon_m));
         let most = planes::most_fitted(&fits);
         let mut slices = Vec::new();
         planes::slice(height, levels, &mut slices);

@@ -64,7 +64,11 @@ fn parameters<S: Study>(choice: &Choice, side: &Resolved<S>) -> Vec<String> {
                 line.push(if is_on { format!("--{name}") } else { format!("--no-{name}") });
             }
             Some(typed) if text != parameter.text(&base) || is_required(name) => {
-                line.extend(typed.values.iter().map(|value| option(name, &value.to_string_lossy())));
+                let values: Vec<_> = typed.values.iter().map(|value| value.to_string_lossy()).collect();
+                match parameter.shape().joins {
+                    true => line.push(option(name, &values.join(","))),
+                    false => line.extend(values.iter().map(|value| option(name, value))),
+                }
             }
             None if is_required(name) && !text.is_empty() => line.push(option(name, &text)),
             _ => {}

@@ -315,6 +315,12 @@ fn planes_of_the_device_light_what_those_of_the_host_light() {
                 smart: SmartParameters { placement: SmartPlacement::Kept, levels: 1 },
                 ..parameters(OBLIQUE)
             },
+            Parameters { planes_within_m: Some(0.5), planes: 40, ..parameters(OBLIQUE) },
+            Parameters {
+                planes_within_m: Some(0.5),
+                smart: SmartParameters { placement: SmartPlacement::Kept, levels: 1 },
+                ..parameters(OBLIQUE)
+            },
         ];
         for (number, parameters) in cases.iter().enumerate() {
             by_host_and_device(device, parameters, &receivers, &format!("case {number}"));
@@ -329,9 +335,9 @@ fn planes_of_the_device_light_what_those_of_the_host_light() {
     });
 }
 
-/// A frame finds nothing of the one before in the profile.
+/// Nothing of the frames before adds up.
 #[test]
-fn planes_of_the_device_are_placed_anew_in_every_frame() {
+fn planes_of_the_device_are_those_of_one_frame() {
     gpu_test(|device| {
         let smart = Parameters { culled_smart: true, ..parameters(OBLIQUE) };
         let receivers = [two_bodies()];

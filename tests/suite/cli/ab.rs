@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use serde_json::json;
+
 use super::program::{ONCE, Program, SCENE, device, folder, fumarole, read_json};
 use super::shaders::{end_cast_with, own_shaders};
 
@@ -119,6 +121,15 @@ fn a_side_s_own_value_comes_after_the_common_one() {
     let differences = report["differences"].as_array().unwrap();
     let seed = differences.iter().find(|difference| difference["what"] == "seed").expect("the seeds differ");
     assert_eq!((&seed["a"][0], &seed["b"][0]), (&"3".into(), &"4".into()));
+    // Of a list that one word names as well.
+    let program =
+        ab("--json --out").arg(out.path()).arg("--b").arg("--march delta").args("gas --variant none --march steps");
+    let program = program.args("--size 24x16").args(ONCE).arg("--device").arg(device());
+    let report = program.run().succeeded().json();
+    assert_eq!((&report["only_in_a"], &report["only_in_b"]), (&json!([]), &json!([])), "{report}");
+    let differences = report["differences"].as_array().unwrap();
+    let march = differences.iter().find(|difference| difference["what"] == "march").expect("the marches differ");
+    assert_eq!((&march["a"], &march["b"]), (&json!(["steps"]), &json!(["delta"])), "{march}");
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn a_regression_beyond_the_limit_ends_with_4() {
     assert!(compare(&slower, &a).args("--fail-above 5%").run().succeeded().stdout.contains("FASTER:"));
 }
 
-/// One pass three times slower under a flat frame fails, unless its share is less than what is asked for.
+/// One pass half as slow again under a flat frame fails, unless its share is less than what is asked for.
 #[test]
 fn passes_below_the_least_share_do_not_fail() {
     let out = folder();
@@ -96,7 +96,7 @@ fn passes_below_the_least_share_do_not_fail() {
     let mut slower = record_of(5, 1.0);
     for run in slower["runs"].as_array_mut().unwrap() {
         let passes = run["passes"].as_array_mut().unwrap();
-        scale(&mut passes.iter_mut().find(|pass| pass["name"] == "illumination-volumes").unwrap()["gpu_ms"], 3.0);
+        scale(&mut passes.iter_mut().find(|pass| pass["name"] == "illumination-volumes").unwrap()["gpu_ms"], 1.5);
     }
     let b = file(&out, "b.json", slower.to_string());
     let ended = compare(&a, &b).args("--fail-above 5% --min-share 0%").run();

@@ -187,11 +187,34 @@ fn nothing_of_ours_is_left_out_in_silence() {
     assert_eq!(text.matches("class=\"warning\"").count(), 3, "{text}");
 }
 
+/// A page is no larger for a heading that stands there often, or for many tables.
+#[test]
+fn tables_that_no_page_holds_are_left_out() {
+    let out = folder();
+    let mut tables: Value =
+        serde_json::from_str(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/tables.json"))).unwrap();
+    file(&out, "small.json", tables.to_string());
+    tables["table"]["columns"] = json!(vec!["mesh"; 2000]);
+    tables["table"]["rows"] = json!([{"mesh": "x".repeat(100_000)}]);
+    file(&out, "repeated.json", tables.to_string());
+    tables["table"] = tables["more"]["smallest"].clone();
+    let wide = json!({"title": "", "columns": vec!["mesh"; 400], "rows": vec![json!({"mesh": 1}); 300]});
+    tables["more"] = json!({"a": wide, "b": wide});
+    file(&out, "many.json", tables.to_string());
+    let page = out.path().join("page.html");
+    let ended = fumarole("report").arg(out.path()).arg("--output").arg(&page).run().succeeded();
+    for part in ["repeated.json: its tables have too much text", "many.json: tables of 240001 cells"] {
+        assert!(ended.stderr.contains(part), "{part} in {}", ended.stderr);
+    }
+    let text = fs::read_to_string(&page).unwrap();
+    assert!(text.contains("small.json") && text.len() < 200_000, "{} bytes", text.len());
+}
+
 fn assert_table_schema(document: &Value) {
     let read = |text: &str| serde_json::from_str::<Value>(text).unwrap();
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.table-1.json"));
     let bench = read(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.bench-1.json")));
-    let mut schema = read(&text.replace("fumarole.bench-1.json#", "#"));
+    let mut schema = read(&text.replace("urn:fumarole:bench-1#", "#"));
     for (name, part) in bench["$defs"].as_object().unwrap() {
         schema["$defs"][name] = part.clone();
     }
