@@ -163,10 +163,10 @@ impl CulledMap {
         let smart = |epsilon_m| SmartPlanes::new(context, lit, epsilon_m, offset.y, position_map);
         let smart_planes = context.parameters.smart_on_device().map(smart).transpose()?;
         // Smart slicing takes no fewer for what is far away, as on the host.
-        let planes = if context.parameters.culled_smart { context.parameters.planes } else { lit.planes };
+        let uniform = if context.parameters.culled_smart { context.parameters.planes } else { lit.planes };
         let (cells, planes) = match &smart_planes {
             Some(smart) => (smart.cells.clone(), smart.most()),
-            None => (uniform_cells(context, lit, planes, offset.y)?, planes),
+            None => (uniform_cells(context, lit, uniform, offset.y)?, uniform),
         };
 
         let position_pyramid = PositionPyramid::new(context, position_map)?;
@@ -271,7 +271,7 @@ impl CulledMap {
                 center,
                 texels_per_m: [(texels / extent.x) as f32, (texels / extent.z) as f32],
                 top: (lit.aligned.extent.y / 2.0) as f32,
-                cells_per_m: (f64::from(lit.planes) / lit.aligned.extent.y) as f32,
+                cells_per_m: (f64::from(uniform) / lit.aligned.extent.y) as f32,
                 inset: 0.5 / context.parameters.coverage as f32,
                 map_size: context.parameters.map_size,
                 levels: position_pyramid.level_count(),

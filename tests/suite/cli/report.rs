@@ -100,7 +100,7 @@ fn tables_of_experiments_stand_on_the_page_as_they_are_printed() {
     large["table"]["rows"] = vec![json!({}); 60_000].into();
     file(&out, "caustics-5-2.json", large.to_string());
     let ended = fumarole("report").arg(out.path()).arg("-o").arg(&page).run().succeeded();
-    assert!(ended.stderr.contains("180000 cells is too large"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("180000 cells are too large"), "{}", ended.stderr);
 }
 
 /// Records of this schema from before limits had samples and five more of them, before primitives were counted behind the
