@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-use serde_json::Value;
-
+use super::alternative::alternative;
 use super::profile::profile;
 use super::record::{Limits, Pass, Record, Run, Summary};
 use super::table::{Align, Style, Table};
@@ -55,18 +54,6 @@ fn limits_line(limits: &Limits) -> String {
 fn significant(value: f64) -> String {
     let before = value.abs().max(f64::MIN_POSITIVE).log10().floor();
     format!("{value:.*}", (2.0 - before).clamp(0.0, 9.0) as usize)
-}
-
-/// The parameters that tell a run from others of its variant and preset, with a comma before each; empty for a run without
-/// such others.
-fn alternative(run: &Run, runs: &[Run]) -> String {
-    let is_like =
-        |other: &&Run| (&other.paper, &other.variant, &other.preset) == (&run.paper, &run.variant, &run.preset);
-    let others: Vec<&Run> = runs.iter().filter(is_like).collect();
-    let differs = |name: &str| others.iter().any(|other| other.config.get(name) != run.config.get(name));
-    let telling = run.config.iter().filter(|(name, value)| !value.is_array() && !value.is_object() && differs(name));
-    let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    telling.map(|(name, value)| format!(", {name} {}", text(value))).collect()
 }
 
 /// One run: its name, the table of passes in the paper's order, the frame, and what the passes leave

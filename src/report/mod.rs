@@ -12,6 +12,7 @@
 //! any text --> file::write (temporary file, renamed)
 //! ```
 
+pub mod alternative;
 mod bounded;
 pub mod console;
 pub mod csv;
