@@ -17,7 +17,7 @@ use crate::report::plot::PlotError;
 use crate::report::record::Run;
 use crate::report::table::Style;
 use crate::report::tables::{self, Tables};
-use crate::report::{Record, csv, environment, json as writer};
+use crate::report::{Record, console, csv, environment, json as writer};
 
 /// One table or figure of a paper.
 pub struct Experiment<S: Study> {
@@ -32,6 +32,9 @@ pub struct Experiment<S: Study> {
     /// Reproduces it.
     pub run: fn(&mut Context<'_, S>) -> Result<(), Error>,
 }
+
+/// A table beside an experiment's runs, and its name at the end of its files' names.
+pub type NamedTable = (&'static str, ResultTable);
 
 /// Output of an experiment to the user, while it runs and after it.
 pub trait Console {
@@ -259,8 +262,8 @@ impl<S: Study> Context<'_, S> {
         Ok(())
     }
 
-    /// Publishes a measured table: the record, its rows and the plots, each with its file's suffix, as files, and
-    /// `table` or the record on standard output.
+    /// Publishes runs: the record, its rows, the plots, each with its file's suffix, and the tables as files; on standard
+    /// output `text`, the tables and every warning once, or the record.
     ///
     /// # Errors
     /// [`Error::Output`].
@@ -268,20 +271,72 @@ impl<S: Study> Context<'_, S> {
         &self,
         machine: &Machine,
         mut runs: Vec<Run>,
-        table: String,
+        mut text: String,
         plots: &[(String, String)],
+        tables: &[NamedTable],
     ) -> Result<(), Error> {
-        for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
-            *warning = self.console.spell(warning);
-        }
+        self.spell_warnings(&mut runs);
         let record = Record::new(machine.environment(), environment::command(), runs);
-        let text = json_text(&record)?;
-        self.save(&self.json_file(), text.as_bytes())?;
+        let json = json_text(&record)?;
+        self.save(&self.json_file(), json.as_bytes())?;
         self.save(&self.csv_file(), csv::to_string(&record).as_bytes())?;
         for (suffix, svg) in plots {
             self.save(&self.file(suffix), svg.as_bytes())?;
         }
-        self.print(if self.is_json_printed() { text } else { table })
+        self.save_tables(machine, tables)?;
+        let style = self.console.style();
+        for (_, table) in tables {
+            let space = if text.is_empty() { "" } else { "\n" };
+            text.push_str(&format!("{space}{}", table.render(style)));
+        }
+        text.push_str(&console::warnings(&record.runs, style));
+        self.print(if self.is_json_printed() { json } else { text })
+    }
+
+    fn spell_warnings(&self, runs: &mut [Run]) {
+        for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
+            *warning = self.console.spell(warning);
+        }
+    }
+
+    /// Prints every warning of measured rows once, after a table that was made of them, unless standard output holds a
+    /// document.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn publish_warnings(&self, rows: Vec<Row>) -> Result<(), Error> {
+        let mut runs: Vec<Run> = rows.into_iter().map(|row| row.run).collect();
+        self.spell_warnings(&mut runs);
+        if self.is_json_printed() { Ok(()) } else { self.print(console::warnings(&runs, self.console.style())) }
+    }
+
+    /// Writes tables beside a record: each as CSV, and all of them as one document, which the page of a report shows.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn save_tables(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
+        for (name, table) in tables {
+            self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes())?;
+        }
+        self.save_document(machine, tables)
+    }
+
+    fn save_document(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
+        let Some(((_, first), more)) = tables.split_first() else { return Ok(()) };
+        let document = self.document(machine, first, more);
+        self.save(&self.file("-tables.json"), json_text(&document)?.as_bytes())
+    }
+
+    fn document(&self, machine: &Machine, table: &ResultTable, more: &[NamedTable]) -> Tables {
+        Tables {
+            schema: tables::SCHEMA.to_owned(),
+            paper: S::PAPER.to_owned(),
+            experiment: self.name.to_owned(),
+            environment: machine.environment(),
+            command: environment::command(),
+            table: table.document(),
+            more: more.iter().map(|(name, table)| ((*name).to_owned(), table.document())).collect(),
+        }
     }
 
     /// Publishes a table: JSON and CSV as files, and the table or the JSON on standard output.
@@ -296,26 +351,12 @@ impl<S: Study> Context<'_, S> {
     ///
     /// # Errors
     /// [`Error::Output`].
-    pub fn publish_tables(
-        &self,
-        machine: &Machine,
-        table: &ResultTable,
-        more: &[(&str, ResultTable)],
-    ) -> Result<(), Error> {
-        let document = Tables {
-            schema: tables::SCHEMA.to_owned(),
-            paper: S::PAPER.to_owned(),
-            experiment: self.name.to_owned(),
-            environment: machine.environment(),
-            command: environment::command(),
-            table: table.document(),
-            more: more.iter().map(|(name, table)| ((*name).to_owned(), table.document())).collect(),
-        };
+    pub fn publish_tables(&self, machine: &Machine, table: &ResultTable, more: &[NamedTable]) -> Result<(), Error> {
         let mut printed = table.render(self.console.style());
         for (_, table) in more {
             printed.push_str(&format!("\n{}", table.render(self.console.style())));
         }
-        let text = json_text(&document)?;
+        let text = json_text(&self.document(machine, table, more))?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), table.csv().as_bytes())?;
         for (name, table) in more {
@@ -324,13 +365,16 @@ impl<S: Study> Context<'_, S> {
         self.print(if self.is_json_printed() { text } else { printed })
     }
 
-    /// Publishes a table after others: its CSV file, called by its name, and the table on standard output, unless that holds a
-    /// record.
+    /// Publishes one more table after those that were published with the runs: its CSV file, the document of all, and the
+    /// table on standard output, unless that holds a record.
     ///
     /// # Errors
     /// [`Error::Output`].
-    pub fn publish_more(&self, name: &str, table: &ResultTable) -> Result<(), Error> {
+    pub fn publish_more(&self, machine: &Machine, mut tables: Vec<NamedTable>, more: NamedTable) -> Result<(), Error> {
+        tables.push(more);
+        let Some((name, table)) = tables.last() else { return Ok(()) };
         self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes())?;
+        self.save_document(machine, &tables)?;
         if self.is_json_printed() { Ok(()) } else { self.print(format!("\n{}", table.render(self.console.style()))) }
     }
 

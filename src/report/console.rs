@@ -21,19 +21,33 @@ pub fn record(record: &Record, style: Style) -> String {
     if let Some(limits) = record.runs.iter().find_map(|run| run.limits.as_ref()) {
         text.push_str(&limits_line(limits));
     }
+    text.push_str(&warnings(&record.runs, style));
+    text
+}
+
+/// Every warning of the runs once, a line each.
+pub fn warnings(runs: &[Run], style: Style) -> String {
+    counted_warnings(runs).iter().map(|warning| format!("{} {warning}\n", style.yellow("warning:"))).collect()
+}
+
+/// Every warning of the runs once, with the number of runs that it concerns.
+pub fn counted_warnings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<String> {
     let mut warnings: Vec<(&str, usize)> = vec![];
-    for warning in record.runs.iter().flat_map(|run| &run.warnings) {
-        match warnings.iter_mut().find(|(known, _)| known == warning) {
-            Some((_, count)) => *count += 1,
-            None => warnings.push((warning, 1)),
+    let mut count_of_runs = 0;
+    for run in runs {
+        count_of_runs += 1;
+        for warning in &run.warnings {
+            match warnings.iter_mut().find(|(known, _)| known == warning) {
+                Some((_, count)) => *count += 1,
+                None => warnings.push((warning, 1)),
+            }
         }
     }
-    for (warning, count) in warnings {
-        let runs = if count > 1 { format!(" ({count} of {} runs)", record.runs.len()) } else { String::new() };
-        // Writing into a String cannot fail.
-        let _ = writeln!(text, "{} {}{runs}", style.yellow("warning:"), one_line(warning));
-    }
-    text
+    let counted = |(warning, count): (&str, usize)| {
+        let runs = if count > 1 { format!(" ({count} of {count_of_runs} runs)") } else { String::new() };
+        one_line(warning) + &runs
+    };
+    warnings.into_iter().map(counted).collect()
 }
 
 /// The device's own limits with the spread of their samples.

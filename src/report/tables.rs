@@ -1,4 +1,4 @@
-//! The outcome of an experiment that is tables and no runs, schema [`SCHEMA`]: plain data, in the order in which it is
+//! Tables of an experiment, its whole outcome or beside its runs, schema [`SCHEMA`]: plain data, in the order in which it is
 //! written. The JSON Schema is `schema/fumarole.table-1.json`.
 
 use std::collections::BTreeMap;

@@ -10,6 +10,7 @@
 
 mod console;
 mod decision;
+mod doubts;
 mod evidence;
 mod matching;
 #[cfg(test)]
@@ -278,7 +279,7 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         runs: matched.pairs.iter().map(|(a, b)| compare_run(a, b, &options)).collect(),
         only_in_a: matched.only_in_a,
         only_in_b: matched.only_in_b,
-        warnings: matched.warnings,
+        warnings: [matched.warnings, doubts::of_runs(a, b)].concat(),
     })
 }
 

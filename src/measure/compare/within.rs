@@ -10,6 +10,8 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use super::decision::CONFIDENCE;
 use crate::measure::statistics::{median, percentile};
 
+/// Fewer samples a side say nothing of their noise.
+const LEAST_SAMPLES: usize = 5;
 /// Resamples of the frames.
 const RESAMPLES: usize = 1000;
 /// Any fixed number: the same records always give the same interval.
@@ -24,8 +26,8 @@ pub struct Ratio {
     pub b_median_ms: f64,
     /// `b_median_ms / a_median_ms`: below 1 where B is faster.
     pub ratio: f64,
-    /// Lower and upper end, of [`CONFIDENCE`].
-    pub interval: [f64; 2],
+    /// Lower and upper end, of [`CONFIDENCE`]; absent with too few samples to tell their noise.
+    pub interval: Option<[f64; 2]>,
 }
 
 /// The ratio B / A of two methods measured in one process, alternating frame by frame. Absent without samples, and where
@@ -33,18 +35,20 @@ pub struct Ratio {
 pub fn ratio_within_process(a: &[f64], b: &[f64]) -> Option<Ratio> {
     let positive = |samples: &[f64]| median(samples).filter(|median| *median > 0.0);
     let (a_median_ms, b_median_ms) = (positive(a)?, positive(b)?);
+    Some(Ratio { a_median_ms, b_median_ms, ratio: b_median_ms / a_median_ms, interval: interval(a, b) })
+}
+
+fn interval(a: &[f64], b: &[f64]) -> Option<[f64; 2]> {
+    if a.len().min(b.len()) < LEAST_SAMPLES {
+        return None;
+    }
     let block_length = block_length(&residuals(&[a, b])?);
     let (a_draws, b_draws) = (resampled_log_medians(a, block_length), resampled_log_medians(b, block_length));
     let mut differences: Vec<f64> = b_draws.iter().zip(&a_draws).map(|(b, a)| b - a).collect();
     differences.sort_by(f64::total_cmp);
     let tail = 0.5 * (1.0 - CONFIDENCE);
     let bound = |fraction: f64| percentile(&differences, fraction).map(f64::exp);
-    Some(Ratio {
-        a_median_ms,
-        b_median_ms,
-        ratio: b_median_ms / a_median_ms,
-        interval: [bound(tail)?, bound(1.0 - tail)?],
-    })
+    Some([bound(tail)?, bound(1.0 - tail)?])
 }
 
 /// Residuals of each side's samples, as fractions of its median, less what both have in common: frames differ by
@@ -176,7 +180,8 @@ mod tests {
         let content: Vec<f64> = (0..200).map(|frame| 5.0 + 0.05 * f64::from(frame)).collect();
         let slower: Vec<f64> = content.iter().map(|x| 1.1 * x).collect();
         let found = ratio_within_process(&content, &slower).unwrap();
-        for value in [found.ratio, found.interval[0], found.interval[1]] {
+        let [low, high] = found.interval.unwrap();
+        for value in [found.ratio, low, high] {
             assert!((value - 1.1).abs() < 1e-9, "{value}");
         }
     }
@@ -187,7 +192,7 @@ mod tests {
         let [a, b] = [0, 1].map(|_| noise.frame_times(100, 5.0, 0.03));
         let (there, back) = (ratio_within_process(&a, &b).unwrap(), ratio_within_process(&b, &a).unwrap());
         assert!((there.ratio * back.ratio - 1.0).abs() < 1e-12);
-        assert!((there.interval[0] * back.interval[1]).ln().abs() < 0.02);
+        assert!((there.interval.unwrap()[0] * back.interval.unwrap()[1]).ln().abs() < 0.02);
         assert_eq!(Some(there), ratio_within_process(&a, &b));
     }
 
@@ -206,7 +211,18 @@ mod tests {
         assert!(ratio_within_process(&[], &times).is_none());
         assert!(ratio_within_process(&times, &[]).is_none());
         assert!(ratio_within_process(&times, &[0.0, 0.0, 1.0]).is_none());
-        let partly_zero = ratio_within_process(&times, &[0.0, 1.0, 1.0]).unwrap();
-        assert!(partly_zero.interval.iter().all(|bound| bound.is_finite()));
+        let partly_zero = ratio_within_process(&[1.0; 5], &[0.0, 0.0, 1.0, 1.0, 1.0]).unwrap();
+        assert!(partly_zero.interval.unwrap().iter().all(|bound| bound.is_finite()));
+    }
+
+    /// A resample of one frame is that frame: an interval of no width would be a certainty that nobody has.
+    #[test]
+    fn few_samples_have_a_ratio_and_no_interval() {
+        let times = [1.0, 1.1, 0.9, 1.05, 0.95];
+        for (a, b) in [(1, 1), (4, 4), (4, 5), (5, 4)] {
+            let found = ratio_within_process(&times[..a], &times[..b]).unwrap();
+            assert!(found.ratio > 0.0 && found.interval.is_none(), "{a} {b}: {found:?}");
+        }
+        assert!(ratio_within_process(&times, &times).unwrap().interval.is_some());
     }
 }

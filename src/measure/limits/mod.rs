@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use ash::vk;
 
 use super::machine::Machine;
-use super::statistics::{median, relative_mad, summarize};
+use super::statistics::{relative_mad, summarize};
 use crate::gpu::{Blend, Error, Feature, Frame, Mode, Recorder};
 use crate::report::record::{Limits, Summary};
 
@@ -114,19 +114,6 @@ pub fn warning(limits: &Limits) -> Option<String> {
     let noisy = limits.samples.iter().filter_map(|(name, rates)| Some((name, spread(rates)?)));
     let noisy: Vec<String> = noisy.map(|(name, spread)| format!("{name} {:.0} %", 100.0 * spread)).collect();
     (!noisy.is_empty()).then(|| format!("limits of the device scatter: {}", noisy.join(", ")))
-}
-
-/// The additive blend rate of a target of four 32-bit floats, in 10^9 pixels a second; `None` without timestamps. The
-/// device must blend into such targets.
-///
-/// # Errors
-/// Any error of the Vulkan layer.
-pub fn float_blend_gpix_s(machine: &mut Machine) -> Result<Option<f64>, Error> {
-    let Machine { recorder, shaders, .. } = machine;
-    let mut load = loads::fill(recorder, shaders, vk::Format::R32G32B32A32_SFLOAT, Blend::Add)?;
-    load.grow(recorder)?;
-    (0..SAMPLES).try_for_each(|_| load.sample(recorder))?;
-    Ok(median(&load.samples))
 }
 
 type Record = Box<dyn Fn(&mut Frame<'_>, u32) -> Result<(), Error>>;

@@ -176,7 +176,7 @@ impl Study for Setup {
         let mut metrics = Vec::with_capacity(measured.len());
         for (built, measurement) in measured {
             let mut results = results(&self.parameters, &built.paper, measurement);
-            results.extend(entries(experiments::floors::measure(machine, &built.paper)?));
+            results.extend(entries([experiments::points::measure(machine, &built.paper)?]));
             metrics.push(Metrics { results, warnings: built.paper.warnings() });
         }
         Ok(metrics)

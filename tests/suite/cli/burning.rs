@@ -334,9 +334,8 @@ fn table_4_2_measures_until_half_is_refined() {
     let out = folder();
     let experiment = small("experiment 4.2 --levels 2 --out .").args(BRIEF).inside(out.path());
     let ended = experiment.run().succeeded();
-    let files =
-        ["burning-4.2-curves.csv", "burning-4.2-passes.csv", "burning-4.2.csv", "burning-4.2.json", "burning-4.2.svg"];
-    assert_eq!(entries(out.path()), files);
+    let files = ["-curves.csv", "-passes.csv", "-tables.json", ".csv", ".json", ".svg"];
+    assert_eq!(entries(out.path()), files.map(|suffix| format!("burning-4.2{suffix}")));
     let record = read_json(&out.path().join("burning-4.2.json"));
     assert_schema(&record);
     let runs = record["runs"].as_array().unwrap();

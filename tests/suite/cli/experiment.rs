@@ -24,7 +24,8 @@ fn table_5_1_is_written_and_printed_with_its_ratios() {
     let program = caustics("experiment 5-1 --counts 3,5 --mesh sphere --out tables").inside(out.path());
     let ended = program.args(SMALL).args(ONCE).on_test_device().run().succeeded();
     let tables = out.path().join("tables");
-    assert_eq!(entries(&tables), ["caustics-5-1.csv", "caustics-5-1.json", "caustics-5-1.svg"]);
+    let files = ["-against-volumetric.csv", "-tables.json", ".csv", ".json", ".svg"];
+    assert_eq!(entries(&tables), files.map(|suffix| format!("caustics-5-1{suffix}")));
 
     let record = read_json(&tables.join("caustics-5-1.json"));
     assert_schema(&record);
@@ -43,6 +44,7 @@ fn table_5_1_is_written_and_printed_with_its_ratios() {
         assert!((paper - thesis).abs() < 0.01, "{row}");
         assert!((row["ratio"].as_f64().unwrap() - ours / paper).abs() < 1e-9, "{row}");
         assert!(ours > 0.0 && median(run) > 0.0, "{row}");
+        assert!(row["interval"].is_null() && run["results"]["ratio_interval"].is_null(), "of two frames: {row}");
         let printed = format!("{ours:.3}");
         assert!(ended.stdout.contains(&printed), "{printed} is not printed:\n{}", ended.stdout);
     }
@@ -57,9 +59,15 @@ fn table_5_1_is_written_and_printed_with_its_ratios() {
 #[test]
 fn chapter_6_is_set_against_the_level_map() {
     let out = folder();
-    let program = caustics("experiment 6.3 --counts 9 --mesh sphere --out .").inside(out.path());
+    let program = caustics("experiment 6.3 --counts 9 --mesh sphere --errors 90 --sizes 16,32 --photons 20 --out .");
+    let program = program.inside(out.path());
     let ended = program.args(SMALL).args(ONCE).on_test_device().run().succeeded();
-    assert_eq!(entries(out.path()), ["caustics-6.3.csv", "caustics-6.3.json", "caustics-6.3.svg"]);
+    let files = ["-drawn.csv", "-smallest.csv", "-tables.json", ".csv", ".json", ".svg"];
+    assert_eq!(entries(out.path()), files.map(|suffix| format!("caustics-6.3{suffix}")));
+    let tables = read_json(&out.path().join("caustics-6.3-tables.json"));
+    assert_eq!(tables["table"]["rows"].as_array().unwrap().len(), 3);
+    // Four readings of the level map, two of culled, hit.
+    assert_eq!(tables["more"]["smallest"]["rows"].as_array().unwrap().len(), 7);
     let record = read_json(&out.path().join("caustics-6.3.json"));
     assert_schema(&record);
     let runs = record["runs"].as_array().unwrap();

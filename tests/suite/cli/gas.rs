@@ -54,6 +54,7 @@ fn table_1_is_written_with_the_ratios_beside_the_paper_s() {
     let record = read_json(&out.path().join("gas-1.json"));
     assert_schema(&record);
     let row = |run: &serde_json::Value| {
+        assert!(run["experiment"]["interval"].is_null(), "of one frame: {}", run["experiment"]);
         let minutes = run["experiment"]["paper"].as_f64().unwrap() * 59.0;
         (run["experiment"]["row"].as_str().unwrap().to_owned(), minutes.round())
     };

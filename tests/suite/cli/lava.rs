@@ -164,8 +164,8 @@ fn the_frame_rate_stands_beside_the_thesis_s() {
 fn readbacks_are_set_against_none() {
     let out = folder();
     small("experiment readback --quiet --out .").args(ONCE).inside(out.path()).run().succeeded();
-    let files = ["lava-readback-stages.csv", "lava-readback.csv", "lava-readback.json", "lava-readback.svg"];
-    assert_eq!(entries(out.path()), files);
+    let files = ["-stages.csv", "-tables.json", ".csv", ".json", ".svg"];
+    assert_eq!(entries(out.path()), files.map(|suffix| format!("lava-readback{suffix}")));
     let record = read_json(&out.path().join("lava-readback.json"));
     assert_schema(&record);
     let runs = record["runs"].as_array().unwrap();
@@ -192,16 +192,37 @@ fn readbacks_are_set_against_none() {
 }
 
 #[test]
-fn every_pass_has_a_floor_where_limits_are_measured() {
+fn every_pass_stands_beside_the_floor_of_the_record() {
     let out = folder();
     let ended = small("experiment results --frames 2 --repeat 1 --out .").inside(out.path()).run().succeeded();
     let record = read_json(&out.path().join("lava-results.json"));
     assert_schema(&record);
-    let results = &record["runs"][0]["results"];
-    for pass in PASSES {
-        assert!(results["floors_ms"][pass].as_f64().unwrap() > 0.0, "{pass}: {results}");
+    let run = &record["runs"][0];
+    let header = ended.stdout.lines().find(|line| line.starts_with("pass ")).unwrap();
+    // Numbers end where their headings do.
+    let printed = |pass: &str, column: &str| -> String {
+        let line = ended.stdout.lines().find(|line| line.split_whitespace().next() == Some(pass)).unwrap();
+        let end = header.find(column).unwrap_or_else(|| panic!("no {column} in {header}")) + column.len();
+        line[..end.min(line.len())].rsplit("  ").next().unwrap().trim().to_owned()
+    };
+    let mut with_floor = 0;
+    for pass in run["passes"].as_array().unwrap() {
+        let name = pass["name"].as_str().unwrap();
+        let Some(floor_ms) = pass["floor_ms"].as_f64() else {
+            assert_eq!(pass["kind"], "host", "{pass}");
+            continue;
+        };
+        with_floor += 1;
+        assert_eq!(printed(name, "floor ms"), format!("{floor_ms:.2}"), "{}", ended.stdout);
+        let share = 100.0 * floor_ms / pass["gpu_ms"]["median"].as_f64().unwrap();
+        assert_eq!(printed(name, "share of limit"), format!("{share:.0} %"), "{}", ended.stdout);
     }
-    assert!(ended.stdout.contains("of floor") && ended.stdout.contains("fragments"), "{}", ended.stdout);
+    assert!(with_floor >= 8, "{with_floor}");
+    let points = run["results"]["points_ms"].as_object().unwrap();
+    assert_eq!(points.len(), 4);
+    for (pass, ms) in points {
+        assert_eq!(printed(pass, "points ms"), format!("{:.2}", ms.as_f64().unwrap()), "{}", ended.stdout);
+    }
 }
 
 #[test]

@@ -14,6 +14,7 @@ pub mod depth;
 mod devices;
 mod dumps;
 mod experiment;
+mod experiment_tables;
 mod gas;
 mod gas_volumes;
 mod hostile;

@@ -210,7 +210,7 @@ fn tables_that_no_page_holds_are_left_out() {
     assert!(text.contains("small.json") && text.len() < 200_000, "{} bytes", text.len());
 }
 
-fn assert_table_schema(document: &Value) {
+pub fn assert_table_schema(document: &Value) {
     let read = |text: &str| serde_json::from_str::<Value>(text).unwrap();
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.table-1.json"));
     let bench = read(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.bench-1.json")));

@@ -107,7 +107,8 @@ fn a_sweep_in_shards_is_the_experiment() {
 
     // The table is that of the runs that were measured.
     experiment("table").arg("--assembled").arg(&joined).run().succeeded();
-    assert_eq!(entries(&place("table")), ["caustics-5-1.csv", "caustics-5-1.json", "caustics-5-1.svg"]);
+    let files = ["-against-volumetric.csv", "-tables.json", ".csv", ".json", ".svg"];
+    assert_eq!(entries(&place("table")), files.map(|suffix| format!("caustics-5-1{suffix}")));
     let table = read_json(&place("table").join("caustics-5-1.json"));
     let figures = |record: &Value| -> Vec<_> {
         let runs = record["runs"].as_array().unwrap().iter();

@@ -17,10 +17,10 @@ use self::timeline::{Snapshot, busiest_tick, follow, reaches};
 use super::setup::Setup;
 use super::{Look, Parameters, Variant};
 use crate::field;
-use crate::measure::experiment::Experiment;
+use crate::measure::experiment::{Experiment, NamedTable};
 use crate::measure::machine::Machine;
 use crate::measure::parameter::{Choice, Parameter, ParameterError, Range};
-use crate::measure::sweep::{Row, Swept};
+use crate::measure::sweep::Swept;
 use crate::measure::{Error, experiment};
 
 type Context<'a> = experiment::Context<'a, Setup>;
@@ -172,16 +172,16 @@ fn whole_fire(
     watch_fire(context, machine, setup, variant, STEP, |_| false)
 }
 
-/// Publishes measured rows with their table and plot, and ends as the sweep did.
+/// Publishes measured rows with what is said of them, plots and tables, and ends as the sweep did.
 fn publish(
     context: &Context<'_>,
     machine: &Machine,
-    rows: Vec<Row>,
-    table: String,
+    Swept { rows, stopped }: Swept,
+    text: String,
     plots: &[(String, String)],
-    stopped: Option<Error>,
+    tables: &[NamedTable],
 ) -> Result<(), Error> {
-    context.publish_runs(machine, rows.into_iter().map(|row| row.run).collect(), table, plots)?;
+    context.publish_runs(machine, rows.into_iter().map(|row| row.run).collect(), text, plots, tables)?;
     machine.check_validation()?;
     stopped.map_or(Ok(()), Err)
 }
@@ -200,7 +200,7 @@ fn frame_rate(context: &mut Context<'_>, claim: &Claim) -> Result<(), Error> {
     let table = rows.iter().map(|row| claim.render(&row.label, &row.run, context.console.style())).collect();
     let plots = rows.iter().map(|row| Ok((".svg".to_owned(), claim.plot(&row.run)?)));
     let plots = plots.collect::<Result<Vec<_>, Error>>()?;
-    publish(context, &machine, rows, table, &plots, stopped)
+    publish(context, &machine, Swept { rows, stopped }, table, &plots, &[])
 }
 
 /// Every frame of each box until half of its coarse triangles are refined, once unless more is asked for.
@@ -221,12 +221,12 @@ fn refined_against_subdivided(context: &mut Context<'_>) -> Result<(), Error> {
             break;
         }
     }
-    let (passes, curves) = (refining::passes(&measured), refining::curves(&measured));
-    context.save(&context.file("-passes.csv"), passes.csv().as_bytes())?;
-    context.save(&context.file("-curves.csv"), curves.csv().as_bytes())?;
+    // Of every pass and every frame: too long for a terminal.
+    let tables = [("passes", refining::passes(&measured)), ("curves", refining::curves(&measured))];
+    context.save_tables(&machine, &tables)?;
     let (table, svg) = (refining::render(&measured, context.console.style()), refining::plot(&measured)?);
     let rows = measured.into_iter().flat_map(Measured::into_rows).collect();
-    publish(context, &machine, rows, table, &plot(svg), stopped)
+    publish(context, &machine, Swept { rows, stopped }, table, &plot(svg), &[])
 }
 
 /// The setup with the dissertation's look: experiments measure the text's own passes, unless another look is given.
@@ -247,7 +247,7 @@ fn blocks(context: &mut Context<'_>) -> Result<(), Error> {
     let mut swept = context.sweep(&mut machine, &sweeps::block_points(&setup, tick))?;
     let table = sweeps::block_table(&mut swept.rows);
     let svg = table.bars("ms", &["weights ms", "rotation ms", "mapping ms", "flames ms"])?;
-    publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
+    publish(context, &machine, swept, String::new(), &plot(svg), &[("passes", table)])
 }
 
 fn limits(context: &mut Context<'_>) -> Result<(), Error> {
@@ -272,17 +272,13 @@ fn limits(context: &mut Context<'_>) -> Result<(), Error> {
     context.measure.frames = asked;
     let loaded = context.sweep(&mut machine, &sweeps::loading_points(&setup, tick))?;
     let tables = [
-        ("-active.csv", sweeps::limit_table(&fires, &limited.rows)),
-        ("-division.csv", sweeps::division_table(&divided.rows)),
-        ("-loading.csv", sweeps::loading_table(&loaded.rows)),
+        ("active", sweeps::limit_table(&fires, &limited.rows)),
+        ("division", sweeps::division_table(&divided.rows)),
+        ("loading", sweeps::loading_table(&loaded.rows)),
     ];
-    for (suffix, table) in &tables {
-        context.save(&context.file(suffix), table.csv().as_bytes())?;
-    }
-    let text = tables.iter().map(|(_, table)| table.render(context.console.style())).collect::<Vec<_>>().join("\n");
     let rows = limited.rows.into_iter().chain(divided.rows).chain(loaded.rows).collect();
     let stopped = limited.stopped.or(divided.stopped).or(loaded.stopped);
-    publish(context, &machine, rows, text, &[], stopped)
+    publish(context, &machine, Swept { rows, stopped }, String::new(), &[], &tables)
 }
 
 fn sequence(context: &mut Context<'_>) -> Result<(), Error> {
@@ -316,9 +312,8 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
     let mut machine = context.open()?;
     let swept = context.sweep(&mut machine, &points)?;
     let table = sweeps::scaling_table(&swept.rows);
-    context.save(&context.file("-rates.csv"), table.csv().as_bytes())?;
     let svg = sweeps::scaling_plot(&swept.rows)?;
-    publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
+    publish(context, &machine, swept, String::new(), &plot(svg), &[("rates", table)])
 }
 
 fn active_share(context: &mut Context<'_>) -> Result<(), Error> {
@@ -327,7 +322,6 @@ fn active_share(context: &mut Context<'_>) -> Result<(), Error> {
     let reaches = reaches(&mut machine, &setup, Variant::Shell)?;
     let swept = context.sweep(&mut machine, &active::points(&setup, reaches))?;
     let table = active::table(&swept.rows);
-    context.save(&context.file("-passes.csv"), table.csv().as_bytes())?;
     let svg = active::plot(&swept.rows)?;
-    publish(context, &machine, swept.rows, table.render(context.console.style()), &plot(svg), swept.stopped)
+    publish(context, &machine, swept, String::new(), &plot(svg), &[("passes", table)])
 }

@@ -117,7 +117,7 @@ impl Measured {
                 row: format!("{} triangles {load}", measured.finest()),
                 paper: Some(line.speed_up),
                 ours: ratio,
-                interval: speed_up.map(|r| r.interval),
+                interval: speed_up.and_then(|r| r.interval),
                 ratio: ratio.map(|ours| ours / line.speed_up),
             };
             let noted = measured.rows.iter_mut().filter(|r| r.label.ends_with(load));
@@ -170,7 +170,7 @@ pub fn render(measured: &[Measured], style: Style) -> String {
                 number(pair.as_ref().and_then(|p| mean(p.subdivided)), 2),
                 number(pair.as_ref().and_then(|p| mean(p.adaptive)), 2),
                 number(speed_up.as_ref().map(|r| r.ratio), 2),
-                interval(speed_up.as_ref().map(|r| r.interval)),
+                interval(speed_up.and_then(|r| r.interval)),
                 number(Some(one.line.speed_up), 2),
             ]);
         }

@@ -1,12 +1,12 @@
 //! Sections 6.1 and 6.3: the triangles that each method draws for its caustics maps, and the time of the maps.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::measure::Variant as _;
+use crate::measure::result_table::ResultTable;
 use crate::measure::statistics::median;
 use crate::papers::caustics::Variant;
 use crate::report::record::{Pass, Run};
-use crate::report::table::{Align, Style, Table, number};
 
 /// Passes before the caustics maps and after them, which all methods share.
 const SHARED: [&str; 6] =
@@ -48,35 +48,21 @@ impl Drawn {
 }
 
 /// A table of what was drawn.
-pub fn render(all: &[Drawn], style: Style) -> String {
-    let mut table = Table::new(&[
-        ("mesh", Align::Left),
-        ("planes", Align::Right),
-        ("method", Align::Left),
-        ("triangles", Align::Right),
-        ("fragments", Align::Right),
-        ("maps ms", Align::Right),
-    ]);
-    let count = |value: Option<u64>| value.map_or(String::new(), |value| value.to_string());
-    for drawn in all {
-        table.push(vec![
-            drawn.mesh.clone(),
-            drawn.planes.to_string(),
-            drawn.method.clone(),
-            count(drawn.triangles),
-            count(drawn.fragments),
-            number(drawn.maps_ms, 2),
-        ]);
+pub fn table(all: &[Drawn]) -> ResultTable {
+    let cells = |drawn: &Drawn| {
+        let Drawn { mesh, planes, method, triangles, fragments, maps_ms } = drawn;
+        vec![json!(mesh), json!(planes), json!(method), json!(triangles), json!(fragments), json!(maps_ms)]
+    };
+    ResultTable {
+        title: "Triangles: pairs of water triangle and plane; of hit, triangles of the refined water. Maps: all passes between the \
+                rays and the combination",
+        columns: &["mesh", "planes", "method", "triangles", "fragments", "maps ms"],
+        rows: all.iter().map(cells).collect(),
     }
-    let text = "triangles: pairs of water triangle and plane; of hit, triangles of the refined water. maps: all passes between the \
-                rays and the combination\n";
-    table.render(style) + text
 }
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::*;
     use crate::measure::config::entries;
     use crate::measure::statistics::summarize;
@@ -98,7 +84,8 @@ mod tests {
         let hit = Run { variant: "hit".to_owned(), results: entries([("landed_triangles", json!(80))]), ..culled };
         let hit = Drawn::of("sphere", 31, &hit);
         assert_eq!((hit.triangles, hit.fragments), (Some(80), None));
-        let text = render(&[drawn, hit], Style::default());
-        assert!(text.contains("900") && text.contains("7.00"), "{text}");
+        let cells = |drawn: &Drawn| table(std::slice::from_ref(drawn)).rows.remove(0)[2..].to_vec();
+        assert_eq!(cells(&drawn), [json!("culled"), json!(70), json!(900), json!(7.0)]);
+        assert_eq!(cells(&hit), [json!("hit"), json!(80), Value::Null, json!(7.0)]);
     }
 }

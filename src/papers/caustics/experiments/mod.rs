@@ -16,7 +16,7 @@ use super::setup::{Setup, sample_meshes};
 use super::{Parameters, Variant};
 use crate::field;
 use crate::measure::bench::build;
-use crate::measure::experiment::Experiment;
+use crate::measure::experiment::{Experiment, NamedTable};
 use crate::measure::machine::Machine;
 use crate::measure::parameter::{Parameter, Range};
 use crate::measure::result_table::ResultTable;
@@ -159,10 +159,10 @@ pub fn all() -> Vec<Experiment<Setup>> {
             options: CHAPTER_6_OPTIONS,
             refuses: &[SWEPT],
             run: |context| {
-                let (_, mut machine) = compare(context, CHAPTER_6)?;
+                let Compared { mut machine, tables, .. } = compare(context, CHAPTER_6)?;
                 let smallest =
                     accuracy::smallest(context, &mut machine, &[Variant::LevelMap, Variant::Culled, Variant::Hit])?;
-                smallest.map_or(Ok(()), |table| context.publish_more("smallest", &table))
+                smallest.map_or(Ok(()), |table| context.publish_more(&machine, tables, ("smallest", table)))
             },
         },
         Experiment {
@@ -200,15 +200,22 @@ fn look_from_below(context: &mut Context<'_>) {
     }
 }
 
-fn compare(context: &mut Context<'_>, comparison: Comparison) -> Result<(Vec<MeshSource>, Machine), Error> {
+/// What methods were compared on, and the tables that are published.
+struct Compared {
+    meshes: Vec<MeshSource>,
+    machine: Machine,
+    tables: Vec<NamedTable>,
+}
+
+fn compare(context: &mut Context<'_>, comparison: Comparison) -> Result<Compared, Error> {
     let (meshes, mut machine) = open(context)?;
     let points = comparison.points(&context.setup, &meshes, &context.options.counts());
     let swept = context.sweep(&mut machine, &points)?;
     let outcome = Outcome::new(comparison, &meshes, swept.rows);
-    let (table, plots) = (outcome.render(context.console.style()), outcome.plots()?);
-    context.publish_runs(&machine, outcome.into_runs(), table, &plots)?;
+    let (text, plots, tables) = (outcome.render(context.console.style()), outcome.plots()?, outcome.tables());
+    context.publish_runs(&machine, outcome.into_runs(), text, &plots, &tables)?;
     machine.check_validation()?;
-    swept.stopped.map_or(Ok((meshes, machine)), Err)
+    swept.stopped.map_or(Ok(Compared { meshes, machine, tables }), Err)
 }
 
 fn polygons(context: &mut Context<'_>) -> Result<(), Error> {
@@ -292,7 +299,7 @@ fn picture_pairs(context: &mut Context<'_>) -> Result<(), Error> {
 }
 
 fn appendix(context: &mut Context<'_>) -> Result<(), Error> {
-    let (meshes, mut machine) = compare(context, ALL_THREE)?;
+    let Compared { meshes, mut machine, .. } = compare(context, ALL_THREE)?;
     depth_profiles(context, &mut machine, &meshes)?;
     look_from_below(context);
     for NamedMesh { source, name, .. } in NamedMesh::all(&meshes) {

@@ -6,33 +6,15 @@ use serde_json::{Map, Value, json};
 use crate::measure::Variant as _;
 use crate::measure::compare::{Ratio, ratio_within_process};
 use crate::measure::config::entries;
+use crate::measure::experiment::NamedTable;
+use crate::measure::result_table::ResultTable;
 use crate::measure::statistics::median;
 use crate::papers::caustics::Variant;
 use crate::report::record::{Pass, Run};
-use crate::report::table::{Align, Style, Table, interval, number};
-
-/// Fewer samples a method say nothing of their noise.
-pub const LEAST_SAMPLES: usize = 5;
-
-/// A ratio, and its interval where there are samples enough.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Measured {
-    ratio: f64,
-    interval: Option<[f64; 2]>,
-}
-
-impl Measured {
-    /// `over` / `base`.
-    fn of(over: &[f64], base: &[f64]) -> Option<Self> {
-        let Ratio { ratio, interval, .. } = ratio_within_process(base, over)?;
-        let is_enough = over.len().min(base.len()) >= LEAST_SAMPLES;
-        Some(Measured { ratio, interval: is_enough.then_some(interval) })
-    }
-}
 
 /// Level map against volumetric at one count of planes.
 struct AgainstVolumetric {
-    time: Measured,
+    time: Ratio,
     has_less_memory: Option<bool>,
 }
 
@@ -41,9 +23,9 @@ struct AgainstNormal {
     /// Planes drawn of those that slicing normally draws.
     fraction: f64,
     /// GPU time of the caustics maps, which depends on the planes alone.
-    caustics_map: Option<Measured>,
+    caustics_map: Option<Ratio>,
     /// Frame less profiling and readback over the normal frame.
-    cost: Option<Measured>,
+    cost: Option<Ratio>,
 }
 
 /// The ratios of one mesh at one count of planes, as far as the methods were measured that they compare.
@@ -77,7 +59,7 @@ fn pass<'a>(run: &'a Run, name: &str) -> Option<&'a Pass> {
 }
 
 fn against_volumetric(level: &Run, volumetric: &Run) -> Option<AgainstVolumetric> {
-    let time = Measured::of(level.frame_samples(), volumetric.frame_samples())?;
+    let time = ratio_within_process(volumetric.frame_samples(), level.frame_samples())?;
     let bytes = level.memory.device_bytes.zip(volumetric.memory.device_bytes);
     let has_less_memory = bytes.map(|(level, volumetric)| level < volumetric);
     Some(AgainstVolumetric { time, has_less_memory })
@@ -89,8 +71,8 @@ fn against_normal(level: &Run, smart: &Run) -> Option<AgainstNormal> {
     fn gpu_ms(run: &Run) -> Option<&[f64]> {
         Some(&pass(run, "caustics-map")?.gpu_ms.as_ref()?.samples)
     }
-    let caustics_map = gpu_ms(smart).zip(gpu_ms(level)).and_then(|(smart, level)| Measured::of(smart, level));
-    let cost = without_profiling(smart).and_then(|smart| Measured::of(&smart, level.frame_samples()));
+    let caustics_map = gpu_ms(smart).zip(gpu_ms(level)).and_then(|(smart, level)| ratio_within_process(level, smart));
+    let cost = without_profiling(smart).and_then(|smart| ratio_within_process(level.frame_samples(), &smart));
     Some(AgainstNormal { fraction, caustics_map, cost })
 }
 
@@ -133,62 +115,62 @@ impl AgainstNormal {
     }
 }
 
-/// The ratios of a sweep as tables; nothing where it compares neither.
-pub fn render(all: &[Ratios], style: Style) -> String {
-    let mut text = String::new();
-    if all.iter().any(|ratios| ratios.against_volumetric.is_some()) {
-        let mut table = Table::new(&[
-            ("mesh", Align::Left),
-            ("planes", Align::Right),
-            ("volumetric / level-map", Align::Right),
-            ("95 % interval", Align::Left),
-            ("level-map has less memory", Align::Left),
-        ]);
-        for Ratios { mesh, planes, against_volumetric, .. } in all {
-            let Some(row) = against_volumetric else { continue };
-            table.push(vec![
-                mesh.clone(),
-                planes.to_string(),
-                // As in the table before it: above 1 where the level map is the faster one.
-                number(Some(1.0 / row.time.ratio), 3),
-                interval(row.time.interval.map(|[low, high]| [1.0 / high, 1.0 / low])),
-                row.has_less_memory.map_or("", |less| if less { "yes" } else { "no" }).to_owned(),
-            ]);
-        }
-        text.push_str(&table.render(style));
+/// The ratios of a sweep as tables, each with its name; none where it compares neither.
+pub fn tables(all: &[Ratios]) -> Vec<NamedTable> {
+    let against_volumetric = ResultTable {
+        title: "Level map against volumetric: time of a frame, above 1 where the level map is the faster one, with the ends of \
+                its 95 % interval; memory",
+        columns: &["mesh", "planes", "volumetric / level-map", "from", "to", "level-map has less memory"],
+        rows: all.iter().filter_map(Ratios::volumetric_row).collect(),
+    };
+    let against_normal = ResultTable {
+        title: "Smart slicing over slicing normally, with the ends of 95 % intervals. caustics-map: GPU time of that pass. cost: \
+                frame less depth-profile and the wait for the position map, but for the maps' own GPU time",
+        columns: &[
+            "mesh",
+            "planes",
+            "share drawn",
+            "caustics-map",
+            "caustics-map from",
+            "caustics-map to",
+            "cost",
+            "cost from",
+            "cost to",
+            "cost / share",
+        ],
+        rows: all.iter().filter_map(Ratios::normal_row).collect(),
+    };
+    let tables = [("against-volumetric", against_volumetric), ("against-normal", against_normal)];
+    tables.into_iter().filter(|(_, table)| !table.rows.is_empty()).collect()
+}
+
+impl Ratios {
+    fn volumetric_row(&self) -> Option<Vec<Value>> {
+        let row = self.against_volumetric.as_ref()?;
+        // As in the table of frames: over the level map.
+        let ends = row.time.interval.map(|[low, high]| [1.0 / high, 1.0 / low]);
+        Some(vec![
+            json!(self.mesh),
+            json!(self.planes),
+            json!(1.0 / row.time.ratio),
+            json!(ends.map(|[low, _]| low)),
+            json!(ends.map(|[_, high]| high)),
+            json!(row.has_less_memory.map(|less| if less { "yes" } else { "no" })),
+        ])
     }
-    if all.iter().any(|ratios| ratios.against_normal.is_some()) {
-        let mut table = Table::new(&[
-            ("mesh", Align::Left),
-            ("planes", Align::Right),
-            ("share drawn", Align::Right),
-            ("caustics-map", Align::Right),
-            ("95 % interval", Align::Left),
-            ("cost", Align::Right),
-            ("95 % interval", Align::Left),
-            ("cost / share", Align::Right),
-        ]);
-        for Ratios { mesh, planes, against_normal, .. } in all {
-            let Some(row) = against_normal else { continue };
-            table.push(vec![
-                mesh.clone(),
-                planes.to_string(),
-                format!("{:.3}", row.fraction),
-                number(row.caustics_map.map(|m| m.ratio), 3),
-                interval(row.caustics_map.and_then(|m| m.interval)),
-                number(row.cost.map(|m| m.ratio), 3),
-                interval(row.cost.and_then(|m| m.interval)),
-                number(row.cost.map(|m| m.ratio / row.fraction), 3),
-            ]);
-        }
-        text.push_str(&table.render(style));
-        text.push_str(
-            "smart slicing over slicing normally. caustics-map: GPU time of that pass. cost: frame less depth-profile and the \
-             wait for the position map, but for the maps' own GPU time
-",
-        );
+
+    fn normal_row(&self) -> Option<Vec<Value>> {
+        let row = self.against_normal.as_ref()?;
+        let with_ends = |ratio: Option<Ratio>| {
+            let ends = ratio.and_then(|ratio| ratio.interval);
+            [json!(ratio.map(|r| r.ratio)), json!(ends.map(|[low, _]| low)), json!(ends.map(|[_, high]| high))]
+        };
+        let mut cells = vec![json!(self.mesh), json!(self.planes), json!(row.fraction)];
+        cells.extend(with_ends(row.caustics_map));
+        cells.extend(with_ends(row.cost));
+        cells.push(json!(row.cost.map(|cost| cost.ratio / row.fraction)));
+        Some(cells)
     }
-    text
 }
 
 #[cfg(test)]
@@ -197,6 +179,11 @@ mod tests {
     use crate::measure::statistics::summarize;
     use crate::report::example;
     use crate::report::record::PassKind;
+    use crate::report::table::Style;
+
+    fn render(all: &[Ratios]) -> String {
+        tables(all).iter().map(|(_, table)| table.render(Style::default())).collect()
+    }
 
     /// Frames that differ by 1 %.
     fn frames(median_ms: f64, count: usize) -> Vec<f64> {
@@ -218,7 +205,7 @@ mod tests {
                 run(Variant::Volumetric, &frames(10.0, count), 11, 100),
             ];
             let ratios = Ratios::of("sphere", 11, &mut runs);
-            let text = render(&[ratios], Style::default());
+            let text = render(&[ratios]);
             assert!(text.contains(&format!("{:.3}", 10.0 / level_ms)), "{text}");
             runs[1].results.clone()
         };
@@ -261,7 +248,7 @@ mod tests {
         assert!((of("caustics_map_over_normal") - 0.6).abs() < 1e-9);
         assert!((of("cost_over_normal") - 0.5).abs() < 1e-9);
         assert!((of("cost_over_share") - 1.0).abs() < 1e-9);
-        let text = render(&all, Style::default());
+        let text = render(&all);
         assert!(text.contains("0.500") && text.contains("1.000"), "{text}");
     }
 
@@ -272,6 +259,6 @@ mod tests {
         let all = [Ratios::of("sphere", 20, &mut runs)];
         assert_eq!(runs[0].results["cost_over_normal"], Value::Null);
         assert_eq!(runs[0].results["cost_over_normal_interval"], Value::Null);
-        assert!(render(&all, Style::default()).contains("0.500"));
+        assert!(render(&all).contains("0.500"));
     }
 }

@@ -6,11 +6,12 @@ use serde_json::json;
 use super::super::named_mesh::NamedMesh;
 use super::super::setup::Setup;
 use super::drawn::{self, Drawn};
-use super::ratios::{self, LEAST_SAMPLES, Ratios};
+use super::ratios::{self, Ratios};
 use super::thesis::{TABLE_5_1, TABLE_5_3};
 use crate::measure::Error;
 use crate::measure::Variant as _;
 use crate::measure::compare::{Ratio, ratio_within_process};
+use crate::measure::experiment::NamedTable;
 use crate::measure::sweep::{self, Point};
 use crate::papers::caustics::Variant;
 use crate::report::plot::{LineChart, Scale, Series};
@@ -96,17 +97,10 @@ struct Row {
     /// Planes that were drawn.
     drawn: u64,
     frame_ms: f64,
-    samples: usize,
     device_bytes: u64,
     /// Time over the base's; absent for the base itself.
     ratio: Option<Ratio>,
     thesis: Option<f64>,
-}
-
-impl Row {
-    fn interval(&self) -> Option<[f64; 2]> {
-        self.ratio.as_ref().filter(|_| self.samples >= LEAST_SAMPLES).map(|r| r.interval)
-    }
 }
 
 /// A sweep's rows with what they are compared with.
@@ -153,12 +147,11 @@ impl Outcome {
                         self.comparison.base.as_str()
                     ),
                     paper: thesis,
-                    interval: Some(ratio.interval),
+                    interval: ratio.interval,
                     ours: Some(ratio.ratio),
                     ratio: thesis.map(|thesis| ratio.ratio / thesis),
                 });
-                let interval = Some(ratio.interval).filter(|_| run.frame_samples().len() >= LEAST_SAMPLES);
-                run.results.insert("ratio_interval".into(), json!(interval));
+                run.results.insert("ratio_interval".into(), json!(ratio.interval));
             }
             self.rows.push(Row {
                 mesh: mesh.name.clone(),
@@ -167,7 +160,6 @@ impl Outcome {
                 variant,
                 drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()).unwrap_or(0),
                 frame_ms: run.median_frame_ms().unwrap_or(f64::NAN),
-                samples: run.frame_samples().len(),
                 device_bytes: run.memory.device_bytes.unwrap_or(0),
                 ratio,
                 thesis,
@@ -209,7 +201,7 @@ impl Outcome {
                 format!("{:.2}", row.frame_ms),
                 format!("{:.1}", row.device_bytes as f64 / f64::from(1 << 20)),
                 number(ratio.map(|r| r.ratio), 3),
-                interval(row.interval()),
+                interval(ratio.and_then(|r| r.interval)),
                 row.thesis.map_or(String::new(), |t| format!("{t:.2}{flag}")),
                 number(ratio.zip(row.thesis).map(|(r, t)| r.ratio / t), 2),
             ]);
@@ -222,12 +214,13 @@ impl Outcome {
                  rests on them\n",
             );
         }
-        text.push('\n');
-        text.push_str(&ratios::render(&self.ratios, style));
-        if !self.drawn.is_empty() {
-            text.push_str(&drawn::render(&self.drawn, style));
-        }
         text
+    }
+
+    /// Tables after it, each with its name.
+    pub fn tables(&self) -> Vec<NamedTable> {
+        let drawn = (!self.drawn.is_empty()).then(|| ("drawn", drawn::table(&self.drawn)));
+        ratios::tables(&self.ratios).into_iter().chain(drawn).collect()
     }
 
     /// Time against the number of planes, a plot for each mesh with its file's suffix; the thesis's curves are drawn dashed,

@@ -61,7 +61,13 @@ impl PaperTable {
         let swept = context.sweep(&mut machine, &points)?;
         let rows = self.compared(swept.rows);
         let (table, plots) = (self.render(&rows, context.console.style()), [(".svg".to_owned(), self.plot(&rows)?)]);
-        context.publish_runs(&machine, rows.into_iter().map(|compared| compared.row.run).collect(), table, &plots)?;
+        context.publish_runs(
+            &machine,
+            rows.into_iter().map(|compared| compared.row.run).collect(),
+            table,
+            &plots,
+            &[],
+        )?;
         machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
@@ -93,8 +99,8 @@ fn is_of(row: &Row, (scene, variant, _): &PaperRow) -> bool {
 /// A measured row with what it is compared with.
 struct Compared {
     row: Row,
-    /// Time over that of the base row. Rows of one scene were measured interleaved; those of another scene one after the
-    /// other.
+    /// Time over that of the base row. It has an interval where both were measured in turn: between other variants of the
+    /// base's scene. Scenes were measured one after the other, and drift is no noise of frames.
     ratio: Option<Ratio>,
     minutes: Option<f64>,
     paper_ratio: Option<f64>,
@@ -122,13 +128,15 @@ impl PaperTable {
         let samples = rows.iter().find(|row| is_of(row, base)).map(|row| row.run.frame_samples().to_vec());
         let compared = |row: Row| {
             let ratio = samples.as_ref().and_then(|base| ratio_within_process(base, row.run.frame_samples()));
+            let is_in_turn = row.label == base.0.as_str() && !is_of(&row, base);
+            let ratio = ratio.map(|ratio| Ratio { interval: ratio.interval.filter(|_| is_in_turn), ..ratio });
             let minutes = self.rows.iter().find(|paper| is_of(&row, paper)).map(|(_, _, minutes)| *minutes);
             let mut compared = Compared { ratio, minutes, paper_ratio: minutes.map(|m| m / base.2), row };
             compared.row.run.experiment = Some(ExperimentRow {
                 row: compared.name(),
                 paper: compared.paper_ratio,
                 ours: compared.ours(),
-                interval: compared.ratio.as_ref().map(|ratio| ratio.interval),
+                interval: compared.ratio.and_then(|ratio| ratio.interval),
                 ratio: compared.ours_over_paper(),
             });
             compared
@@ -157,14 +165,18 @@ impl PaperTable {
                 format!("{}x{}", run.width, run.height),
                 number(run.median_frame_ms(), 1),
                 number(compared.ours(), 3),
-                interval(compared.ratio.as_ref().map(|r| r.interval)),
+                interval(compared.ratio.and_then(|ratio| ratio.interval)),
                 number(compared.minutes, 0),
                 number(compared.paper_ratio, 3),
                 number(compared.ours_over_paper(), 2),
             ]);
         }
         let (scene, variant, _) = &self.rows[self.base];
-        let base = format!("ratio: frame time over that of {} {}\n", scene.as_str(), variant.as_str());
+        let base = format!(
+            "ratio: frame time over that of {} {}; an interval where both were measured in turn\n",
+            scene.as_str(),
+            variant.as_str()
+        );
         format!("{}\n{}{base}", style.bold(self.title), table.render(style))
     }
 
@@ -187,6 +199,9 @@ impl PaperTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::statistics::summarize;
+    use crate::report::example;
+    use crate::report::record::Run;
 
     #[test]
     fn a_scene_s_variants_are_interleaved() {
@@ -195,5 +210,26 @@ mod tests {
         assert_eq!(labels, ["fig-3", "fig-4", "fig-5", "fig-6", "fig-7"]);
         assert_eq!(points[0].variants, [Variant::None, Variant::NoVolume]);
         assert_eq!(TABLE_2.points(&Setup::default()).unwrap()[0].variants.len(), 4);
+    }
+
+    #[test]
+    fn an_interval_is_of_rows_that_were_measured_in_turn() {
+        let row = |scene: &Preset, variant: &Variant| {
+            let frame_ms = summarize(&[1.0, 1.1, 0.9, 1.05, 0.95]);
+            let run = Run { variant: variant.as_str().to_owned(), frame_ms, ..example::run() };
+            Row { label: scene.as_str().to_owned(), x: 0.0, run }
+        };
+        let rows = |table: &PaperTable| table.rows.iter().map(|(scene, variant, _)| row(scene, variant)).collect();
+        let with_interval = |table: &PaperTable| -> Vec<String> {
+            let compared = table.compared(rows(table));
+            for one in &compared {
+                let row = one.row.run.experiment.as_ref().unwrap();
+                assert_eq!((row.ours, row.interval), (Some(1.0), one.ratio.unwrap().interval), "{}", row.row);
+            }
+            let has_interval = compared.iter().filter(|one| one.ratio.unwrap().interval.is_some());
+            has_interval.map(Compared::name).collect()
+        };
+        assert_eq!(with_interval(&TABLE_1), ["fig-3 none"]);
+        assert_eq!(with_interval(&TABLE_2), ["fig-8 surfaces", "fig-8 traced", "fig-8 table"]);
     }
 }

@@ -1,7 +1,7 @@
 //! The thesis's figures, its frame rate, and growth of the method's times.
 
 pub mod figures;
-pub mod floors;
+pub mod points;
 mod readback;
 mod results;
 mod scaling;
@@ -104,13 +104,12 @@ fn results(context: &mut Context<'_>) -> Result<(), Error> {
     let mut swept = context.sweep(&mut machine, &points)?;
     for row in &mut swept.rows {
         results::beside_the_thesis(&mut row.run);
-        results::note_floors(&mut row.run);
     }
     let runs: Vec<_> = swept.rows.into_iter().map(|row| row.run).collect();
     let table = runs.iter().map(|run| results::render(run, context.console.style())).collect();
     let plot = |run| results::plot(run).map(|svg| (".svg".to_owned(), svg));
     let plots = runs.iter().map(plot).collect::<Result<Vec<_>, _>>()?;
-    context.publish_runs(&machine, runs, table, &plots)?;
+    context.publish_runs(&machine, runs, table, &plots, &[])?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }
@@ -126,8 +125,7 @@ fn readbacks(context: &mut Context<'_>) -> Result<(), Error> {
     let table = readback::table(&swept.rows);
     let plot = table.bars("ms", &["gpu ms", "host ms"]).map_err(Error::from)?;
     let runs = swept.rows.into_iter().map(|row| row.run).collect();
-    context.save(&context.file("-stages.csv"), table.csv().as_bytes())?;
-    context.publish_runs(&machine, runs, table.render(context.console.style()), &[(".svg".to_owned(), plot)])?;
+    context.publish_runs(&machine, runs, String::new(), &[(".svg".to_owned(), plot)], &[("stages", table)])?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }
@@ -144,9 +142,8 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
             plots.push((format!("-{}.svg", axis.as_str().replace(' ', "-")), svg));
         }
     }
-    context.save(&context.file("-exponents.csv"), table.csv().as_bytes())?;
     let runs = swept.rows.into_iter().map(|row| row.run).collect();
-    context.publish_runs(&machine, runs, table.render(context.console.style()), &plots)?;
+    context.publish_runs(&machine, runs, String::new(), &plots, &[("exponents", table)])?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }

@@ -1,10 +1,10 @@
 //! Chapter 8: the frame rate beside the thesis's, and where a frame's time goes.
 
-use super::floors;
+use super::points;
 use crate::measure::Error;
 use crate::report::plot::{BarChart, BarSeries};
 use crate::report::record::{ExperimentRow, Run};
-use crate::report::table::{Align, Style, Table};
+use crate::report::table::{Align, Style, Table, number};
 
 /// "Around 20 frames per second", by a GeForce GT 330M.
 const THESIS_FRAMES_PER_S: f64 = 20.0;
@@ -21,17 +21,8 @@ pub fn beside_the_thesis(run: &mut Run) {
     });
 }
 
-/// Notes what each pass costs at least, by its name.
-pub fn note_floors(run: &mut Run) {
-    let floors: serde_json::Map<_, _> = run
-        .passes
-        .iter()
-        .filter_map(|pass| Some((pass.name.clone(), serde_json::json!(floors::floor_ms(run, pass)?))))
-        .collect();
-    run.results.insert("floors_ms".to_owned(), floors.into());
-}
-
-/// The table: passes with their times, their counted work and its floor, then the frame rate beside the thesis's.
+/// The table: passes with their times, their counted work, its floor and what their points alone take, then the frame rate
+/// beside the thesis's.
 pub fn render(run: &Run, style: Style) -> String {
     let mut table = Table::new(&[
         ("pass", Align::Left),
@@ -44,7 +35,8 @@ pub fn render(run: &Run, style: Style) -> String {
         ("fragments", Align::Right),
         ("samples", Align::Right),
         ("floor ms", Align::Right),
-        ("of floor", Align::Right),
+        ("share of limit", Align::Right),
+        ("points ms", Align::Right),
     ]);
     let ms = |summary: &Option<crate::report::record::Summary>| {
         summary.as_ref().map_or(String::new(), |s| format!("{:.2}", s.median))
@@ -52,9 +44,6 @@ pub fn render(run: &Run, style: Style) -> String {
     let count = |count: Option<u64>| count.map_or(String::new(), |count| count.to_string());
     for pass in &run.passes {
         let counts = pass.statistics.clone().unwrap_or_default();
-        let time_ms = pass.gpu_ms.as_ref().or(pass.host_ms.as_ref()).map(|s| s.median);
-        let floor_ms = floors::floor_ms(run, pass);
-        let share = time_ms.zip(floor_ms).filter(|(_, floor)| *floor > 0.0).map(|(time, floor)| time / floor);
         table.push(vec![
             pass.name.clone(),
             pass.section.clone().unwrap_or_default(),
@@ -65,14 +54,16 @@ pub fn render(run: &Run, style: Style) -> String {
             count(counts.vertices),
             count(counts.fragments),
             count(counts.samples_passed),
-            floor_ms.map_or(String::new(), |ms| format!("{ms:.2}")),
-            share.map_or(String::new(), |share| format!("{share:.1} x")),
+            number(pass.floor_ms, 2),
+            pass.share_of_limit().map_or(String::new(), |share| format!("{:.0} %", 100.0 * share)),
+            number(points::points_ms(run, pass), 2),
         ]);
     }
     let ours = run.experiment.as_ref().and_then(|row| row.ours).unwrap_or(f64::NAN);
     let frame = ms(&run.frame_ms);
     format!(
-        "{}\n{}frame {frame} ms, {ours:.1} frames a second; the thesis: around {THESIS_FRAMES_PER_S} (GeForce GT 330M)\n",
+        "{}\n{}points: the pass's points or splats with an empty fragment stage\n\
+         frame {frame} ms, {ours:.1} frames a second; the thesis: around {THESIS_FRAMES_PER_S} (GeForce GT 330M)\n",
         style.bold("Chapter 8: results"),
         table.render(style)
     )

@@ -211,8 +211,9 @@ fn tabulate(context: &Context<'_>, axis: Axis, variants: &[Variant]) -> Result<V
     let mut machine = context.open()?;
     let swept = context.sweep(&mut machine, &points)?;
     let outcome = Outcome::new(axis, swept.rows);
-    let (table, plots) = (outcome.render(context.console.style()), [(".svg".to_owned(), outcome.plot()?)]);
-    context.publish_runs(&machine, outcome.into_runs(), table, &plots)?;
+    let (text, tables) = (outcome.render(context.console.style()), outcome.tables());
+    let plots = [(".svg".to_owned(), outcome.plot()?)];
+    context.publish_runs(&machine, outcome.into_runs(), text, &plots, &tables)?;
     if axis == Axis::Interpolation {
         for point in &points {
             let picture = figures::draw(&mut machine, &point.study, Variant::GpuCompute)?;

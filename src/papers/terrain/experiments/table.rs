@@ -7,7 +7,9 @@ use super::super::setup::Setup;
 use crate::measure::Error;
 use crate::measure::Variant as _;
 use crate::measure::compare::{Ratio, ratio_within_process};
+use crate::measure::experiment::NamedTable;
 use crate::measure::parameter::Choice;
+use crate::measure::result_table::ResultTable;
 use crate::measure::sweep::{Point, Row};
 use crate::papers::terrain::{Interpolation, Lod, Variant};
 use crate::report::plot::{LineChart, Scale, Series};
@@ -173,7 +175,7 @@ impl Outcome {
                     row: label,
                     paper,
                     ours: Some(ours),
-                    interval: Some(interval),
+                    interval,
                     ratio: paper.map(|paper| ours / paper),
                 });
             }
@@ -232,7 +234,7 @@ impl Outcome {
                 number(growth(run, "ours"), 2),
                 number(growth(run, "paper"), 2),
                 number(against.as_ref().map(|r| r.ratio), 3),
-                interval(against.as_ref().map(|r| r.interval)),
+                interval(against.and_then(|r| r.interval)),
                 number(paper, 3),
                 number(figure("mrays_per_s"), 2),
                 number(figure("steps_per_ray"), 1),
@@ -247,54 +249,46 @@ impl Outcome {
         if self.axis == Axis::Map {
             text.push_str("the paper's: an E8400 for cpu, a 470 GTX for the GPU\n");
         }
-        for line in self.verdicts() {
-            text.push_str(&line);
-            text.push('\n');
-        }
         text
     }
 
     /// Where triangles are faster than rays and where slower, and where the level of detail changes nothing.
-    fn verdicts(&self) -> Vec<String> {
-        let mut lines = Vec::new();
+    pub fn tables(&self) -> Vec<NamedTable> {
         let of = |variant: Variant| self.rows.iter().filter(move |row| row.run.variant == variant.as_str());
+        let mut triangles = ResultTable {
+            title: "Triangles beside rays, measured in turn: their time over that of the rays, with the ends of its 95 % interval",
+            columns: &["triangles", "rays", "at", "ratio", "from", "to", "verdict"],
+            rows: Vec::new(),
+        };
         for rays in [Variant::GpuCompute, Variant::GpuFragment] {
-            for triangles in [Variant::Mesh, Variant::MeshLod] {
-                let pairs = of(triangles).filter_map(|row| {
+            for mesh in [Variant::Mesh, Variant::MeshLod] {
+                let pairs = of(mesh).filter_map(|row| {
                     let other = of(rays).find(|other| other.label == row.label)?;
                     let ratio = ratio_within_process(other.run.frame_samples(), row.run.frame_samples())?;
                     Some((row.label.as_str(), ratio))
                 });
-                let pairs: Vec<(&str, Ratio)> = pairs.collect();
-                let places = |what: &str, holds: fn(&Ratio) -> bool| {
-                    let held = pairs.iter().filter(|(_, ratio)| holds(ratio));
-                    let held: Vec<String> =
-                        held.map(|(label, ratio)| format!("{label} ({:.2} of its time)", ratio.ratio)).collect();
-                    (!held.is_empty()).then(|| format!("{what} at {}", held.join(", ")))
-                };
-                let found: Vec<String> = [
-                    places("faster", |ratio| ratio.interval[1] < 1.0),
-                    places("slower", |ratio| ratio.interval[0] > 1.0),
-                    places("undecided", |ratio| ratio.interval[0] <= 1.0 && ratio.interval[1] >= 1.0),
-                ]
-                .into_iter()
-                .flatten()
-                .collect();
-                if !found.is_empty() {
-                    let (triangles, rays) = (triangles.as_str(), rays.as_str());
-                    lines.push(format!("{triangles} beside {rays}, by 95 % intervals: {}", found.join("; ")));
-                }
+                triangles.rows.extend(pairs.map(|(label, Ratio { ratio, interval, .. })| {
+                    let verdict = match interval {
+                        None => "too few frames",
+                        Some([_, high]) if high < 1.0 => "faster",
+                        Some([low, _]) if low > 1.0 => "slower",
+                        Some(_) => "undecided",
+                    };
+                    let [low, high] = [0, 1].map(|end| interval.map(|ends| ends[end]));
+                    let (mesh, rays) = (mesh.as_str(), rays.as_str());
+                    vec![json!(mesh), json!(rays), json!(label), json!(ratio), json!(low), json!(high), json!(verdict)]
+                }));
             }
         }
         let is_finest = |row: &&Row| matches!(shares_of(&row.run).as_deref(), Some([_]));
-        let finest: Vec<&str> = of(Variant::GpuCompute).filter(is_finest).map(|row| row.label.as_str()).collect();
-        if self.axis == Axis::Map && !finest.is_empty() {
-            lines.push(format!(
-                "rays read the data alone, so that the level of detail does nothing: at {}",
-                finest.join(", ")
-            ));
-        }
-        lines
+        let finest = of(Variant::GpuCompute).filter(|row| self.axis == Axis::Map && is_finest(row));
+        let finest = ResultTable {
+            title: "Where rays read the data alone, so that the level of detail does nothing",
+            columns: &["samples a side"],
+            rows: finest.map(|row| vec![json!(row.label)]).collect(),
+        };
+        let tables = [("triangles", triangles), ("finest", finest)];
+        tables.into_iter().filter(|(_, table)| !table.rows.is_empty()).collect()
     }
 
     /// Frame time along the axis; the paper's growth is dashed, from our first row on: shapes compare, machines do not.
@@ -337,6 +331,8 @@ impl Outcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::statistics::summarize;
+    use crate::report::example;
 
     #[test]
     fn the_paper_s_own_table_grows_more_than_threefold() {
@@ -345,6 +341,30 @@ mod tests {
         assert!((growth("gpu-compute") - 3.43).abs() < 0.01);
         assert_eq!(paper_ms("mesh", 128.0), None);
         assert_eq!(paper_ms("cpu", 2048.0), None);
+    }
+
+    #[test]
+    fn triangles_are_judged_beside_rays_of_their_point() {
+        let row = |label: &str, variant: Variant, ms: f64, count: usize| {
+            let samples: Vec<f64> = (0..count).map(|i| ms * (0.99 + 0.005 * i as f64)).collect();
+            let frame_ms = summarize(&samples);
+            let run = Run { variant: variant.as_str().to_owned(), frame_ms, ..example::run() };
+            Row { label: label.to_owned(), x: label.parse().unwrap(), run }
+        };
+        let rows = [("128", 5.0, 5), ("512", 20.0, 5), ("1024", 10.0, 5), ("2048", 5.0, 3)];
+        let rows = rows.into_iter().flat_map(|(label, ms, count)| {
+            [row(label, Variant::GpuCompute, 10.0, count), row(label, Variant::Mesh, ms, count)]
+        });
+        let mut rows: Vec<Row> = rows.collect();
+        rows[0].run.results.insert("levels".into(), json!([1.0]));
+        rows[2].run.results.insert("levels".into(), json!([0.5, 0.5]));
+        let tables = Outcome::new(Axis::Map, rows).tables();
+        assert_eq!(tables.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["triangles", "finest"]);
+        let verdicts: Vec<_> = tables[0].1.rows.iter().map(|row| (row[2].as_str(), row[6].as_str())).collect();
+        let expected = [("128", "faster"), ("512", "slower"), ("1024", "undecided"), ("2048", "too few frames")];
+        assert_eq!(verdicts, expected.map(|(at, verdict)| (Some(at), Some(verdict))));
+        assert!(tables[0].1.rows[3][4].is_null() && tables[0].1.rows[3][3].is_f64());
+        assert_eq!(tables[1].1.rows, [[json!("128")]]);
     }
 
     #[test]
