@@ -125,22 +125,9 @@ impl VerdictArgs {
 
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
     let (a, b) = (arguments.a.read()?, arguments.b.read()?);
-    if !arguments.blocks {
-        return arguments.verdict.publish(&compare(&a, &b, &arguments.verdict.options(Design::Processes))?);
-    }
-    let [of_a, of_b] = [processes(&a), processes(&b)];
-    if of_a != of_b || of_a.len() % 2 != 0 {
-        let message =
-            "compare --blocks: the sides are not of the same blocks; name ab-a.json and ab-b.json of one folder";
-        return Err(Failure::Input(message.to_owned()));
-    }
-    let options = arguments.verdict.options(Design::Blocks).for_blocks(&a, &b);
+    let options = match arguments.blocks {
+        true => arguments.verdict.options(Design::Blocks).for_blocks(&a, &b),
+        false => arguments.verdict.options(Design::Processes),
+    };
     arguments.verdict.publish(&compare(&a, &b, &options)?)
-}
-
-/// Numbers of the processes of a side, in their order.
-fn processes(side: &[Input]) -> Vec<u32> {
-    let mut processes: Vec<u32> = side.iter().flat_map(|input| &input.record.runs).map(|run| run.process).collect();
-    processes.dedup();
-    processes
 }

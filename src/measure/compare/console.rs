@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{Clock, Comparison, Design, Difference, Gate, Quantity, RunComparison, Verdict};
+use crate::report::alternative::alternative;
 use crate::report::html::Section;
 use crate::report::table::{Align, Style, Table, markdown_text};
 
@@ -19,7 +20,7 @@ pub fn render(comparison: &Comparison, style: Style) -> String {
     }
     text.push('\n');
     for run in &comparison.runs {
-        let _ = writeln!(text, "{}", style.bold(&title(run)));
+        let _ = writeln!(text, "{}", style.bold(&title(run, comparison)));
         let _ = writeln!(text, "{}", headline(run, comparison, style));
         if !run.passes.is_empty() {
             text.push_str(&passes(run).render(style));
@@ -43,7 +44,7 @@ pub fn markdown(comparison: &Comparison) -> String {
         let _ = writeln!(text, "- {}", markdown_text(&line));
     }
     for run in &comparison.runs {
-        let _ = writeln!(text, "\n### {}\n", markdown_text(&title(run)));
+        let _ = writeln!(text, "\n### {}\n", markdown_text(&title(run, comparison)));
         let _ = writeln!(text, "{}\n", markdown_text(&headline(run, comparison, Style::default())));
         text.push_str(&passes(run).markdown());
     }
@@ -69,7 +70,7 @@ pub fn sections(comparison: &Comparison) -> Vec<Section> {
         table: None,
     };
     let runs = comparison.runs.iter().map(|run| Section {
-        title: title(run),
+        title: title(run, comparison),
         commands: vec![],
         lines: vec![headline(run, comparison, Style::default())],
         table: (!run.passes.is_empty()).then(|| passes(run)),
@@ -130,13 +131,17 @@ fn missing(comparison: &Comparison) -> impl Iterator<Item = String> {
     let alone =
         runs.into_iter().flat_map(|(side, names)| names.iter().map(move |name| format!("only in {side}: {name}")));
     let passes = comparison.runs.iter().filter(|run| !run.missing_passes.is_empty());
-    alone.chain(passes.map(|run| format!("B lacks passes of {}: {}", title(run), run.missing_passes.join(", "))))
+    alone.chain(
+        passes.map(move |run| format!("B lacks passes of {}: {}", title(run, comparison), run.missing_passes.join(", "))),
+    )
 }
 
-fn title(run: &RunComparison) -> String {
+/// A run's name: paper, variant, preset, what tells it from others of these, size.
+fn title(run: &RunComparison, comparison: &Comparison) -> String {
     let preset = run.preset.as_ref();
     let preset = preset.map_or_else(String::new, |preset| format!(", {preset}"));
-    format!("{} {}{preset}: {} × {}", run.paper, run.variant, run.width, run.height)
+    let alternative = alternative(run, &comparison.runs);
+    format!("{} {}{preset}{alternative}: {} × {}", run.paper, run.variant, run.width, run.height)
 }
 
 fn headline(run: &RunComparison, comparison: &Comparison, style: Style) -> String {
@@ -151,7 +156,13 @@ fn headline(run: &RunComparison, comparison: &Comparison, style: Style) -> Strin
     if let Some(limit) = comparison.fail_above {
         let gates = || run.passes.iter().map(|pass| (pass.name.as_str(), &pass.time)).chain([("frame", &run.frame)]);
         for (gate, says) in [(Gate::Failed, "regression beyond"), (Gate::Undecided, "undecided against")] {
-            let names: Vec<&str> = gates().filter(|(_, time)| time.gate == Some(gate)).map(|(name, _)| name).collect();
+            let found = gates().filter(|(_, time)| time.gate == Some(gate));
+            let names: Vec<String> = found
+                .map(|(name, time)| match &time.gate_reason {
+                    Some(reason) => format!("{name} ({reason})"),
+                    None => name.to_owned(),
+                })
+                .collect();
             if !names.is_empty() {
                 let message = format!("{says} {} %: {}", percent(limit), names.join(", "));
                 let message = if gate == Gate::Failed { style.red(&message) } else { style.yellow(&message) };

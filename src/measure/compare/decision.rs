@@ -88,12 +88,30 @@ pub fn gate(family: &[&Evidence], limit: f64, error: f64) -> Vec<Gate> {
 /// About how many processes a side, or blocks, decide on the verdict if what was found is true; absent beyond `most`.
 /// `count` are there now, and the family has `members`.
 pub fn needed(evidence: &Evidence, rules: Rules, count: usize, members: usize, most: usize) -> Option<usize> {
-    (count + 1..=most).find(|&more| {
-        let foretold = evidence.scaled(more as f64 / count as f64);
-        let least = evidence.least_p(more);
-        (least <= rules.error && is_same(&foretold, rules))
+    fewest(evidence, count, most, |foretold, least| {
+        (least <= rules.error && is_same(foretold, rules))
             || (2.0 * least).max(foretold.p_different()) <= rules.error / members as f64
     })
+}
+
+/// The same for the standing against a limit, of the `members` that are held against it at an error.
+pub fn needed_for_gate(
+    evidence: &Evidence,
+    (limit, error): (f64, f64),
+    count: usize,
+    members: usize,
+    most: usize,
+) -> Option<usize> {
+    let bound = limit.ln_1p();
+    fewest(evidence, count, most, |foretold, least| {
+        least.max(foretold.p_below(bound)) <= error || least.max(foretold.p_above(bound)) <= error / members as f64
+    })
+}
+
+/// The least number beyond `count` of which the evidence that is foretold decides, given the least probability that so many
+/// can give.
+fn fewest(evidence: &Evidence, count: usize, most: usize, decides: impl Fn(&Evidence, f64) -> bool) -> Option<usize> {
+    (count + 1..=most).find(|&more| decides(&evidence.scaled(more as f64 / count as f64), evidence.least_p(more)))
 }
 
 fn is_same(evidence: &Evidence, rules: Rules) -> bool {
@@ -155,6 +173,22 @@ mod tests {
     fn a_gate_passes_fails_or_says_that_it_cannot_tell() {
         let found = gate(&[&evidence(1.1, 0.01), &evidence(1.0, 0.01), &evidence(1.05, 0.01)], 0.05, 0.05);
         assert_eq!(found, [Gate::Failed, Gate::Passed, Gate::Undecided]);
+    }
+
+    #[test]
+    fn more_processes_are_foretold_for_a_gate() {
+        let found = |ratio: f64, error: f64| Evidence::Welch { estimate: ratio.ln(), error, freedom: 8.0 };
+        let count = |evidence: &Evidence, members| needed_for_gate(evidence, (0.05, 0.05), 5, members, 1000);
+        let slower = found(1.1, 0.03);
+        assert_eq!(gate(&[&slower], 0.05, 0.05), [Gate::Undecided]);
+        assert_eq!(decide(&[&slower], Rules::default()), [Verdict::Slower]);
+        // 0.03 √(5 / n) t(0.95) < ln 1.10 - ln 1.05 = 0.0465.
+        let one = count(&slower, 1).unwrap();
+        assert!((6..=8).contains(&one), "{one}");
+        assert!(count(&slower, 12).unwrap() > one, "corrected for the number held against it");
+        let faster = count(&found(1.0, 0.03), 12);
+        assert!(faster.is_some_and(|count| (6..=8).contains(&count)), "to pass needs no correction: {faster:?}");
+        assert_eq!(count(&found(1.05, 0.03), 1), None, "at the limit");
     }
 
     #[test]

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::Input;
+use super::{Design, Input};
+use crate::report::alternative::{Named, alternative};
 use crate::report::record::{Environment, Record, Run};
 
 /// Reasons why two sides cannot be compared.
@@ -24,6 +25,11 @@ pub enum CompareError {
          both sides alike"
     )]
     Different { field: String, a_name: String, a_value: String, b_name: String, b_value: String },
+    #[error(
+        "cannot compare blocks of {name}: the processes of the sides are not of the same blocks, two of each side in every \
+         one; name ab-a.json and ab-b.json of one folder"
+    )]
+    Blocks { name: String },
 }
 
 /// The runs of one configuration on one side.
@@ -32,6 +38,8 @@ pub(super) struct Configuration<'a> {
     fields: BTreeMap<String, String>,
     first: &'a Run,
     source: &'a str,
+    /// Paper, variant, preset, what tells it from others of these, size and file.
+    pub name: String,
     /// Runs of one process, process after process.
     processes: Vec<Vec<&'a Run>>,
 }
@@ -59,15 +67,44 @@ impl<'a> Configuration<'a> {
         samples.map(Iterator::collect::<Vec<f64>>).filter(|samples| !samples.is_empty()).collect()
     }
 
-    /// Paper, variant, preset, size and file.
-    fn name(&self) -> String {
+    /// Number of each process, in their order.
+    pub fn process_numbers(&self) -> Vec<u32> {
+        self.processes.iter().filter_map(|runs| Some(runs.first()?.process)).collect()
+    }
+
+    fn name_among(&self, side: &[Configuration]) -> String {
+        let Run { paper, variant, width, height, .. } = self.first;
         let preset = self.first.preset.as_ref();
         let preset = preset.map_or_else(String::new, |preset| format!(", {preset}"));
-        format!(
-            "{} {}{preset}, {} × {} ({})",
-            self.first.paper, self.first.variant, self.first.width, self.first.height, self.source
-        )
+        format!("{paper} {variant}{preset}{}, {width} × {height} ({})", alternative(self, side), self.source)
     }
+}
+
+impl Named for Configuration<'_> {
+    fn method(&self) -> (&str, &str, Option<&str>) {
+        self.first.method()
+    }
+
+    fn config(&self) -> &Map<String, Value> {
+        &self.first.config
+    }
+}
+
+/// Refuses times below zero.
+pub(super) fn check_samples(input: &Input) -> Result<(), CompareError> {
+    for run in &input.record.runs {
+        let of_passes = run.passes.iter().flat_map(|pass| {
+            [&pass.gpu_ms, &pass.host_ms, &pass.wait_ms].map(|time| (pass.name.as_str(), time.as_ref()))
+        });
+        for (time, summary) in std::iter::once(("the frame", run.frame_ms.as_ref())).chain(of_passes) {
+            let samples = summary.map_or(&[][..], |summary| &summary.samples);
+            if let Some(sample) = samples.iter().find(|sample| **sample < 0.0) {
+                let time = format!("{time} of {} {}", run.paper, run.variant);
+                return Err(CompareError::Negative { name: input.name.clone(), time, sample: sample.to_string() });
+            }
+        }
+    }
+    Ok(())
 }
 
 #[derive(Debug)]
@@ -90,8 +127,8 @@ pub(super) struct Matched<'a> {
 /// error, as is having nothing in common.
 pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'a>, CompareError> {
     let mut warnings = Vec::new();
-    let a = configurations("A", a, &mut warnings)?;
-    let mut b = configurations("B", b, &mut warnings)?;
+    let a = configurations("A", a, Design::Processes, &mut warnings)?;
+    let mut b = configurations("B", b, Design::Processes, &mut warnings)?;
     let (mut pairs, mut alone) = (vec![], vec![]);
     for configuration in a {
         match b.iter().position(|other| other.fields == configuration.fields) {
@@ -111,8 +148,8 @@ pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'
     }
     Ok(Matched {
         pairs,
-        only_in_a: alone.iter().map(Configuration::name).collect(),
-        only_in_b: b.iter().map(Configuration::name).collect(),
+        only_in_a: alone.into_iter().map(|configuration| configuration.name).collect(),
+        only_in_b: b.into_iter().map(|configuration| configuration.name).collect(),
         differences: Vec::new(),
         warnings,
     })
@@ -121,13 +158,13 @@ pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'
 /// Pairs each configuration of A with the one of B that differs from it least, and lists in which parameters.
 pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'a>, CompareError> {
     let mut warnings = Vec::new();
-    let a = configurations("A", a, &mut warnings)?;
-    let mut b = configurations("B", b, &mut warnings)?;
+    let a = configurations("A", a, Design::Blocks, &mut warnings)?;
+    let mut b = configurations("B", b, Design::Blocks, &mut warnings)?;
     let (mut pairs, mut only_in_a, mut listed) = (vec![], vec![], vec![]);
     for configuration in a {
         let nearest = (0..b.len()).min_by_key(|&index| differences(&configuration, &b[index]).len());
         let Some(index) = nearest else {
-            only_in_a.push(configuration.name());
+            only_in_a.push(configuration.name);
             continue;
         };
         let other = b.remove(index);
@@ -140,13 +177,14 @@ pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matche
         listed.extend(differing.filter(|difference| !listed.contains(difference)).collect::<Vec<_>>());
         pairs.push((configuration, other));
     }
-    let only_in_b = b.iter().map(Configuration::name).collect();
+    let only_in_b = b.into_iter().map(|configuration| configuration.name).collect();
     Ok(Matched { pairs, only_in_a, only_in_b, differences: listed, warnings })
 }
 
 fn configurations<'a>(
     side: &'static str,
     inputs: &'a [Input],
+    design: Design,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Configuration<'a>>, CompareError> {
     let mut found: Vec<Configuration> = vec![];
@@ -163,12 +201,14 @@ fn configurations<'a>(
         for (fields, _, runs) in here {
             let index = found.iter().position(|known| known.fields == fields);
             let index = index.unwrap_or_else(|| {
-                found.push(Configuration { fields, first: runs[0], source: &input.name, processes: vec![] });
+                let (first, source) = (runs[0], input.name.as_str());
+                found.push(Configuration { fields, first, source, name: String::new(), processes: vec![] });
                 found.len() - 1
             });
             let processes = &mut found[index].processes;
-            // The same measurement twice is not two processes: it would make an interval of nothing.
-            if processes.iter().any(|known| same_measurement(known, &runs)) {
+            // The same measurement twice is not two processes: it would make an interval of nothing. In blocks the
+            // numbers of processes tell.
+            if design == Design::Processes && processes.iter().any(|known| same_measurement(known, &runs)) {
                 let message =
                     format!("side {side}: {} repeats the samples of another process and is counted once", input.name);
                 if !warnings.contains(&message) {
@@ -182,6 +222,8 @@ fn configurations<'a>(
     if found.is_empty() {
         return Err(CompareError::NoRun { side });
     }
+    let names: Vec<String> = found.iter().map(|configuration| configuration.name_among(&found)).collect();
+    found.iter_mut().zip(names).for_each(|(configuration, name)| configuration.name = name);
     Ok(found)
 }
 

@@ -12,7 +12,9 @@ mod console;
 mod decision;
 mod doubts;
 mod evidence;
+mod judge;
 mod matching;
+mod order;
 #[cfg(test)]
 mod synthetic;
 #[cfg(test)]
@@ -22,7 +24,7 @@ mod trials;
 mod within;
 
 pub use console::{markdown, render, sections};
-pub use decision::{CONFIDENCE, Gate, Rules, SAME_MARGIN, Verdict, decide, gate, needed};
+pub use decision::{CONFIDENCE, Gate, Rules, SAME_MARGIN, Verdict, decide, gate, needed, needed_for_gate};
 pub use evidence::Evidence;
 pub use matching::{CompareError, Difference, difference_of_machines};
 pub use within::{Ratio, ratio_within_process};
@@ -30,10 +32,10 @@ pub use within::{Ratio, ratio_within_process};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::statistics::median;
+use crate::report::alternative::Named;
 use crate::report::environment;
-use crate::report::record::{Record, Run};
-use matching::{Configuration, commands};
+use crate::report::record::Record;
+use matching::commands;
 
 /// The value of [`Comparison::schema`].
 pub const SCHEMA: &str = "fumarole.compare/2";
@@ -41,9 +43,6 @@ pub const SCHEMA: &str = "fumarole.compare/2";
 /// Numbers of blocks after which sides that are measured in turn are compared, each time with an equal part of the error:
 /// looking after every block would find differences where there are none.
 pub const LOOKS: [usize; 4] = [5, 10, 20, 40];
-
-/// Processes a side, or blocks, beyond which none are recommended.
-const MOST_PROCESSES: usize = 1000;
 
 /// A record and the file it came from, which messages name.
 #[derive(Clone, Debug)]
@@ -190,6 +189,16 @@ pub struct RunComparison {
     pub missing_passes: Vec<String>,
 }
 
+impl Named for RunComparison {
+    fn method(&self) -> (&str, &str, Option<&str>) {
+        (&self.paper, &self.variant, self.preset.as_deref())
+    }
+
+    fn config(&self) -> &Map<String, Value> {
+        &self.config
+    }
+}
+
 impl RunComparison {
     fn quantities(&self) -> impl Iterator<Item = &Quantity> {
         std::iter::once(&self.frame).chain(self.passes.iter().map(|pass| &pass.time))
@@ -241,14 +250,18 @@ pub struct Quantity {
     pub reason: Option<String>,
     /// Standing against `fail_above`; absent without it, and for what does not count or has no verdict.
     pub gate: Option<Gate>,
+    /// What would decide on a standing that is not certain; absent in what older programs wrote.
+    #[serde(default)]
+    pub gate_reason: Option<String>,
 }
 
 /// Compares side B with side A.
 ///
 /// # Errors
-/// A side has no record or no run, or the sides were not measured alike; the message names the field that differs.
+/// A side has no record or no run, or the sides were not measured alike; the message names the field that differs. In
+/// blocks, also sides whose processes are not two a block.
 pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison, CompareError> {
-    a.iter().chain(b).try_for_each(check_samples)?;
+    a.iter().chain(b).try_for_each(matching::check_samples)?;
     let mut options = *options;
     // Sides in turn may do different work on purpose; that is then what is compared.
     let mut matched = match options.design {
@@ -260,8 +273,9 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         options.rules.margin = options.rules.margin.min(limit);
     }
     let names = |side: &[Input]| side.iter().map(|input| input.name.clone()).collect();
-    if options.design == Design::Processes {
-        matched.warnings.extend(matched.pairs.iter().filter_map(|(a, b)| order_warning(a, b)).next());
+    match options.design {
+        Design::Processes => matched.warnings.extend(matched.pairs.iter().find_map(|(a, b)| order::doubt(a, b))),
+        Design::Blocks => matched.pairs.iter().try_for_each(|(a, b)| order::check_blocks(a, b))?,
     }
     Ok(Comparison {
         schema: SCHEMA.to_owned(),
@@ -276,225 +290,9 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         fail_above: options.fail_above,
         min_share: options.min_share,
         differences: [matched.differences, matching::differences_between(a, b)].concat(),
-        runs: matched.pairs.iter().map(|(a, b)| compare_run(a, b, &options)).collect(),
+        runs: matched.pairs.iter().map(|(a, b)| judge::run(a, b, &options)).collect(),
         only_in_a: matched.only_in_a,
         only_in_b: matched.only_in_b,
         warnings: [matched.warnings, doubts::of_runs(a, b)].concat(),
     })
-}
-
-/// Refuses times below zero.
-fn check_samples(input: &Input) -> Result<(), CompareError> {
-    for run in &input.record.runs {
-        let of_passes = run.passes.iter().flat_map(|pass| {
-            [&pass.gpu_ms, &pass.host_ms, &pass.wait_ms].map(|time| (pass.name.as_str(), time.as_ref()))
-        });
-        for (time, summary) in std::iter::once(("the frame", run.frame_ms.as_ref())).chain(of_passes) {
-            let samples = summary.map_or(&[][..], |summary| &summary.samples);
-            if let Some(sample) = samples.iter().find(|sample| **sample < 0.0) {
-                let time = format!("{time} of {} {}", run.paper, run.variant);
-                return Err(CompareError::Negative { name: input.name.clone(), time, sample: sample.to_string() });
-            }
-        }
-    }
-    Ok(())
-}
-
-/// A doubt about sides of which one was measured wholly before the other: drift then looks like a difference.
-fn order_warning(a: &Configuration, b: &Configuration) -> Option<String> {
-    let (Some(a), Some(b)) = (a.started(), b.started()) else {
-        return Some("the records do not say when each process ran: drift may look like a difference".to_owned());
-    };
-    let ends = |side: &[&str]| Some((side.iter().min()?.to_string(), side.iter().max()?.to_string()));
-    let (a, b) = (ends(&a)?, ends(&b)?);
-    let is_apart = a.0 != b.0 && (a.1 < b.0 || b.1 < a.0);
-    is_apart.then(|| {
-        "one side was measured wholly before the other, so that drift looks like a difference: measure them in turn with \
-         ab"
-        .to_owned()
-    })
-}
-
-/// The times of one quantity, process after process of each side.
-struct Times {
-    a: Vec<Vec<f64>>,
-    b: Vec<Vec<f64>>,
-}
-
-impl Times {
-    /// Both sides hold the same processes' samples, in any order of the processes: they are one measurement.
-    fn are_identical(&self) -> bool {
-        !self.a.is_empty() && self.a.len() == self.b.len() && self.a.iter().all(|samples| self.b.contains(samples))
-    }
-
-    fn evidence(&self, design: Design) -> Option<Evidence> {
-        let (a, b) = (log_medians(&self.a)?, log_medians(&self.b)?);
-        match design {
-            Design::Processes => Evidence::welch(&a, &b),
-            Design::Blocks => {
-                let means =
-                    |side: &[f64]| side.chunks_exact(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect::<Vec<_>>();
-                let blocks = means(&b).iter().zip(means(&a)).map(|(b, a)| b - a).collect::<Vec<_>>();
-                (a.len() == b.len()).then(|| Evidence::signed_ranks(&blocks)).flatten()
-            }
-        }
-    }
-
-    /// Processes of the side with fewer, or blocks.
-    fn count(&self, design: Design) -> usize {
-        let processes = self.a.len().min(self.b.len());
-        if design == Design::Blocks { processes / 2 } else { processes }
-    }
-}
-
-/// Logarithm of each process's median; absent where one is not positive.
-fn log_medians(side: &[Vec<f64>]) -> Option<Vec<f64>> {
-    side.iter().map(|samples| median(samples).filter(|median| *median > 0.0).map(f64::ln)).collect()
-}
-
-/// Of times near the ends of what a number holds a ratio may be none.
-fn finite(ratio: f64) -> Option<f64> {
-    Some(ratio).filter(|ratio| ratio.is_finite())
-}
-
-fn geometric_mean(side: &[Vec<f64>]) -> Option<f64> {
-    let logs = log_medians(side).filter(|logs| !logs.is_empty())?;
-    Some((logs.iter().sum::<f64>() / logs.len() as f64).exp())
-}
-
-fn compare_run(a: &Configuration, b: &Configuration, options: &Options) -> RunComparison {
-    let times = |time: &dyn Fn(&Run) -> Option<Vec<f64>>| Times { a: a.samples(time), b: b.samples(time) };
-    let frame = times(&|run| run.frame_ms.as_ref().map(|time| time.samples.clone()));
-    let passes = pass_times(a, b);
-    let of_frame = |pass: &Times| {
-        let share = |pass, frame| finite(geometric_mean(pass)? / geometric_mean(frame)?);
-        let shares = [share(&pass.a, &frame.a), share(&pass.b, &frame.b)];
-        shares.into_iter().flatten().max_by(f64::total_cmp)
-    };
-    let shares: Vec<Option<f64>> =
-        std::iter::once(Some(1.0)).chain(passes.iter().map(|(_, _, times)| of_frame(times))).collect();
-    let family: Vec<&Times> = std::iter::once(&frame).chain(passes.iter().map(|(_, _, times)| times)).collect();
-    let mut quantities = judge(&family, &shares, options).into_iter();
-    let has = |side: &Configuration, name: &str| side.runs().any(|run| run.passes.iter().any(|pass| pass.name == name));
-    let names = pass_names(a, b);
-    let run = a.first();
-    RunComparison {
-        paper: run.paper.clone(),
-        variant: run.variant.clone(),
-        preset: run.preset.clone(),
-        config: run.config.clone(),
-        width: run.width,
-        height: run.height,
-        a_processes: frame.a.len(),
-        b_processes: frame.b.len(),
-        frame: quantities.next().unwrap_or_else(|| unmeasured(&frame, None)),
-        passes: passes
-            .iter()
-            .zip(quantities)
-            .map(|((name, clock, _), time)| PassComparison { name: name.clone(), clock: *clock, time })
-            .collect(),
-        missing_passes: names.into_iter().filter(|name| has(a, name) && !has(b, name)).collect(),
-    }
-}
-
-fn pass_names(a: &Configuration, b: &Configuration) -> Vec<String> {
-    let mut names: Vec<String> = vec![];
-    for pass in a.runs().chain(b.runs()).flat_map(|run| &run.passes) {
-        if !names.contains(&pass.name) {
-            names.push(pass.name.clone());
-        }
-    }
-    names
-}
-
-/// Every pass's times on every clock that either side has.
-fn pass_times(a: &Configuration, b: &Configuration) -> Vec<(String, Clock, Times)> {
-    let mut found = vec![];
-    for name in pass_names(a, b) {
-        for clock in [Clock::Gpu, Clock::Host, Clock::Wait] {
-            let samples = |run: &Run| {
-                let pass = run.passes.iter().find(|pass| pass.name == name)?;
-                let time = match clock {
-                    Clock::Gpu => &pass.gpu_ms,
-                    Clock::Host => &pass.host_ms,
-                    Clock::Wait => &pass.wait_ms,
-                };
-                time.as_ref().map(|time| time.samples.clone())
-            };
-            let times = Times { a: a.samples(samples), b: b.samples(samples) };
-            if !(times.a.is_empty() && times.b.is_empty()) {
-                found.push((name.clone(), clock, times));
-            }
-        }
-    }
-    found
-}
-
-/// Verdicts on a run's family: the frame first.
-fn judge(family: &[&Times], shares: &[Option<f64>], options: &Options) -> Vec<Quantity> {
-    let mut quantities: Vec<Quantity> =
-        family.iter().zip(shares).map(|(times, share)| unmeasured(times, *share)).collect();
-    let found: Vec<Option<Evidence>> =
-        family.iter().map(|times| times.evidence(options.design).filter(|_| !times.are_identical())).collect();
-    let known: Vec<(usize, &Evidence)> =
-        found.iter().enumerate().filter_map(|(index, evidence)| Some((index, evidence.as_ref()?))).collect();
-    let evidence: Vec<&Evidence> = known.iter().map(|(_, evidence)| *evidence).collect();
-    for ((index, evidence), verdict) in known.iter().zip(decide(&evidence, options.rules)) {
-        let [low, high] = evidence.interval(options.rules.error).map(f64::exp);
-        let quantity = &mut quantities[*index];
-        quantity.ratio = finite(evidence.estimate().exp());
-        quantity.interval = (low > 0.0 && high.is_finite()).then_some([low, high]);
-        quantity.verdict = verdict;
-        quantity.reason = (verdict == Verdict::Unclear).then(|| {
-            let count = family[*index].count(options.design);
-            let unit = if options.design == Design::Blocks { "blocks" } else { "processes a side" };
-            match needed(evidence, options.rules, count, known.len(), MOST_PROCESSES) {
-                Some(count) => format!("about {count} {unit} would decide"),
-                None => format!("more than {MOST_PROCESSES} {unit} would be needed"),
-            }
-        });
-    }
-    for (index, (quantity, times)) in quantities.iter_mut().zip(family).enumerate() {
-        quantity.counts = index == 0 || quantity.share.is_some_and(|share| share >= options.min_share);
-        if times.are_identical() {
-            // Nothing is estimated: the two are one measurement.
-            (quantity.ratio, quantity.interval) = (Some(1.0), Some([1.0, 1.0]));
-            (quantity.verdict, quantity.reason) = (Verdict::Same, None);
-            quantity.gate = options.fail_above.filter(|_| quantity.counts).map(|_| Gate::Passed);
-        }
-    }
-    if let Some(limit) = options.fail_above {
-        let counting: Vec<(usize, &Evidence)> =
-            known.iter().filter(|(index, _)| quantities[*index].counts).copied().collect();
-        let evidence: Vec<&Evidence> = counting.iter().map(|(_, evidence)| *evidence).collect();
-        for ((index, _), gate) in counting.iter().zip(gate(&evidence, limit, options.rules.error)) {
-            quantities[*index].gate = Some(gate);
-        }
-    }
-    quantities
-}
-
-/// A time without evidence on it.
-fn unmeasured(times: &Times, share: Option<f64>) -> Quantity {
-    let (a_median_ms, b_median_ms) = (geometric_mean(&times.a), geometric_mean(&times.b));
-    let reason = if times.a.is_empty() {
-        "A has no such time"
-    } else if times.b.is_empty() {
-        "B has no such time"
-    } else if a_median_ms.is_none() || b_median_ms.is_none() {
-        "a median is not positive"
-    } else {
-        "one process on a side: how much processes differ is unknown; measure with --processes 5 or with ab"
-    };
-    Quantity {
-        a_median_ms,
-        b_median_ms,
-        ratio: a_median_ms.zip(b_median_ms).and_then(|(a, b)| finite(b / a)),
-        interval: None,
-        share,
-        counts: false,
-        verdict: Verdict::Unclear,
-        reason: Some(reason.to_owned()),
-        gate: None,
-    }
 }

@@ -105,6 +105,28 @@ fn passes_below_the_least_share_do_not_fail() {
     compare(&a, &b).args("--fail-above 5% --min-share 80%").run().succeeded();
 }
 
+/// Without `--min-share` a pass counts from 2 % of the frame on, on the side where its share is greater.
+#[test]
+fn passes_count_from_two_percent_of_the_frame() {
+    let out = folder();
+    for (share, code) in [(0.019, 0), (0.021, 4)] {
+        let [a, b] = [("a.json", 1.0), ("b.json", 1.5)].map(|(name, slower)| {
+            let mut record = record_of(5, 1.0);
+            for run in record["runs"].as_array_mut().unwrap() {
+                let frame_ms = run["frame_ms"]["median"].as_f64().unwrap();
+                let passes = run["passes"].as_array_mut().unwrap();
+                let pass = passes.iter_mut().find(|pass| pass["name"] == "illumination-volumes").unwrap();
+                let pass_ms = pass["gpu_ms"]["median"].as_f64().unwrap();
+                scale(&mut pass["gpu_ms"], slower / 1.5 * share * frame_ms / pass_ms);
+            }
+            file(&out, name, record.to_string())
+        });
+        let ended = compare(&a, &b).args("--fail-above 5%").run();
+        assert_eq!(ended.status.code(), Some(code), "{share}: {}{}", ended.stdout, ended.stderr);
+        assert!(ended.stdout.contains("SLOWER"), "{}", ended.stdout);
+    }
+}
+
 /// A run that reads the file.
 type Reading<'a> = &'a dyn Fn(&str) -> Program;
 
