@@ -38,11 +38,12 @@ pub fn publish<S: Study>(
     let mut pictures = output.image.iter().flat_map(|named| picture_files(named, variants));
     pictures.try_for_each(|path| outcome::check_file(&path))?;
     if *processes > 1 {
-        let record = processes::run(*processes, output.quiet)?;
+        let (record, failed) = processes::run(*processes, output.quiet)?;
         // The first process has written the pictures and the trace.
         let pictures = record.runs.iter().filter_map(|run| Some(Path::new(&run.image.as_ref()?.path)));
         pictures.chain(output.trace.as_deref()).for_each(|path| outcome::wrote(output, path));
-        return outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
+        let published = outcome::publish(&OutputArgs { trace: None, ..output.clone() }, &record, &[]);
+        return failed.map_or(published, Err);
     }
     let (record, traces, failed) = measure(study, variants, common, depth)?;
     outcome::publish(output, &record, &traces)?;

@@ -109,7 +109,8 @@ impl Visitor for Papers {
 /// # Errors
 /// Help that was asked for, and what the parser refuses.
 pub fn parsed(arguments: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
-    umbrella_command(&listed()).try_get_matches_from(arguments)
+    let papers = listed();
+    umbrella_command(&papers).try_get_matches_from(ab::reordered(arguments.into_iter().collect(), &papers))
 }
 
 fn listed() -> Vec<Paper> {
@@ -132,7 +133,8 @@ pub fn umbrella() -> ExitCode {
     let arguments = std::env::args_os().collect();
     #[cfg(feature = "window")]
     let arguments: Vec<OsString> = view::reordered(arguments);
-    let matches = match command.try_get_matches_from::<Vec<OsString>, _>(arguments) {
+    let arguments = ab::reordered(arguments, &papers);
+    let matches = match command.try_get_matches_from(arguments) {
         Ok(matches) => matches,
         Err(error) => return ExitCode::from(outcome::usage(&error)),
     };

@@ -1,7 +1,9 @@
 //! `--processes K`: the same command in fresh processes, their records joined.
 
 use std::ffi::OsString;
+use std::fmt::Display;
 use std::io::{self, Read};
+use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -22,48 +24,62 @@ const OF_THE_FIRST: [(&str, bool); 4] =
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Runs this command `count` times and joins the records, each with its process's number. Ctrl-C reaches the process
-/// that runs as well, and keeps what is finished.
+/// that runs as well, and keeps what is finished. So does a process that fails, whose failure comes with the record of those
+/// before it.
 ///
 /// # Errors
-/// The failure of the first process that fails.
-pub fn run(count: u32, quiet: bool) -> Result<Record, Failure> {
-    let failed = |reason: String| Failure::Running(format!("measuring in a fresh process: {reason}"));
-    let program = std::env::current_exe().map_err(|e| failed(e.to_string()))?;
+/// The failure of the first process.
+pub fn run(count: u32, quiet: bool) -> Result<(Record, Option<Failure>), Failure> {
+    let program = std::env::current_exe().map_err(failed)?;
     let given: Vec<OsString> = std::env::args_os().skip(1).collect();
     let interrupted = interrupted();
     let bar = progress_bar(quiet, "processes");
     bar.set_length(u64::from(count));
-    let mut joined: Option<Record> = None;
+    let (mut joined, mut failure): (Option<Record>, _) = (None, None);
     for process in 0..count {
         if joined.is_some() && interrupted.load(Ordering::Relaxed) {
             break;
         }
-        let removed = if process == 0 { OURS.to_vec() } else { [&OURS[..], &OF_THE_FIRST[..]].concat() };
-        let file = crate::file::temporary().map_err(|e| failed(e.to_string()))?;
-        let mut command = Command::new(&program);
-        command
-            .args(without(&removed, given.iter().cloned()))
-            .args(["--process", &process.to_string(), "--quiet", "--json"])
-            .arg(file.path())
-            .stdin(Stdio::null());
-        let ended = finish(&mut command, interrupted).map_err(|e| failed(e.to_string()))?;
-        if !ended.status.success() {
-            match (interrupted.load(Ordering::Relaxed), &joined) {
-                (true, Some(_)) => break,
-                (true, None) => return Err(Error::Interrupted.into()),
-                (false, _) => {}
+        match measure(&program, &given, process, interrupted) {
+            Ok(record) => match &mut joined {
+                Some(all) => all.runs.extend(record.runs),
+                None => joined = Some(Record { command: environment::command(), ..record }),
+            },
+            Err(_) if interrupted.load(Ordering::Relaxed) && joined.is_some() => break,
+            Err(_) if interrupted.load(Ordering::Relaxed) => return Err(Error::Interrupted.into()),
+            Err(failed) => {
+                failure = Some(failed);
+                break;
             }
-            return Err(failure(&format!("process {process}"), &ended));
-        }
-        let record = json::read(file.path())?;
-        match &mut joined {
-            Some(all) => all.runs.extend(record.runs),
-            None => joined = Some(Record { command: environment::command(), ..record }),
         }
         bar.inc(1);
     }
     bar.finish_and_clear();
-    joined.ok_or_else(|| failed("none was asked for".into()))
+    match (joined, failure) {
+        (Some(joined), failure) => Ok((joined, failure)),
+        (None, failure) => Err(failure.unwrap_or_else(|| failed("none was asked for"))),
+    }
+}
+
+/// Measures in one fresh process, with the arguments that this one was given.
+fn measure(program: &Path, given: &[OsString], process: u32, interrupted: &AtomicBool) -> Result<Record, Failure> {
+    let removed = if process == 0 { OURS.to_vec() } else { [&OURS[..], &OF_THE_FIRST[..]].concat() };
+    let file = crate::file::temporary().map_err(failed)?;
+    let mut command = Command::new(program);
+    command
+        .args(without(&removed, given.iter().cloned()))
+        .args(["--process", &process.to_string(), "--quiet", "--json"])
+        .arg(file.path())
+        .stdin(Stdio::null());
+    let ended = finish(&mut command, interrupted).map_err(failed)?;
+    if !ended.status.success() {
+        return Err(failure(&format!("process {process}"), &ended));
+    }
+    Ok(json::read(file.path())?)
+}
+
+fn failed(reason: impl Display) -> Failure {
+    Failure::Running(format!("measuring in a fresh process: {reason}"))
 }
 
 /// Exit status of a process, and its standard error.

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::json;
 
-use super::program::{ONCE, Program, SCENE, device, folder, fumarole, read_json};
+use super::program::{ONCE, Program, SCENE, device, entries, folder, fumarole, read_json};
 use super::shaders::{end_cast_with, own_shaders};
 
 /// Two blocks of the tiny scene, with `options` before the paper.
@@ -128,6 +128,85 @@ fn a_side_s_own_value_comes_after_the_common_one() {
     let report = program.run().succeeded().json();
     assert_eq!((&report["only_in_a"], &report["only_in_b"]), (&json!([]), &json!([])), "{report}");
     assert_eq!(report["runs"].as_array().unwrap().len(), 1, "{report}");
+}
+
+/// Its own options behind the paper, where they are read as those of both sides otherwise.
+#[test]
+fn its_own_options_may_stand_behind_the_paper() {
+    let out = folder();
+    let program = common(fumarole("ab")).args("--blocks 2 --b").arg("--seed 2").args("--quiet --margin 3% --markdown");
+    let ended = program.args("--env B:LP_NUM_THREADS=1 --out").arg(out.path()).run().succeeded();
+    assert!(ended.stdout.starts_with("**What is compared**\n"), "{}", ended.stdout);
+    for part in ["- seed: A 1, B 2", "### caustics level-map: 96 × 64", "| --- |", "within ± 3 %", "blocks A B B A"] {
+        assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
+    }
+    assert_eq!(ended.stderr, "");
+    assert_eq!(entries(out.path()), ["ab-a.json", "ab-b.json", "ab.json"]);
+}
+
+/// Several processes in one place of a block would count as blocks, and files of both sides be those of one.
+#[test]
+fn what_would_make_no_blocks_or_one_file_of_all_is_refused() {
+    let out = folder();
+    let ab = || ab("--out").arg(out.path());
+    for (option, value) in [("--processes", "2"), ("--image", "x.png"), ("--trace", "x.json"), ("--csv", "x.csv")] {
+        common(ab()).arg(option).arg(value).run().refused(2, &["ab: ", option]);
+        common(ab()).arg(format!("{option}={value}")).run().refused(2, &["ab: ", option]);
+    }
+    for side in ["--a", "--b"] {
+        common(ab().arg(side).arg("--processes 2")).run().refused(2, &["--processes", "--blocks"]);
+    }
+    assert_eq!(entries(out.path()), [""; 0]);
+}
+
+/// They take seconds, and are the device's.
+#[test]
+fn the_first_process_of_a_side_alone_measures_the_limits() {
+    let out = folder();
+    let once = ONCE.replace("--no-limits", "");
+    let program = ab("--out").arg(out.path()).args("caustics --variant level-map").args(SCENE).args(&once);
+    program.arg("--device").arg(device()).run().succeeded();
+    for name in ["ab-a.json", "ab-b.json"] {
+        let record = read_json(&out.path().join(name));
+        let runs = record["runs"].as_array().unwrap();
+        let have_limits: Vec<bool> = runs.iter().map(|run| !run["limits"].is_null()).collect();
+        assert_eq!(have_limits, [true, false, false, false], "{name}");
+    }
+}
+
+/// A program that fails in the third block: two are compared, and all that was measured is kept.
+#[cfg(unix)]
+#[test]
+fn a_failure_throws_no_block_away() {
+    use std::os::unix::fs::PermissionsExt;
+    let out = folder();
+    let (calls, script) = (out.path().join("calls"), out.path().join("script"));
+    let text = format!(
+        "#!/bin/sh\necho >> '{0}'\nif [ $(wc -l < '{0}') -ge 9 ]; then echo 'error: the ninth call' >&2; exit 1; fi\n\
+         exec '{1}' \"$@\"\n",
+        calls.display(),
+        env!("CARGO_BIN_EXE_fumarole")
+    );
+    fs::write(&script, text).unwrap();
+    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    let kept = out.path().join("kept");
+    let [a, b] = ["A", "B"].map(|side| format!("{side}:{}", script.display()));
+    let program = fumarole("ab --blocks 5 --quiet --out").arg(&kept).arg("--binary").arg(&a).arg("--binary").arg(&b);
+    let ended = common(program).run();
+    assert_eq!(ended.status.code(), Some(1), "{}{}", ended.stdout, ended.stderr);
+    assert_eq!(ended.stderr, "error: the ninth call\n");
+    assert!(ended.stdout.contains("blocks A B B A") && ended.stdout.contains("4 processes"), "{}", ended.stdout);
+    for name in ["ab-a.json", "ab-b.json"] {
+        let processes = read_json(&kept.join(name))["runs"].as_array().unwrap().len();
+        assert_eq!(processes, 4, "{name}");
+    }
+    assert_eq!(read_json(&kept.join("ab.json"))["runs"][0]["a_processes"], 4);
+
+    // Before two blocks there is nothing to say.
+    let none = out.path().join("none");
+    let program = fumarole("ab --blocks 5 --quiet --out").arg(&none).arg("--binary").arg(&a);
+    common(program).run().refused(1, &["the ninth call"]);
+    assert!(!none.join("ab-a.json").exists());
 }
 
 #[test]

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::thread;
+use std::time::Duration;
 
 use serde_json::Value;
 
 use super::program::{
-    ONCE, assert_schema, burning, caustics, device, folder, fumarole, gas, lava, read_json, sha256, terrain,
+    ONCE, assert_schema, burning, caustics, device, file, folder, fumarole, gas, lava, read_json, sha256, terrain,
 };
 
 const BOTH: &str = "--variant level-map,volumetric";
@@ -317,6 +319,29 @@ fn fresh_processes_are_numbered_and_the_first_writes_the_picture() {
 #[test]
 fn a_fresh_process_that_fails_says_it_once() {
     caustics("bench --processes 2 --mesh no-such.obj").tiny().args(ONCE).run().refused(2, &["no-such.obj"]);
+}
+
+/// The mesh goes when the first process has measured it and writes its picture: the last cannot read it, and those before
+/// it are kept.
+#[test]
+fn a_later_process_that_fails_throws_none_before_it_away() {
+    let out = folder();
+    let mesh = file(&out, "mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    let options = "bench --processes 3 --min-time 1 --no-limits --variant level-map --mesh mesh.obj --quiet";
+    let program = caustics(options).args("--json a.json --image a.png").inside(out.path()).tiny();
+    let mut running = program.start();
+    while !out.path().join("a.png").exists() && !running.has_ended() {
+        thread::sleep(Duration::from_millis(3));
+    }
+    fs::remove_file(mesh).unwrap();
+    let ended = running.end();
+    assert_eq!(ended.status.code(), Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.starts_with("error: ") && ended.stderr.contains("mesh.obj"), "{}", ended.stderr);
+    let record = read_json(&out.path().join("a.json"));
+    assert_schema(&record);
+    let processes: Vec<u64> =
+        record["runs"].as_array().unwrap().iter().map(|run| run["process"].as_u64().unwrap()).collect();
+    assert!(processes == [0] || processes == [0, 1], "{processes:?}");
 }
 
 #[test]

@@ -1,0 +1,148 @@
+//! The sides of `ab`: what each one runs.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use serde_json::json;
+
+use super::AbArgs;
+use crate::cli::failure::Failure;
+use crate::cli::processes::{failure, finish};
+use crate::cli::watch::interrupted;
+use crate::content;
+use crate::report::{Record, json as reader};
+
+/// One of the two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    A,
+    B,
+}
+
+/// Options as a shell would split them.
+#[derive(Debug, Clone)]
+pub struct Words(pub Vec<String>);
+
+pub fn parse_words(text: &str) -> Result<Words, String> {
+    shlex::split(text).map(Words).ok_or_else(|| "a quotation mark is not closed".to_owned())
+}
+
+fn parse_side(text: &str) -> Result<(Side, &str), String> {
+    match text.split_once(':') {
+        Some(("A" | "a", rest)) => Ok((Side::A, rest)),
+        Some(("B" | "b", rest)) => Ok((Side::B, rest)),
+        _ => Err("begin with the side, A: or B:".to_owned()),
+    }
+}
+
+/// A side's variable of the environment.
+pub fn parse_variable(text: &str) -> Result<(Side, (String, String)), String> {
+    let (side, assignment) = parse_side(text)?;
+    match assignment.split_once('=') {
+        Some((name, value)) if !name.is_empty() && !text.contains('\0') => {
+            Ok((side, (name.to_owned(), value.to_owned())))
+        }
+        _ => Err("give NAME=VALUE after the side".to_owned()),
+    }
+}
+
+/// A side's program.
+pub fn parse_binary(text: &str) -> Result<(Side, PathBuf), String> {
+    let (side, path) = parse_side(text)?;
+    if path.is_empty() { Err("give a file after the side".to_owned()) } else { Ok((side, path.into())) }
+}
+
+impl AbArgs {
+    /// SHA-256 of what fixes the blocks of a side.
+    pub fn identity(&self, side: Side) -> Result<String, Failure> {
+        let text =
+            |words: &[OsString]| words.iter().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>();
+        let mut programs = Vec::new();
+        for (of, path) in &self.binary {
+            let failed = |e| Failure::Input(format!("side {of:?}: reading {}: {e}", path.display()));
+            programs.push((format!("{of:?}"), content::file_sha256(path).map_err(failed)?));
+        }
+        let variables: Vec<_> = self.env.iter().map(|(of, variable)| (format!("{of:?}"), variable)).collect();
+        let fixed =
+            json!([format!("{side:?}"), self.a.0, self.b.0, variables, programs, self.blocks, text(&self.common)]);
+        Ok(content::sha256(fixed.to_string().as_bytes()))
+    }
+
+    /// The program that was named for a side.
+    fn binary(&self, side: Side) -> Option<&PathBuf> {
+        self.binary.iter().rev().find(|(of, _)| *of == side).map(|(_, path)| path)
+    }
+
+    fn variables(&self, side: Side) -> impl Iterator<Item = &(String, String)> {
+        self.env.iter().filter(move |(of, _)| *of == side).map(|(_, variable)| variable)
+    }
+
+    /// What a side's program is given, but for where its record goes.
+    pub fn words(&self, side: Side) -> Result<Vec<OsString>, Failure> {
+        let own = if side == Side::A { &self.a.0 } else { &self.b.0 };
+        let (paper, options) = match &self.common[..] {
+            [paper, verb, rest @ ..] if verb == "bench" => (paper, rest),
+            [paper, rest @ ..] => (paper, rest),
+            [] => return Err(Failure::Input("ab: name a paper, as in: ab --b \"--seed 2\" gas".to_owned())),
+        };
+        let words = [paper.clone(), "bench".into()].into_iter().chain(options.iter().cloned());
+        Ok(words.chain(own.iter().map(OsString::from)).collect())
+    }
+
+    /// The command that measures a side once, as a shell takes it.
+    pub fn command(&self, side: Side) -> Result<Vec<String>, Failure> {
+        let own = std::env::args_os().next().unwrap_or_else(|| "fumarole".into());
+        let program = self.binary(side).map_or(own, |path| path.clone().into_os_string());
+        let mut variables: Vec<String> = self.variables(side).map(|(name, value)| format!("{name}={value}")).collect();
+        if !variables.is_empty() {
+            variables.insert(0, "env".to_owned());
+        }
+        let words = std::iter::once(program).chain(self.words(side)?);
+        Ok(variables.into_iter().chain(words.map(|word| word.to_string_lossy().into_owned())).collect())
+    }
+
+    /// Measures one side in a fresh process, its process of that number, with the device's limits if they are asked for at all.
+    pub fn measure(&self, side: Side, process: u32, has_limits: bool) -> Result<Record, Failure> {
+        let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
+        let program = self.binary(side).map_or_else(std::env::current_exe, |path| Ok(path.clone())).map_err(failed)?;
+        let file = crate::file::temporary().map_err(failed)?;
+        let mut words = self.words(side)?;
+        let without_limits = "--no-limits";
+        if !has_limits && !words.iter().any(|word| word == without_limits) {
+            words.push(without_limits.into());
+        }
+        let mut command = Command::new(&program);
+        command
+            .args(words)
+            .args(["--process", &process.to_string(), "--quiet", "--json"])
+            .arg(file.path())
+            .envs(self.variables(side).cloned())
+            .stdin(Stdio::null());
+        let ended = finish(&mut command, interrupted()).map_err(|e| {
+            Failure::Input(format!("side {side:?}: starting {}: {e}; name a build of fumarole", program.display()))
+        })?;
+        if !ended.status.success() {
+            return Err(failure(&format!("side {side:?}"), &ended));
+        }
+        Ok(reader::read(file.path())?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_named_before_what_is_theirs() {
+        let (side, variable) = parse_variable("B:VK_DRIVER_FILES=/a=b.json").unwrap();
+        assert_eq!((side, variable), (Side::B, ("VK_DRIVER_FILES".to_owned(), "/a=b.json".to_owned())));
+        for wrong in ["VK=1", "C:VK=1", "A:VK", "A:=1"] {
+            parse_variable(wrong).unwrap_err();
+        }
+        assert_eq!(parse_binary("a:./old").unwrap(), (Side::A, PathBuf::from("./old")));
+        parse_binary("A:").unwrap_err();
+        assert_eq!(parse_words("--variant none --shader-dir 'a b'").unwrap().0.len(), 4);
+        parse_words("'").unwrap_err();
+    }
+}
