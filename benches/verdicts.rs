@@ -35,7 +35,10 @@ fn main() -> ExitCode {
     }
     for drift in [0.0, 0.05] {
         for factor in [1.0, 1.1] {
-            bound("false verdicts of ab in at most 6.5 %", blocks(trials, drift, factor) <= 0.065);
+            let [same, found, wrong] = blocks(trials, drift, factor);
+            bound("false verdicts of ab in at most 6.5 %", wrong <= 0.065);
+            bound("ab finds equal frames SAME in at least 95 %", same >= 0.95);
+            bound("ab finds a pass that is 10 % slower SLOWER in at least 95 %", factor == 1.0 || found >= 0.95);
         }
     }
     for what in &misses {
@@ -107,9 +110,9 @@ fn family(seed: u64, processes: usize, spread: f64, factor: f64) -> (Vec<Evidenc
     (evidence, verdicts)
 }
 
-/// Sides in turn under drift over a block and steps of the clock rate, until decided or the last look: how often a
-/// quantity is falsely FASTER or SLOWER.
-fn blocks(trials: usize, drift: f64, factor: f64) -> f64 {
+/// Sides in turn under drift over a block and steps of the clock rate, until decided or the last look: how often the frame is
+/// SAME, the pass that is slower by a factor SLOWER, and another quantity falsely FASTER or SLOWER.
+fn blocks(trials: usize, drift: f64, factor: f64) -> [f64; 3] {
     let (mut same, mut wrong, mut found, mut used) = (0, 0, 0, 0);
     for seed in 0..trials {
         let mut noise = Noise::new(seed as u64);
@@ -139,5 +142,5 @@ fn blocks(trials: usize, drift: f64, factor: f64) -> f64 {
         percent(wrong, trials),
         used as f64 / trials as f64
     );
-    part(wrong, trials)
+    [part(same, trials), part(found, trials), part(wrong, trials)]
 }
