@@ -99,6 +99,8 @@ pub struct Target {
     pub kind: Kind,
     /// What a texel or row holds, with units; empty of what its name says.
     pub holds: &'static str,
+    /// Near and far plane of the perspective whose depths it holds, 0 to 1, in the camera's unit of length.
+    pub planes: Option<[f32; 2]>,
 }
 
 /// Type of a buffer's 32-bit values.
@@ -112,12 +114,12 @@ pub enum Kind {
 impl Target {
     /// An image.
     pub fn image(name: impl Into<String>, view: &Arc<ImageView>) -> Self {
-        Target { name: name.into(), resource: view.into(), columns: 0, kind: Kind::F32, holds: "" }
+        Target { name: name.into(), resource: view.into(), columns: 0, kind: Kind::F32, holds: "", planes: None }
     }
 
     /// A buffer of rows of `columns` 32-bit floats.
     pub fn table(name: impl Into<String>, buffer: &Arc<Buffer>, columns: u32) -> Self {
-        Target { name: name.into(), resource: buffer.into(), columns, kind: Kind::F32, holds: "" }
+        Target { name: name.into(), resource: buffer.into(), columns, kind: Kind::F32, holds: "", planes: None }
     }
 
     /// A buffer of rows of `columns` unsigned 32-bit integers.
@@ -138,5 +140,10 @@ impl Target {
     /// With what a texel or row holds, and its unit; of a colour with the words red, green, blue.
     pub fn of(self, holds: &'static str) -> Self {
         Target { holds, ..self }
+    }
+
+    /// With the depths of a perspective, 0 at the near plane to 1 at the far one.
+    pub fn between(self, near: f32, far: f32) -> Self {
+        Target { planes: Some([near, far]), ..self }
     }
 }

@@ -223,15 +223,13 @@ impl Application {
             return Ok(Flow::Ended);
         }
         let wishes = open.draw()?;
+        // One number for all, the last: no value is taken for heard before its own request is.
+        let mut last = None;
         for wish in wishes {
             match wish {
                 Wish::Ask(request) => {
-                    if let Some(open) = &mut self.open
-                        && let Some(client) = &mut open.client
-                    {
-                        let id = client.send(request);
-                        open.interface.has_sent(id);
-                    }
+                    let client = self.open.as_mut().and_then(|open| open.client.as_mut());
+                    last = client.map(|client| client.send(request)).or(last);
                 }
                 Wish::Paper(paper) => self.start(&paper, &[])?,
                 Wish::Restart(paper) => {
@@ -247,6 +245,9 @@ impl Application {
                 }
                 Wish::Quit => return Ok(Flow::Ended),
             }
+        }
+        if let (Some(open), Some(id)) = (&mut self.open, last) {
+            open.interface.has_sent(id);
         }
         self.schedule(events);
         Ok(Flow::On)
@@ -277,7 +278,9 @@ impl Application {
         }
         if let Some(open) = &mut self.open {
             let size = open.window.inner_size().to_logical::<f32>(open.window.scale_factor());
-            open.interface.remember((size.width, size.height));
+            // The size of a display is no window's.
+            let is_window = open.window.fullscreen().is_none();
+            open.interface.remember(if is_window { (size.width, size.height) } else { (0.0, 0.0) });
         }
         events.exit();
     }
@@ -289,7 +292,11 @@ impl Open {
         while let Some(event) = self.client.as_mut().and_then(Client::try_receive) {
             match &event {
                 Event::Ready(_) => self.had_worker = true,
-                Event::Ended(ended) if !self.had_worker => return Err(refused(ended)),
+                Event::Ended(ended) if !self.had_worker || self.frames_left.is_some() => return Err(refused(ended)),
+                // Nobody reads it in a window that is to end by itself.
+                Event::Failed { problem, .. } if self.frames_left.is_some() => {
+                    return Err(Error::Refused { message: problem.clone(), code: 1 });
+                }
                 Event::Frame(_) => {
                     if let Some(left) = &mut self.frames_left {
                         *left = left.saturating_sub(1);
@@ -317,6 +324,10 @@ impl Open {
         let tessellate = |shapes| self.context.tessellate(shapes, pixels_per_point);
         let drawn = self.screen.draw(pixels_per_point, output.shapes, tessellate)?;
         self.screen.free(&output.textures_delta);
+        let messages = self.screen.device().instance().take_messages();
+        if !messages.is_empty() {
+            self.interface.take(Event::Validation(messages.iter().map(ToString::to_string).collect()));
+        }
         if let Some(path) = &self.controls
             && let Some(update) = &output.platform_output.accesskit_update
         {

@@ -91,7 +91,7 @@ impl View {
 
 /// The camera as the user has it.
 fn view(face: &Interface) -> Option<View> {
-    let moved = face.flight.view.filter(|_| face.sent.parameter(CAMERA).is_some());
+    let moved = face.flight.view.filter(|_| face.sent.is_underway(CAMERA));
     moved.or_else(|| face.session.side(0)?.camera.map(View::from_numbers))
 }
 
@@ -111,7 +111,8 @@ pub fn change(face: &mut Interface, change: impl FnOnce(View) -> View) {
 
 /// Back to the figure's camera.
 pub fn reset(face: &mut Interface) {
-    face.flight = Flight::default();
+    // What moves it before the worker has answered moves that one, and not the one that was left.
+    face.flight = Flight { view: face.session.home.map(View::from_numbers), text: None };
     if face.session.parameter(CAMERA).is_some() {
         face.set(CAMERA, Vec::new());
     }
@@ -119,8 +120,9 @@ pub fn reset(face: &mut Interface) {
 
 /// Pointer and wheel over a picture.
 pub fn steer(ui: &Ui, face: &mut Interface, response: &Response) {
+    // A turn of the wheel is done at once: what is smoothed goes on for some frames, in which another camera may be there.
     let (ctrl, shift, wheel) =
-        ui.input(|input| (input.modifiers.command, input.modifiers.shift, input.smooth_scroll_delta));
+        ui.input(|input| (input.modifiers.command, input.modifiers.shift, input.raw_scroll_delta));
     let drag = response.drag_delta();
     let pans = response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Primary) && shift;
     if drag != Vec2::ZERO && pans {

@@ -13,8 +13,8 @@ pub struct Drawing {
     /// Powers of two that values are multiplied by.
     pub exposure: f32,
     pub ramp: Ramp,
-    /// Of depths 1 / (1 - depth): the distance in near planes for a far plane that is far away.
-    pub is_linear_depth: bool,
+    /// Of depths: the distance along the view, between these planes.
+    pub linear_between: Option<[f64; 2]>,
 }
 
 /// What is drawn of a texel.
@@ -137,7 +137,7 @@ pub fn draw(values: &TargetValues, drawing: &Drawing, is_srgb: bool) -> Option<C
                     if !value.is_finite() || none.contains(&value) {
                         return NONE;
                     }
-                    let value = if drawing.is_linear_depth { linear_depth(value) } else { value };
+                    let value = drawing.linear_between.map_or(value, |planes| linear_depth(value, planes));
                     if drawing.ramp == Ramp::Labels {
                         return label(value);
                     }
@@ -149,9 +149,9 @@ pub fn draw(values: &TargetValues, drawing: &Drawing, is_srgb: bool) -> Option<C
     Some(ColorImage::new([width, height], pixels))
 }
 
-/// Distance in near planes of a depth from 0 to 1.
-pub fn linear_depth(depth: f64) -> f64 {
-    1.0 / (1.0 - depth).max(1e-6)
+/// Distance along the view of a perspective's depth, 0 at the near plane to 1 at the far one.
+pub fn linear_depth(depth: f64, [near, far]: [f64; 2]) -> f64 {
+    near * far / (far - depth.clamp(0.0, 1.0) * (far - near))
 }
 
 /// Light, 0 to 1, as sRGB encodes it.
@@ -188,7 +188,28 @@ mod tests {
 
     fn grey(range: (f64, f64)) -> Drawing {
         let channel = Channel::One(0);
-        Drawing { channel, range, exposure: 0.0, ramp: Ramp::Grey, is_linear_depth: false }
+        Drawing { channel, range, exposure: 0.0, ramp: Ramp::Grey, linear_between: None }
+    }
+
+    #[test]
+    fn depths_become_distances_between_the_planes_of_their_camera() {
+        let camera = crate::scene::Camera {
+            eye: glam::Vec3::ZERO,
+            target: glam::Vec3::NEG_Z,
+            up: glam::Vec3::Y,
+            vertical_fov_rad: 0.7,
+            near_m: 0.1,
+            far_m: 100.0,
+        };
+        for distance in [0.1, 0.5, 7.0, 20.0] {
+            let clip = camera.projection(1.0) * glam::Vec4::new(0.0, 0.0, -distance, 1.0);
+            let found = linear_depth(f64::from(clip.z / clip.w), [0.1, 100.0]);
+            assert!((found / f64::from(distance) - 1.0).abs() < 2e-3, "{found} for {distance}");
+        }
+        let drawing = Drawing { linear_between: Some([1.0, 9.0]), ..grey((1.0, 9.0)) };
+        let image = draw(&floats(3, 1, &[0.0, 0.75, 1.0]), &drawing, false).expect("a picture");
+        // 9 / (9 - 0.75 * 8) = 3 lies a quarter of the way.
+        assert_eq!([0, 1, 2].map(|at| image.pixels[at].r()), [0, 64, 255]);
     }
 
     #[test]

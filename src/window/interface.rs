@@ -8,7 +8,7 @@ use egui::{CentralPanel, Context, RichText, SidePanel, TopBottomPanel};
 
 use super::bench_tab::Bench;
 use super::keep_tab::Saving;
-use super::layout::{Layout, Theme};
+use super::layout::{Comparison, Layout, Theme};
 use super::pictures::Pictures;
 use super::protocol::{Assignment, Event, MeasureChoice, Request, TargetChoice, ThumbnailChoice, Verb};
 use super::sent::Sent;
@@ -140,6 +140,10 @@ impl Interface {
     pub fn take(&mut self, event: Event) {
         if let Event::Ready(_) = event {
             let mut first = std::mem::take(&mut self.first);
+            // What is looked at is asked of every worker, also of one that takes the place of another.
+            first.push(Request::Difference(self.layout.comparison == Comparison::Difference));
+            first.extend(self.after.map(|after| Request::After(Some(after))));
+            first.extend(self.target.clone().map(|target| Request::Target(Some(target))));
             first.push(Request::Memory);
             first.push(Request::Measure(self.measure));
             first.into_iter().for_each(|request| self.ask(request));
@@ -290,6 +294,11 @@ impl Interface {
         let paper = self.paper.clone();
         self.session = Session { validation: std::mem::take(&mut self.session.validation), ..Session::default() };
         self.sent = Sent::default();
+        // Its small pictures come when it is chosen again; a second side may be gone.
+        self.pass = None;
+        if self.target.as_ref().is_some_and(|target| target.side > 0) {
+            (self.target, self.shown) = (None, Shown::Picture);
+        }
         self.wish(Wish::Restart(paper));
     }
 

@@ -85,6 +85,9 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
     let of_second = |name: &str| whole(times.get(1)?.iter().find(|times| times.name == name)?);
     let number = |ui: &mut Ui, value: Option<f64>| drop(ui.monospace(milliseconds(value)));
     let second = face.session.side_built(1).map(|side| side.passes.clone()).unwrap_or_default();
+    let mut of_first = times.first().into_iter().flatten();
+    let has_floors = of_first.clone().any(|pass| pass.floor_ms.is_some());
+    let has_counters = of_first.any(|pass| pass.counters.is_some());
     let mut chosen = None;
     Grid::new("pass grid").striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
         let head = |ui: &mut Ui, text: &str, help: &str| drop(ui.strong(text).on_hover_text(help));
@@ -98,7 +101,15 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             head(ui, "wait ms", "Waiting for what the method reads back");
         }
         head(ui, "share", "Of the sum of all passes' GPU and host times");
+        if has_floors {
+            head(ui, "of limit", "Least time of its counted work at the device's limits, as a share of its GPU time");
+        }
         head(ui, "calls", "Draws, dispatches, copies or executions in one frame");
+        if has_counters {
+            head(ui, "vertices", "Vertex stages of a counted frame");
+            head(ui, "samples", "Samples that passed every test");
+            head(ui, "invocations", "Compute stages of a counted frame");
+        }
         head(ui, "section", "Of the paper");
         ui.end_row();
         for (index, pass) in passes.iter().enumerate() {
@@ -123,7 +134,18 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
                 ),
                 None => ui.label(""),
             };
+            if has_floors {
+                let bound = own.and_then(|times| times.bound.clone()).unwrap_or_default();
+                let share = own.and_then(of_limit).map(|share| format!("{:5.1} %", share * 100.0));
+                ui.monospace(share.unwrap_or_default()).on_hover_text(bound);
+            }
             ui.monospace(pass.calls.to_string());
+            if has_counters {
+                let counters = own.and_then(|times| times.counters).unwrap_or_default();
+                for count in [counters.vertices, counters.samples_passed, counters.compute_invocations] {
+                    ui.monospace(count.map(|count| count.to_string()).unwrap_or_default());
+                }
+            }
             ui.weak(&pass.section);
             ui.end_row();
         }
@@ -131,8 +153,9 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             ui.label(RichText::new(&pass.name).italics()).on_hover_text(format!("B alone: {}", help(pass)));
             number(ui, None);
             number(ui, of_second(&pass.name));
-            ui.label("");
+            (0..1 + usize::from(has_floors)).for_each(|_| drop(ui.label("")));
             ui.monospace(pass.calls.to_string());
+            (0..3 * usize::from(has_counters)).for_each(|_| drop(ui.label("")));
             ui.weak(&pass.section);
             ui.end_row();
         }
@@ -140,6 +163,11 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
     if let Some(index) = chosen {
         face.select_pass((face.pass != Some(index)).then_some(index));
     }
+}
+
+/// Least time over the time that it took.
+fn of_limit(times: &PassTimes) -> Option<f64> {
+    Some(times.floor_ms? / times.gpu_ms.filter(|&ms| ms > 0.0)?)
 }
 
 /// GPU and host time together.
@@ -217,22 +245,18 @@ fn show_pass(ui: &mut Ui, face: &mut Interface, index: usize, pass: &PassInfo) {
     show_thumbnails(ui, face, pass);
 }
 
-/// What the device could do at most, where it was measured.
+/// What the device could do at most, where that and the pass's work were measured.
 fn show_bound(ui: &mut Ui, face: &mut Interface, index: usize) {
-    let Some(limits) = face.session.limits else {
-        if ui.small_button("Measure the device's limits").clicked() {
-            face.ask(Request::Limits);
-        }
-        return;
-    };
+    if face.session.limits.is_none() && ui.small_button("Measure the device's limits").clicked() {
+        face.ask(Request::Limits);
+    }
     let pass = face.session.times.first().and_then(|side| side.passes.get(index));
-    if let Some((ms, fragments, rate)) =
-        pass.and_then(|pass| Some((pass.gpu_ms?, pass.counters?.samples_passed?, limits.fill_gpix_s?)))
-        && ms > 0.0
-        && fragments > 0
+    if let Some((share, floor_ms, bound)) =
+        pass.and_then(|pass| Some((of_limit(pass)?, pass.floor_ms?, pass.bound.as_ref()?)))
     {
-        let share = fragments as f64 / (ms * 1e6) / rate;
-        ui.label(format!("{:.1} % of the device's fill rate of {rate:.2} Gpix/s", share * 100.0));
+        ui.label(format!("{:.1} % of the device's limit: {bound} takes {floor_ms:.3} ms at least", share * 100.0));
+    } else if face.session.limits.is_some() && !face.measure.counters {
+        ui.weak("Counters (K) give its share of them.");
     }
 }
 

@@ -8,7 +8,8 @@ use super::protocol::{Event, Request};
 /// Values on their way.
 #[derive(Debug, Default)]
 pub struct Sent {
-    parameters: HashMap<String, Underway<String>>,
+    /// None for one that goes back to what it is without a hand.
+    parameters: HashMap<String, Underway<Option<String>>>,
     is_playing: Option<Underway<bool>>,
     speed: Option<Underway<f64>>,
 }
@@ -43,11 +44,7 @@ impl Sent {
                 for assignment in assignments {
                     let (name, text) = (assignment.name.clone(), assignment.values.join(" "));
                     // What a value goes back to is the worker's to say.
-                    if text.is_empty() {
-                        self.parameters.remove(&name);
-                    } else {
-                        self.parameters.insert(name, Underway::new(text));
-                    }
+                    self.parameters.insert(name, Underway::new((!text.is_empty()).then_some(text)));
                 }
             }
             Request::Play | Request::Pause => self.is_playing = Some(Underway::new(*request == Request::Play)),
@@ -80,7 +77,12 @@ impl Sent {
 
     /// Text of a parameter.
     pub fn parameter(&self, name: &str) -> Option<&str> {
-        self.parameters.get(name).map(|one| one.value.as_str())
+        self.parameters.get(name)?.value.as_deref()
+    }
+
+    /// Whether the worker has yet to hear of a parameter's last change.
+    pub fn is_underway(&self, name: &str) -> bool {
+        self.parameters.contains_key(name)
     }
 
     /// Whether the clock plays.

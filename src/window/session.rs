@@ -27,6 +27,8 @@ pub struct Point {
 pub struct Session {
     pub ready: Option<Ready>,
     pub setup: Option<Setup>,
+    /// Eye and target of the camera where none is set by hand, as it was last told.
+    pub home: Option<[f64; 6]>,
     pub built: Option<Built>,
     pub frame: Option<Frame>,
     pub times: Vec<SideTimes>,
@@ -57,6 +59,11 @@ impl Session {
             }
             Event::Setup(setup) => {
                 self.heeds = self.heeds.max(setup.heeds);
+                if let Some(side) = setup.sides.first()
+                    && side.set.iter().all(|name| name != "camera")
+                {
+                    self.home = side.camera;
+                }
                 self.setup = Some(setup);
             }
             Event::Built(built) => {
@@ -74,7 +81,8 @@ impl Session {
                 self.frame = Some(*frame);
             }
             Event::Times(times) => {
-                if let Some(first) = times.first() {
+                // The first frames are plain ones: passes without a time are no points at 0.
+                if let Some(first) = times.first().filter(|first| first.samples > 0) {
                     let of_pass =
                         |pass: &super::protocol::PassTimes| pass.gpu_ms.unwrap_or(0.0) + pass.host_ms.unwrap_or(0.0);
                     push(&mut self.passes, first.passes.iter().map(of_pass).collect());

@@ -110,8 +110,8 @@ fn words(choice: &TargetChoice, info: &TargetInfo, x: u32, y: u32, numbers: &[f6
         _ => format!("{number}"),
     };
     let values: Vec<String> = numbers.iter().map(text).collect();
-    let depth = numbers.first().filter(|_| info.is_depth);
-    let linear = depth.map(|depth| format!(" = {:.3} near planes away", linear_depth(*depth))).unwrap_or_default();
+    let linear = info.planes.zip(numbers.first()).map(|(planes, depth)| linear_depth(*depth, planes));
+    let linear = linear.map(|distance| format!(" = {distance:.4} along the view")).unwrap_or_default();
     let of = [info.holds.as_str(), info.format.as_str()].into_iter().filter(|text| !text.is_empty());
     let of = of.collect::<Vec<_>>().join("; ");
     let format = if of.is_empty() { of } else { format!(" ({of})") };
@@ -176,14 +176,13 @@ fn show_controls(ui: &mut Ui, view: &mut TargetView, values: &TargetValues, info
         view.channel = Some(channel);
         let of = if let Channel::One(index) = channel { index } else { 0 };
         let statistics = values.statistics.get(of);
-        let is_linear = view.is_linear_depth && info.is_depth && channel != Channel::Colour;
+        let planes = info.planes.filter(|_| view.is_linear_depth && channel != Channel::Colour);
         let percentiles = match channel {
             Channel::Colour => (0.0, if info.is_srgb { 255.0 } else { 1.0 }),
-            Channel::One(_) if is_linear => {
+            Channel::One(_) => {
                 let (low, high) = percentile_range(statistics);
-                (linear_depth(low), linear_depth(high))
+                planes.map_or((low, high), |planes| (linear_depth(low, planes), linear_depth(high, planes)))
             }
-            Channel::One(_) => percentile_range(statistics),
         };
         let mut range = view.range.unwrap_or(percentiles);
         let speed = ((range.1 - range.0).abs() * 0.005).max(if is_whole { 0.1 } else { 1e-6 });
@@ -199,7 +198,8 @@ fn show_controls(ui: &mut Ui, view: &mut TargetView, values: &TargetValues, info
         if let Some(Statistics { min: Some(min), max: Some(max), .. }) = statistics
             && ui.small_button("all").on_hover_text("From the smallest to the largest value").clicked()
         {
-            view.range = Some((*min, *max));
+            let end = |value: f64| planes.map_or(value, |planes| linear_depth(value, planes));
+            view.range = Some((end(*min), end(*max)));
         }
         ui.add(DragValue::new(&mut view.exposure).range(-20.0..=20.0).speed(0.05).prefix("exposure ").suffix(" stops"));
         if channel != Channel::Colour {
@@ -209,15 +209,17 @@ fn show_controls(ui: &mut Ui, view: &mut TargetView, values: &TargetValues, info
             });
             combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, true, "ramp"));
         }
-        if info.is_depth {
-            ui.checkbox(&mut view.is_linear_depth, "linear depth")
-                .on_hover_text("Distance in near planes, 1 / (1 - depth), for a far plane that is far away");
+        if let Some([near, far]) = info.planes {
+            let linear = ui.checkbox(&mut view.is_linear_depth, "linear depth");
+            if linear.on_hover_text(format!("Distance along the view; the planes lie at {near} and {far}")).changed() {
+                view.range = None;
+            }
         }
         view.ramp = Some(ramp);
         let exposure = view.exposure;
-        drawing = Some(Drawing { channel, range, exposure, ramp, is_linear_depth: is_linear });
+        drawing = Some(Drawing { channel, range, exposure, ramp, linear_between: planes });
     });
-    let fallback = Drawing { channel, range: (0.0, 1.0), exposure: 0.0, ramp: Ramp::Grey, is_linear_depth: false };
+    let fallback = Drawing { channel, range: (0.0, 1.0), exposure: 0.0, ramp: Ramp::Grey, linear_between: None };
     drawing.unwrap_or(fallback)
 }
 
@@ -259,8 +261,8 @@ fn show_histogram(ui: &mut Ui, view: &mut TargetView, values: &TargetValues, dra
         && max > min
     {
         let place = |value: f64| rect.left() + ((value - min) / (max - min)).clamp(0.0, 1.0) as f32 * rect.width();
-        let is_linear = drawing.is_linear_depth;
-        for end in [drawing.range.0, drawing.range.1].into_iter().filter(|_| !is_linear) {
+        // The bins are those of the values, and not of distances.
+        for end in [drawing.range.0, drawing.range.1].into_iter().filter(|_| drawing.linear_between.is_none()) {
             painter.vline(place(end), rect.y_range(), egui::Stroke::new(1.0, ui.visuals().selection.bg_fill));
         }
         if let Some(pointer) = response.hover_pos() {

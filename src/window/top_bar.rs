@@ -211,7 +211,8 @@ pub fn show_status(ui: &mut Ui, face: &mut Interface) {
             let share = progress.done as f32 / progress.total.max(1) as f32;
             let text = format!("{what} {} / {}", progress.done, progress.total);
             ui.add(ProgressBar::new(share).desired_width(220.0).text(text));
-            if ui.small_button("Stop").on_hover_text("Esc").clicked() {
+            let can_end = matches!(progress.what, Work::Replay | Work::Film);
+            if can_end && ui.small_button("Stop").on_hover_text("Esc").clicked() {
                 face.ask(Request::Cancel);
             }
         }

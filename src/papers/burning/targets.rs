@@ -33,7 +33,9 @@ pub fn targets(paper: &Burning) -> Vec<Target> {
             .of("a vertex: x, y, z in diagonals with the block's rotation, L over L0"),
         Target::table("normals", &buffers.normals, 4).of("normal x, y, z, share that is charred, 0 to 1"),
         Target::table("colors", &buffers.colors, 4).of("light in red, green, blue, linear, and the glow"),
-        Target::image("depth", &paper.draw.depth).of("depth, 0 at the near plane to 1 at the far one"),
+        Target::image("depth", &paper.draw.depth)
+            .of("depth, 0 at the near plane to 1 at the far one")
+            .between(paper.draw.camera.near_m, paper.draw.camera.far_m),
         Target::image("picture", &paper.draw.picture).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
     ];
     if let Some(refinement) = &paper.refinement {

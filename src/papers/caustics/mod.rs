@@ -474,7 +474,8 @@ impl Paper for Caustics {
         targets.push(Target::image("underwater-color", &self.underwater.color).of("light in red, green, blue, linear"));
         targets.push(
             Target::image("underwater-depth", &self.underwater.fetched_depth)
-                .of("depth, 0 at the near plane to 1 at the far one"),
+                .of("depth, 0 at the near plane to 1 at the far one")
+                .between(self.underwater.planes_m[0], self.underwater.planes_m[1]),
         );
         targets.push(
             Target::image("picture", &self.view.picture).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),

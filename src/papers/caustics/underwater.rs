@@ -59,6 +59,8 @@ pub struct Underwater {
     pub view_projection: Mat4,
     /// Of the camera, metres.
     pub eye: Vec3,
+    /// Near and far plane of the camera.
+    pub planes_m: [f32; 2],
     /// A [`CameraBlock`].
     pub camera: Arc<Buffer>,
 }
@@ -69,7 +71,7 @@ impl Underwater {
     pub fn new(context: Context<'_>, depth_format: vk::Format) -> Result<Self, Error> {
         let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
         let depth = context.image("underwater-depth", depth_format, depth_usage)?;
-        let (eye, view_projection) = seen(context.parameters);
+        let (eye, view_projection, planes_m) = seen(context.parameters);
         let block = CameraBlock { view_projection: view_projection.to_cols_array() };
         Ok(Underwater {
             color: context.image("underwater-color", LIGHT, COLOR_MAP)?.view()?,
@@ -77,6 +79,7 @@ impl Underwater {
             fetched_depth: depth.depth_view()?,
             view_projection,
             eye,
+            planes_m,
             camera: context.upload("camera", vk::BufferUsageFlags::UNIFORM_BUFFER, bytemuck::bytes_of(&block))?,
         })
     }
@@ -86,14 +89,14 @@ impl Underwater {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn set_camera(&mut self, parameters: &Parameters) -> Result<(), Error> {
-        (self.eye, self.view_projection) = seen(parameters);
+        (self.eye, self.view_projection, self.planes_m) = seen(parameters);
         let block = CameraBlock { view_projection: self.view_projection.to_cols_array() };
         update(&self.camera, bytemuck::bytes_of(&block))
     }
 }
 
-/// Eye and matrix of the underwater camera.
-fn seen(parameters: &Parameters) -> (Vec3, Mat4) {
+/// Eye, matrix and planes of the underwater camera.
+fn seen(parameters: &Parameters) -> (Vec3, Mat4, [f32; 2]) {
     let camera = underwater_camera(parameters);
-    (camera.eye, camera.projection(parameters.aspect()) * camera.view())
+    (camera.eye, camera.projection(parameters.aspect()) * camera.view(), [camera.near_m, camera.far_m])
 }

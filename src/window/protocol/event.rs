@@ -278,7 +278,7 @@ pub enum TargetShape {
 }
 
 /// A target or buffer that can be looked at.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetInfo {
     /// Name, as `--dump` knows it.
     pub name: String,
@@ -290,8 +290,8 @@ pub struct TargetInfo {
     pub shape: TargetShape,
     /// Vulkan's name of the format; empty of a buffer.
     pub format: String,
-    /// It holds depths.
-    pub is_depth: bool,
+    /// Near and far plane of the perspective whose depths it holds, in the unit of length of the eye.
+    pub planes: Option<[f64; 2]>,
     /// 8-bit sRGB, as a picture is.
     pub is_srgb: bool,
     /// What a texel or row holds, with units; empty of what the name says.

@@ -161,6 +161,10 @@ pub struct PassTimes {
     pub share: Option<f64>,
     /// Counters of a counted frame.
     pub counters: Option<Counters>,
+    /// Least time of the counted work at the device's limits, as a record has it; where both were measured.
+    pub floor_ms: Option<f64>,
+    /// The kind of work that takes most of that.
+    pub bound: Option<String>,
 }
 
 /// Counters of a pass; `None` where the device cannot count.

@@ -116,7 +116,7 @@ pub fn target(target: &Target, prefix: &str) -> Option<TargetInfo> {
                 kind,
                 shape,
                 format: format!("{format:?}"),
-                is_depth: matches!(format, vk::Format::D32_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT),
+                planes: target.planes.map(|planes| planes.map(f64::from)),
                 is_srgb: format == vk::Format::R8G8B8A8_SRGB,
                 holds: target.holds.to_owned(),
             }
@@ -133,7 +133,7 @@ pub fn target(target: &Target, prefix: &str) -> Option<TargetInfo> {
                 },
                 shape: TargetShape::Table { rows: view.buffer().size_bytes() / 4 / columns, columns },
                 format: String::new(),
-                is_depth: false,
+                planes: None,
                 is_srgb: false,
                 holds: target.holds.to_owned(),
             }

@@ -2,13 +2,18 @@
 
 use std::path::Path;
 
+use super::side::Side;
 use super::state::State;
+use super::times::Times;
 use super::{command, keep, process};
 use crate::gpu::live::MemoryUse;
+use crate::gpu::physical::DeviceType;
 use crate::gpu::{Mode, RenderDoc};
 use crate::measure::study::Study;
 use crate::measure::{Error, limits};
-use crate::window::protocol::{DeviceLimits, Event, Keep, Memory, Progress, Request, ResourceMemory, Work};
+use crate::window::protocol::{
+    DeviceLimits, Event, Keep, MeasureChoice, Memory, Progress, Request, ResourceMemory, Work,
+};
 
 impl<S: Study> State<S> {
     /// Does what a request wants done beside frames.
@@ -24,12 +29,15 @@ impl<S: Study> State<S> {
                 tell(0);
                 let found = limits::measure(&mut self.machine)?;
                 tell(1);
-                Event::Limits(DeviceLimits {
+                let told = DeviceLimits {
                     copy_gb_s: found.copy_gb_s,
                     fma_gflops: found.fma_gflops,
                     fill_gpix_s: found.fill_gpix_s,
                     blend_gpix_s: found.blend_gpix_s,
-                })
+                };
+                self.limits = Some(found);
+                self.tell_times();
+                Event::Limits(told)
             }
             Request::Memory => Event::Memory(self.memory()),
             Request::Command(verb) => {
@@ -50,6 +58,29 @@ impl<S: Study> State<S> {
         };
         self.outbox.tell(&event);
         Ok(())
+    }
+
+    pub(super) fn tell_times(&self) {
+        let most = self.wanted.measure.times;
+        let is_cpu = self.machine.device.physical().device_type == DeviceType::Cpu;
+        let told =
+            |(times, side): (&Times, &Side<S>)| times.told(&side.pass_names(), most, self.limits.as_ref(), is_cpu);
+        self.outbox.tell(&Event::Times(self.times.iter().zip(&self.sides).map(told).collect()));
+    }
+
+    /// Gives up a replay that is under way: the frame that is shown stays, and the clock goes back to it.
+    pub(super) fn stop(&mut self, id: u64) -> Result<(), Error> {
+        if !std::mem::take(&mut self.is_replaying) {
+            return Ok(());
+        }
+        let number = self.clock.number();
+        // What was made anew has shown nothing yet.
+        self.needs_frame = self.is_new;
+        self.clock.at = if self.is_new { 0.0 } else { f64::from(self.shown) };
+        self.clock.is_playing = false;
+        self.wanted.measure = MeasureChoice::default();
+        let problem = format!("stopped on the way to frame {number}; frame {} stays", self.clock.number());
+        self.fail(id, Error::Input(problem))
     }
 
     fn keep(&mut self, keep: &Keep) -> Result<Vec<String>, Error> {

@@ -16,6 +16,7 @@ use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::parameter::Given;
 use crate::measure::study::Study;
 use crate::measure::{Error, Paper, Variant};
+use crate::report::record::Limits;
 use crate::window::protocol::{
     Built, Event, MeasureChoice, Numbered, Progress, Request, Setup, TargetChoice, ThumbnailChoice, Work,
 };
@@ -75,9 +76,15 @@ pub struct State<S: Study> {
     pub(super) needs_build: bool,
     pub(super) needs_frame: bool,
     pub(super) is_new: bool,
+    /// Number of the frame that is shown.
+    pub(super) shown: u32,
+    /// A state is on its way to the frame that is wanted.
+    pub(super) is_replaying: bool,
     pub(super) jobs: Vec<Numbered>,
     pub(super) warned: Vec<String>,
     pub(super) frame_ms: Vec<f64>,
+    /// The device's own, once they are measured.
+    pub(super) limits: Option<Limits>,
 }
 
 impl<S: Study> State<S> {
@@ -110,9 +117,12 @@ impl<S: Study> State<S> {
             needs_build: true,
             needs_frame: true,
             is_new: false,
+            shown: 0,
+            is_replaying: false,
             jobs: Vec::new(),
             warned: Vec::new(),
             frame_ms: Vec::new(),
+            limits: None,
         }
     }
 
@@ -214,7 +224,7 @@ impl<S: Study> State<S> {
         Ok(())
     }
 
-    fn fail(&self, id: u64, error: Error) -> Result<(), Error> {
+    pub(super) fn fail(&self, id: u64, error: Error) -> Result<(), Error> {
         if is_fatal(&error) {
             return Err(error);
         }
@@ -311,8 +321,9 @@ impl<S: Study> State<S> {
             Request::Limits | Request::Memory | Request::Command(_) | Request::Keep(_) | Request::Capture => {
                 self.jobs.push(Numbered { id, request });
             }
-            // Nothing that takes long is under way, and the end is the inbox's.
-            Request::Cancel | Request::Quit => {}
+            Request::Cancel => return self.stop(id),
+            // The end is the inbox's.
+            Request::Quit => {}
         }
         Ok(())
     }
@@ -414,6 +425,7 @@ impl<S: Study> State<S> {
             self.outbox.tell(&Event::Built(Built { heeds: self.heeds, sides }));
         }
         self.serial += 1;
+        self.shown = number;
         let frame = self.frame(number, &samples)?;
         self.outbox.tell(&Event::Frame(Box::new(frame)));
         if self.clock.is_playing && (self.wanted.measure.times > 0 || self.wanted.measure.counters) {
@@ -450,6 +462,7 @@ impl<S: Study> State<S> {
             None => side.draw(&mut self.machine, number, how, proceed)?,
             Some(passes) => side.draw_first(&mut self.machine, number, passes, proceed)?,
         };
+        self.is_replaying = drawn.is_none();
         if most > 0 && drawn.is_some() {
             self.outbox.tell(&Event::Progress(Progress { what: Work::Replay, done: most, total: most }));
         }
@@ -474,12 +487,6 @@ impl<S: Study> State<S> {
         self.times[index].take(mode, &sample, self.wanted.measure.times.max(1));
         self.tell_times();
         Ok(())
-    }
-
-    fn tell_times(&self) {
-        let most = self.wanted.measure.times;
-        let told = self.times.iter().zip(&self.sides).map(|(times, side)| times.told(&side.pass_names(), most));
-        self.outbox.tell(&Event::Times(told.collect()));
     }
 
     fn tell_validation(&self) {

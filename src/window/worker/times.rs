@@ -2,8 +2,10 @@
 
 use std::collections::VecDeque;
 
-use crate::gpu::{Counts, FrameSample, Mode};
+use crate::gpu::{Counts, FrameSample, Mode, PassKind, Work};
+use crate::measure::floor::floor;
 use crate::measure::statistics::median;
+use crate::report::record::Limits;
 use crate::window::protocol::{Counters, PassTimes, SideTimes};
 
 /// Times of a side's passes.
@@ -23,6 +25,8 @@ struct Pass {
     host: Last,
     wait: Last,
     counts: Option<Counts>,
+    kind: Option<PassKind>,
+    work: Option<Work>,
 }
 
 /// The last samples.
@@ -94,15 +98,21 @@ impl Times {
                 measured.gpu_ms.into_iter().for_each(|ms| pass.gpu.push(ms, most));
             }
             pass.counts = measured.counts.or(pass.counts);
+            pass.kind = Some(measured.info.kind);
+            pass.work = measured.work.clone().or(pass.work.take());
         }
     }
 
-    /// The medians, of the passes in the order of `names`.
-    pub fn told(&self, names: &[String], most: u32) -> SideTimes {
+    /// The medians, of the passes in the order of `names`, against the limits of the device, which may be a processor.
+    pub fn told(&self, names: &[String], most: u32, limits: Option<&Limits>, is_cpu: bool) -> SideTimes {
         let own = |name: &String| {
             let Some(pass) = self.passes.iter().find(|pass| pass.name == *name) else {
                 return PassTimes { name: name.clone(), ..PassTimes::default() };
             };
+            let least = limits
+                .zip(pass.work.as_ref())
+                .zip(pass.kind)
+                .and_then(|((limits, work), kind)| floor(work, &pass.counts.unwrap_or_default(), kind, limits, is_cpu));
             PassTimes {
                 name: name.clone(),
                 gpu_ms: pass.gpu.median(),
@@ -110,6 +120,8 @@ impl Times {
                 wait_ms: pass.wait.median(),
                 share: None,
                 counters: pass.counts.map(counters),
+                floor_ms: least.as_ref().map(|least| least.ms),
+                bound: least.map(|least| least.bound.to_owned()),
             }
         };
         let mut passes: Vec<PassTimes> = names.iter().map(own).collect();
@@ -147,7 +159,7 @@ mod tests {
         }
         use Mode::{Counted, Plain, Timestamped};
         assert_eq!(modes, [Plain, Timestamped, Plain, Timestamped, Counted]);
-        let told = times.told(&["absent".to_owned()], 2);
+        let told = times.told(&["absent".to_owned()], 2, None, true);
         assert_eq!((told.samples, told.frame_ms, told.passes[0].gpu_ms), (2, Some(2.0), None));
         assert_eq!(Times::default().wanted(0, false), None);
         assert_eq!(Times::default().wanted(0, true), Some(Counted));

@@ -65,13 +65,15 @@ pub fn fumarole(arguments: &str) -> Program {
 impl Program {
     fn new(path: &str) -> Self {
         let mut command = Command::new(path);
-        // Meshes of tests are no use in the cache of whoever runs them.
+        // Meshes and layouts of tests are no use to whoever runs them.
         let cache = concat!(env!("CARGO_TARGET_TMPDIR"), "/cache");
+        let state = concat!(env!("CARGO_TARGET_TMPDIR"), "/state");
         command
             .stdin(Stdio::null())
             .env_remove("NO_COLOR")
             .env_remove("VK_ADD_LAYER_PATH")
-            .env("XDG_CACHE_HOME", cache);
+            .env("XDG_CACHE_HOME", cache)
+            .env("XDG_STATE_HOME", state);
         Program { command }
     }
 

@@ -283,6 +283,16 @@ fn a_window_ends_after_the_frames_that_were_asked_for() {
 }
 
 #[test]
+fn a_window_of_so_many_frames_ends_with_what_stops_it() {
+    beside_others(|| {
+        let display = Display::start();
+        let program = fumarole("view caustics --mesh /no/such.obj --exit-after 1").on_test_device();
+        let program = program.env("DISPLAY", display.name()).without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
+        program.run().refused(1, &["/no/such.obj"]);
+    });
+}
+
+#[test]
 fn every_way_of_presenting_shows_frames() {
     beside_others(|| {
         let display = Display::start();

@@ -3,9 +3,9 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use fumarole::window::interface::{Interface, Wish};
-use fumarole::window::layout::Layout;
+use fumarole::window::layout::{Comparison, Layout};
 use fumarole::window::protocol::{
-    Assignment, Block, Built, ChoiceInfo, Cost, Event, Frame, MeasureChoice, ParameterInfo, PassInfo, PassTimes,
+    Assignment, Block, Built, ChoiceInfo, Cost, Ended, Event, Frame, MeasureChoice, ParameterInfo, PassInfo, PassTimes,
     Picture, PresetInfo, Ready, Request, Setup, SideBuilt, SideChoice, SideFrame, SideSetup, SideTimes, TargetChoice,
     TargetInfo, TargetShape, ThumbnailChoice, ValueKind, Verb,
 };
@@ -103,7 +103,7 @@ pub fn built(sides: usize) -> Event {
         kind: ValueKind::F32,
         shape: TargetShape::Image { width: 8, height: 4, channels: 1, layers: 1 },
         format: "R32_SFLOAT".into(),
-        is_depth: false,
+        planes: None,
         is_srgb: false,
         holds: "height in metres".into(),
     };
@@ -224,12 +224,14 @@ fn times_are_asked_for_and_shown_with_their_share() {
         name: name.into(),
         gpu_ms: Some(ms),
         share: Some(share),
+        floor_ms: Some(ms / 2.0),
+        bound: Some("fill".into()),
         ..PassTimes::default()
     };
     let passes = vec![of("water-surface", 1.25, 0.25), of("caustics-map", 3.75, 0.75)];
     harness.state_mut().take(Event::Times(vec![SideTimes { samples: 9, frame_ms: Some(4.0), passes }]));
     harness.run();
-    for text in ["   1.250", "   3.750"] {
+    for text in ["   1.250", "   3.750", " 50.0 %"] {
         assert!(harness.query_all_by_label(text).next().is_some(), "{text} is not shown");
     }
 }
@@ -298,6 +300,83 @@ fn the_camera_turns_by_keys_and_goes_back() {
     assert!(numbers[0].abs() > 1e-6 && (numbers[1] - 1.0).abs() < 1e-5, "it turned about the upright: {numbers:?}");
     let camera = Assignment { name: "camera".into(), values: vec![] };
     assert_eq!(press(&mut harness, egui::Key::R), [Request::Set(vec![camera])]);
+}
+
+/// Distance of eye and target of the one camera that was asked for.
+fn distance(requests: &[Request]) -> f64 {
+    let [Request::Set(set)] = requests else { panic!("not one camera: {requests:?}") };
+    let numbers: Vec<f64> = set[0].values[0].split(',').map(|number| number.parse().unwrap()).collect();
+    (0..3).map(|axis| (numbers[axis] - numbers[axis + 3]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Turns the wheel over the picture by a notch, and waits until nothing of it is left.
+fn turn_wheel(harness: &mut Harness<'_, Interface>) {
+    harness.get_by_label("picture").hover();
+    let (unit, delta, modifiers) = (egui::MouseWheelUnit::Line, egui::vec2(0.0, 1.0), egui::Modifiers::NONE);
+    harness.event(egui::Event::MouseWheel { unit, delta, modifiers });
+    harness.run_steps(10);
+}
+
+/// Whether the distance is that of the camera of [`side_setup`] after a notch.
+fn is_a_notch_nearer(distance: f64) -> bool {
+    (distance / 26.0_f64.sqrt() - (-0.16_f64).exp()).abs() < 1e-4
+}
+
+#[test]
+fn a_turn_of_the_wheel_is_done_at_once_and_leaves_the_next_camera_alone() {
+    let mut harness = harness();
+    turn_wheel(&mut harness);
+    let nearer = distance(&asked(&mut harness));
+    assert!(is_a_notch_nearer(nearer), "{nearer}");
+    // The pointer stays over the picture.
+    let (unit, delta, modifiers) = (egui::MouseWheelUnit::Line, egui::vec2(0.0, 1.0), egui::Modifiers::NONE);
+    harness.event(egui::Event::MouseWheel { unit, delta, modifiers });
+    harness.key_press(egui::Key::R);
+    harness.run_steps(10);
+    let back = Request::Set(vec![Assignment { name: "camera".into(), values: vec![] }]);
+    let requests = asked(&mut harness);
+    assert_eq!(requests.last(), Some(&back), "the wheel goes on: {requests:?}");
+}
+
+#[test]
+fn what_moves_before_the_worker_answers_moves_the_camera_of_the_figure() {
+    let mut harness = harness();
+    let Event::Setup(mut moved) = setup(&["level-map"]) else { unreachable!() };
+    (moved.sides[0].camera, moved.sides[0].set) = (Some([0.0, 0.1, 0.5, 0.0, 0.0, 0.0]), vec!["camera".into()]);
+    harness.state_mut().take(Event::Setup(moved));
+    press(&mut harness, egui::Key::R);
+    turn_wheel(&mut harness);
+    let nearer = distance(&asked(&mut harness));
+    assert!(is_a_notch_nearer(nearer), "{nearer}: of the camera that was left");
+}
+
+#[test]
+fn every_worker_is_asked_for_what_is_looked_at() {
+    let layout = Layout { comparison: Comparison::Difference, ..Layout::default() };
+    let mut face = Interface::new(&egui::Context::default(), vec!["lava", "caustics"], "caustics", layout);
+    face.take(ready());
+    let wishes = face.wishes();
+    assert!(wishes.contains(&Wish::Ask(Request::Difference(true))), "remembered, and never asked for: {wishes:?}");
+
+    let mut harness = harness();
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::OpenBracket);
+    harness.get_by_label("caustics-map").click();
+    asked(&mut harness);
+    harness.query_all_by_label("target-1").last().unwrap().click();
+    asked(&mut harness);
+    let ended = Ended { code: Some(1), signal: None, stderr: vec!["error: the device is lost".into()] };
+    harness.state_mut().take(Event::Ended(ended));
+    harness.run();
+    assert!(harness.query_by_label("error: the device is lost").is_some());
+    harness.get_by_label("Start it again").click();
+    harness.run();
+    assert_eq!(harness.state_mut().wishes(), [Wish::Restart("caustics".into())]);
+    harness.state_mut().take(ready());
+    let requests = asked(&mut harness);
+    let target = TargetChoice { side: 0, name: "target-1".into(), layer: 0, first_row: 0 };
+    for wanted in [Request::After(Some(2)), Request::Target(Some(target))] {
+        assert!(requests.contains(&wanted), "{wanted:?} is not among {requests:?}");
+    }
 }
 
 #[test]

@@ -164,6 +164,24 @@ fn a_late_frame_of_a_state_is_replayed_with_progress() {
 }
 
 #[test]
+fn a_replay_is_stopped_and_what_is_shown_stays() {
+    beside_others(|| {
+        let mut worker = Worker::small("lava");
+        let first = worker.frame_after(0);
+        worker.client.send(Request::GoTo(2_000_000));
+        worker.wait_for(|event| matches!(event, Event::Progress(progress) if progress.total > 1000).then_some(()));
+        let problem = worker.refusal_of(Request::Cancel);
+        assert!(problem.contains("frame 2000000") && problem.contains("frame 0"), "{problem}");
+        let again = worker.frame_of(Request::After(None));
+        assert!(again.number == 0 && picture(&again, 0) == picture(&first, 0));
+        // It is there for what comes next.
+        let next = worker.frame_of(Request::Step(1));
+        assert!(picture(&next, 0) == rendered("lava", &format!("{} --frame 1", small("lava"))));
+        worker.quit();
+    });
+}
+
+#[test]
 fn passes_are_listed_and_a_frame_ends_after_each_of_them() {
     every_paper(|paper, _| {
         let mut worker = Worker::small(paper);

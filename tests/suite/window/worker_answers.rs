@@ -288,6 +288,17 @@ fn limits_and_memory_are_told() {
             _ => None,
         });
         assert!([limits.copy_gb_s, limits.fma_gflops, limits.fill_gpix_s].iter().all(|rate| rate.unwrap() > 0.0));
+        // Each pass against them, as a record has it.
+        worker.client.send(Request::Measure(MeasureChoice { times: 1, counters: true }));
+        let passes = worker.wait_for(|event| match event {
+            Event::Times(sides) => {
+                let is_whole = sides[0].samples == 1 && sides[0].passes.iter().any(|pass| pass.counters.is_some());
+                is_whole.then(|| sides[0].passes.clone())
+            }
+            _ => None,
+        });
+        let known = passes.iter().filter(|pass| pass.floor_ms.is_some_and(|ms| ms > 0.0) && pass.bound.is_some());
+        assert!(known.count() >= passes.len() / 2, "{passes:?}");
         worker.quit();
     });
 }
