@@ -19,7 +19,7 @@ for folder in ${FUMAROLE_TEST_LIBRARIES:-} /usr/lib/chromium /usr/lib64/chromium
     [ -e "$library" ] || continue
     printf '{"file_format_version": "1.0.0", "ICD": {"library_path": "%s", "api_version": "1.3.0"}}' "$library" \
         >"$scratch/swiftshader.json"
-    VK_DRIVER_FILES=$scratch/swiftshader.json \
+    VK_DRIVER_FILES=$scratch/swiftshader.json VK_ICD_FILENAMES=$scratch/swiftshader.json \
         cargo bench --quiet --locked --bench soak -- "$paper" "$slow_frames" SwiftShader || status=1
     exit "$status"
 done

@@ -62,15 +62,22 @@ pub fn read(path: &Path) -> Result<Record, ReadError> {
     parse(&text, path)
 }
 
+/// What every document of ours begins with.
+#[derive(Deserialize)]
+struct Header {
+    schema: Option<String>,
+}
+
+/// The schema that a document names, `None` of what is no document of ours.
+pub fn schema(text: &str) -> Option<String> {
+    serde_json::from_str::<Header>(text).ok()?.schema
+}
+
 /// Parses the text of a record; `path` is what errors call it.
 ///
 /// # Errors
 /// As [`read`], but for reading the file.
 pub fn parse(text: &str, path: &Path) -> Result<Record, ReadError> {
-    #[derive(Deserialize)]
-    struct Header {
-        schema: Option<String>,
-    }
     let owned = || path.to_owned();
     let header: Header = serde_json::from_str(text).map_err(|source| {
         if source.is_eof() {

@@ -4,8 +4,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
-
 use super::super::failure::Failure;
 use super::super::{outcome, stress};
 use crate::file;
@@ -78,9 +76,7 @@ impl Part {
     fn read(path: &Path) -> Result<Self, Failure> {
         let unreadable = |e: std::io::Error| Failure::Input(format!("reading the part {}: {e}", path.display()));
         let text = file::read_text(path, MAX_BYTES).map_err(unreadable)?;
-        let schema =
-            serde_json::from_str::<Value>(&text).ok().and_then(|v| Some(v.get("schema")?.as_str()?.to_owned()));
-        Ok(match schema.as_deref() {
+        Ok(match json::schema(&text).as_deref() {
             Some(SCHEMA) => Part::Stress(Box::new(json::document(&text, path)?)),
             _ => Part::Bench(Box::new(json::parse(&text, path)?)),
         })

@@ -37,9 +37,7 @@ impl File {
         if is_anew {
             return Ok(Vec::new());
         }
-        let schema =
-            serde_json::from_str::<Value>(&text).ok().and_then(|v| Some(v.get("schema")?.as_str()?.to_owned()));
-        if schema.as_deref() != Some(SCHEMA) {
+        if json::schema(&text).as_deref() != Some(SCHEMA) {
             let message =
                 format!("going on with {path}: it is no record of stress; name another --json, or use --anew");
             return Err(Failure::Input(message));

@@ -12,6 +12,10 @@ use crate::measure::parameter::Value;
 
 /// The longest file, bytes: some ten million bodies.
 const MOST_BYTES: u64 = 1 << 30;
+/// Bytes of the shortest line with a body.
+const SHORTEST: usize = "0,0,0,1\n".len();
+/// Lines that are read at once.
+const TOGETHER: usize = 1 << 16;
 
 /// The bodies of a CSV file: six numbers a line for a segment, four for a sphere, as the options have them. Empty lines, those
 /// that begin with `#`, and a heading in the first are passed over.
@@ -21,15 +25,19 @@ const MOST_BYTES: u64 = 1 << 30;
 pub fn read(path: &Path) -> Result<Vec<Body>, Error> {
     let failed = |reason: String| Error::Input(format!("`bodies` {}: {reason}", path.display()));
     let text = file::read_text(path, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
-    let lines: Vec<&str> = text.lines().map(str::trim).collect();
-    let bodies: Vec<Option<Result<Body, String>>> = lines.par_iter().map(|line| body(line)).collect();
-    let mut read = Vec::new();
-    for (number, body) in (1..).zip(bodies) {
-        match body {
-            Some(Err(_)) if number == 1 && is_heading(lines[0]) => {}
-            Some(Err(reason)) => return Err(failed(format!("line {number}: {reason}"))),
-            Some(Ok(body)) => read.push(body),
-            None => {}
+    let is_told = |&(number, line): &(u64, &str)| {
+        !line.is_empty() && !line.starts_with('#') && !(number == 1 && is_heading(line))
+    };
+    let mut lines = (1_u64..).zip(text.lines().map(str::trim)).filter(is_told);
+    let mut read = Vec::with_capacity(lines.clone().count().min(text.len() / SHORTEST + 1));
+    loop {
+        let together: Vec<(u64, &str)> = lines.by_ref().take(TOGETHER).collect();
+        if together.is_empty() {
+            break;
+        }
+        let bodies: Vec<Result<Body, String>> = together.par_iter().map(|(_, line)| body(line)).collect();
+        for ((number, _), body) in together.into_iter().zip(bodies) {
+            read.push(body.map_err(|reason| failed(format!("line {number}: {reason}")))?);
         }
     }
     if read.is_empty() {
@@ -43,14 +51,11 @@ fn is_heading(line: &str) -> bool {
     line.split(',').all(|field| field.trim().parse::<f64>().is_err())
 }
 
-fn body(line: &str) -> Option<Result<Body, String>> {
-    if line.is_empty() || line.starts_with('#') {
-        return None;
-    }
+fn body(line: &str) -> Result<Body, String> {
     let body = match line.split(',').count() {
         6 => <[f64; 6]>::parse(&[OsStr::new(line)]).map(|numbers| Body::from(&numbers)),
         4 => <[f64; 4]>::parse(&[OsStr::new(line)]).map(|numbers| Body::from(&numbers)),
         count => Err(format!("it has {count} fields; a segment has six numbers, a sphere four")),
     };
-    Some(body.and_then(|body| body.check().map_err(|error| error.to_string()).map(|()| body)))
+    body.and_then(|body| body.check().map_err(|error| error.to_string()).map(|()| body))
 }
