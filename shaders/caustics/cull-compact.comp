@@ -28,7 +28,7 @@ layout(std430, set = 0, binding = 4) buffer Pairs {
 } pairs;
 
 void main() {
-    uint triangle = 64u * workgroup() + gl_LocalInvocationID.x;
+    uint triangle = element(64u);
     if (triangle >= cull.triangles) {
         return;
     }

@@ -215,7 +215,7 @@ uint covered(Beam beam, uint base, uint planes) {
 }
 
 void main() {
-    uint triangle = 64u * workgroup() + gl_LocalInvocationID.x;
+    uint triangle = element(64u);
     if (triangle >= cull.triangles) {
         return;
     }

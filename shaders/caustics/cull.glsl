@@ -1,5 +1,6 @@
 // Culling of pairs of water triangle and plane (section 6.1): what its passes share. A word holds 32 planes of a triangle, a bit each.
 
+#include "common/elements.glsl"
 #include "caustics/ray.glsl"
 #include "caustics/cell.glsl"
 
@@ -19,8 +20,3 @@ layout(push_constant) uniform Cull {
     uint depth_levels; // of smart slicing
     float depth_levels_per_m;
 } cull;
-
-// Of a workgroup among all, which lie in rows.
-uint workgroup() {
-    return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-}

@@ -12,10 +12,6 @@ layout(std430, set = 0, binding = 1) buffer Straddling {
     uint count;
 } straddling;
 
-layout(std430, set = 0, binding = 2) buffer Unfinished {
-    uint invocations;
-} unfinished;
-
 layout(push_constant) uniform Empty {
     uint pairs; // of texels
     uint threads; // which take them in turn
@@ -28,6 +24,5 @@ void main() {
     }
     if (at == 0u) {
         straddling.count = 0u;
-        unfinished.invocations = 0u;
     }
 }

@@ -9,6 +9,8 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
+
 struct WaterVertex {
     vec4 position; // homogeneous point, metres
     vec4 normal; // homogeneous unit direction
@@ -41,7 +43,7 @@ vec3 along_axes(vec3 world) {
 }
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = element(64u);
     if (index >= light.vertex_count) {
         return;
     }

@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/shadow-{SHADOW}.glsl"
 
@@ -81,7 +82,7 @@ vec4 first_hit(vec3 origin, vec2 slope) {
 }
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = element(64u);
     if (index >= plane.vertices) {
         return;
     }

@@ -6,6 +6,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/hit-sums.glsl"
 #include "caustics/cover.glsl"
@@ -111,7 +112,7 @@ Landed landed(uint triangle, Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, ve
 }
 
 void main() {
-    uint first = 6u * gl_GlobalInvocationID.x;
+    uint first = 6u * element(64u);
     if (first >= 3u * plane.triangles) {
         return;
     }
@@ -168,6 +169,6 @@ void main() {
         is_cut = is_cut || x <= last;
     }
     if (is_cut || y <= to.y) {
-        atomicAdd(unfinished.invocations, 1u);
+        atomicAdd(unfinished.land, 1u);
     }
 }

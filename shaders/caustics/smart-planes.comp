@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "caustics/sub-box.glsl"
 #include "caustics/levels.glsl"
 #include "caustics/cell.glsl"
@@ -54,7 +55,7 @@ float height_at(float top, float place, Fit fit) {
 }
 
 void main() {
-    uint at = gl_GlobalInvocationID.x;
+    uint at = element(64u);
     if (at < smart.most) {
         Cell cell = Cell(0.0, 0.0, 0.0, 0.0);
         if (at < placed.planes) {

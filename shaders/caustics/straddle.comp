@@ -7,6 +7,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "caustics/hit.glsl"
 #include "caustics/hit-sums.glsl"
 #include "caustics/cover.glsl"
@@ -54,7 +55,7 @@ bool is_hidden(vec2 place, float height, vec2 slope, float top) {
 }
 
 void main() {
-    uint group = gl_GlobalInvocationID.x / SHARING;
+    uint group = element(64u) / SHARING;
     uint groups = (plane.triangles + IN_TURN - 1u) / IN_TURN;
     if (group >= groups) {
         return;
@@ -105,7 +106,7 @@ void main() {
         float secant = (a.secant + b.secant + c.secant) / 3.0;
         vec3 face = face_of(a, b, c);
         float flux = max(-dot(face, a.incident + b.incident + c.incident) / 3.0, 0.0) * secant;
-        int y = from.y + int(gl_GlobalInvocationID.x % SHARING);
+        int y = from.y + int(element(64u) % SHARING);
         for (; y <= to.y; y += int(SHARING)) {
             vec2 columns = vec2(from.x, to.x);
             if (abs(across.x) > 1.0e-3) {
@@ -157,6 +158,6 @@ void main() {
         is_cut = is_cut || y <= to.y;
     }
     if (is_cut || at < straddling.count) {
-        atomicAdd(unfinished.invocations, 1u);
+        atomicAdd(unfinished.straddle, 1u);
     }
 }

@@ -7,6 +7,8 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
+
 struct WaterVertex {
     vec4 position; // homogeneous point, metres
     vec4 normal; // homogeneous unit direction
@@ -27,7 +29,7 @@ layout(push_constant) uniform Surface {
 } surface;
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = element(64u);
     if (index >= surface.columns * surface.rows) {
         return;
     }

@@ -20,8 +20,10 @@ layout(std430, set = 0, binding = 8) buffer Straddling {
     Straddler list[];
 } straddling;
 
+// Invocations of each pass whose loops the driver left before their end, of all frames since the host last looked.
 layout(std430, set = 0, binding = 9) buffer Unfinished {
-    uint invocations; // whose loops the driver left before their end
+    uint land;
+    uint straddle;
 } unfinished;
 
 // The area vector in texels of the map, on the upper side.

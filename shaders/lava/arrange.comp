@@ -6,6 +6,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/cells.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D positions;
@@ -31,7 +32,7 @@ layout(set = 0, binding = 5, std430) buffer Reached {
 } reached;
 
 void main() {
-    uint at = place_in_list();
+    uint at = element(64u);
     if (at >= cells.particles) {
         return;
     }

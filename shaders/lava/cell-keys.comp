@@ -6,6 +6,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/cells.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D positions;
@@ -15,7 +16,7 @@ layout(set = 0, binding = 1, std430) buffer Items {
 } items;
 
 void main() {
-    uint particle = place_in_list();
+    uint particle = element(64u);
     if (particle >= cells.particles) {
         return;
     }

@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/cells.glsl"
 
 layout(set = 0, binding = 0, std430) readonly buffer Items {
@@ -15,7 +16,7 @@ layout(set = 0, binding = 1, std430) buffer Starts {
 } starts;
 
 void main() {
-    uint cell = place_in_list();
+    uint cell = element(64u);
     if (cell > cells.counts.x * cells.counts.y * cells.counts.z) {
         return;
     }

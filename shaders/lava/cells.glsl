@@ -8,11 +8,6 @@ layout(push_constant, std430) uniform Cells {
     uint pieces; // of the lists of `density`
 } cells;
 
-// The invocation's place in a list that is dispatched in rows.
-uint place_in_list() {
-    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
-}
-
 // A particle may have left the space by one step; it counts at the nearest point inside.
 vec3 inside(vec3 position_m) {
     return clamp(position_m, vec3(0.0), cells.space_m);

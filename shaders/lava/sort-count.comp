@@ -4,10 +4,11 @@
 
 layout(local_size_x = 32) in;
 
+#include "common/elements.glsl"
 #include "lava/sort.glsl"
 
 void main() {
-    uint block = gl_GlobalInvocationID.x;
+    uint block = element(32u);
     if (block >= sort.blocks) {
         return;
     }

@@ -4,6 +4,7 @@
 
 layout(local_size_x = 32) in;
 
+#include "common/elements.glsl"
 #include "lava/sort.glsl"
 
 layout(set = 0, binding = 2, std430) buffer To {
@@ -11,7 +12,7 @@ layout(set = 0, binding = 2, std430) buffer To {
 } to;
 
 void main() {
-    uint block = gl_GlobalInvocationID.x;
+    uint block = element(32u);
     if (block >= sort.blocks) {
         return;
     }

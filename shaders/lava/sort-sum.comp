@@ -4,6 +4,8 @@
 
 layout(local_size_x = 32) in;
 
+#include "common/elements.glsl"
+
 const uint RUN = 256u;
 
 layout(push_constant, std430) uniform Sum {
@@ -17,7 +19,7 @@ layout(set = 0, binding = 0, std430) buffer Counts {
 } counts;
 
 void main() {
-    uint run = gl_GlobalInvocationID.x;
+    uint run = element(32u);
     if (run * RUN >= sum.count) {
         return;
     }

@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/sph.glsl"
 #include "lava/sph-inside.glsl"
 
@@ -21,7 +22,7 @@ layout(set = 0, binding = 6, std430) buffer Corrected {
 } corrected;
 
 void main() {
-    uint at = place_in_list();
+    uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }

@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/sph.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
@@ -23,7 +24,7 @@ layout(set = 0, binding = 6, std430) buffer Crowded {
 const float SOFTNESS = 0.05;
 
 void main() {
-    uint at = place_in_list();
+    uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }

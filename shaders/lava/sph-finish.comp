@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/sph.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Predicted {
@@ -19,7 +20,7 @@ layout(set = 0, binding = 6, rgba32f) uniform image2D positions;
 layout(set = 0, binding = 7, rgba32f) uniform image2D velocities;
 
 void main() {
-    uint at = place_in_list();
+    uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }

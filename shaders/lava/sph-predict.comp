@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/sph.glsl"
 #include "lava/sph-inside.glsl"
 
@@ -16,7 +17,7 @@ layout(set = 0, binding = 5, std430) buffer Predicted {
 } predicted;
 
 void main() {
-    uint at = place_in_list();
+    uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }

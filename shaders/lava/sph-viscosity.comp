@@ -6,6 +6,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "lava/sph.glsl"
 
 layout(set = 0, binding = 4, std430) readonly buffer Pushed {
@@ -25,7 +26,7 @@ layout(set = 0, binding = 7, std430) buffer Change {
 } change;
 
 void main() {
-    uint at = place_in_list();
+    uint at = element(64u);
     if (at >= flow.particles) {
         return;
     }

@@ -38,10 +38,6 @@ layout(set = 0, binding = 3, std430) readonly buffer Zs {
 const uint MOST = 7200u;
 const float SIGMA = 3.34225380493; // 21 / (2 pi)
 
-uint place_in_list() {
-    return gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
-}
-
 vec3 began_m(uint at) {
     return vec3(xs.list[at], ys.list[at], zs.list[at]);
 }

@@ -9,7 +9,7 @@ use bytemuck::Pod;
 
 use super::device::Device;
 use super::error::Error;
-use super::pass::{Body, DrawBounds, DrawCounts, Inner};
+use super::pass::{Body, DrawBounds, DrawCounts, Inner, Workgroup};
 use super::pass_builder::PassDesc;
 use super::work::Fetched;
 
@@ -210,12 +210,12 @@ impl<'a> Draw<'a> {
 /// The dispatches of one pass.
 pub struct Dispatch<'a> {
     commands: BodyCommands<'a>,
-    local_size: [u32; 3],
+    workgroup: Workgroup,
 }
 
 impl<'a> Dispatch<'a> {
-    pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, local_size: [u32; 3]) -> Self {
-        Dispatch { commands: BodyCommands::new(device, raw, inner), local_size }
+    pub(super) fn new(device: &'a Device, raw: vk::CommandBuffer, inner: &'a Inner, workgroup: Workgroup) -> Self {
+        Dispatch { commands: BodyCommands::new(device, raw, inner), workgroup }
     }
 
     /// The number of dispatches, or the first error.
@@ -229,9 +229,24 @@ impl<'a> Dispatch<'a> {
         self
     }
 
+    /// Dispatches at least `count` threads, in as many rows of workgroups as the device asks for: the shader numbers them by
+    /// `common/elements.glsl`. One that does not is held to a single row.
+    pub fn elements(&mut self, count: u32) -> &mut Self {
+        self.layers_of_elements(count, 1)
+    }
+
+    /// As [`Dispatch::elements`], so many times along z.
+    pub fn layers_of_elements(&mut self, count: u32, layers: u32) -> &mut Self {
+        let [along_x, ..] = self.workgroup.size;
+        let [most, ..] = self.commands.device.physical().limits.max_compute_work_group_count;
+        let groups = count.div_ceil(along_x);
+        let rows = if self.workgroup.lies_in_rows { groups.div_ceil(most).max(1) } else { 1 };
+        self.threads(groups.div_ceil(rows).saturating_mul(along_x), rows, layers)
+    }
+
     /// Dispatches at least `x` x `y` x `z` threads, in whole workgroups.
     pub fn threads(&mut self, x: u32, y: u32, z: u32) -> &mut Self {
-        let [a, b, c] = self.local_size;
+        let [a, b, c] = self.workgroup.size;
         let groups = [x.div_ceil(a), y.div_ceil(b), z.div_ceil(c)];
         let limits = self.commands.device.physical().limits.max_compute_work_group_count;
         if let Some((&wanted, limit)) = groups.iter().zip(limits).find(|&(&wanted, limit)| wanted > limit) {

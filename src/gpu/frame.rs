@@ -12,7 +12,7 @@ use super::bindings::Use;
 use super::device::Device;
 use super::draw::{Dispatch, Draw};
 use super::error::Error;
-use super::pass::{Body, Pass};
+use super::pass::{Body, Pass, Workgroup};
 use super::pass_info::PassInfo;
 use super::query::QueryPool;
 use super::recorder::Recorder;
@@ -215,9 +215,9 @@ impl Frame<'_> {
     /// # Errors
     /// [`Error::Limit`] for more workgroups than the device takes; otherwise as [`Frame::graphics`].
     pub fn compute(&mut self, pass: &Pass, body: impl FnOnce(&mut Dispatch<'_>)) -> Result<(), Error> {
-        let Body::Compute { local_size, .. } = pass.inner.body else { return Err(not_a(pass, "compute")) };
+        let Body::Compute { workgroup, .. } = pass.inner.body else { return Err(not_a(pass, "compute")) };
         self.envelope(pass, |device, commands| {
-            let mut dispatch = Dispatch::new(device, commands, &pass.inner, local_size);
+            let mut dispatch = Dispatch::new(device, commands, &pass.inner, workgroup);
             body(&mut dispatch);
             Ok((dispatch.finish()?, Fetched::default()))
         })
@@ -332,7 +332,8 @@ impl Frame<'_> {
             let kernel = &clamp.pass.inner;
             r.commands.synchronise(name, &kernel.uses)?;
             r.bind(kernel);
-            let mut dispatch = Dispatch::new(&device, commands, kernel, [1; 3]);
+            let mut dispatch =
+                Dispatch::new(&device, commands, kernel, Workgroup { size: [1; 3], lies_in_rows: false });
             clamp.dispatch(&mut dispatch);
             dispatch.finish()?;
         }

@@ -18,7 +18,7 @@
 //! | draw vertices, instances or indices that are not bound | each draw is compared with the bound buffers' lengths | [`Draw`] |
 //! | fetch or store beyond a buffer in a shader, or by an index | every device is opened with `robustBufferAccess` | [`Device::open`] |
 //! | draw indirectly beyond the index buffer, or dispatch indirectly more than the device takes | a kernel before the pass clamps the parameters, which the host never sees | `indirect` |
-//! | use larger indices, more workgroups or larger ones than the device takes | each is compared with the device's limits | `pass_check`, [`Dispatch`] |
+//! | use larger indices, more workgroups or larger ones than the device takes | each is compared with the device's limits; elements lie in rows of workgroups where the shader numbers them so | `pass_check`, [`Dispatch`] |
 //! | give constants of another type than declared, none, or some to a pass without | types are compared by `TypeId`, a draw wants them set | [`Draw`], [`Dispatch`] |
 //! | give a host struct another layout than its block's | fields are compared with the reflected binary | [`pass::PassBuilder::build`] |
 //! | leave a descriptor unwritten, or write one of another kind, shape, format, alignment or size | each is compared with the reflected binding, the resource's usage and the limits | `bindings` |

@@ -62,14 +62,22 @@ pub(crate) enum Body {
         bounds: DrawBounds,
     },
     Compute {
-        /// Threads of a workgroup.
-        local_size: [u32; 3],
+        workgroup: Workgroup,
         indirect: Option<Box<Clamp>>,
     },
     Copy {
         from: Resource,
         to: Arc<Buffer>,
     },
+}
+
+/// The workgroups of a compute pass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Workgroup {
+    /// Threads along x, y and z.
+    pub size: [u32; 3],
+    /// The shader numbers its threads by rows of workgroups (`common/elements.glsl`).
+    pub lies_in_rows: bool,
 }
 
 impl Body {

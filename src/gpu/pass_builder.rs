@@ -355,9 +355,9 @@ pub(super) fn finish(
     pass_check::uses(device, desc.name, &uses)?;
     let body = match render_pass {
         None => {
-            let local_size = pass_check::local_size(device, &desc, &pipeline.program)?;
+            let workgroup = pass_check::workgroup(device, &desc, &pipeline.program)?;
             pass_check::parameters(&desc, size_of::<vk::DispatchIndirectCommand>())?;
-            Body::Compute { local_size, indirect: Clamp::of_dispatch(shaders, &desc)?.map(Box::new) }
+            Body::Compute { workgroup, indirect: Clamp::of_dispatch(shaders, &desc)?.map(Box::new) }
         }
         Some(render_pass) => {
             let extent = pass_check::extent(device, &desc)?;

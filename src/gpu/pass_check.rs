@@ -12,6 +12,7 @@ use super::device::Device;
 use super::error::Error;
 use super::format::format_info;
 use super::image::ImageView;
+use super::pass::Workgroup;
 use super::pass_builder::PassDesc;
 use super::pass_info::PassKind;
 use super::physical::Feature;
@@ -212,17 +213,22 @@ pub(super) fn uses(device: &Arc<Device>, pass: &str, uses: &[Use]) -> Result<(),
     Ok(())
 }
 
-/// Threads of a workgroup of the compute stage.
-pub(super) fn local_size(device: &Device, desc: &PassDesc, program: &Program) -> Result<[u32; 3], Error> {
-    let size = program.modules.first().and_then(|m| m.interface.local_size);
-    let Some(size) = size else { return Err(desc.problem("its shader does not say how large a workgroup is")) };
+/// The workgroups of the compute stage.
+pub(super) fn workgroup(device: &Device, desc: &PassDesc, program: &Program) -> Result<Workgroup, Error> {
+    let interface = program.modules.first().map(|module| &module.interface);
+    let Some((interface, size)) = interface.and_then(|i| i.local_size.map(|size| (i, size))) else {
+        return Err(desc.problem("its shader does not say how large a workgroup is"));
+    };
     let limits = &device.physical().limits;
     for (threads, limit) in size.into_iter().zip(limits.max_compute_work_group_size) {
         check_limit(desc, "threads of a workgroup along one axis", threads.into(), limit)?;
     }
     let threads = size.into_iter().map(u64::from).product();
     check_limit(desc, "threads of a workgroup", threads, limits.max_compute_work_group_invocations)?;
-    if size.contains(&0) { Err(desc.problem("its workgroup has no threads")) } else { Ok(size) }
+    if size.contains(&0) {
+        return Err(desc.problem("its workgroup has no threads"));
+    }
+    Ok(Workgroup { size, lies_in_rows: interface.reads_workgroup_count })
 }
 
 /// The extent that the pass draws over.

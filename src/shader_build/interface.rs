@@ -11,6 +11,8 @@ pub struct Interface {
     pub stage: Stage,
     /// Threads of a workgroup along x, y and z; compute shaders only.
     pub local_size: Option<[u32; 3]>,
+    /// The binary reads `gl_NumWorkGroups`, without which no thread knows its number where workgroups lie in rows.
+    pub reads_workgroup_count: bool,
     /// Vertices of a primitive that a geometry stage takes: 1 for points, 2 for lines, 3 for triangles.
     pub primitive_vertices: Option<u32>,
     /// Every resource that the binary declares, by ascending set and binding.

@@ -3,7 +3,7 @@
 use spirq::ReflectConfig;
 use spirq::constant::ConstantValue;
 use spirq::entry_point::EntryPoint;
-use spirq::spirv::{Dim, ExecutionMode, ExecutionModel};
+use spirq::spirv::{BuiltIn, Decoration, Dim, ExecutionMode, ExecutionModel, Op};
 use spirq::ty::{AccessType, DescriptorType, ScalarType, StructType, Type};
 use spirq::var::Variable;
 
@@ -28,7 +28,9 @@ impl Interface {
         let entry_points =
             ReflectConfig::new().spv(words).ref_all_rscs(true).reflect().map_err(|error| refuse(&error.to_string()))?;
         match entry_points.as_slice() {
-            [entry_point] => read_entry_point(entry_point),
+            [entry_point] => {
+                Ok(Interface { reads_workgroup_count: reads_workgroup_count(words), ..read_entry_point(entry_point)? })
+            }
             other => Err(refuse(&format!("it has {} entry points; compile one stage a binary", other.len()))),
         }
     }
@@ -49,6 +51,7 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
     let mut interface = Interface {
         stage,
         local_size: read_local_size(entry_point),
+        reads_workgroup_count: false,
         primitive_vertices: read_primitive(entry_point),
         bindings: Vec::new(),
         push_constants: None,
@@ -82,6 +85,20 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
     interface.inputs.sort_by_key(|input| input.location);
     interface.outputs.sort_by_key(|output| output.location);
     Ok(interface)
+}
+
+/// Built-ins are no resources: their decorations tell.
+fn reads_workgroup_count(words: &[u32]) -> bool {
+    let decorated = [Decoration::BuiltIn as u32, BuiltIn::NumWorkgroups as u32];
+    let mut rest = &words[HEADER_WORDS..];
+    while let Some(&first) = rest.first() {
+        let instruction = &rest[..((first >> 16) as usize).clamp(1, rest.len())];
+        if first & 0xffff == Op::Decorate as u32 && instruction.get(2..4) == Some(&decorated) {
+            return true;
+        }
+        rest = &rest[instruction.len()..];
+    }
+    false
 }
 
 fn read_local_size(entry_point: &EntryPoint) -> Option<[u32; 3]> {

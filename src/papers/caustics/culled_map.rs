@@ -22,12 +22,8 @@ pub const CELL_FLOATS: u32 = 4;
 const WORD: u32 = 32;
 /// Triangles of a block.
 const BLOCK: u32 = 256;
-/// Triangles of the other workgroups.
-const WORKGROUP: u32 = 64;
 /// Planes of an invocation.
 const GROUP: u32 = 128;
-/// Workgroups in a row: no device allows fewer.
-const ROW: u32 = 65_535;
 
 host_block! {
     /// A plane's height from the rays' reference point, and the heights of its cell from the box's centre, metres.
@@ -309,22 +305,16 @@ impl CulledMap {
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         self.position_pyramid.record(frame)?;
         self.smart_planes.as_ref().map_or(Ok(()), |smart| smart.record(frame))?;
-        let CullConstants { triangles, planes, blocks, .. } = self.constants;
-        let rows = |threads: u32, workgroup: u32| {
-            let workgroups = threads.div_ceil(workgroup);
-            let rows = workgroups.div_ceil(ROW);
-            [workgroup * workgroups.div_ceil(rows), rows]
-        };
-        let ([x, y], [blocks_x, blocks_y]) = (rows(triangles, WORKGROUP), rows(blocks * BLOCK, BLOCK));
+        let CullConstants { triangles, planes, .. } = self.constants;
         let steps = [
-            (&self.cull, [x, y, planes.div_ceil(GROUP)]),
-            (&self.cull_count, [blocks_x, blocks_y, 1]),
-            (&self.cull_sum, [1, 1, 1]),
-            (&self.cull_compact, [x, y, 1]),
+            (&self.cull, triangles, planes.div_ceil(GROUP)),
+            (&self.cull_count, triangles, 1),
+            (&self.cull_sum, 1, 1),
+            (&self.cull_compact, triangles, 1),
         ];
-        for (pass, [x, y, z]) in steps {
+        for (pass, elements, layers) in steps {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.constants).threads(x, y, z);
+                dispatch.constants(&self.constants).layers_of_elements(elements, layers);
             })?;
         }
         frame.graphics(&self.caustics_map, |draw| {

@@ -10,7 +10,7 @@ use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
 use super::resources::Context;
 use super::shadow_map::ShadowMap;
-use crate::gpu::transfer::{read_buffer, upload};
+use crate::gpu::transfer::{read_buffer, update, upload};
 use crate::gpu::{Blend, Buffer, BufferDesc, Device, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
 
@@ -67,7 +67,7 @@ pub struct HitMap {
     straddle: Pass,
     caustics_map: Pass,
     constants: HitConstants,
-    /// Invocations whose loops the driver left early.
+    /// uint\[2\]: invocations of `land` and of `straddle` whose loops the driver left early.
     unfinished: Arc<Buffer>,
     /// Where the rays of the water's vertices land.
     pub landings: Arc<Buffer>,
@@ -102,7 +102,7 @@ impl HitMap {
             context.device(),
             &context.name("unfinished"),
             vk::BufferUsageFlags::STORAGE_BUFFER,
-            bytemuck::bytes_of(&0_u32),
+            bytemuck::bytes_of(&[0_u32; 2]),
         )?;
 
         let kernel = |name, shader: &str| {
@@ -133,7 +133,6 @@ impl HitMap {
                 .constants::<EmptyConstants>()
                 .with("sums", &sums)
                 .with("straddling", &straddling)
-                .with("unfinished", &unfinished)
                 .build(shaders)?,
             intersect: intersect.build(shaders)?,
             land: kernel("land", "caustics/land.comp")
@@ -158,21 +157,23 @@ impl HitMap {
         })
     }
 
-    /// Fails where light of the last frame is missing, since the driver left loops before their end.
+    /// Fails where light of a frame since the last check is missing, since the driver left loops before their end.
     ///
     /// # Errors
     /// [`Error::Pass`] for such a loop; errors of the Vulkan layer.
     pub fn check(&self, device: &Arc<Device>) -> Result<(), Error> {
         let invocations: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(device, &self.unfinished)?);
-        if invocations.iter().all(|&count| count == 0) {
+        let Some((pass, count)) = ["land", "straddle"].into_iter().zip(invocations).find(|&(_, count)| count > 0)
+        else {
             return Ok(());
-        }
+        };
+        update(&self.unfinished, bytemuck::bytes_of(&[0_u32; 2]))?;
         let problem = format!(
             "{} invocations left light out: this driver leaves a shader's loops early, as after 65,535 iterations together; \
              take more `water-triangles`, a smaller `map-size` or variant culled",
-            invocations[0]
+            count
         );
-        Err(Error::Pass { pass: "straddle".into(), problem })
+        Err(Error::Pass { pass: pass.into(), problem })
     }
 
     /// Finds where the light lands and adds it up; it has passed water of that absorption.
@@ -193,7 +194,7 @@ impl HitMap {
         // Two triangles a cell, which are landed together.
         for (pass, threads) in [(&self.intersect, vertices), (&self.land, triangles / 2), (&self.straddle, sharing)] {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(&constants).threads(threads, 1, 1);
+                dispatch.constants(&constants).elements(threads);
             })?;
         }
         frame.graphics(&self.caustics_map, |draw| {

@@ -106,7 +106,7 @@ impl IlluminationVolumes {
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.compute(&self.pass, |dispatch| {
-            dispatch.constants(&self.constants).threads(self.constants.vertex_count, 1, 1);
+            dispatch.constants(&self.constants).elements(self.constants.vertex_count);
         })
     }
 }

@@ -168,7 +168,7 @@ impl WaterSurface {
                     dispatch.constants(&MapConstants { map: place, corner, cell, columns, rows, level_m })
                 }
             }
-            .threads(self.grid.vertex_count(), 1, 1);
+            .elements(self.grid.vertex_count());
         })
     }
 }

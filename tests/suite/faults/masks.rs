@@ -207,3 +207,35 @@ fn pictures_in_pieces_are_those_in_one() {
         assert!(whole == pieced, "{name} {scene}");
     }
 }
+
+/// Forty workgroups along an axis at most: what is dispatched by elements lies in rows, and nothing of the picture changes.
+#[test]
+fn pictures_in_rows_of_workgroups_are_those_in_one() {
+    let layer = Layer::new();
+    let folder = program::folder();
+    let fire = "--size 24x16 --blocks 2x2x2 --fire 20 --smoke 10 --flammability 10 --mesh sphere --triangles 12000 --speed 1 \
+                --first-frame 40";
+    let water = "--size 32x24 --map-size 64 --planes 5 --mesh box --water-triangles 12000";
+    let flow = "--size 32x24 --particles 4000 --radius 0.1 --density 8x4x4 --splats 10x5 --splat-radius 0.2";
+    let scenes = [
+        ("burning", format!("{fire} --variant shell")),
+        ("burning", format!("{fire} --variant solid")),
+        ("burning", format!("{fire} --variant melting")),
+        ("burning", format!("{fire} --variant shell --look dissertation")),
+        ("caustics", format!("{water} --variant culled")),
+        ("caustics", format!("{water} --variant hit")),
+        ("lava", format!("{flow} --variant gpu-driven")),
+        ("lava", format!("{flow} --variant gpu-driven --simulation sph")),
+    ];
+    for (number, (name, scene)) in scenes.iter().enumerate() {
+        let paper = PAPERS.iter().find(|paper| paper.name == *name).unwrap();
+        let picture = |limits: Option<&str>| {
+            let path = folder.path().join(format!("{number}.png"));
+            let program = (paper.program)("bench --quiet --json").args(scene).args(ONCE).on_test_device();
+            let program = layer.before(program.arg("--image").arg(&path), false);
+            limits.into_iter().fold(program, |program, l| program.env("FUMAROLE_LAYER_LIMITS", l)).run().succeeded();
+            std::fs::read(path).unwrap()
+        };
+        assert!(picture(None) == picture(Some("max-compute-work-group-count=40")), "{name} {scene}");
+    }
+}

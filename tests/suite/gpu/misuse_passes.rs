@@ -109,6 +109,13 @@ fn more_workgroups_than_the_device_takes_are_refused() {
             );
             assert_eq!(text, expected);
             dispatch([beyond - 1, 1, 1]).unwrap();
+            // Its shader does not number its threads by rows of workgroups.
+            let in_rows = run(device, Mode::Plain, |frame| {
+                frame.compute(&step, |dispatch| {
+                    dispatch.constants(&Advance { value_count: 64, step: 0.0 }).elements(beyond);
+                })
+            });
+            assert_eq!(message(in_rows), expected);
         }
         for (limit, threads) in [(y, [1, y.saturating_add(1), 1]), (z, [1, 1, z.saturating_add(1)])] {
             assert!(limit == u32::MAX || matches!(dispatch(threads), Err(Error::Limit { .. })));

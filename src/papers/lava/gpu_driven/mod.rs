@@ -37,9 +37,6 @@ pub use self::estimate::estimate;
 /// Time of a submission, by a rough rate: short for who waits for a frame of hours to be given up.
 const SUBMISSION_S: f64 = 1.0;
 
-/// Invocations along the first axis of a list that is dispatched in rows.
-pub(super) const ROW: u32 = 1 << 20;
-
 /// Stages one and two behind `animate`.
 pub struct GpuDriven {
     /// Particles by cells.

@@ -7,7 +7,7 @@ use ash::vk;
 
 use super::super::targets::Context;
 use super::cells::Cells;
-use super::{ROW, density};
+use super::density;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
@@ -198,21 +198,21 @@ impl Sort {
     pub fn record(&self, frame: &mut Frame<'_>, state: usize) -> Result<(), Error> {
         let listed = |frame: &mut Frame<'_>, pass: &Pass, count: u32| {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.constants).threads(count.min(ROW), count.div_ceil(ROW), 1);
+                dispatch.constants(&self.constants).elements(count);
             })
         };
         listed(frame, &self.cell_keys[state], self.constants.particles)?;
         for Digit { sort_count, sort_scatter, constants } in &self.digits {
             frame.compute(sort_count, |dispatch| {
-                dispatch.constants(constants).threads(constants.blocks, 1, 1);
+                dispatch.constants(constants).elements(constants.blocks);
             })?;
             for sum in &self.sums {
                 frame.compute(&self.sort_sum, |dispatch| {
-                    dispatch.constants(sum).threads(sum.count.div_ceil(RUN), 1, 1);
+                    dispatch.constants(sum).elements(sum.count.div_ceil(RUN));
                 })?;
             }
             frame.compute(sort_scatter, |dispatch| {
-                dispatch.constants(constants).threads(constants.blocks, 1, 1);
+                dispatch.constants(constants).elements(constants.blocks);
             })?;
         }
         listed(frame, &self.arrange[state], self.constants.particles)?;

@@ -24,8 +24,8 @@ use glam::DVec3;
 
 use self::chebyshev::Coefficients;
 use super::animate::State;
+use super::gpu_driven::Cells;
 use super::gpu_driven::sort::{self, Sort};
-use super::gpu_driven::{Cells, ROW};
 use super::parameters::Parameters;
 use super::targets::Context;
 use crate::gpu::transfer::read_buffer;
@@ -230,7 +230,7 @@ impl Sph {
         let particles = self.constants.particles;
         let run = |frame: &mut Frame<'_>, pass: &Pass, constants: &FlowConstants| {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(constants).threads(particles.min(ROW), particles.div_ceil(ROW), 1);
+                dispatch.constants(constants).elements(particles);
             })
         };
         self.sort.record(frame, from)?;
