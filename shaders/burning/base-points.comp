@@ -7,6 +7,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/grid.glsl"
@@ -112,7 +113,7 @@ vec3 moved(uint block, vec3 p) {
 }
 
 void main() {
-    uint block = gl_GlobalInvocationID.x;
+    uint block = element(64u);
     if (block >= constants.block_count) {
         return;
     }

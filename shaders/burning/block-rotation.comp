@@ -9,6 +9,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/grid.glsl"
 #include "burning/block-levels.glsl"
@@ -67,7 +68,7 @@ vec3 own_change(uint block) {
 }
 
 void main() {
-    uint block = gl_GlobalInvocationID.x;
+    uint block = element(64u);
     if (block >= constants.block_count) {
         return;
     }

@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/blocks.glsl"
 
@@ -12,7 +13,7 @@ layout(set = 0, binding = 15, std430) buffer Blocks {
 };
 
 void main() {
-    uint block = gl_GlobalInvocationID.x;
+    uint block = element(64u);
     if (block >= constants.block_count) {
         return;
     }

@@ -49,6 +49,7 @@ layout(set = 0, binding = 63, std430) readonly buffer Searching {
 
 layout(push_constant, std430) uniform Chunks {
     uint count;
+    uint row; // workgroups that the device takes in one
 } chunks;
 
 bool is_visited(uint chunk) {
@@ -92,8 +93,9 @@ void main() {
     if (thread == 0u) {
         uint total = sums[GROUP - 1u];
         visited[0] = total;
-        groups[0] = total;
-        groups[1] = 1u;
+        uint rows = max((total + chunks.row - 1u) / chunks.row, 1u);
+        groups[0] = (total + rows - 1u) / rows;
+        groups[1] = rows;
         groups[2] = 1u;
     }
 }

@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/parts.glsl"
 #include "burning/contacts.glsl"
 
@@ -16,7 +17,7 @@ layout(set = 0, binding = 70, std430) buffer Contacts {
 };
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (thread < MOST_PARTS * WORDS) {
         contacts[thread] = thread % WORDS < DIRECTIONS ? -FARTHEST : FARTHEST;
     }

@@ -7,6 +7,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parts.glsl"
 #include "burning/contacts.glsl"
@@ -40,7 +41,7 @@ layout(set = 0, binding = 70, std430) coherent buffer Contacts {
 };
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element(64u);
     if (vertex >= constants.vertex_count) {
         return;
     }

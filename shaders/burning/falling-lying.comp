@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parts.glsl"
 #include "burning/meeting.glsl"
@@ -35,7 +36,7 @@ layout(set = 0, binding = 76, std430) buffer Lying {
 };
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element(64u);
     if (vertex >= constants.vertex_count) {
         return;
     }

@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parts.glsl"
 #include "burning/contacts.glsl"
@@ -46,7 +47,7 @@ layout(set = 0, binding = 97, std430) buffer Moving {
 };
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (thread == 0u) {
         moving[0] = 0u;
     }

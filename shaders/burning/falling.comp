@@ -8,6 +8,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 #include "burning/moments.glsl"
@@ -49,7 +50,7 @@ layout(set = 0, binding = 77, std430) readonly buffer Met {
 };
 
 layout(set = 0, binding = 97, std430) buffer Moving {
-    uint moving[3]; // workgroups over the vertices while a part moves, else 0
+    uint moving[3]; // workgroups over the vertices, in rows, while a part moves; else 0 a row
 };
 
 const uint GROUP = 64u; // of the passes over the vertices
@@ -127,7 +128,7 @@ float yielding(mat3 inverse_inertia, vec3 arm, vec3 n) {
 }
 
 void main() {
-    uint index = gl_GlobalInvocationID.x;
+    uint index = element(64u);
     if (index >= MOST_PARTS || sums[min(index, MOST_PARTS - 1u) * MOMENTS] == 0u) {
         return;
     }
@@ -242,5 +243,5 @@ void main() {
     part.spin = spin;
     part.energy = now;
     parts[index] = part;
-    moving[0] = (constants.vertex_count + GROUP - 1u) / GROUP;
+    moving[0] = (constants.vertex_count + GROUP * moving[1] - 1u) / (GROUP * moving[1]);
 }

@@ -9,6 +9,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/rotation.glsl"
@@ -145,7 +146,7 @@ void main() {
         smoke_count = 0u;
     }
     barrier();
-    uint particle = gl_GlobalInvocationID.x;
+    uint particle = element(64u);
     uint fire_pool = constants.fire_pool;
     if (particle < fire_pool + constants.smoke_pool) {
         bool is_fire = particle < fire_pool;

@@ -3,7 +3,7 @@
 #pragma variants CONSUMED=leaves,stays
 
 // A triangle belongs to the innermost area that one of its vertices has reached (3.3). A chunk has burnt out when none of
-// its triangles can become active any more and, where they leave, those that burn have left.
+// its triangles can become active any more and, where they may be kept for a while, those that burn have left.
 
 layout(local_size_x = 128) in;
 
@@ -66,12 +66,15 @@ void main() {
             uint label = labels[vertex];
             highest = max(highest, label);
             float flammability = flammability_of(vertex);
-            bool burns = flammability > 0.0 && old_state[vertex].left > constants.retire_at * flammability;
-            is_active = is_active || (burns && label == DEFORMED && alive[vertex] == 1u);
-            is_open = is_open || burns;
+            if (flammability > 0.0) {
+                // Before it is deformed nothing of it has burnt.
+                bool burns = label != DEFORMED || old_state[vertex].left > constants.retire_at * flammability;
+                is_active = is_active || (burns && label == DEFORMED && alive[vertex] == 1u);
+                is_open = is_open || burns;
 #ifdef CONSUMED_LEAVES
-            is_open = is_open || (flammability > 0.0 && removed[triangle] == 0u);
+                is_open = is_open || removed[triangle] == 0u;
 #endif
+            }
         }
         triangle_labels[triangle] = highest;
         if (is_active) {
@@ -82,8 +85,9 @@ void main() {
         }
     }
     barrier();
-    if (gl_LocalInvocationID.x == 0u) {
-        finished[chunk_visited()] = open_count == 0u ? 1u : 0u;
+    uint chunk = chunk_visited();
+    if (gl_LocalInvocationID.x == 0u && chunk != NONE) {
+        finished[chunk] = open_count == 0u ? 1u : 0u;
         if (active_count > 0u) {
             atomicAdd(clock.active_triangles, active_count);
         }

@@ -51,17 +51,21 @@ void main() {
         uint innermost = flammability > 0.0 ? DEFORMED : INITIAL;
         uint label = min(area_of(rest[vertex].boundary_distance, clock.radius), innermost);
         labels[vertex] = label;
-        if (flammability > 0.0 && old_state[vertex].left > constants.retire_at * flammability) {
-            atomicAdd(open_count, 1u);
-            if (label == DEFORMED && alive[vertex] == 1u) {
-                atomicAdd(active_count, 1u);
+        if (flammability > 0.0) {
+            // Before it is deformed nothing of it has burnt.
+            if (label != DEFORMED || old_state[vertex].left > constants.retire_at * flammability) {
+                atomicAdd(open_count, 1u);
+                if (label == DEFORMED && alive[vertex] == 1u) {
+                    atomicAdd(active_count, 1u);
+                }
             }
         }
     }
     barrier();
-    if (gl_LocalInvocationID.x == 0u) {
+    uint chunk = chunk_visited();
+    if (gl_LocalInvocationID.x == 0u && chunk != NONE) {
         // Its last change is copied to the other state in this tick.
-        finished[chunk_visited()] = open_count == 0u ? 1u : 0u;
+        finished[chunk] = open_count == 0u ? 1u : 0u;
         if (active_count > 0u) {
             atomicAdd(clock.active_vertices, active_count);
         }

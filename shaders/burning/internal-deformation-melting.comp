@@ -199,7 +199,7 @@ float fall_of(uint vertex) {
 
 void main() {
     uint vertex = element_visited();
-    if (gl_WorkGroupID.x % slice.division != slice.number || vertex >= constants.vertex_count) {
+    if (workgroup() % slice.division != slice.number || vertex >= constants.vertex_count) {
         return;
     }
     VertexState before = old_state[vertex];

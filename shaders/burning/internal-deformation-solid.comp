@@ -83,7 +83,7 @@ vec3 within_char(vec3 position, vec3 at_rest, float fallen) {
 
 void main() {
     uint vertex = element_visited();
-    if (gl_WorkGroupID.x % slice.division != slice.number || vertex >= constants.vertex_count) {
+    if (workgroup() % slice.division != slice.number || vertex >= constants.vertex_count) {
         return;
     }
     VertexState before = old_state[vertex];

@@ -53,7 +53,7 @@ layout(push_constant, std430) uniform Slice {
 
 void main() {
     uint vertex = element_visited();
-    if (gl_WorkGroupID.x % slice.division != slice.number || vertex >= constants.vertex_count) {
+    if (workgroup() % slice.division != slice.number || vertex >= constants.vertex_count) {
         return;
     }
     VertexState before = old_state[vertex];

@@ -8,6 +8,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/clock.glsl"
 #include "burning/substances.glsl"
@@ -85,7 +86,7 @@ vec3 area_vectors(uint from, uint to, bool with_removed) {
 }
 
 void main() {
-    uint corner = gl_GlobalInvocationID.x;
+    uint corner = element(64u);
     if (corner >= constants.draw_vertex_count) {
         return;
     }

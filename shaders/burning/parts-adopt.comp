@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 #include "burning/parts.glsl"
@@ -37,7 +38,7 @@ layout(set = 0, binding = 67, std430) readonly buffer Inherited {
 };
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (progress.is_numbered == 0u) {
         return;
     }

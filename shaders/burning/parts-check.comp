@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 
@@ -29,7 +30,7 @@ layout(set = 0, binding = 63, std430) buffer Searching {
 };
 
 void main() {
-    uint triangle = gl_GlobalInvocationID.x;
+    uint triangle = element(64u);
     if (triangle >= constants.triangle_count || removed[triangle] != 0u) {
         return;
     }

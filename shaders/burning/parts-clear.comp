@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/moments.glsl"
 
 layout(set = 0, binding = 68, std430) buffer Sums {
@@ -11,7 +12,7 @@ layout(set = 0, binding = 68, std430) buffer Sums {
 };
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (thread < MOST_PARTS * MOMENTS) {
         sums[thread] = 0u;
     }

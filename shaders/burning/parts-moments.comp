@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 #include "burning/moments.glsl"
@@ -63,7 +64,7 @@ void add(uint k, float fraction, uint weight) {
 }
 
 void main() {
-    uint first = gl_GlobalInvocationID.x * RUN;
+    uint first = element(64u) * RUN;
     uint current = NO_PART;
     for (uint k = 0u; k < MOMENTS; k++) {
         run_sums[k] = 0u;

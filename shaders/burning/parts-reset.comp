@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/parting.glsl"
 
@@ -20,7 +21,7 @@ layout(set = 0, binding = 63, std430) readonly buffer Searching {
 };
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element(64u);
     if (vertex >= constants.vertex_count || progress.is_numbered == 0u) {
         return;
     }

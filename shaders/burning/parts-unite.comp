@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/vertices.glsl"
 #include "burning/roots.glsl"
@@ -30,7 +31,7 @@ layout(push_constant, std430) uniform Touches {
 } touches;
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (thread < constants.triangle_count) {
         if (removed[thread] == 0u) {
             uint first = triangles[3u * thread];

@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/puddle.glsl"
 
 layout(set = 0, binding = 72, std430) buffer Films {
@@ -15,7 +16,7 @@ layout(set = 0, binding = 73, std430) buffer Melted {
 };
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (thread < uint(PUDDLE_CELLS * PUDDLE_CELLS)) {
         melted[thread] = 0u;
     }

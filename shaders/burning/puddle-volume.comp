@@ -42,8 +42,8 @@ void main() {
         atomicAdd(sum, int(round(constants.outward * dot(a, cross(b, c)) / 6.0 * UNITS)));
     }
     barrier();
-    if (gl_LocalInvocationID.x == 0u) {
-        uint chunk = chunk_visited();
+    uint chunk = chunk_visited();
+    if (gl_LocalInvocationID.x == 0u && chunk != NONE) {
         atomicAdd(film.mesh_volume, sum - volumes[chunk]);
         volumes[chunk] = sum;
     }

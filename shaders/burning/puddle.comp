@@ -6,6 +6,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/puddle.glsl"
 
@@ -40,7 +41,7 @@ uint flow_from(uint high, uint low) {
 }
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(64u);
     if (thread >= uint(PUDDLE_CELLS * PUDDLE_CELLS)) {
         return;
     }

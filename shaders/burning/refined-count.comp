@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/refined-leaves.glsl"
 
 layout(set = 0, binding = 29, std430) buffer GroupSums {
@@ -11,7 +12,7 @@ layout(set = 0, binding = 29, std430) buffer GroupSums {
 };
 
 void main() {
-    uint run = gl_GlobalInvocationID.x;
+    uint run = element(64u);
     if (run * RUN >= constants.coarse_count * nodes_above(constants.levels + 1u)) {
         return;
     }

@@ -7,6 +7,7 @@
 // of its four children are gone, and a child that is coarser is gone by the same rule.
 
 #include "burning/constants.glsl"
+#include "burning/runs.glsl"
 #include "burning/tree.glsl"
 #include "burning/statuses.glsl"
 
@@ -29,9 +30,6 @@ layout(set = 0, binding = 13, std430) readonly buffer Removed {
 layout(push_constant, std430) uniform Leaves {
     uint level_of_detail; // the finest level that is drawn
 } leaves;
-
-// Nodes that one thread counts and writes, so that the scan between needs no barriers among many threads.
-const uint RUN = 16u;
 
 struct Leaf {
     uint coarse;

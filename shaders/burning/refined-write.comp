@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/refined-leaves.glsl"
 
 layout(set = 0, binding = 29, std430) readonly buffer GroupSums {
@@ -48,7 +49,7 @@ void write(Leaf leaf, uint first) {
 }
 
 void main() {
-    uint run = gl_GlobalInvocationID.x;
+    uint run = element(64u);
     if (run * RUN >= constants.coarse_count * nodes_above(constants.levels + 1u)) {
         return;
     }

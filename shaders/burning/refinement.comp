@@ -16,6 +16,7 @@
 
 layout(local_size_x = 256) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/tree.glsl"
 #include "burning/statuses.glsl"
@@ -62,7 +63,7 @@ layout(push_constant, std430) uniform Dispatch {
 #ifdef STEP_ELIGIBLE
 // "Returns true if coarse triangle T is eligible."
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(256u);
     uint coarse = thread / dispatch.points;
     if (coarse >= constants.coarse_count || eligible[coarse] != 0u) {
         return;
@@ -110,7 +111,7 @@ bool must_be_split(uint coarse, uint index) {
 #endif
 
 void main() {
-    uint thread = gl_GlobalInvocationID.x;
+    uint thread = element(256u);
     uint coarse = thread / power_of_four(dispatch.level);
     uint index = thread % power_of_four(dispatch.level);
     if (coarse >= constants.coarse_count) {

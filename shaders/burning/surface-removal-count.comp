@@ -1,11 +1,12 @@
 #version 450
 
-// First phase of the compaction: how many triangles of each workgroup are drawn.
+// First phase of the compaction: how many triangles of each run are drawn.
 
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
-#include "burning/scan.glsl"
+#include "burning/runs.glsl"
 
 layout(set = 0, binding = 13, std430) readonly buffer Removed {
     uint removed[];
@@ -16,14 +17,16 @@ layout(set = 0, binding = 29, std430) buffer GroupSums {
 };
 
 void main() {
-    uint triangle = gl_GlobalInvocationID.x;
-    uint is_drawn = 0u;
-    if (triangle < constants.triangle_count) {
-        is_drawn = 1u - removed[triangle];
+    uint run = element(64u);
+    if (run * RUN >= constants.triangle_count) {
+        return;
     }
-    uint thread = gl_LocalInvocationID.x;
-    sum_before(thread, is_drawn);
-    if (thread == 0u) {
-        group_sums[gl_WorkGroupID.x] = sums[GROUP - 1u];
+    uint sum = 0u;
+    for (uint i = 0u; i < RUN; i++) {
+        uint triangle = run * RUN + i;
+        if (triangle < constants.triangle_count) {
+            sum += 1u - removed[triangle];
+        }
     }
+    group_sums[run] = sum;
 }

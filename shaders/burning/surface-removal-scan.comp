@@ -1,6 +1,6 @@
 #version 450
 
-// Second phase: one workgroup makes of the counts the index of each workgroup's first triangle, and writes what the
+// Second phase: one workgroup makes of the counts the index of each run's first triangle, and writes what the
 // draw reads. A thread adds up a run of counts, at most 8,192 where a storage buffer holds 128 MiB, by itself, so that
 // no number of triangles comes near the 65,535 iterations after which lavapipe ends the loops of a shader.
 

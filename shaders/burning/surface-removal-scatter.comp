@@ -2,10 +2,11 @@
 
 // Third phase: each drawn triangle's corners to their offset in the stream, in their old order.
 
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
-#include "burning/scan.glsl"
+#include "burning/runs.glsl"
 
 layout(set = 0, binding = 5, std430) readonly buffer Corners {
     uint corners[];
@@ -20,20 +21,22 @@ layout(set = 0, binding = 22, std430) buffer Stream {
 };
 
 layout(set = 0, binding = 29, std430) readonly buffer GroupSums {
-    uint group_sums[];
+    uint group_sums[]; // triangles drawn before each run
 };
 
 void main() {
-    uint triangle = gl_GlobalInvocationID.x;
-    uint is_drawn = 0u;
-    if (triangle < constants.triangle_count) {
-        is_drawn = 1u - removed[triangle];
+    uint run = element(64u);
+    if (run * RUN >= constants.triangle_count) {
+        return;
     }
-    uint index = sum_before(gl_LocalInvocationID.x, is_drawn);
-    if (is_drawn == 1u) {
-        index += group_sums[gl_WorkGroupID.x];
-        for (uint corner = 0u; corner < 3u; corner++) {
-            stream[3u * index + corner] = corners[3u * triangle + corner];
+    uint at = group_sums[run];
+    for (uint i = 0u; i < RUN; i++) {
+        uint triangle = run * RUN + i;
+        if (triangle < constants.triangle_count && removed[triangle] == 0u) {
+            for (uint corner = 0u; corner < 3u; corner++) {
+                stream[3u * at + corner] = corners[3u * triangle + corner];
+            }
+            at++;
         }
     }
 }

@@ -7,6 +7,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/elements.glsl"
 #include "burning/constants.glsl"
 #include "burning/flammability.glsl"
 #include "burning/rotation.glsl"
@@ -30,7 +31,7 @@ layout(set = 0, binding = 19, std430) buffer Mapped {
 };
 
 void main() {
-    uint vertex = gl_GlobalInvocationID.x;
+    uint vertex = element(64u);
     if (vertex >= constants.vertex_count) {
         return;
     }

@@ -26,5 +26,5 @@ pub fn block_rotation(
         .with("Blocks", &buffers.blocks)
         .with("BlockConstants", &buffers.block_levels);
     let rotations = [old("OldRotations", &buffers.rotations), new("NewRotations", &buffers.rotations)];
-    Ok(PingPong::new([(build(shaders, rotate, &rotations)?, Work::Threads(model.block_count()))]))
+    Ok(PingPong::new([(build(shaders, rotate, &rotations)?, Work::Elements(model.block_count()))]))
 }

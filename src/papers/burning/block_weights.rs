@@ -41,7 +41,7 @@ pub fn block_weights(
     };
     let states = [old("OldState", &buffers.states), new("NewState", &buffers.states)];
     Ok(PingPong::new([
-        (build(shaders, clear, &[])?, Work::Threads(model.block_count())),
+        (build(shaders, clear, &[])?, Work::Elements(model.block_count())),
         (build(shaders, count, &states)?, Work::Indirect),
     ]))
 }

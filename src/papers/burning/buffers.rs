@@ -253,9 +253,10 @@ impl Buffers {
         let counted: Vec<u32> = model.rest_cells.iter().zip(&alive).map(|(cell, alive)| 8 * cell + alive).collect();
         let live_vertices = alive.iter().sum();
         let clock = Counts { live_vertices, ..Counts::default() };
+        let burns = |vertex: u32| flammabilities[vertex as usize % flammabilities.len()] > 0.0;
         let distance = |vertex: u32| model.rest[vertex as usize].boundary_distance;
         let vertex_chunks = Chunks::of_vertices(model.rest.iter().map(|vertex| vertex.boundary_distance));
-        let triangle_chunks = Chunks::of_triangles(&model.triangles, distance);
+        let triangle_chunks = Chunks::of_triangles(&model.triangles, distance, burns);
         let (uniform, block) = (vk::BufferUsageFlags::UNIFORM_BUFFER, constants(variant, parameters, model));
         let mut buffers = Buffers {
             constants: upload(device, &name("constants"), uniform, bytemuck::bytes_of(&block))?,

@@ -16,6 +16,8 @@ host_block! {
     pub struct ChunkCount {
         /// Chunks in all.
         count: u32,
+        /// Workgroups that the device takes in a row.
+        row: u32,
     }
 }
 
@@ -50,13 +52,14 @@ impl ChunkBuffers {
     /// Those of the Vulkan layer.
     pub fn new(shaders: &ShaderLibrary, label: &str, chunks: &Chunks) -> Result<Self, Error> {
         let count = chunks.count();
+        let [row, ..] = shaders.device().physical().limits.max_compute_work_group_count;
         let table = |what: &str, bytes: &[u8]| upload(shaders.device(), &format!("{label}-{what}"), STORAGE, bytes);
         Ok(ChunkBuffers {
             order: table("order", bytemuck::cast_slice(&chunks.order))?,
             spans: table("spans", bytemuck::cast_slice(&chunks.spans))?,
             finished: table("finished", &vec![0; 4 * count as usize])?,
             changed: Visits::new(shaders, &format!("{label}-changed"), count)?,
-            count: ChunkCount { count },
+            count: ChunkCount { count, row },
         })
     }
 
@@ -73,12 +76,17 @@ impl ChunkBuffers {
     /// # Errors
     /// Those of the Vulkan layer.
     pub fn all(&self, shaders: &ShaderLibrary, label: &str) -> Result<Visits, Error> {
-        let count = self.count.count;
+        let ChunkCount { count, row } = self.count;
         let numbers: Vec<u32> = std::iter::once(count).chain(0..count).collect();
+        let rows = count.div_ceil(row).max(1);
         let visited = upload(shaders.device(), label, STORAGE, bytemuck::cast_slice(&numbers))?;
         let groups = vk::BufferUsageFlags::INDIRECT_BUFFER | STORAGE;
-        let groups =
-            upload(shaders.device(), &format!("{label}-groups"), groups, bytemuck::cast_slice(&[count, 1, 1]))?;
+        let groups = upload(
+            shaders.device(),
+            &format!("{label}-groups"),
+            groups,
+            bytemuck::cast_slice(&[count.div_ceil(rows), rows, 1]),
+        )?;
         Ok(Visits { visited, groups })
     }
 

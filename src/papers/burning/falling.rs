@@ -17,6 +17,9 @@ const WORDS: u32 = 48;
 const ENTRIES: u32 = 65536;
 const MEETINGS: u32 = 8;
 
+/// Vertices of a workgroup (`burning/falling.comp`).
+const GROUP: u32 = 64;
+
 /// Of the buffers.
 pub(super) const BYTES: u32 = 4 * WORDS * MOST_PARTS + 4 * ENTRIES + 16 * MEETINGS * MOST_PARTS;
 
@@ -39,8 +42,10 @@ pub fn falling(
     let lying = empty("lying", 4 * ENTRIES)?;
     let met = empty("met", 16 * MEETINGS * MOST_PARTS)?;
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER;
-    let moving =
-        upload(shaders.device(), &format!("{label}/moving"), usage, bytemuck::cast_slice::<u32, u8>(&[0, 1, 1]))?;
+    let [row, ..] = shaders.device().physical().limits.max_compute_work_group_count;
+    let rows = model.vertex_count().div_ceil(GROUP).div_ceil(row).max(1);
+    let still = [0, rows, 1];
+    let moving = upload(shaders.device(), &format!("{label}/moving"), usage, bytemuck::cast_slice::<u32, u8>(&still))?;
     buffers.keep(shaders, &moving)?;
     let step = |shader: &str| Pass::compute("falling", "", &format!("burning/{shader}.comp"));
     let placed = |shader: &str| {
@@ -55,11 +60,11 @@ pub fn falling(
     let known = placed("falling").with("Searching", &parts.progress).with("Sums", &parts.sums);
     let fall = known.with("Contacts", &contacts).with("Met", &met).with("Moving", &moving);
     Ok(PingPong::new([
-        (build(clear, &[])?, Work::Threads(ENTRIES.max(WORDS * MOST_PARTS))),
+        (build(clear, &[])?, Work::Elements(ENTRIES.max(WORDS * MOST_PARTS))),
         (build(found("falling-lying").indirect(&moving), &newest)?, Work::Indirect),
-        (build(touched("falling-contacts-heights"), &newest)?, Work::Threads(model.vertex_count())),
+        (build(touched("falling-contacts-heights"), &newest)?, Work::Elements(model.vertex_count())),
         (build(touched("falling-contacts-vertices").indirect(&moving), &newest)?, Work::Indirect),
-        (build(meet, &newest)?, Work::Threads(MOST_PARTS * MEETINGS)),
-        (build(fall, &newest)?, Work::Threads(MOST_PARTS)),
+        (build(meet, &newest)?, Work::Elements(MOST_PARTS * MEETINGS)),
+        (build(fall, &newest)?, Work::Elements(MOST_PARTS)),
     ]))
 }

@@ -137,9 +137,9 @@ impl Flames {
         let rotations = new("NewRotations", &buffers.rotations);
         let steps = PingPong::new([
             (build(shaders, visit, &[])?, chunks.lists()),
-            (build(shaders, share, &[])?, Work::Threads(1)),
+            (build(shaders, share, &[])?, Work::Elements(1)),
             (build(shaders, list, &[state])?, Work::Indirect),
-            (build(shaders, burn, &[state, rotations])?, Work::Threads(particle_count)),
+            (build(shaders, burn, &[state, rotations])?, Work::Elements(particle_count)),
         ]);
         Ok(Some(Flames { steps, billboards, groups, particles, particle_count }))
     }

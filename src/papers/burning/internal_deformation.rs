@@ -99,7 +99,7 @@ impl InternalDeformation {
             && slice == 0
         {
             frame.compute(&base_points[tick], |dispatch| {
-                dispatch.threads(self.block_count, 1, 1);
+                dispatch.elements(self.block_count);
             })?;
         }
         frame.compute(&self.vertices[tick], |dispatch| {

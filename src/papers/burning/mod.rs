@@ -163,7 +163,7 @@ impl Burning {
             device: device.clone(),
             variant,
             loading: (!parameters.preload).then(|| Loading::new(device, &buffers)).transpose()?,
-            heat_boundary: heat_boundary(shaders, variant, &buffers, parts.as_ref())?,
+            heat_boundary: heat_boundary(shaders, (variant, parameters), &buffers, parts.as_ref())?,
             internal_deformation: InternalDeformation::new(
                 shaders,
                 variant,

@@ -48,7 +48,7 @@ impl Normals {
     /// Those of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.compute(&self.pass, |dispatch| {
-            dispatch.threads(self.draw_vertices, 1, 1);
+            dispatch.elements(self.draw_vertices);
         })
     }
 }

@@ -215,7 +215,7 @@ impl Parts {
         let newest = (tick % 2) as usize;
         let mut run = |step: &Pass, threads: u32| {
             frame.compute(step, |dispatch| {
-                dispatch.threads(threads, 1, 1);
+                dispatch.elements(threads);
             })
         };
         match tick % SEARCH_TICKS {
@@ -231,7 +231,7 @@ impl Parts {
             2 => {
                 self.unite(frame, newest)?;
                 frame.compute(&self.flatten, |dispatch| {
-                    dispatch.threads(self.vertex_count, 1, 1);
+                    dispatch.elements(self.vertex_count);
                 })
             }
             _ => {
@@ -243,7 +243,7 @@ impl Parts {
 
     fn unite(&self, frame: &mut Frame<'_>, newest: usize) -> Result<(), Error> {
         frame.compute(&self.unite[newest], |dispatch| {
-            dispatch.constants(&self.touches).threads(self.triangle_count + self.touches.count, 1, 1);
+            dispatch.constants(&self.touches).elements(self.triangle_count + self.touches.count);
         })
     }
 }

@@ -35,8 +35,8 @@ pub fn build(shaders: &ShaderLibrary, pass: PassBuilder, swapped: &[Swapped<'_>]
 /// The threads of a dispatch.
 #[derive(Clone, Copy)]
 pub enum Work {
-    /// As many.
-    Threads(u32),
+    /// For so many elements.
+    Elements(u32),
     /// What the pass's indirect buffer says.
     Indirect,
     /// The one workgroup that lists chunks, of so many.
@@ -64,7 +64,7 @@ impl<const STEPS: usize> PingPong<STEPS> {
         self.passes[tick].iter().zip(self.work).try_for_each(|(pass, work)| {
             frame.compute(pass, |dispatch| {
                 match work {
-                    Work::Threads(threads) => dispatch.threads(threads, 1, 1),
+                    Work::Elements(count) => dispatch.elements(count),
                     Work::Indirect => dispatch.groups_indirect(),
                     Work::Lists(count) => dispatch.constants(&count).threads(1, 1, 1),
                 };

@@ -85,11 +85,11 @@ impl Puddle {
         let rising = [old("OldHeights", &heights), new("NewHeights", &heights)];
         let build = |pass, swapped: &[_]| ping_pong::build(shaders, pass, swapped);
         let steps = PingPong::new([
-            (build(clear, &[])?, Work::Threads(cells)),
+            (build(clear, &[])?, Work::Elements(cells)),
             (build(volume, &[after])?, Work::Indirect),
-            (build(step("puddle-start"), &[])?, Work::Threads(1)),
+            (build(step("puddle-start"), &[])?, Work::Elements(1)),
             (build(weights, &[before, after])?, Work::Indirect),
-            (build(spread, &rising)?, Work::Threads(cells)),
+            (build(spread, &rising)?, Work::Elements(cells)),
         ]);
         Ok(Puddle { steps, heights, film })
     }

@@ -93,7 +93,7 @@ impl Refinement {
         let mut run = |step: &Pass, level: u32, threads: u32| {
             let constants = Dispatch { level, points: self.points };
             frame.compute(step, |dispatch| {
-                dispatch.constants(&constants).threads(self.coarse_count * threads, 1, 1);
+                dispatch.constants(&constants).elements(self.coarse_count * threads);
             })
         };
         let [find, split_finest, split] = &self.steps;

@@ -29,9 +29,7 @@ host_block! {
     }
 }
 
-/// Triangles that a workgroup counts of an object that is not refined.
-const GROUP: u32 = 256;
-/// Nodes that one thread counts of an object that is refined.
+/// Triangles, or nodes of the refinement pattern, that one thread counts (`burning/runs.glsl`).
 const RUN: u32 = 16;
 
 /// The steps of the pass.
@@ -40,10 +38,8 @@ pub struct SurfaceRemoval {
     steps: [[Pass; 4]; 2],
     /// Consumed triangles leave the stream.
     removes: bool,
-    /// Threads of the compaction's first and last phase: finest triangles, or runs of nodes of the refinement pattern.
-    threads: u32,
-    /// Numbers that the compaction's second phase scans.
-    sum_count: u32,
+    /// Threads of the compaction's first and last phase, and numbers that its second scans: one for each run.
+    runs: u32,
     /// Of an object that is refined.
     leaves: Option<Leaves>,
 }
@@ -64,12 +60,8 @@ impl SurfaceRemoval {
     ) -> Result<Self, Error> {
         let step =
             |shader: &str| Pass::compute("surface-removal", "3.5.4", shader).with("constants", &buffers.constants);
-        let triangle_count = model.triangle_count();
-        let (threads, sum_count) = match refinement {
-            None => (triangle_count, triangle_count.div_ceil(GROUP)),
-            Some(refinement) => [refinement.node_count().div_ceil(RUN); 2].into(),
-        };
-        let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(sum_count));
+        let runs = refinement.map_or(model.triangle_count(), Refinement::node_count).div_ceil(RUN);
+        let desc = BufferDesc::new(format!("{label}/group-sums"), 4 * u64::from(runs));
         let sums = Buffer::new(shaders.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))?;
         let mark = match (fallen, parameters.keep_connected) {
             (Some((parts, ash)), _) => step("burning/surface-removal-mark-parts.comp")
@@ -114,8 +106,7 @@ impl SurfaceRemoval {
         Ok(SurfaceRemoval {
             steps: marks.map(|mark| Pass::steps([mark, count.clone(), scan.clone(), write.clone()])),
             removes: variant.removes(),
-            threads,
-            sum_count,
+            runs,
             leaves: refinement.map(|refinement| Leaves { level_of_detail: refinement.level_of_detail }),
         })
     }
@@ -145,12 +136,12 @@ impl SurfaceRemoval {
                 if let Some(leaves) = &self.leaves {
                     dispatch.constants(leaves);
                 }
-                dispatch.threads(self.threads, 1, 1);
+                dispatch.elements(self.runs);
             })
         };
         over_all(frame, count)?;
         frame.compute(scan, |dispatch| {
-            dispatch.constants(&Groups { count: self.sum_count }).threads(1, 1, 1);
+            dispatch.constants(&Groups { count: self.runs }).threads(1, 1, 1);
         })?;
         over_all(frame, write)
     }

@@ -26,5 +26,5 @@ pub fn vertex_mapping(
     let map = map.with("Flammabilities", &buffers.flammabilities);
     let map = map.with("constants", &buffers.constants).with("Cells", &buffers.cells).with("Mapped", &buffers.mapped);
     let newest = [new("NewState", &buffers.states), new("NewRotations", &buffers.rotations)];
-    Ok(PingPong::new([(build(shaders, map, &newest)?, Work::Threads(model.vertex_count()))]))
+    Ok(PingPong::new([(build(shaders, map, &newest)?, Work::Elements(model.vertex_count()))]))
 }

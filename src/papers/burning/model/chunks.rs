@@ -38,11 +38,13 @@ impl Chunks {
         Self::new(&distances.map(|distance| [distance; 2]).collect::<Vec<_>>())
     }
 
-    /// Of triangles by the R of their vertices.
-    pub fn of_triangles(triangles: &[[u32; 3]], distance: impl Fn(u32) -> f32) -> Self {
+    /// Of triangles by the R of their vertices: where all or none of them burn, the first alone changes a triangle's area.
+    pub fn of_triangles(triangles: &[[u32; 3]], distance: impl Fn(u32) -> f32, burns: impl Fn(u32) -> bool) -> Self {
         let reach = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(&distance);
-            [a.min(b).min(c), a.max(b).max(c)]
+            let [one, two, three] = triangle.map(&burns);
+            let first = a.min(b).min(c);
+            [first, if one == two && two == three { first } else { a.max(b).max(c) }]
         };
         Self::new(&triangles.iter().map(reach).collect::<Vec<_>>())
     }
