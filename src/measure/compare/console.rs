@@ -132,7 +132,8 @@ fn missing(comparison: &Comparison) -> impl Iterator<Item = String> {
         runs.into_iter().flat_map(|(side, names)| names.iter().map(move |name| format!("only in {side}: {name}")));
     let passes = comparison.runs.iter().filter(|run| !run.missing_passes.is_empty());
     alone.chain(
-        passes.map(move |run| format!("B lacks passes of {}: {}", title(run, comparison), run.missing_passes.join(", "))),
+        passes
+            .map(move |run| format!("B lacks passes of {}: {}", title(run, comparison), run.missing_passes.join(", "))),
     )
 }
 
