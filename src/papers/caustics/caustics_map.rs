@@ -11,6 +11,7 @@ use super::planes::Cell;
 use super::receiver::LitReceiver;
 use super::resources::{BLACK, CAUSTICS, Context};
 use super::shadow_map::ShadowMap;
+use super::smart_planes::SmartPlanes;
 use super::water_surface::WaterSurface;
 use crate::gpu::{Blend, Buffer, Device, Error, Frame, ImageView};
 
@@ -102,10 +103,10 @@ impl CausticsMap {
         }
     }
 
-    /// Where smart slicing on the device placed the planes, of the variant `culled`.
-    pub fn smart_cells(&self) -> Option<&Arc<Buffer>> {
+    /// Smart slicing on the device, of the variant `culled`.
+    pub fn smart_planes(&self) -> Option<&SmartPlanes> {
         match &self.drawing {
-            Drawing::Culled(culled) => culled.smart_cells(),
+            Drawing::Culled(culled) => culled.smart_planes(),
             Drawing::All { .. } | Drawing::Hit(_) => None,
         }
     }

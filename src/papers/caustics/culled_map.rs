@@ -116,10 +116,10 @@ impl Choice for CullSteps {
     ];
 }
 
-/// A [`CellBlock`] for each of so many uniform planes; the box's centre is at `middle_m` from the rays' reference point.
-fn uniform_cells(context: Context<'_>, lit: &LitReceiver, planes: u32, middle_m: f64) -> Result<Arc<Buffer>, Error> {
+/// A [`CellBlock`] for each uniform plane; the box's centre is at `middle_m` from the rays' reference point.
+fn uniform_cells(context: Context<'_>, lit: &LitReceiver, middle_m: f64) -> Result<Arc<Buffer>, Error> {
     let mut cells = Vec::new();
-    planes::slice(lit.aligned.extent.y, planes, &mut cells);
+    planes::slice(lit.aligned.extent.y, lit.planes, &mut cells);
     let block =
         |cell: &Cell| CellBlock { height: cell.height(middle_m), lower: cell.lower, upper: cell.upper, _pad: 0.0 };
     let blocks: Vec<CellBlock> = cells.iter().map(block).collect();
@@ -158,11 +158,9 @@ impl CulledMap {
         let offset = lit.aligned.center - volumes.reference;
         let smart = |epsilon_m| SmartPlanes::new(context, lit, epsilon_m, offset.y, position_map);
         let smart_planes = context.parameters.smart_on_device().map(smart).transpose()?;
-        // Smart slicing takes no fewer for what is far away, as on the host.
-        let uniform = if context.parameters.culled_smart { context.parameters.planes } else { lit.planes };
         let (cells, planes) = match &smart_planes {
             Some(smart) => (smart.cells.clone(), smart.most()),
-            None => (uniform_cells(context, lit, uniform, offset.y)?, uniform),
+            None => (uniform_cells(context, lit, offset.y)?, lit.planes),
         };
 
         let position_pyramid = PositionPyramid::new(context, position_map)?;
@@ -267,7 +265,7 @@ impl CulledMap {
                 center,
                 texels_per_m: [(texels / extent.x) as f32, (texels / extent.z) as f32],
                 top: (lit.aligned.extent.y / 2.0) as f32,
-                cells_per_m: (f64::from(uniform) / lit.aligned.extent.y) as f32,
+                cells_per_m: (f64::from(lit.planes) / lit.aligned.extent.y) as f32,
                 inset: 0.5 / context.parameters.coverage as f32,
                 map_size: context.parameters.map_size,
                 levels: position_pyramid.level_count(),
@@ -293,9 +291,9 @@ impl CulledMap {
         })
     }
 
-    /// Where smart slicing placed the planes of the last frame: a [`CellBlock`] each, zero where there is none.
-    pub fn smart_cells(&self) -> Option<&Arc<Buffer>> {
-        self.smart_planes.as_ref().map(|smart| &smart.cells)
+    /// Where smart slicing placed the planes of the last frame.
+    pub fn smart_planes(&self) -> Option<&SmartPlanes> {
+        self.smart_planes.as_ref()
     }
 
     /// Finds the pairs, and draws them after clearing the map; the light has passed water of that absorption.

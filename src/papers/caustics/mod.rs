@@ -40,6 +40,7 @@ mod receivers;
 pub mod reference;
 mod reference_planes;
 mod resources;
+mod results;
 mod sample_planes;
 pub mod setup;
 mod shadow_map;
@@ -49,6 +50,7 @@ mod stencil_volumes;
 mod underwater;
 mod view;
 mod volumetric;
+mod warnings;
 pub mod water;
 mod water_map;
 mod water_surface;
@@ -75,7 +77,7 @@ use self::view::View;
 use self::volumetric::Volumetric;
 use self::water::Grid;
 use self::water_surface::{VERTEX_FLOATS, WaterSurface};
-use crate::gpu::{Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
+use crate::gpu::{Device, Error, Feature, Frame, ImageView, Sampler, ShaderLibrary};
 use crate::measure::{Paper, Target};
 use crate::scene::{Bounds, Camera};
 
@@ -91,16 +93,10 @@ pub const NEEDS: [Feature; 3] = [Feature::BlendR32Float, Feature::BlendRgba16Flo
 /// Parameters of the viewer and the clock alone, as constants.
 pub const DRAWN: [&str; 5] = ["absorption", "camera", "fresnel", "samples", "time-step"];
 
-/// Slope of water, root of the mean square, above which point sampling is warned of.
-const STEEP: f64 = 0.12;
-/// The coverage that ends the warning.
-const AVERAGED: u32 = 4;
-
 /// The paper under one variant.
 pub struct Caustics {
     parameters: Parameters,
-    /// The map's light is not sampled at texel centres.
-    is_hit: bool,
+    variant: Variant,
     water_surface: WaterSurface,
     /// One for each light.
     illumination_volumes: Vec<IlluminationVolumes>,
@@ -149,6 +145,10 @@ impl Caustics {
             .flat_map(|light| receivers.iter().enumerate().map(move |(index, receiver)| (light, index, receiver)))
             .map(|(light, index, receiver)| LitReceiver::new(receiver, index, light, axes[light], parameters))
             .collect();
+        if variant == Variant::Culled && parameters.culled_smart {
+            // Smart slicing takes no fewer for what is far away.
+            lit_receivers.iter_mut().for_each(|lit| lit.planes = parameters.planes);
+        }
         let boxes: Vec<_> = lit_receivers.iter().map(|lit| (lit.aligned, parameters.lights[lit.light])).collect();
         let middle = DVec2::new(center.x, center.z);
         let mut grid = Grid::over(&boxes, parameters);
@@ -191,7 +191,7 @@ impl Caustics {
         let parameters = parameters.clone();
         Ok(Caustics {
             parameters,
-            is_hit: variant == Variant::Hit,
+            variant,
             water_surface,
             illumination_volumes,
             lit_receivers,
@@ -263,34 +263,15 @@ impl Caustics {
         self.lit_receivers.iter().map(|lit| lit.cells.len()).collect()
     }
 
-    /// The warning when the light that reaches the receivers passes water beyond the border of a height map.
-    fn small_map(&self) -> Option<String> {
-        let map = self.parameters.water_map.as_ref()?;
-        let (map_m, mesh_m) = (map.extent_m(), self.grid().extent_m());
-        map_m.cmplt(mesh_m).any().then(|| {
-            format!(
-                "the water map {} covers {:.2} x {:.2} m of the water's mesh of {:.2} x {:.2} m; beyond its border the \
-                 border's heights go on",
-                map.name(),
-                map_m.x,
-                map_m.y,
-                mesh_m.x,
-                mesh_m.y
-            )
-        })
-    }
-
-    /// The warning when maps are sampled at texel centres under water that folds its light strongly.
-    fn steep_water(&self) -> Option<String> {
-        let slope = self.parameters.mean_slope();
-        let is_sampled = !self.lit_receivers.is_empty() && !self.is_hit && self.parameters.coverage < AVERAGED;
-        (is_sampled && slope > STEEP).then(|| {
-            format!(
-                "water of slope {slope:.2} (root of the mean square) folds its light: a caustics map that is sampled at texel \
-                 centres, as the thesis's is, misses slivers of folded triangles or takes them for too bright; `coverage` \
-                 {AVERAGED} or more averages them"
-            )
-        })
+    /// Planes of all receivers under all lights in the last frame, those that the device placed read back.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn planes_drawn(&self, device: &Arc<Device>) -> Result<u64, Error> {
+        let by_host = self.plane_counts().iter().sum::<usize>() as u64;
+        let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique else { return Ok(by_host) };
+        let mut placed = receivers.iter().filter_map(|passes| passes.caustics_map.smart_planes());
+        placed.try_fold(by_host, |sum, smart| Ok(sum + u64::from(smart.drawn(device)?)))
     }
 
     fn time_s(&self, number: u32) -> f64 {
@@ -305,7 +286,7 @@ impl Caustics {
         let named = |(lit, passes): (&LitReceiver, &ReceiverPasses)| {
             let (name, table, columns) = match passes.caustics_map.landings() {
                 Some(landings) => ("landings", landings, LANDING_FLOATS),
-                None => ("plane-cells", passes.caustics_map.smart_cells()?, CELL_FLOATS),
+                None => ("plane-cells", &passes.caustics_map.smart_planes()?.cells, CELL_FLOATS),
             };
             Some(Target::table(numbered(name, &[lit.light, lit.index]), table, columns))
         };
@@ -432,7 +413,7 @@ impl Paper for Caustics {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.small_map().into_iter().chain(self.steep_water()).collect()
+        self.doubts()
     }
 
     fn camera(&self) -> Option<Camera> {

@@ -1,13 +1,11 @@
 //! Numbers that a user can set, under the thesis's own words.
 
 use std::f32::consts::PI;
-use std::f64::consts::TAU;
 
 use glam::Vec3;
 
 pub use super::culled_map::CullSteps;
 pub use super::planes::SmartPlacement;
-use super::water::waves;
 use super::water_map::WaterMap;
 use crate::field;
 use crate::measure::parameter::{self, Choice, Cost, Field, Parameter, Range, Size};
@@ -316,7 +314,7 @@ impl Parameters {
                 .section("eq. 4-18")
                 .cost(Cost::Pipelines),
             Parameter::new("cull", field!(Parameters.cull))
-                .help("Steps by which `culled` finds the pairs of triangle and plane to draw; its light is the same by all of them")
+                .help("Steps by which the variant culled finds the pairs of triangle and plane to draw; its light is the same by all of them")
                 .section("6.1")
                 .cost(Cost::Buffers),
             Parameter::new("smart", field!(Parameters.culled_smart))
@@ -445,19 +443,6 @@ impl Parameters {
     /// The water is nowhere steeper.
     pub fn steepest_slope(&self) -> f32 {
         self.water_map.as_ref().map_or(self.waves.steepest_slope(), WaterMap::steepest_slope)
-    }
-
-    /// Root of the water's mean square slope.
-    pub fn mean_slope(&self) -> f64 {
-        let of_waves = || waves(self).iter().map(|w| (w.amplitude_m * w.vector.length()).powi(2) / 2.0).sum::<f64>();
-        self.water_map.as_ref().map_or_else(|| of_waves().sqrt(), WaterMap::mean_slope)
-    }
-
-    /// Shortest length in metres over which the water repeats, or that a map of it resolves.
-    pub fn shortest_wave_m(&self) -> f64 {
-        let of_waves = || waves(self).iter().map(|w| TAU / w.vector.length()).fold(f64::INFINITY, f64::min);
-        let of_map = |map: &WaterMap| 4.0 * map.heights().spacing_m().min_element();
-        self.water_map.as_ref().map_or_else(of_waves, of_map)
     }
 
     /// Planes of a receiver whose middle is at that place: all, or by its distance from the camera.

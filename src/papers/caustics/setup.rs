@@ -9,8 +9,10 @@ use serde_json::{Map, Value as Json, json};
 
 use super::axes;
 use super::experiments::{self, Options};
+use super::results;
 use crate::field;
-use crate::gpu::{self, Device, Feature, Mode, ShaderLibrary};
+use crate::gpu::{self, Device, Feature, ShaderLibrary};
+use crate::measure::Error;
 use crate::measure::bench::Built;
 use crate::measure::config::{self, entries};
 use crate::measure::estimate::{DRAWN_BYTES, Estimate};
@@ -20,7 +22,6 @@ use crate::measure::measure::Measurement;
 use crate::measure::parameter::{self, Cost, EyeAndTarget, Given, Parameter, Range, Shape, Value, one};
 use crate::measure::stress::Axis;
 use crate::measure::study::{Identity, Metrics, Preset, Study};
-use crate::measure::{Error, Paper as _};
 use crate::papers::caustics::{Caustics, DRAWN, NEEDS, Parameters, ReceiverInput, SmartPlacement, Variant, WaterMap};
 use crate::scene::loading::CREASE_DEG;
 use crate::scene::{Bounds, Camera, HeightMap, HeightMapSource, Light, MeshOptions, MeshSource, Samples};
@@ -212,12 +213,7 @@ impl Study for Setup {
         machine: &mut Machine,
         measured: &mut [(Built<Self>, Measurement)],
     ) -> Result<Vec<Metrics>, Error> {
-        let floors = floors_ms(machine, measured)?;
-        let metrics = measured.iter().zip(floors).map(|((built, measurement), floor_ms)| Metrics {
-            results: results(&built.paper, measurement, floor_ms),
-            warnings: built.paper.warnings(),
-        });
-        Ok(metrics.collect())
+        results::of_runs(machine, measured)
     }
 
     fn config(&self, scene: &Scene, paper: &Caustics) -> Map<String, Json> {
@@ -419,39 +415,4 @@ pub fn sample_meshes() -> Vec<MeshSource> {
     let wuson = Some(PathBuf::from("assets/meshes/wuson.stl")).filter(|path| path.is_file());
     let built_in = [MeshSource::Teapot, MeshSource::Sphere, MeshSource::Bunny];
     built_in.into_iter().chain(wuson.map(MeshSource::File)).collect()
-}
-
-/// Median time of each variant's caustics maps with an empty fragment stage, interleaved; `None` without stamps.
-fn floors_ms(machine: &mut Machine, measured: &[(Built<Setup>, Measurement)]) -> Result<Vec<Option<f64>>, Error> {
-    const SAMPLES: usize = 5;
-    let mut times = vec![Vec::with_capacity(SAMPLES); measured.len()];
-    // The first round compiles the pipelines.
-    for round in 0..=SAMPLES {
-        for ((built, _), times) in measured.iter().zip(&mut times) {
-            let sample = machine.recorder.run(Mode::Timestamped, |frame| built.paper.record_floor(frame))?;
-            if round > 0 {
-                times.extend(sample.passes.iter().find_map(|p| p.gpu_ms));
-            }
-        }
-    }
-    Ok(times.iter().map(|times| crate::measure::statistics::median(times)).collect())
-}
-
-/// The paper's own figures: the intersection triangles of a frame and how fast they are drawn.
-fn results(paper: &Caustics, measurement: &Measurement, floor_ms: Option<f64>) -> Map<String, Json> {
-    let planes = paper.plane_counts().iter().sum::<usize>() as u64;
-    let triangles = planes * u64::from(paper.grid().triangle_count());
-    let caustics_map = measurement.passes.iter().find(|p| p.info.name == "caustics-map");
-    let time_ms = caustics_map.and_then(|p| crate::measure::statistics::median(&p.gpu_ms)).filter(|&ms| ms > 0.0);
-    if planes == 0 {
-        let landed = paper.lit_receivers.len() as u64 * u64::from(paper.grid().triangle_count());
-        return if paper.is_hit { entries([("landed_triangles", json!(landed))]) } else { Map::new() };
-    }
-    entries([
-        ("planes_drawn", json!(planes)),
-        ("caustics_map_floor_ms", json!(floor_ms)),
-        ("caustics_map_over_floor", json!(time_ms.zip(floor_ms).map(|(time, floor)| time / floor))),
-        ("intersection_triangles", json!(triangles)),
-        ("intersection_triangles_per_s", json!(time_ms.map(|ms| triangles as f64 / ms * 1e3))),
-    ])
 }

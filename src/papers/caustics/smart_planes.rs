@@ -10,7 +10,8 @@ use super::parameters::Parameters;
 use super::planes::{self, Fit, SmartPlacement};
 use super::receiver::LitReceiver;
 use super::resources::Context;
-use crate::gpu::{Buffer, BufferDesc, Error, Frame, ImageView, Pass};
+use crate::gpu::transfer::read_buffer;
+use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
 host_block! {
@@ -64,7 +65,7 @@ pub struct SmartPlanes {
     smart: SmartConstants,
     /// First height of each level that it no longer holds, and the lowest, metres from the box's centre.
     pub bounds: Arc<Buffer>,
-    /// A [`CellBlock`] for each plane that there is room for, zero beyond the last.
+    /// A [`CellBlock`] for each plane that there is room for, zero beyond the last one of the last frame.
     pub cells: Arc<Buffer>,
     /// Of each level that holds the receiver, its sub-box: top, cells per metre, first plane and last one.
     pub sliced: Arc<Buffer>,
@@ -159,6 +160,15 @@ impl SmartPlanes {
     /// Planes that there is room for.
     pub fn most(&self) -> u32 {
         self.smart.most
+    }
+
+    /// Planes of the last frame.
+    ///
+    /// # Errors
+    /// Errors of the Vulkan layer.
+    pub fn drawn(&self, device: &Arc<Device>) -> Result<u32, Error> {
+        let placed: Vec<PlacedBlock> = bytemuck::pod_collect_to_vec(&read_buffer(device, &self.placed)?);
+        Ok(placed.iter().map(|placed| placed.planes).sum())
     }
 
     /// Places the planes.

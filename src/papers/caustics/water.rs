@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3};
 
 use super::bounding_box::ReceiverBox;
 use super::parameters::Parameters;
+use super::water_map::WaterMap;
 use crate::scene::Light;
 use crate::scene::random::Random;
 
@@ -52,6 +53,31 @@ pub fn waves(parameters: &Parameters) -> Vec<Wave> {
             }
         })
         .collect()
+}
+
+impl Parameters {
+    /// Root of the water's mean square slope.
+    pub fn mean_slope(&self) -> f64 {
+        self.water_map.as_ref().map_or_else(|| mean_derivative(self, 1), WaterMap::mean_slope)
+    }
+
+    /// Root of the mean square of the Laplacian of the water's height, per metre.
+    pub fn mean_curvature(&self) -> f64 {
+        self.water_map.as_ref().map_or_else(|| mean_derivative(self, 2), WaterMap::mean_curvature)
+    }
+
+    /// Shortest length in metres over which the water repeats, or that a map of it resolves.
+    pub fn shortest_wave_m(&self) -> f64 {
+        let of_waves = || waves(self).iter().map(|w| TAU / w.vector.length()).fold(f64::INFINITY, f64::min);
+        let of_map = |map: &WaterMap| 4.0 * map.heights().spacing_m().min_element();
+        self.water_map.as_ref().map_or_else(of_waves, of_map)
+    }
+}
+
+/// Root of the mean square of the waves' derivatives of that order, each wave's along itself: they do not correlate.
+fn mean_derivative(parameters: &Parameters, order: i32) -> f64 {
+    let square = |wave: &Wave| (wave.amplitude_m * wave.vector.length().powi(order)).powi(2) / 2.0;
+    waves(parameters).iter().map(square).sum::<f64>().sqrt()
 }
 
 /// The regular mesh: where it lies and how many cells it has along x and z; each cell is two triangles.

@@ -74,6 +74,31 @@ impl WaterMap {
         (DVec2::new(along_x, along_z) / self.heights.spacing_m().powf(2.0)).element_sum().sqrt()
     }
 
+    /// Root of the mean square of the Laplacian at the samples, per metre, along each axis where they have neighbours on both sides:
+    /// how the surface levels off at the border does not count.
+    pub fn mean_curvature(&self) -> f64 {
+        let heights = &self.heights;
+        let (width, height) = (heights.width(), heights.height());
+        let at = |column: u32, row: u32| f64::from(heights.height_m(column, row));
+        let squares = heights.spacing_m().powf(2.0);
+        let laplacian = |column: u32, row: u32| {
+            let here = 2.0 * at(column, row);
+            let is_between = |place: u32, count: u32| place > 0 && place + 1 < count;
+            let along_x = match is_between(column, width) {
+                true => at(column - 1, row) - here + at(column + 1, row),
+                false => 0.0,
+            };
+            let along_z = match is_between(row, height) {
+                true => at(column, row - 1) - here + at(column, row + 1),
+                false => 0.0,
+            };
+            (DVec2::new(along_x, along_z) / squares).element_sum()
+        };
+        let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+        let sum: f64 = places.map(|(column, row)| laplacian(column, row).powi(2)).sum();
+        (sum / (f64::from(width) * f64::from(height))).sqrt()
+    }
+
     /// No slope is steeper.
     pub fn steepest_slope(&self) -> f32 {
         let width = self.heights.width() as usize;

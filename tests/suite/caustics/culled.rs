@@ -7,12 +7,12 @@ use fumarole::gpu::Compiler;
 use fumarole::measure::parameter::Choice as _;
 use fumarole::measure::study::Study;
 use fumarole::papers::caustics::setup::Setup;
-use fumarole::papers::caustics::{CullSteps, IntensityRule, Parameters, Variant, WaveParameters};
+use fumarole::papers::caustics::{CullSteps, IntensityRule, Parameters, ReceiverInput, Variant, WaveParameters};
 use fumarole::scene::{Light, MeshSource};
 use glam::Vec3;
 
 use super::drawing::Drawing;
-use super::scene::{OBLIQUE, OVERHEAD, POINT, bowl, parameters, teapot};
+use super::scene::{OBLIQUE, OVERHEAD, POINT, bowl, parameters, sphere, teapot};
 use crate::common::gpu_test;
 
 fn assert_same(one: &Drawing, other: &Drawing, case: &str) {
@@ -22,12 +22,15 @@ fn assert_same(one: &Drawing, other: &Drawing, case: &str) {
     assert!(one.target("caustics-map").iter().any(|&light| light > 0.0), "{case}: nothing is lit");
 }
 
+fn bunny() -> ReceiverInput {
+    let bunny = MeshSource::File(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/meshes/bunny.obj")));
+    Setup { meshes: vec![bunny], ..Setup::default() }.load().unwrap().receivers.swap_remove(0)
+}
+
 #[test]
 fn culled_pairs_light_exactly_what_all_pairs_light() {
     gpu_test(|device| {
-        let bunny = MeshSource::File(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/meshes/bunny.obj")));
-        let bunny = Setup { meshes: vec![bunny], ..Setup::default() }.load().unwrap().receivers.swap_remove(0);
-        let receivers = [teapot(), bowl(), bunny];
+        let receivers = [teapot(), bowl(), bunny()];
         for (light, receiver) in
             [OVERHEAD, OBLIQUE, POINT].into_iter().flat_map(|l| receivers.iter().map(move |r| (l, r)))
         {
@@ -37,6 +40,19 @@ fn culled_pairs_light_exactly_what_all_pairs_light() {
                     .map(|variant| Drawing::of(device, variant, &parameters, from_ref(receiver)));
                 assert_same(&all, &culled, &format!("{} under {light:?}, {planes} planes", receiver.mesh.name));
             }
+        }
+    });
+}
+
+/// As the benchmark draws them: 101 planes, maps of 512 texels, 10,000 triangles.
+#[test]
+fn culling_loses_nothing_at_full_size() {
+    gpu_test(|device| {
+        for receiver in [teapot(), sphere(), bunny()] {
+            let parameters = Parameters { planes: 101, map_size: 512, water_triangles: 10_000, ..parameters(OVERHEAD) };
+            let [all, culled] = [Variant::LevelMap, Variant::Culled]
+                .map(|variant| Drawing::of(device, variant, &parameters, from_ref(&receiver)));
+            assert_same(&all, &culled, &receiver.mesh.name);
         }
     });
 }

@@ -71,6 +71,11 @@ impl Drawing {
         }
     }
 
+    /// Of its targets, but for the picture.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.targets.iter().map(|(name, _)| name.as_str())
+    }
+
     /// The values of a target of `--dump`.
     pub fn target(&self, name: &str) -> &[f32] {
         let (_, values) = self.targets.iter().find(|(n, _)| n == name).unwrap();

@@ -254,6 +254,22 @@ fn hit_is_the_same_each_time() {
     });
 }
 
+/// Planes play no part, in any target.
+#[test]
+fn hit_is_the_same_with_any_number_of_planes() {
+    gpu_test(|device| {
+        let parameters = Parameters { shadows: true, ..parameters(OBLIQUE) };
+        let [one, many] = [1, 101].map(|planes| {
+            Drawing::of(device, Variant::Hit, &Parameters { planes, ..parameters.clone() }, &[teapot(), floor()])
+        });
+        assert!(one.names().eq(many.names()) && one.names().count() > 10);
+        for name in one.names() {
+            assert!(one.target(name) == many.target(name), "{name}");
+        }
+        assert_eq!(one.picture, many.picture);
+    });
+}
+
 /// Few beams, each over thousands of texels: a driver that ends loops early leaves light out, and the frame fails.
 #[test]
 fn light_that_loops_leave_out_is_missed() {

@@ -19,4 +19,5 @@ mod stencil;
 mod variants;
 mod view;
 mod volumes;
+mod warnings;
 mod water_map;

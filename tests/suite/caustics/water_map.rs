@@ -227,3 +227,20 @@ fn a_map_beyond_its_range_is_refused_with_its_name() {
     assert_eq!(error, "point-light 0,0.5,0: must lie above the water");
     assert_eq!(under(uneven(), parameters(OVERHEAD)).validate(), Ok(()));
 }
+
+/// A parabola of second derivative 2 along either axis, and waves by their closed form: what folds light.
+#[test]
+fn a_map_is_as_bent_as_what_it_samples() {
+    let along_x = map(UVec2::new(100, 90), DVec2::new(0.1, 5.0), |p| p.x * p.x);
+    let along_z = map(UVec2::new(90, 100), DVec2::new(5.0, 0.1), |p| p.y * p.y);
+    for curvature in [along_x, along_z].map(|parabola| parabola.mean_curvature()) {
+        // None beyond the outermost samples.
+        assert!((curvature - 2.0).abs() < 0.05, "{curvature}");
+    }
+    let parameters = Parameters::default();
+    let waves = waves(&parameters);
+    let height = |p: DVec2| waves.iter().map(|w| w.amplitude_m * (w.vector.dot(p) + w.phase_rad).sin()).sum::<f64>();
+    let sampled = map(UVec2::splat(500), DVec2::splat(0.03), height).mean_curvature();
+    let ratio = sampled / parameters.mean_curvature();
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+}

@@ -81,10 +81,59 @@ fn chapter_6_is_set_against_the_level_map() {
     let [all, kept] = [0, 1].map(|i| pairs(&runs[i]));
     assert_eq!(all, 9 * runs[0]["config"]["water_triangles"].as_u64().unwrap());
     assert!(kept > 0 && kept * 2 < all, "{kept} of {all}");
-    let landed = &runs[2]["results"]["landed_triangles"];
-    assert_eq!(landed, &runs[2]["config"]["water_triangles"]);
-    for count in [all, kept, landed.as_u64().unwrap()] {
+    let refined = &runs[2]["results"]["refined_triangles"];
+    assert_eq!(refined, &runs[2]["config"]["water_triangles"]);
+    for count in [all, kept, refined.as_u64().unwrap()] {
         assert!(ended.stdout.contains(&format!(" {count} ")), "{count} is not printed:\n{}", ended.stdout);
+    }
+    // Those that are drawn, and how fast: of the culled pairs what is left of them.
+    for (run, count) in [(&runs[0], all), (&runs[1], kept)] {
+        let results = &run["results"];
+        assert_eq!(
+            (results["planes_drawn"].as_u64(), results["intersection_triangles"].as_u64()),
+            (Some(9), Some(count))
+        );
+        let map = run["passes"].as_array().unwrap().iter().find(|pass| pass["name"] == "caustics-map").unwrap();
+        let rate = results["intersection_triangles_per_s"].as_f64().unwrap();
+        let expected = count as f64 / map["gpu_ms"]["median"].as_f64().unwrap() * 1e3;
+        assert!((rate / expected - 1.0).abs() < 1e-6, "{rate} {expected}");
+    }
+    assert!(runs[2]["results"].get("planes_drawn").is_none(), "hit has no planes");
+    assert_eq!(drawn_of(&ended.stdout, "hit"), None, "{}", ended.stdout);
+    assert_eq!(drawn_of(&ended.stdout, "culled"), Some(9), "{}", ended.stdout);
+}
+
+/// The planes drawn of a method in the first table that has it: its line is mesh, planes, method, drawn, frame ms, device MiB.
+fn drawn_of(printed: &str, method: &str) -> Option<u64> {
+    let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let line = printed.lines().map(words).find(|words| words.get(2).is_some_and(|word| word == method)).unwrap();
+    line[3].parse().ok()
+}
+
+/// Planes that the device places are counted as the host's are, which the same planes of the level map are.
+#[test]
+fn smart_culling_is_set_against_smart_slicing() {
+    let out = folder();
+    let program = caustics("experiment 6.3 --counts 9 --mesh teapot --smart --out .").inside(out.path());
+    let ended = program.args(SMALL).args(ONCE).on_test_device().run().succeeded();
+    let record = read_json(&out.path().join("caustics-6.3.json"));
+    let runs = record["runs"].as_array().unwrap();
+    let methods: Vec<&str> = runs.iter().map(|run| run["variant"].as_str().unwrap()).collect();
+    assert_eq!(methods, ["level-map-smart", "culled", "hit"]);
+    let [by_host, by_device] = [0, 1].map(|i| runs[i]["results"]["planes_drawn"].as_u64().unwrap());
+    assert!(by_host == by_device && (1..9).contains(&by_host), "{by_host} {by_device}");
+    assert_eq!(drawn_of(&ended.stdout, "culled"), Some(by_device), "{}", ended.stdout);
+    assert!(runs[2]["warnings"].to_string().contains("hit does not heed --smart"), "{}", runs[2]["warnings"]);
+
+    let program = caustics("experiment 6.1 --counts 9 --mesh teapot --smart --out .").inside(out.path());
+    program.args(SMALL).args(ONCE).on_test_device().run().succeeded();
+    let record = read_json(&out.path().join("caustics-6.1.json"));
+    let rows = record["table"]["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &rows[0]["steps"]), (9, &serde_json::json!("level-map-smart")));
+    assert!(rows[0]["culling ms"].is_null() && rows[1]["culling ms"].as_f64().unwrap() > 0.0, "{rows:?}");
+    for row in rows {
+        assert_eq!(row["kept"], rows[0]["kept"], "{row}");
+        assert!(row["pairs"].as_u64() <= rows[0]["pairs"].as_u64(), "{row}");
     }
 }
 
@@ -159,6 +208,8 @@ fn each_step_of_culling_is_measured() {
     }
     assert!(pairs("every") * 2 < pairs("none") && pairs("texels") < pairs("planes"));
     assert!(ended.stdout.contains("culling ms") && ended.stdout.contains("The smallest map"), "{}", ended.stdout);
+    let smallest = record["more"]["smallest"]["rows"].as_array().unwrap();
+    assert!(!smallest.is_empty() && smallest.iter().all(|row| row["mesh"] == "sphere"), "{smallest:?}");
 }
 
 /// The fewer planes, the farther from the picture with all of them.
@@ -201,6 +252,8 @@ fn what_a_sweep_cannot_give_is_refused() {
         sweep().args(option).run().refused(2, &[name]);
     }
     sweep().args("--planes 3").run().refused(2, &["--planes", "--counts"]);
+    caustics("experiment 6.1-far --planes-within 3").run().refused(2, &["--planes-within"]);
+    caustics("experiment 6.1-far --smart").run().refused(2, &["--smart"]);
     caustics("experiment 5-2 --counts 3").run().refused(2, &["--counts", "--planes"]);
     sweep().args("--counts 3 --step 3").run().misused(&["--counts", "--step"]);
     caustics("experiment").run().misused(&["NAME"]);

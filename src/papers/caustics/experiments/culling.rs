@@ -15,19 +15,30 @@ use crate::measure::parameter::Choice;
 use crate::measure::result_table::ResultTable;
 use crate::measure::statistics::median;
 use crate::measure::study::Study;
-use crate::measure::{Error, Paper};
+use crate::measure::{Error, Paper, Variant as _};
 use crate::papers::caustics::Parameters;
 
-/// The experiment: the level map, and `culled` with every choice of its steps, interleaved.
+/// Passes that find the pairs, the planes of smart slicing among them.
+const CULLING: [&str; 8] = [
+    "position-pyramid",
+    "depth-profile",
+    "sub-boxes",
+    "smart-planes",
+    "cull",
+    "cull-count",
+    "cull-sum",
+    "cull-compact",
+];
+
+/// The experiment: the level map with the same planes, and `culled` with every choice of its steps, interleaved.
 ///
 /// # Errors
 /// Errors of the device before the first row; what comes later ends the table, which is written first.
 pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     let (meshes, mut machine) = open(context)?;
     let counts = context.options.counts();
-    let meshes = NamedMesh::all(&meshes);
-    let points: Vec<(&NamedMesh, u32)> =
-        meshes.iter().flat_map(|mesh| counts.iter().map(move |&n| (mesh, n))).collect();
+    let named = NamedMesh::all(&meshes);
+    let points: Vec<(&NamedMesh, u32)> = named.iter().flat_map(|mesh| counts.iter().map(move |&n| (mesh, n))).collect();
     let (mut rows, mut ended) = (Vec::new(), Ok(()));
     context.console.watch("caustics 6.1", &mut |watch| {
         for (index, &(mesh, planes)) in (0..).zip(&points) {
@@ -49,7 +60,7 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
         return ended.and(Err(Error::Interrupted));
     }
     let smallest = match &ended {
-        Ok(()) => accuracy::smallest(context, &mut machine, &[Variant::LevelMap, Variant::Culled])?,
+        Ok(()) => accuracy::smallest(context, &mut machine, &meshes, &[base(&context.setup), Variant::Culled])?,
         Err(_) => None,
     };
     let more: Vec<_> = smallest.into_iter().map(|table| ("smallest", table)).collect();
@@ -88,7 +99,8 @@ fn point(
         (Setup { parameters, ..setup.clone() }, Variant::Culled, cull.name())
     };
     let mut sides: Vec<(Setup, Variant, &str)> = CullSteps::ALL.iter().copied().map(of_steps).collect();
-    sides.insert(0, (sides[0].0.clone(), Variant::LevelMap, "level-map"));
+    let base = base(&setup);
+    sides.insert(0, (sides[0].0.clone(), base, base.as_str()));
     let mut papers = built(machine, &scene, &sides)?;
     let mut all: Vec<&mut dyn Paper> = papers.iter_mut().map(|paper| paper as &mut dyn Paper).collect();
     let measured = measure(&mut machine.recorder, &mut all, context.schedule(), watch)?;
@@ -97,6 +109,11 @@ fn point(
     }
     let rows = sides.iter().zip(&measured).map(|((_, _, steps), measured)| row(&mesh.name, planes, steps, measured));
     Ok(rows.collect())
+}
+
+/// The method whose light `culled` has.
+fn base(setup: &Setup) -> Variant {
+    if setup.parameters.culled_smart { Variant::LevelMapSmart } else { Variant::LevelMap }
 }
 
 fn built(machine: &Machine, scene: &Scene, sides: &[(Setup, Variant, &str)]) -> Result<Vec<Caustics>, Error> {
@@ -108,8 +125,8 @@ fn built(machine: &Machine, scene: &Scene, sides: &[(Setup, Variant, &str)]) -> 
 fn row(mesh: &str, planes: u32, steps: &str, measured: &Measurement) -> Vec<Value> {
     let drawing = measured.passes.iter().find(|pass| pass.info.name == "caustics-map");
     let counts = drawing.and_then(|pass| pass.counts);
-    let is_culling = |name: &str| name == "position-pyramid" || name.starts_with("cull");
-    let culling = measured.passes.iter().filter(|pass| is_culling(pass.info.name));
+    // Of the level map none: its smart slicing is the host's, which takes no time of the GPU.
+    let culling = measured.passes.iter().filter(|pass| CULLING.contains(&pass.info.name));
     let culling_ms: f64 = culling.filter_map(|pass| median(&pass.gpu_ms)).sum();
     vec![
         json!(mesh),

@@ -32,7 +32,7 @@ impl Drawn {
         let caustics_map = run.passes.iter().find(|pass| pass.name == "caustics-map");
         let counts = caustics_map.and_then(|pass| pass.statistics.as_ref());
         let is_hit = run.variant == Variant::Hit.as_str();
-        let landed = run.results.get("landed_triangles").and_then(Value::as_u64);
+        let refined = run.results.get("refined_triangles").and_then(Value::as_u64);
         let is_of_maps = |pass: &&Pass| !SHARED.contains(&pass.name.as_str()) && pass.name != LAST;
         let gpu_ms = |pass: &Pass| pass.gpu_ms.as_ref().and_then(|times| median(&times.samples));
         let maps_ms: f64 = run.passes.iter().filter(is_of_maps).filter_map(gpu_ms).sum();
@@ -40,7 +40,7 @@ impl Drawn {
             mesh: mesh.to_owned(),
             planes,
             method: run.variant.clone(),
-            triangles: if is_hit { landed } else { counts.and_then(|counts| counts.primitives) },
+            triangles: if is_hit { refined } else { counts.and_then(|counts| counts.primitives) },
             fragments: if is_hit { None } else { counts.and_then(|counts| counts.fragments) },
             maps_ms: Some(maps_ms).filter(|&ms| ms > 0.0),
         }
@@ -54,8 +54,8 @@ pub fn table(all: &[Drawn]) -> ResultTable {
         vec![json!(mesh), json!(planes), json!(method), json!(triangles), json!(fragments), json!(maps_ms)]
     };
     ResultTable {
-        title: "Triangles: pairs of water triangle and plane; of hit, triangles of the refined water. Maps: all passes between the \
-                rays and the combination",
+        title: "Triangles: pairs of water triangle and plane; of hit, triangles of the refined water, wherever they land. Maps: all \
+                passes but those that every method has",
         columns: &["mesh", "planes", "method", "triangles", "fragments", "maps ms"],
         rows: all.iter().map(cells).collect(),
     }
@@ -81,7 +81,7 @@ mod tests {
         let culled = Run { variant: "culled".to_owned(), passes, ..example::run() };
         let drawn = Drawn::of("sphere", 31, &culled);
         assert_eq!((drawn.triangles, drawn.fragments, drawn.maps_ms), (Some(70), Some(900), Some(7.0)));
-        let hit = Run { variant: "hit".to_owned(), results: entries([("landed_triangles", json!(80))]), ..culled };
+        let hit = Run { variant: "hit".to_owned(), results: entries([("refined_triangles", json!(80))]), ..culled };
         let hit = Drawn::of("sphere", 31, &hit);
         assert_eq!((hit.triangles, hit.fragments), (Some(80), None));
         let cells = |drawn: &Drawn| table(std::slice::from_ref(drawn)).rows.remove(0)[2..].to_vec();

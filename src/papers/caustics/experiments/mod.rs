@@ -10,7 +10,9 @@ mod thesis;
 
 use serde_json::json;
 
-use self::sweep::{ALL_THREE, CHAPTER_6, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome};
+use self::sweep::{
+    ALL_THREE, CHAPTER_6, CHAPTER_6_SMART, Comparison, LEVEL_MAP_AGAINST_VOLUMETRIC, NORMAL_AGAINST_SMART, Outcome,
+};
 use super::named_mesh::NamedMesh;
 use super::setup::{Setup, sample_meshes};
 use super::{Parameters, Variant};
@@ -152,16 +154,27 @@ pub fn all() -> Vec<Experiment<Setup>> {
             refuses: &[SWEPT, ("cull", "this experiment measures every choice")],
             run: culling::run,
         },
-        sweep("6.1-far", "Section 6.1: Luv difference of fewer planes for receivers that are far away", fewer_planes),
+        Experiment {
+            refuses: &[
+                SWEPT,
+                ("planes-within", "this experiment sets it by each receiver's distance"),
+                ("smart", "the planes of smart slicing do not go by the distance"),
+            ],
+            ..sweep(
+                "6.1-far",
+                "Section 6.1: Luv difference of fewer planes for receivers that are far away",
+                fewer_planes,
+            )
+        },
         Experiment {
             name: "6.3",
             help: "Sections 6.1 and 6.3: level map against culled and hit by number of planes",
             options: CHAPTER_6_OPTIONS,
             refuses: &[SWEPT],
             run: |context| {
-                let Compared { mut machine, tables, .. } = compare(context, CHAPTER_6)?;
-                let smallest =
-                    accuracy::smallest(context, &mut machine, &[Variant::LevelMap, Variant::Culled, Variant::Hit])?;
+                let comparison = if context.setup.parameters.culled_smart { CHAPTER_6_SMART } else { CHAPTER_6 };
+                let Compared { meshes, mut machine, tables } = compare(context, comparison)?;
+                let smallest = accuracy::smallest(context, &mut machine, &meshes, &comparison.variants())?;
                 smallest.map_or(Ok(()), |table| context.publish_more(&machine, tables, ("smallest", table)))
             },
         },

@@ -51,6 +51,13 @@ pub const CHAPTER_6: Comparison = Comparison {
     others: &[Variant::Culled, Variant::Hit],
 };
 
+/// The same with smart slicing, which the level map has as a variant of its own.
+pub const CHAPTER_6_SMART: Comparison = Comparison {
+    title: "Sections 6.1 and 6.3: culled --smart and hit against level-map-smart",
+    base: Variant::LevelMapSmart,
+    ..CHAPTER_6
+};
+
 /// The appendix's graphs.
 pub const ALL_THREE: Comparison = Comparison {
     title: "Appendix: rendering time by number of planes",
@@ -59,7 +66,8 @@ pub const ALL_THREE: Comparison = Comparison {
 };
 
 impl Comparison {
-    fn variants(&self) -> Vec<Variant> {
+    /// The base first.
+    pub fn variants(&self) -> Vec<Variant> {
         std::iter::once(self.base).chain(self.others.iter().copied()).collect()
     }
 
@@ -94,8 +102,8 @@ struct Row {
     model: String,
     planes: u32,
     variant: Variant,
-    /// Planes that were drawn.
-    drawn: u64,
+    /// Planes that were drawn; none of a method without them.
+    drawn: Option<u64>,
     frame_ms: f64,
     device_bytes: u64,
     /// Time over the base's; absent for the base itself.
@@ -158,7 +166,7 @@ impl Outcome {
                 model: mesh.model.clone(),
                 planes,
                 variant,
-                drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()).unwrap_or(0),
+                drawn: run.results.get("planes_drawn").and_then(|v| v.as_u64()),
                 frame_ms: run.median_frame_ms().unwrap_or(f64::NAN),
                 device_bytes: run.memory.device_bytes.unwrap_or(0),
                 ratio,
@@ -197,7 +205,7 @@ impl Outcome {
                 row.mesh.clone(),
                 row.planes.to_string(),
                 row.variant.as_str().to_owned(),
-                row.drawn.to_string(),
+                row.drawn.map_or(String::new(), |planes| planes.to_string()),
                 format!("{:.2}", row.frame_ms),
                 format!("{:.1}", row.device_bytes as f64 / f64::from(1 << 20)),
                 number(ratio.map(|r| r.ratio), 3),

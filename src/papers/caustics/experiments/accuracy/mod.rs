@@ -62,20 +62,21 @@ const FRAMES: (u32, u32) = (3, 1);
 /// Errors in percent that the smallest map and plane count are sought for, unless others are given.
 const ERRORS: [u32; 4] = [20, 10, 5, 2];
 
-/// The smallest map and plane count of some variants for each error that was given; none without any.
+/// The smallest map and plane count of some variants on those meshes for each error that was given; none without any.
 ///
 /// # Errors
 /// As [`run`].
 pub fn smallest(
     context: &Context<'_>,
     machine: &mut Machine,
+    meshes: &[MeshSource],
     variants: &[Variant],
 ) -> Result<Option<ResultTable>, Error> {
     let errors = context.options.errors(&[]);
     if errors.is_empty() {
         return Ok(None);
     }
-    let mut trials = trials(context, &sizes(context)?, &context.options.counts())?;
+    let mut trials = trials(context, meshes, &sizes(context)?, &context.options.counts())?;
     trials.retain(|trial| trial.is_first);
     trials.iter_mut().for_each(|trial| trial.settings.retain(|setting| variants.contains(&setting.variant)));
     let (mut rows, mut ended) = (Vec::new(), Ok(()));
@@ -103,7 +104,7 @@ fn meshes(context: &Context<'_>) -> Vec<MeshSource> {
 pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
     let sizes = sizes(context)?;
     let counts = context.options.counts();
-    let trials = trials(context, &sizes, &counts)?;
+    let trials = trials(context, &meshes(context), &sizes, &counts)?;
     let mut machine = context.open()?;
     let (mut rows, mut ended) = (Vec::new(), Ok(()));
     let mut keep = |rows: &[Row]| context.keep_table(&table(rows));
@@ -140,8 +141,8 @@ fn sizes(context: &Context<'_>) -> Result<Vec<u32>, Error> {
 }
 
 /// The first case is tried on every mesh in all settings, the others on the first mesh, or with `cross` on every one, in some.
-fn trials(context: &Context<'_>, sizes: &[u32], counts: &[u32]) -> Result<Vec<Trial>, Error> {
-    let meshes = NamedMesh::all(&meshes(context));
+fn trials(context: &Context<'_>, meshes: &[MeshSource], sizes: &[u32], counts: &[u32]) -> Result<Vec<Trial>, Error> {
+    let meshes = NamedMesh::all(meshes);
     let mut trials = Vec::new();
     for (number, case) in cases(context).into_iter().enumerate() {
         for (index, mesh) in meshes.iter().enumerate() {

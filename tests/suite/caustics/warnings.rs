@@ -1,0 +1,94 @@
+//! What a configuration warns of: options that a variant does not heed, and light that point sampling does not show as it is.
+
+use std::slice::from_ref;
+use std::sync::Arc;
+
+use fumarole::gpu::{Compiler, Device, ShaderLibrary};
+use fumarole::measure::Paper as _;
+use fumarole::measure::study::Study;
+use fumarole::papers::caustics::setup::Setup;
+use fumarole::papers::caustics::{
+    Caustics, CullSteps, IntensityRule, Parameters, ReceiverInput, Variant, WaveParameters,
+};
+use glam::{Mat4, Vec3};
+
+use super::scene::{OVERHEAD, floor, parameters};
+use crate::common::gpu_test;
+
+fn warnings(device: &Arc<Device>, variant: Variant, parameters: &Parameters, receiver: &ReceiverInput) -> Vec<String> {
+    parameters.validate().unwrap();
+    let shaders = ShaderLibrary::new(device, Compiler::Glslang, None).unwrap();
+    Caustics::new(&shaders, "test", variant, parameters, from_ref(receiver)).unwrap().warnings()
+}
+
+/// Where photons show it on the pool's floor, and not for what the same water does not fold the light on its way to.
+#[test]
+fn folded_light_is_warned_of_where_points_are_sampled() {
+    gpu_test(|device| {
+        let waves = |amplitude_m| WaveParameters { amplitude_m, ..Parameters::default().waves };
+        let default = parameters(OVERHEAD);
+        assert_eq!(default.waves, Parameters::default().waves);
+        let shallow = floor().mesh.transformed(&Mat4::from_translation(Vec3::Y * 2.0));
+        let shallow = ReceiverInput { mesh: shallow, ..floor() };
+        let is_warned = |variant, p: &Parameters, receiver: &ReceiverInput| {
+            let found = warnings(device, variant, p, receiver);
+            assert!(found.iter().all(|line| line.contains("folds light")), "{found:?}");
+            !found.is_empty()
+        };
+        for variant in [Variant::LevelMap, Variant::LevelMapSmart, Variant::Culled, Variant::Volumetric] {
+            assert!(is_warned(variant, &default, &floor()), "{variant:?}");
+            assert!(!is_warned(variant, &Parameters { coverage: 4, ..default.clone() }, &floor()), "{variant:?}");
+        }
+        for variant in [Variant::Hit, Variant::Stencil] {
+            assert!(!is_warned(variant, &default, &floor()), "{variant:?}");
+        }
+        assert!(!is_warned(Variant::LevelMap, &Parameters { waves: waves(0.005), ..default.clone() }, &floor()));
+        assert!(!is_warned(Variant::LevelMap, &default, &shallow));
+        assert!(is_warned(Variant::LevelMap, &Parameters { waves: waves(0.21), ..default }, &shallow));
+    });
+}
+
+#[test]
+fn options_that_a_variant_does_not_heed_are_named() {
+    gpu_test(|device| {
+        let gentle = WaveParameters { amplitude_m: 0.005, ..Parameters::default().waves };
+        let plain = Parameters { waves: gentle, ..parameters(OVERHEAD) };
+        let smart = Parameters { culled_smart: true, ..plain.clone() };
+        let near = Parameters { planes_within_m: Some(2.0), ..plain.clone() };
+        let near_and_smart = Parameters { culled_smart: true, ..near.clone() };
+        let sampled = Parameters { coverage: 2, intensity: IntensityRule::Vertex, ..plain.clone() };
+        let stepwise = Parameters { cull: CullSteps { groups: false, ..CullSteps::EVERY }, ..plain.clone() };
+        let shadowed = Parameters { shadows: true, ..plain.clone() };
+        use Variant::{Culled, Hit, LevelMap, LevelMapSmart, Stencil, Volumetric};
+        for (parameters, variant, names) in [
+            (&plain, Stencil, None),
+            (&smart, LevelMap, Some("level-map does not heed `smart`")),
+            (&smart, LevelMapSmart, None),
+            (&smart, Culled, None),
+            (&near, LevelMap, None),
+            (&near, Culled, None),
+            (&near, Volumetric, Some("volumetric does not heed `planes-within`")),
+            (&near_and_smart, Culled, Some("culled does not heed `planes-within`")),
+            (&sampled, Volumetric, None),
+            (&sampled, Hit, Some("hit does not heed `coverage`, `intensity`")),
+            (&stepwise, Culled, None),
+            (&stepwise, LevelMap, Some("level-map does not heed `cull`")),
+            (&shadowed, Hit, None),
+            (&shadowed, Stencil, Some("stencil does not heed `shadows`")),
+        ] {
+            let found = warnings(device, variant, parameters, &floor());
+            assert_eq!(found.first().map(String::as_str), names, "{variant:?}");
+            assert!(found.len() < 2, "{found:?}");
+        }
+    });
+}
+
+/// What the thesis measured has none of the options that depart from it.
+#[test]
+fn the_preset_of_table_5_1_is_the_thesiss() {
+    let preset = Setup::presets().into_iter().find(|preset| preset.name == "5-1").unwrap();
+    let p = (preset.setup)().parameters;
+    assert_eq!((p.planes, p.map_size, p.water_triangles), (101, 512, 10_000));
+    assert!(!p.shadows && !p.fresnel && !p.culled_smart && p.planes_within_m.is_none());
+    assert_eq!((p.coverage, p.intensity), (1, IntensityRule::Face));
+}
