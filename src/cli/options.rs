@@ -216,7 +216,7 @@ pub struct OutputArgs {
     /// Write one row for each run and pass
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
-    /// Write a trace for chrome://tracing and Perfetto
+    /// Write a trace of every frame for chrome://tracing and Perfetto; with --processes of the first process alone
     #[arg(long, value_name = "FILE")]
     pub trace: Option<PathBuf>,
     /// Write the last frame's picture; of several variants the first one's, the others' beside it as FILE-VARIANT.png

@@ -16,6 +16,7 @@ use crate::content;
 use crate::file;
 use crate::image::{self, Rgba8};
 use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
+use crate::report::alternative::alternatives;
 use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page};
 use crate::report::json::{self, ReadError};
 use crate::report::tables::{self, Rows, Tables};
@@ -283,25 +284,57 @@ fn command_of(plot: &str, commands: &[(String, Vec<String>)]) -> Vec<String> {
 
 /// A run's picture, as one side of a comparison has drawn it.
 struct Drawn {
-    run: String,
+    run: Run,
+    /// Its name among the runs of its record.
+    name: String,
     png: Vec<u8>,
     picture: Rgba8,
 }
 
-/// What both sides have drawn, in the order of A; of several processes a side the first one's.
+/// What both sides have drawn, in the order of A; of several processes a side the first one's. Where the sides have other
+/// parameters, those are put together that differ in the fewest.
 fn pairs(a: &[Drawn], b: &[Drawn]) -> Vec<Pair> {
-    let mut pairs: Vec<Pair> = vec![];
-    for a in a {
-        let Some(b) = b.iter().find(|b| b.run == a.run) else { continue };
-        // Of one size, or their runs would not be called alike.
-        if let (false, Ok(difference)) =
-            (pairs.iter().any(|pair| pair.title == a.run), image::compare(&a.picture, &b.picture, None))
-        {
-            let (mean, p99) = (difference.mean, difference.p99);
-            pairs.push(Pair { title: a.run.clone(), pngs: [a.png.clone(), b.png.clone()], mean, p99 });
+    let [a, b] = [a, b].map(first_ones);
+    let like = |a: &Run, b: &Run| name(a, "") == name(b, "");
+    let mut candidates: Vec<(usize, usize, usize)> = vec![];
+    for (at, one) in a.iter().enumerate() {
+        let others = b.iter().enumerate().filter(|(_, other)| like(&one.run, &other.run));
+        candidates.extend(others.map(|(of, other)| (differing(&one.run, &other.run), at, of)));
+    }
+    candidates.sort_unstable();
+    let mut taken: Vec<(usize, usize)> = vec![];
+    for (_, at, of) in candidates {
+        if taken.iter().all(|(a, b)| *a != at && *b != of) {
+            taken.push((at, of));
         }
     }
-    pairs
+    taken.sort_unstable();
+    let pair = |(at, of): (usize, usize)| {
+        let (a, b) = (a[at], b[of]);
+        // Of one size, or their runs would not be called alike.
+        let difference = image::compare(&a.picture, &b.picture, None).ok()?;
+        let (mean, p99) = (difference.mean, difference.p99);
+        Some(Pair { title: a.name.clone(), pngs: [a.png.clone(), b.png.clone()], mean, p99 })
+    };
+    taken.into_iter().filter_map(pair).collect()
+}
+
+/// The first picture of each configuration.
+fn first_ones(all: &[Drawn]) -> Vec<&Drawn> {
+    let mut found: Vec<&Drawn> = vec![];
+    for one in all {
+        let is_it = |other: &&Drawn| name(&other.run, "") == name(&one.run, "") && differing(&other.run, &one.run) == 0;
+        if !found.iter().any(is_it) {
+            found.push(one);
+        }
+    }
+    found
+}
+
+/// Number of parameters that differ.
+fn differing(a: &Run, b: &Run) -> usize {
+    let of_a = a.config.iter().filter(|(name, value)| b.config.get(*name) != Some(value)).count();
+    of_a + b.config.keys().filter(|name| !a.config.contains_key(*name)).count()
 }
 
 /// Adds a record with its pictures, which it gives back.
@@ -329,9 +362,12 @@ fn add_record(contents: &mut Contents, path: &Path, record: Record) -> Vec<Drawn
             }
         }
     }
+    let names = alternatives(&record.runs);
     let (mut pictures, mut drawn) = (vec![], vec![]);
     for (picture, decoded) in found {
-        drawn.push(Drawn { run: name(&record.runs[picture.run]), png: picture.png.clone(), picture: decoded });
+        let run = record.runs[picture.run].clone();
+        let name = name(&run, &names[picture.run]);
+        drawn.push(Drawn { run, name, png: picture.png.clone(), picture: decoded });
         pictures.push(picture);
     }
     contents.records.push(Source { name: path.display().to_string(), record, pictures });

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::alternative::alternative;
+use super::limits::Limit;
 use super::profile::profile;
 use super::record::{Limits, Pass, Record, Run, Summary};
 use super::table::{Align, Style, Table};
@@ -52,15 +53,12 @@ pub fn counted_warnings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Stri
 
 /// The device's own limits with the spread of their samples.
 fn limits_line(limits: &Limits) -> String {
-    let spread = |name: &str| {
-        let samples = limits.samples.get(name);
-        let spread = samples.and_then(|samples| Some(samples.mad? / samples.median));
-        spread.map_or_else(String::new, |spread| format!(" ± {:.0} %", 100.0 * spread))
+    let text = |limit: Limit| {
+        let spread = limit.mad.filter(|_| limit.value > 0.0).map(|mad| format!("± {:.0} %", 100.0 * mad / limit.value));
+        let words = [one_line(limit.what), significant(limit.value), limit.unit.to_owned(), spread.unwrap_or_default()];
+        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
     };
-    let known: Vec<String> = limits
-        .listed()
-        .map(|(name, value, what, unit)| format!("{what} {} {unit}{}", significant(value), spread(name)))
-        .collect();
+    let known: Vec<String> = limits.listed().map(text).collect();
     if known.is_empty() { String::new() } else { format!("\nlimits of the device: {}\n", known.join(", ")) }
 }
 

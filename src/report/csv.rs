@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use csv::{Terminator, WriterBuilder};
 
-use super::record::{Bytes, Limits, Pass, Record, Run, Statistics, Summary};
+use super::record::{Bytes, Pass, Record, Run, Statistics, Summary};
 
 /// A run of a record with one of its passes and the pass's index, if it has any.
 struct Row<'a> {
@@ -20,7 +20,7 @@ struct Row<'a> {
 type Column = (&'static str, fn(&Row) -> String);
 
 /// Names and cells of the columns, in order. Times are milliseconds, sizes bytes.
-const COLUMNS: [Column; 65] = [
+const COLUMNS: [Column; 72] = [
     ("device", |row| row.record.environment.device.name.clone()),
     ("device_type", |row| row.record.environment.device.kind.name().to_owned()),
     ("paper", |row| row.run.paper.clone()),
@@ -68,10 +68,10 @@ const COLUMNS: [Column; 65] = [
     ("date", |row| row.record.environment.date.clone()),
     ("driver_version", |row| cell(row.record.environment.device.driver_version.as_ref())),
     ("lp_num_threads", |row| cell(row.record.environment.host.lp_num_threads)),
-    ("limit_copy_gb_s", |row| row.limit(|limits| limits.copy_gb_s)),
-    ("limit_fma_gflops", |row| row.limit(|limits| limits.fma_gflops)),
-    ("limit_fill_gpix_s", |row| row.limit(|limits| limits.fill_gpix_s)),
-    ("limit_blend_gpix_s", |row| row.limit(|limits| limits.blend_gpix_s)),
+    ("limit_copy_gb_s", |row| row.limit("copy_gb_s")),
+    ("limit_fma_gflops", |row| row.limit("fma_gflops")),
+    ("limit_fill_gpix_s", |row| row.limit("fill_gpix_s")),
+    ("limit_blend_gpix_s", |row| row.limit("blend_gpix_s")),
     ("driver", |row| cell(row.record.environment.device.driver.as_ref())),
     ("rustc", |row| cell(row.record.environment.build.rustc.as_ref())),
     ("bytes_read_at_most", |row| row.bytes(|bytes| Some(bytes.at_most?.read))),
@@ -79,13 +79,20 @@ const COLUMNS: [Column; 65] = [
     ("floor_ms", |row| row.of_pass(|pass| pass.floor_ms)),
     ("bound", |row| row.of_pass(|pass| pass.bound.clone())),
     ("share_of_limit", |row| row.of_pass(Pass::share_of_limit)),
-    ("limit_vertex_gvertices_s", |row| row.limit(|limits| limits.vertex_gvertices_s)),
-    ("limit_triangle_gtriangles_s", |row| row.limit(|limits| limits.triangle_gtriangles_s)),
-    ("limit_issue_ginvocations_s", |row| row.limit(|limits| limits.issue_ginvocations_s)),
-    ("limit_empty_draw_ms", |row| row.limit(|limits| limits.empty_draw_ms)),
-    ("limit_empty_dispatch_ms", |row| row.limit(|limits| limits.empty_dispatch_ms)),
+    ("limit_vertex_gvertices_s", |row| row.limit("vertex_gvertices_s")),
+    ("limit_triangle_gtriangles_s", |row| row.limit("triangle_gtriangles_s")),
+    ("limit_issue_ginvocations_s", |row| row.limit("issue_ginvocations_s")),
+    ("limit_empty_draw_ms", |row| row.limit("empty_draw_ms")),
+    ("limit_empty_dispatch_ms", |row| row.limit("empty_dispatch_ms")),
     ("started", |row| cell(row.run.started.as_ref())),
     ("program_sha256", |row| cell(row.record.environment.build.executable_sha256.as_ref())),
+    ("limit_small_copy_gb_s", |row| row.limit("small_copy_gb_s")),
+    ("limit_fill_r32f_gpix_s", |row| row.limit("fill_r32f_gpix_s")),
+    ("limit_fill_rgba16f_gpix_s", |row| row.limit("fill_rgba16f_gpix_s")),
+    ("limit_fill_rgba32f_gpix_s", |row| row.limit("fill_rgba32f_gpix_s")),
+    ("limit_blend_r32f_gpix_s", |row| row.limit("blend_r32f_gpix_s")),
+    ("limit_blend_rgba16f_gpix_s", |row| row.limit("blend_rgba16f_gpix_s")),
+    ("limit_blend_rgba32f_gpix_s", |row| row.limit("blend_rgba32f_gpix_s")),
 ];
 
 impl Row<'_> {
@@ -101,8 +108,8 @@ impl Row<'_> {
         cell(self.pass.and_then(|(_, pass)| value(pass.statistics.as_ref()?)))
     }
 
-    fn limit(&self, rate: fn(&Limits) -> Option<f64>) -> String {
-        cell(self.run.limits.as_ref().and_then(rate))
+    fn limit(&self, name: &str) -> String {
+        cell(self.run.limits.as_ref().and_then(|limits| limits.value(name)))
     }
 
     fn bytes(&self, value: fn(&Bytes) -> Option<u64>) -> String {
@@ -153,7 +160,9 @@ pub fn lines<C: AsRef<[u8]>>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::statistics::summarize;
     use crate::report::example;
+    use crate::report::limits::LIMITS;
 
     /// An independent reader of RFC 4180.
     fn parse(text: &str) -> Vec<Vec<String>> {
@@ -198,6 +207,21 @@ mod tests {
         assert_eq!(value(&rows, 2, "bytes_written"), "2048");
         assert_eq!(value(&rows, 2, "limit_copy_gb_s"), "6.5");
         assert_eq!(value(&rows, 2, "frame_median_ms"), "5");
+    }
+
+    #[test]
+    fn every_limit_has_a_column_of_its_own() {
+        let mut record = example::full();
+        let limits = record.runs[0].limits.as_mut().unwrap();
+        for (index, (name, ..)) in LIMITS.iter().enumerate() {
+            limits.samples.extend(summarize(&[index as f64 + 0.5]).map(|rates| ((*name).to_owned(), rates)));
+        }
+        let rows = parse(&to_string(&record));
+        for (index, (name, ..)) in LIMITS.iter().enumerate() {
+            // A field of the record's own goes before the samples.
+            let expected = if *name == "copy_gb_s" { 6.5 } else { index as f64 + 0.5 };
+            assert_eq!(value(&rows, 1, &format!("limit_{name}")), expected.to_string());
+        }
     }
 
     #[test]

@@ -18,7 +18,10 @@ pub fn profile(run: &Run, style: Style) -> String {
     // Writing into a String cannot fail.
     let _ = writeln!(text, "{}", style.bold(&one_line(&format!("{} {}: {}", run.paper, run.variant, profile.pass))));
     if let Some(pass) = run.passes.iter().find(|pass| pass.name == profile.pass) {
-        describe(&mut text, pass);
+        if let Some(time) = &pass.gpu_ms {
+            text.push_str(&drawn(time));
+        }
+        push_lines(&mut text, facts(pass));
     }
     text.push_str(&binaries(profile).render(style));
     for compiled in &profile.compilers {
@@ -27,58 +30,56 @@ pub fn profile(run: &Run, style: Style) -> String {
         }
     }
     compiled_stages(&mut text, profile);
-    counters(&mut text, profile, style);
+    push_lines(&mut text, told_of_stages(profile).map(str::to_owned));
+    push_lines(&mut text, told_of_counters(profile));
+    if let Some(shown) = readings(profile) {
+        text.push_str(&counter_table(profile, shown).render(style));
+        push_lines(&mut text, left_out(shown));
+    }
     text
 }
 
-fn describe(text: &mut String, pass: &Pass) {
-    if let Some(time) = &pass.gpu_ms {
-        text.push_str(&distribution(time));
-    }
-    let counts = pass.statistics.as_ref();
-    let counters: Vec<String> = [
-        ("vertices", counts.and_then(|c| c.vertices)),
-        ("primitives", counts.and_then(|c| c.primitives)),
-        ("fragments", counts.and_then(|c| c.fragments)),
-        ("invocations", counts.and_then(|c| c.compute_invocations)),
-        ("samples passed", counts.and_then(|c| c.samples_passed)),
-    ]
-    .into_iter()
-    .filter_map(|(name, count)| Some(format!("{name} {}", count?)))
-    .collect();
-    let _ = writeln!(
-        text,
-        "counters: calls {}{}",
-        pass.calls,
-        counters.iter().map(|c| format!(", {c}")).collect::<String>()
-    );
+fn push_lines(text: &mut String, lines: impl IntoIterator<Item = String>) {
+    lines.into_iter().for_each(|line| text.push_str(&format!("{}\n", one_line(&line))));
+}
+
+/// Counters, bytes and floor of a pass, a line each.
+pub(super) fn facts(pass: &Pass) -> Vec<String> {
+    let counts = pass.statistics.clone().unwrap_or_default();
+    let counters = [
+        ("vertices", counts.vertices),
+        ("primitives", counts.primitives),
+        ("clipped primitives", counts.clipped_primitives),
+        ("fragments", counts.fragments),
+        ("invocations", counts.compute_invocations),
+        ("samples passed", counts.samples_passed),
+    ];
+    let counters = counters.into_iter().filter_map(|(name, count)| Some(format!(", {name} {}", count?)));
+    let mut lines = vec![format!("counters: calls {}{}", pass.calls, counters.collect::<String>())];
     if let Some(bytes) = &pass.bytes {
-        let _ = write!(text, "bytes: read {}, written {}", bytes.read, bytes.written);
+        let mut line = format!("bytes: read {}, written {}", bytes.read, bytes.written);
         if let Some(most) = bytes.at_most.filter(|most| (most.read, most.written) != (bytes.read, bytes.written)) {
-            let _ = write!(text, "; with all that is bound at most {} and {}", most.read, most.written);
+            line.push_str(&format!("; with all that is bound at most {} and {}", most.read, most.written));
         }
         if !bytes.uncertain.is_empty() {
-            let _ = write!(text, "; not certain: {}", one_line(&bytes.uncertain.join(", ")));
+            line.push_str(&format!("; not certain: {}", bytes.uncertain.join(", ")));
         }
-        text.push('\n');
+        lines.push(line);
     }
-    match (pass.floor_ms, &pass.bound) {
+    lines.push(match (pass.floor_ms, &pass.bound) {
         (Some(floor), Some(bound)) => {
             let share =
                 pass.share_of_limit().map_or_else(String::new, |share| format!(", {:.0} % of its time", 100.0 * share));
             let terms: Vec<String> = pass.floors.iter().map(|(name, ms)| format!("{name} {ms:.4}")).collect();
-            let _ = writeln!(
-                text,
-                "floor: {floor:.4} ms{share}, bound by {bound} (ms at the limits: {})",
-                terms.join(", ")
-            );
+            format!("floor: {floor:.4} ms{share}, bound by {bound} (ms at the limits: {})", terms.join(", "))
         }
-        _ => text.push_str("floor: not known; the limits or the counters were not measured\n"),
-    }
+        _ => "floor: not known; the limits or the counters were not measured".to_owned(),
+    });
+    lines
 }
 
-/// Median, spread and a drawing of how often each time occurred.
-fn distribution(time: &Summary) -> String {
+/// Number of frames, median and spread.
+pub(super) fn spread(time: &Summary) -> String {
     let mut text =
         format!("GPU time of {} frames, ms: min {:.4}, median {:.4}", time.samples.len(), time.min, time.median);
     for (name, value) in [("MAD", time.mad), ("p95", time.p95), ("p99", time.p99), ("max", Some(time.max))] {
@@ -86,19 +87,30 @@ fn distribution(time: &Summary) -> String {
             let _ = write!(text, ", {name} {value:.4}");
         }
     }
-    text.push('\n');
+    text
+}
+
+/// How often each time occurred: the beginning of each bin, and its samples. Empty where all are alike.
+pub(super) fn bins(time: &Summary) -> Vec<(f64, usize)> {
     let width = (time.max - time.min) / BINS as f64;
     if width <= 0.0 {
-        return text;
+        return vec![];
     }
     let mut counts = [0usize; BINS];
     for sample in &time.samples {
         counts[(((sample - time.min) / width) as usize).min(BINS - 1)] += 1;
     }
-    let most = counts.iter().copied().max().unwrap_or(1).max(1);
-    for (bin, count) in counts.iter().enumerate() {
+    counts.into_iter().enumerate().map(|(bin, count)| (time.min + bin as f64 * width, count)).collect()
+}
+
+/// [`spread`] and a drawing of [`bins`].
+fn drawn(time: &Summary) -> String {
+    let mut text = format!("{}\n", spread(time));
+    let bins = bins(time);
+    let most = bins.iter().map(|(_, count)| *count).max().unwrap_or(1).max(1);
+    for (start, count) in bins {
         let bar = "#".repeat((count * BAR).div_ceil(most));
-        let _ = writeln!(text, "  {:>10.4}  {count:>5}  {bar}", time.min + bin as f64 * width);
+        let _ = writeln!(text, "  {start:>10.4}  {count:>5}  {bar}");
     }
     text
 }
@@ -125,29 +137,47 @@ fn binaries(profile: &Profile) -> Table {
     table
 }
 
-/// The device's own counters, each compiler's beside the other's.
-fn counters(text: &mut String, profile: &Profile, style: Style) {
+/// What the device's own counters were read to, in so far as one compiler's were.
+pub(super) fn readings(profile: &Profile) -> Option<&CounterReadings> {
+    profile.compilers.iter().find_map(|compiled| compiled.counters.as_ref())
+}
+
+/// Whether the device has counters, and whether they were read.
+pub(super) fn told_of_counters(profile: &Profile) -> Vec<String> {
     let Some(names) = &profile.performance_counters else {
-        text.push_str("performance counters (VK_KHR_performance_query): the device has none\n");
-        return;
+        return vec!["performance counters (VK_KHR_performance_query): the device has none".to_owned()];
     };
-    if let Some(reason) = &profile.counters_unread {
-        let _ = writeln!(text, "performance counters that the device has, not read: {}", one_line(reason));
-    }
-    let Some(shown) = profile.compilers.iter().find_map(|compiled| compiled.counters.as_ref()) else {
-        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        let _ = writeln!(text, "performance counters that the device has: {}", one_line(&names));
-        return;
-    };
-    let _ = writeln!(
-        text,
-        "performance counters (VK_KHR_performance_query) of frame 0, replayed {} times; the pass is recorded {} times in it",
-        shown.replays, shown.recordings
-    );
-    text.push_str(&counter_table(profile, shown).render(style));
-    if !shown.left_out.is_empty() {
-        let _ = writeln!(text, "left out, for they take too many replays: {}", one_line(&shown.left_out.join(", ")));
-    }
+    let unread = profile.counters_unread.as_ref();
+    let mut lines: Vec<String> = unread
+        .map(|reason| format!("performance counters that the device has, not read: {reason}"))
+        .into_iter()
+        .collect();
+    lines.push(match readings(profile) {
+        None => {
+            let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+            format!("performance counters that the device has: {names}")
+        }
+        Some(CounterReadings { replays, recordings, .. }) => format!(
+            "performance counters (VK_KHR_performance_query) of frame 0, replayed {replays} times; the pass is recorded \
+             {recordings} times in it"
+        ),
+    });
+    lines
+}
+
+/// Counters that were not read.
+pub(super) fn left_out(shown: &CounterReadings) -> Option<String> {
+    let names = shown.left_out.join(", ");
+    (!names.is_empty()).then(|| format!("left out, for they take too many replays: {names}"))
+}
+
+/// Says so where the driver's compiler tells nothing of the stages.
+pub(super) fn told_of_stages(profile: &Profile) -> Option<&'static str> {
+    let is_silent = profile.compilers.iter().any(|compiled| compiled.stages.is_none());
+    is_silent.then_some(
+        "the driver's compiler (VK_KHR_pipeline_executable_properties): the device tells neither registers, spills, \
+         occupancy nor instructions",
+    )
 }
 
 fn counter_table(profile: &Profile, shown: &CounterReadings) -> Table {
@@ -169,14 +199,7 @@ fn counter_table(profile: &Profile, shown: &CounterReadings) -> Table {
 
 fn compiled_stages(text: &mut String, profile: &Profile) {
     for compiled in &profile.compilers {
-        let Some(stages) = &compiled.stages else {
-            text.push_str(
-                "the driver's compiler (VK_KHR_pipeline_executable_properties): the device tells neither registers, spills, \
-                 occupancy nor instructions\n",
-            );
-            return;
-        };
-        for stage in stages {
+        for stage in compiled.stages.iter().flatten() {
             let values: Vec<String> =
                 stage.statistics.iter().map(|one| format!("{} {}", one.name, one.value)).collect();
             let line = format!(
@@ -207,6 +230,7 @@ mod tests {
     fn a_profile_tells_all_that_is_known_and_what_is_not() {
         let mut run = example::full().runs.remove(0);
         assert_eq!(profile(&run, Style::default()), "");
+        run.passes[1].statistics.as_mut().unwrap().clipped_primitives = Some(29_000);
         let compiled = |compiler: &str, stages| CompiledPass {
             compiler: compiler.to_owned(),
             fallback: (compiler == "naga").then(|| "lava/splat.vert: an atomic".to_owned()),
@@ -233,7 +257,7 @@ mod tests {
         for part in [
             "gas slices: splat",
             "min 1.5000, median 2.0000",
-            "vertices 90000",
+            "vertices 90000, clipped primitives 29000, fragments 1600000",
             "at most 4096 and 2048; not certain: density",
             "floor: 0.5000 ms, 25 % of its time, bound by vertices",
             "1.5000 ± 0.5000",

@@ -26,7 +26,7 @@ const SMALL_COPY_BYTES: u64 = 1 << 20;
 
 /// Formats of colour attachments that are filled and blended, with the name of the rate; the record has the first under
 /// its own fields.
-const FORMATS: [(vk::Format, &str); 4] = [
+pub(crate) const FORMATS: [(vk::Format, &str); 4] = [
     (vk::Format::R8G8B8A8_UNORM, ""),
     (vk::Format::R32_SFLOAT, "r32f_"),
     (vk::Format::R16G16B16A16_SFLOAT, "rgba16f_"),

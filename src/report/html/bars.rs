@@ -53,9 +53,10 @@ pub(super) fn drawings(run: &Run) -> Markup {
 fn stacked(timed: &[Timed], total_ms: f64) -> Markup {
     let scale = WIDTH / total_ms;
     html! {
-        svg.bars.stacked viewBox=(format!("0 0 {WIDTH} {BAR}")) role="img" aria-label="times of the passes, stacked" {
-            @for (index, one) in timed.iter().enumerate() {
-                rect class=(kind(one.pass.kind)) data-odd[index % 2 == 1] x=(format!("{:.2}", one.start_ms * scale)) y="0"
+        svg.bars.stacked viewBox=(format!("0 0 {WIDTH} {BAR}")) preserveAspectRatio="none" role="img"
+            aria-label="times of the passes, stacked" {
+            @for one in timed {
+                rect class=(kind(one.pass.kind)) x=(format!("{:.2}", one.start_ms * scale)) y="0"
                     width=(format!("{:.2}", (one.ms * scale).max(0.5))) height=(BAR) { (hint(one)) }
                 @if one.ms * scale > LETTER * (one.pass.name.len() + 2) as f64 {
                     text.inside x=(format!("{:.2}", one.start_ms * scale + LETTER)) y=(BAR * 0.62) { (one.pass.name) }

@@ -6,7 +6,9 @@
 //! page's policy lets no script run but its own.
 
 mod bars;
+mod configurations;
 mod page;
+mod profile;
 mod run;
 mod tables;
 #[cfg(test)]
@@ -110,14 +112,13 @@ pub struct Plot {
     pub command: Vec<String>,
 }
 
-/// A run's name: paper, variant, preset, size.
-pub fn name(run: &Run) -> String {
+/// Paper, variant, preset, and the [`alternative`](super::alternative) that tells a run from others of these.
+fn method(run: &Run, alternative: &str) -> String {
     let preset = run.preset.as_ref().map_or_else(String::new, |preset| format!(", {preset}"));
-    format!("{} {}{preset}: {} × {}", run.paper, run.variant, run.width, run.height)
+    format!("{} {}{preset}{alternative}", run.paper, run.variant)
 }
 
-/// The same with what tells repeated ones apart.
-fn title(run: &Run) -> String {
-    let process = if run.process > 0 { format!(", process {}", run.process) } else { String::new() };
-    format!("{}{process}", name(run))
+/// A run's name: its method and size.
+pub fn name(run: &Run, alternative: &str) -> String {
+    format!("{}: {} × {}", method(run, alternative), run.width, run.height)
 }

@@ -5,9 +5,10 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
+use super::configurations::{Configuration, configurations, shown};
 use super::run::{number, run};
 use super::tables::tables;
-use super::{Contents, Pair, Picture, Section, Source, title};
+use super::{Contents, Pair, Picture, Section, Source};
 use crate::report::record::{Environment, Record};
 
 const STYLE: &str = include_str!("style.css");
@@ -73,8 +74,10 @@ fn navigation(contents: &Contents) -> Markup {
         nav aria-label="Contents" {
             @if !contents.verdicts.is_empty() { a href="#verdicts" { "Verdicts" } }
             @for (index, source) in contents.records.iter().enumerate() {
-                @for (at, item) in source.record.runs.iter().enumerate() {
-                    a href=(format!("#run-{index}-{at}")) { (item.paper) " " (item.variant) }
+                // One configuration may stand in several records.
+                @if contents.records.len() > 1 { a href=(format!("#record-{index}")) { (source.name) ":" } }
+                @for configuration in configurations(&source.record.runs, index) {
+                    a href=(format!("#{}", configuration.first.id)) { (configuration.label) }
                 }
             }
             @for (index, source) in contents.tables.iter().enumerate() {
@@ -106,13 +109,27 @@ fn section(section: &Section) -> Markup {
 fn record(source: &Source, index: usize) -> Markup {
     let record = &source.record;
     html! {
-        section.record {
+        section.record id=(format!("record-{index}")) {
             h2 { (source.name) }
             (command("", &record.command))
             (environment(&record.environment))
             (experiment(record))
             (pictures(source))
-            @for (at, item) in record.runs.iter().enumerate() { (run(item, &format!("run-{index}-{at}"))) }
+            @for configuration in configurations(&record.runs, index) { (runs(&configuration)) }
+        }
+    }
+}
+
+/// The first process's run; those of others folded away, for they may be many.
+fn runs(configuration: &Configuration) -> Markup {
+    let Configuration { first, others, .. } = configuration;
+    html! {
+        (run(first))
+        @if !others.is_empty() {
+            details.processes {
+                summary { (others.len()) @if others.len() == 1 { " run" } @else { " runs" } " of it by other processes" }
+                @for other in others { (run(other)) }
+            }
         }
     }
 }
@@ -224,7 +241,8 @@ fn luv_difference(mean: f64, p99: f64) -> Markup {
 
 /// Pictures; one that has a difference lies over what it is compared with, which is not shown alone, under a divider.
 fn pictures(source: &Source) -> Markup {
-    let name = |at: usize| source.record.runs.get(at).map_or_else(String::new, title);
+    let names = shown(&source.record.runs, 0);
+    let name = |at: usize| names.get(at).map_or_else(String::new, |shown| shown.title.clone());
     let image = |picture: &Picture| {
         html! { img src=(data("image/png", &picture.png)) alt=(format!("picture of {}", name(picture.run))); }
     };

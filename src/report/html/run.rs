@@ -3,18 +3,23 @@
 use maud::{Markup, html};
 
 use super::bars::drawings;
-use super::title;
-use crate::report::record::{Limits, Pass, Profile, Run, Summary};
+use super::configurations::Shown;
+use super::profile::profile;
+use crate::report::record::{Limits, Pass, Run, Summary};
 
 /// Heading, bars, the table of passes and all else that the record has of the run.
-pub(super) fn run(run: &Run, id: &str) -> Markup {
+pub(super) fn run(Shown { run, id, title }: &Shown) -> Markup {
     html! {
         section.run id=(id) {
-            h3 { (title(run)) }
+            h3 { (title) }
             @if let Some(frame) = &run.frame_ms {
                 p.frame {
                     strong { (number(frame.median, 3)) " ms a frame" }
-                    " (" (spread(frame)) "min " (number(frame.min, 3)) ", max " (number(frame.max, 3)) ", "
+                    " (" (spread(frame)) "min " (number(frame.min, 3))
+                    @for (name, value) in [("p95", frame.p95), ("p99", frame.p99)] {
+                        @if let Some(value) = value { ", " (name) " " (number(value, 3)) }
+                    }
+                    ", max " (number(frame.max, 3)) ", "
                     (frame.samples.len()) " frames; " (number(1000.0 / frame.median, 1)) " frames/s)"
                     @for (name, value) in [
                         ("unaccounted", run.unaccounted_ms), ("overlap", run.overlap_ms), ("timestamp floor", run.stamp_floor_ms),
@@ -52,7 +57,7 @@ pub(super) fn number(value: f64, digits: usize) -> Markup {
 }
 
 /// A cell that sorts by its number; empty without one.
-fn cell(value: Option<f64>, digits: usize) -> Markup {
+pub(super) fn cell(value: Option<f64>, digits: usize) -> Markup {
     html! {
         td.number data-value=[value] { @if let Some(value) = value { (format!("{value:.digits$}")) } }
     }
@@ -111,83 +116,17 @@ fn passes(run: &Run) -> Markup {
     }
 }
 
-/// One pass under both compilers.
-fn profile(run: &Run) -> Markup {
-    let Some(profile) = &run.profile else { return html! {} };
-    let count = |value: Option<u64>| html! { td.number data-value=[value] { @if let Some(value) = value { (value) } } };
-    html! {
-        h4 { "Pass " (profile.pass) " by both shader compilers" }
-        div.wide tabindex="0" role="region" aria-label="binaries" { table.sortable {
-            thead { tr {
-                th { button type="button" { "compiler" } }
-                th { button type="button" { "shader" } }
-                @for name in ["instructions", "bytes", "GPU ms of the pass"] { th.number { button type="button" { (name) } } }
-            } }
-            tbody { @for compiled in &profile.compilers { @for binary in &compiled.binaries { tr {
-                td { (compiled.compiler) }
-                td { (binary.name) }
-                (count(binary.instructions)) (count(binary.bytes))
-                (cell(compiled.gpu_ms.as_ref().map(|time| time.median), 4))
-            } } } }
-        } }
-        @for reason in profile.compilers.iter().filter_map(|compiled| compiled.fallback.as_ref()) { p { (reason) } }
-        (stages(profile))
-        (counters(profile))
-    }
-}
-
-/// What the driver's compiler told of the stages.
-fn stages(profile: &Profile) -> Markup {
-    let told = profile.compilers.iter().flat_map(|compiled| {
-        compiled.stages.iter().flatten().map(|stage| (compiled.compiler.as_str(), stage)).collect::<Vec<_>>()
-    });
-    html! {
-        @for (compiler, stage) in told { details {
-            summary { (compiler) ", " (stage.name) ": subgroups of " (stage.subgroup_size)
-                @for value in &stage.statistics { ", " (value.name) " " (value.value) }
-            }
-            p { (stage.description) }
-            @for (name, listing) in &stage.texts { h5 { (name) } pre { (listing) } }
-        } }
-    }
-}
-
-/// The device's own counters.
-fn counters(profile: &Profile) -> Markup {
-    let Some(shown) = profile.compilers.iter().find_map(|compiled| compiled.counters.as_ref()) else { return html! {} };
-    html! {
-        h4 { "The device's counters of the pass in frame 0" }
-        div.wide tabindex="0" role="region" aria-label="device counters" { table.sortable {
-            thead { tr {
-                @for name in ["counter", "group", "scope", "unit"] { th { button type="button" { (name) } } }
-                @for compiled in &profile.compilers { th.number { button type="button" { (compiled.compiler) } } }
-            } }
-            tbody { @for (index, counter) in shown.counters.iter().enumerate() { tr {
-                td title=(counter.description) { (counter.name) }
-                td { (counter.category) }
-                td { (counter.scope) }
-                td { (counter.unit) @if counter.is_mean { ", mean" } }
-                @for compiled in &profile.compilers {
-                    @let value = compiled.counters.as_ref().and_then(|readings| readings.counters.get(index)?.value.as_ref());
-                    td.number data-value=[value] { @if let Some(value) = value { (value) } }
-                }
-            } } }
-        } }
-        @if !shown.left_out.is_empty() { p { "Left out, for they take too many replays: " (shown.left_out.join(", ")) } }
-    }
-}
-
 /// The device's limits with the spread of their samples.
 fn rates(limits: &Limits) -> Markup {
     html! {
         div {
             h4 { "Limits of the device" }
-            table { tbody {
-                @for (name, value, what, unit) in limits.listed() {
+            table.limits { tbody {
+                @for limit in limits.listed() {
                     tr {
-                        th scope="row" { (what) ", " (unit) }
-                        td.number { (number(value, 4)) }
-                        td { @if let Some(mad) = limits.samples.get(name).and_then(|samples| samples.mad) { "± " (number(mad, 4)) } }
+                        th scope="row" { (limit.what) @if !limit.unit.is_empty() { ", " (limit.unit) } }
+                        td.number { (number(limit.value, 4)) }
+                        td { @if let Some(mad) = limit.mad { "± " (number(mad, 4)) } }
                     }
                 }
             } }

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use base64::Engine;
 use fumarole::image::{Rgba8, read_png, write_png};
 use serde_json::{Value, json};
 
@@ -269,4 +270,45 @@ fn two_records_a_side_are_joined_for_their_verdicts() {
     let difference = fumarole::image::compare(&a, &b, None).unwrap();
     let caption = &text[place("left A, right B")..place("class=\"record\"")];
     assert_eq!(["mean ", "99th percentile "].map(|n| shown_after(caption, n)), [difference.mean, difference.p99]);
+}
+
+/// Each side's picture of a number of planes lies with the other's of the same, in whatever order the records have them.
+#[test]
+fn pictures_of_other_parameters_are_not_put_together() {
+    let out = folder();
+    let side = |name: &str, planes: [u32; 2]| {
+        let mut record = record_of(1, 1.0);
+        let run = record["runs"].as_array().unwrap().iter().find(|run| run["variant"] == "level-map").unwrap().clone();
+        let runs = planes.map(|planes| {
+            let picture = out.path().join(format!("{name}-{planes}.png"));
+            // By its green, which side and how many.
+            let green = planes as u8 + if name == "a" { 0 } else { 100 };
+            let pixels = (0..96 * 64).flat_map(|_| [0, green, 0, 255]).collect();
+            write_png(&picture, &Rgba8::new(96, 64, pixels).unwrap()).unwrap();
+            let mut run = run.clone();
+            run["config"]["planes"] = planes.into();
+            run["image"] = json!({"path": picture, "sha256": sha256(&picture)});
+            run
+        });
+        record["runs"] = json!(runs);
+        file(&out, &format!("{name}.json"), record.to_string())
+    };
+    let page = out.path().join("page.html");
+    let program = fumarole("report --quiet").arg("--a").arg(side("a", [7, 11])).arg("--b").arg(side("b", [11, 7]));
+    program.arg("--output").arg(&page).run().succeeded();
+    let text = fs::read_to_string(&page).unwrap();
+    let verdicts = &text[..text.find("class=\"record\"").unwrap()];
+    assert_eq!(verdicts.matches("<div class=\"divided\">").count(), 2);
+    for planes in [7, 11] {
+        let title = format!("caustics level-map, planes {planes}: 96 × 64");
+        let [a, b] = ["a", "b"].map(|side| out.path().join(format!("{side}-{planes}.png")));
+        let difference = fumarole::image::compare(&read_png(&a).unwrap(), &read_png(&b).unwrap(), None).unwrap();
+        let mean = shown_after(verdicts, &format!("{title}, left A, right B; CIE Luv difference: mean "));
+        assert_eq!(mean, difference.mean, "{planes}");
+        let [a, b] = [a, b].map(|path| base64::engine::general_purpose::STANDARD.encode(fs::read(path).unwrap()));
+        for (side, png) in [("A", a), ("B", b)] {
+            let image = format!("<img src=\"data:image/png;base64,{png}\" alt=\"picture of {title} by side {side}\">");
+            assert!(verdicts.contains(&image), "{planes} of {side}");
+        }
+    }
 }
