@@ -93,7 +93,7 @@ fn letters_in_bars_can_be_read() {
             assert_eq!(names.len(), if width < 800 { 0 } else { 5 }, "{width}: {names:?}");
             for name in names {
                 assert!(name[1].as_f64().unwrap() >= 4.5, "{scheme}: {name}");
-                assert_eq!(name[2], json!([1.0, 1.0, 1.0, 1.0]), "{name}");
+                assert_eq!(name[2], json!([1, 1, 1, 1]), "{name}");
                 assert!(name[3].as_f64().unwrap() > 0.0, "it ends inside its bar: {name}");
             }
             let contrast = browser.value(&beside).as_f64().unwrap();
