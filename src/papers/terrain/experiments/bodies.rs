@@ -26,7 +26,8 @@ pub fn read(path: &Path) -> Result<Vec<Body>, Error> {
     let failed = |reason: String| Error::Input(format!("`bodies` {}: {reason}", path.display()));
     let text = file::read_text(path, MOST_BYTES).map_err(|error| failed(error.to_string()))?;
     let is_told = |&(number, line): &(u64, &str)| {
-        !line.is_empty() && !line.starts_with('#') && !(number == 1 && is_heading(line))
+        let is_passed_over = line.is_empty() || line.starts_with('#') || (number == 1 && is_heading(line));
+        !is_passed_over
     };
     let mut lines = (1_u64..).zip(text.lines().map(str::trim)).filter(is_told);
     let mut read = Vec::with_capacity(lines.clone().count().min(text.len() / SHORTEST + 1));
