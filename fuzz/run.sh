@@ -19,6 +19,7 @@ for target in $targets; do
     FUMAROLE_FUZZ_TARGET=$target "target/$host/release/fuzz" "found/$target" "corpus/$target" -max_total_time="${2:-60}" \
         -timeout=2 -malloc_limit_mb=80 -rss_limit_mb=1024 -max_len=65536 -artifact_prefix="artifacts/$target-" \
         -print_final_stats=1 -verbosity=1 >"$log" 2>&1 || failed="$failed $target"
+    case " $failed " in *" $target "*) tail -5 "$log" ;; esac
     grep -E 'cov:|stat::|ERROR|panicked|SUMMARY' "$log" | awk '/cov:/ { last = $0; next } { print } END { print last }'
 done
 [ -z "$failed" ] || { echo "fuzz: findings in:$failed" >&2; exit 1; }

@@ -24,7 +24,7 @@ layout(set = 0, binding = 18, std430) readonly buffer Clock {
 };
 
 layout(set = 0, binding = 92, std430) readonly buffer Spans {
-    vec2 spans[]; // least and greatest R of a chunk's vertices
+    vec2 spans[]; // least and greatest R at which an element of a chunk changes
 };
 
 #ifndef CHANGED_READY

@@ -237,11 +237,13 @@ impl<'a> Dispatch<'a> {
 
     /// As [`Dispatch::elements`], so many times along z.
     pub fn layers_of_elements(&mut self, count: u32, layers: u32) -> &mut Self {
-        let [along_x, ..] = self.workgroup.size;
+        let [along_x, along_y, along_z] = self.workgroup.size;
         let [most, ..] = self.commands.device.physical().limits.max_compute_work_group_count;
         let groups = count.div_ceil(along_x);
         let rows = if self.workgroup.lies_in_rows { groups.div_ceil(most).max(1) } else { 1 };
-        self.threads(groups.div_ceil(rows).saturating_mul(along_x), rows, layers)
+        let [x, y, z] =
+            [(groups.div_ceil(rows), along_x), (rows, along_y), (layers, along_z)].map(|(n, by)| n.saturating_mul(by));
+        self.threads(x, y, z)
     }
 
     /// Dispatches at least `x` x `y` x `z` threads, in whole workgroups.

@@ -228,7 +228,7 @@ pub(super) fn workgroup(device: &Device, desc: &PassDesc, program: &Program) -> 
     if size.contains(&0) {
         return Err(desc.problem("its workgroup has no threads"));
     }
-    Ok(Workgroup { size, lies_in_rows: interface.reads_workgroup_count })
+    Ok(Workgroup { size, lies_in_rows: interface.lies_in_rows })
 }
 
 /// The extent that the pass draws over.

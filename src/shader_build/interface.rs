@@ -11,8 +11,9 @@ pub struct Interface {
     pub stage: Stage,
     /// Threads of a workgroup along x, y and z; compute shaders only.
     pub local_size: Option<[u32; 3]>,
-    /// The binary reads `gl_NumWorkGroups`, without which no thread knows its number where workgroups lie in rows.
-    pub reads_workgroup_count: bool,
+    /// The shader numbers its threads by the workgroups in a row, as `common/elements.glsl` does: it declares
+    /// `gl_NumWorkGroups`, and not `gl_GlobalInvocationID`, which knows no rows.
+    pub lies_in_rows: bool,
     /// Vertices of a primitive that a geometry stage takes: 1 for points, 2 for lines, 3 for triangles.
     pub primitive_vertices: Option<u32>,
     /// Every resource that the binary declares, by ascending set and binding.

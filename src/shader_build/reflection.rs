@@ -28,9 +28,7 @@ impl Interface {
         let entry_points =
             ReflectConfig::new().spv(words).ref_all_rscs(true).reflect().map_err(|error| refuse(&error.to_string()))?;
         match entry_points.as_slice() {
-            [entry_point] => {
-                Ok(Interface { reads_workgroup_count: reads_workgroup_count(words), ..read_entry_point(entry_point)? })
-            }
+            [entry_point] => Ok(Interface { lies_in_rows: lies_in_rows(words), ..read_entry_point(entry_point)? }),
             other => Err(refuse(&format!("it has {} entry points; compile one stage a binary", other.len()))),
         }
     }
@@ -51,7 +49,7 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
     let mut interface = Interface {
         stage,
         local_size: read_local_size(entry_point),
-        reads_workgroup_count: false,
+        lies_in_rows: false,
         primitive_vertices: read_primitive(entry_point),
         bindings: Vec::new(),
         push_constants: None,
@@ -88,17 +86,21 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
 }
 
 /// Built-ins are no resources: their decorations tell.
-fn reads_workgroup_count(words: &[u32]) -> bool {
-    let decorated = [Decoration::BuiltIn as u32, BuiltIn::NumWorkgroups as u32];
+fn lies_in_rows(words: &[u32]) -> bool {
+    let mut declared = Vec::new();
     let mut rest = &words[HEADER_WORDS..];
     while let Some(&first) = rest.first() {
         let instruction = &rest[..((first >> 16) as usize).clamp(1, rest.len())];
-        if first & 0xffff == Op::Decorate as u32 && instruction.get(2..4) == Some(&decorated) {
-            return true;
+        if first & 0xffff == Op::Decorate as u32
+            && let [_, _, decoration, built_in] = *instruction
+            && decoration == Decoration::BuiltIn as u32
+        {
+            declared.push(built_in);
         }
         rest = &rest[instruction.len()..];
     }
-    false
+    let declares = |built_in: BuiltIn| declared.contains(&(built_in as u32));
+    declares(BuiltIn::NumWorkgroups) && !declares(BuiltIn::GlobalInvocationId)
 }
 
 fn read_local_size(entry_point: &EntryPoint) -> Option<[u32; 3]> {

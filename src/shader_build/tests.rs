@@ -225,13 +225,15 @@ fn uniform_blocks_textures_and_samplers_reflect() {
 fn compute_shaders_reflect() {
     let filter = reflect_embedded("test/filter.comp");
     assert_eq!(filter.local_size, Some([8, 8, 1]));
-    assert!(!filter.reads_workgroup_count);
+    assert!(!filter.lies_in_rows);
     let result = filter.binding(1, 0).unwrap();
     assert_eq!(result.kind, BindingKind::StorageImage { format: ImageFormat::Rgba32f });
 
     let sum = reflect_embedded("test/sum.comp");
     assert_eq!(sum.local_size, Some([64, 1, 1]));
-    assert!(sum.reads_workgroup_count);
+    // It reads gl_NumWorkGroups, and numbers its threads by gl_GlobalInvocationID.
+    assert!(!sum.lies_in_rows);
+    assert!(reflect_embedded("lava/cell-keys.comp").lies_in_rows);
     let sums = sum.binding(0, 1).unwrap();
     assert_eq!(sums.name, "Sums");
     assert_eq!(sums.kind, BindingKind::StorageBuffer { readonly: false });

@@ -327,6 +327,8 @@ impl Open {
         let messages = self.screen.device().instance().take_messages();
         if !messages.is_empty() {
             self.interface.take(Event::Validation(messages.iter().map(ToString::to_string).collect()));
+            self.context.request_repaint();
+            self.ask();
         }
         if let Some(path) = &self.controls
             && let Some(update) = &output.platform_output.accesskit_update
@@ -364,7 +366,7 @@ fn refused(ended: &Ended) -> Error {
     let last = words().find(|line| line.starts_with("error: ") && !line.contains("--help")).or_else(|| words().next());
     let message = last.map_or("the program that draws for the window ended without a word", |line| line.as_str());
     let message = message.strip_prefix("error: ").unwrap_or(message).to_owned();
-    Error::Refused { message, code: ended.code.unwrap_or(1) }
+    Error::Refused { message, code: ended.code.filter(|&code| code != 0).unwrap_or(1) }
 }
 
 impl ApplicationHandler<Wake> for Application {

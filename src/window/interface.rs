@@ -281,7 +281,8 @@ impl Interface {
 
     pub(super) fn change_paper(&mut self, paper: &str) {
         self.paper = paper.to_owned();
-        (self.session, self.sent) = (Session::default(), Sent::default());
+        let validation = std::mem::take(&mut self.session.validation);
+        (self.session, self.sent) = (Session { validation, ..Session::default() }, Sent::default());
         self.pictures = Pictures::default();
         (self.pass, self.after, self.target, self.shown) = (None, None, None, Shown::Picture);
         self.fields = Default::default();

@@ -183,7 +183,7 @@ impl SmartPlanes {
         let SmartConstants { levels, most, .. } = self.smart;
         for (pass, threads) in [(&self.sub_boxes, WORKGROUP), (&self.smart_planes, most.max(levels))] {
             frame.compute(pass, |dispatch| {
-                dispatch.constants(&self.smart).threads(threads, 1, 1);
+                dispatch.constants(&self.smart).elements(threads);
             })?;
         }
         Ok(())

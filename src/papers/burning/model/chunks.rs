@@ -13,7 +13,7 @@ const APART: usize = 512;
 pub struct Chunks {
     /// Elements, [`CHUNK`] a chunk, [`NO_VERTEX`] beyond the last.
     pub order: Vec<u32>,
-    /// Least and greatest R of each chunk.
+    /// Least and greatest R at which an element of each chunk changes.
     pub spans: Vec<[f32; 2]>,
 }
 
