@@ -13,7 +13,7 @@ use super::outcome::{self, Terminal};
 use super::render::PictureArgs;
 use super::stress::{self, StressArgs};
 use super::{bench, loading, passes, render, spelling};
-use crate::measure::experiment::{Context, Experiment};
+use crate::measure::experiment::{Context, Doubts, Experiment};
 use crate::measure::parameter::{self, Given, Parameter, Shape};
 use crate::measure::shard::Shard;
 use crate::measure::study::{ONE_ALTERNATIVE, Preset, Study};
@@ -415,6 +415,7 @@ fn experiment<S: Study>(matches: &ArgMatches, typed: &Typed<'_, S>) -> Result<()
         shard: matches.get_one("shard").copied(),
         assembled: matches.get_one("assembled").cloned(),
         console: &Terminal { is_quiet: common.output.quiet },
+        doubts: Doubts::default(),
     };
     *context.setup.preset_mut() = Some(experiment.name.to_owned());
     Ok(context.run(experiment)?)
@@ -439,6 +440,9 @@ fn own_verb<S: Study>(name: &str, matches: &ArgMatches, typed: &Typed<'_, S>) ->
         shard: None,
         assembled: None,
         console: &Terminal { is_quiet: false },
+        doubts: Doubts::default(),
     };
-    Ok((verb.run)(&mut context)?)
+    let ended = (verb.run)(&mut context);
+    context.say_warnings()?;
+    Ok(ended?)
 }

@@ -9,6 +9,7 @@ use super::statistics::{median, repetition_noise, summarize};
 use super::study::Identity;
 use crate::gpu::live::MemoryUse;
 use crate::gpu::{self, Mode, PassKind, Work};
+use crate::report::console::SCATTERS_BY;
 use crate::report::record::{
     self, InputFile, Limits, Loading, Memory, Pass, ResourceMemory, Run, ShaderBinary, Statistics, Validation,
 };
@@ -68,7 +69,7 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
     let is_timestamped = passes.iter().any(|p| p.gpu_ms.is_some());
     let mut warnings = metadata.warnings;
     if let Some(noise) = repetition_noise(&measurement.frame_ms, schedule.frames as usize).filter(|&n| n > NOISY) {
-        warnings.push(format!("noisy: repetitions of one frame scatter by {:.0} %", noise * 100.0));
+        warnings.push(format!("{SCATTERS_BY}{:.0} %", noise * 100.0));
     }
     if measurement.repeat < schedule.repeat {
         warnings.push(format!("interrupted after {} of {} repetitions", measurement.repeat, schedule.repeat));

@@ -1,5 +1,6 @@
 //! A paper's experiments: one table or figure each, ours beside the paper's, with what they run in.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use super::error::Error;
@@ -121,6 +122,16 @@ pub struct Context<'a, S: Study> {
     pub assembled: Option<PathBuf>,
     /// Output to the user.
     pub console: &'a dyn Console,
+    /// Warnings that are still to be said.
+    pub doubts: Doubts,
+}
+
+/// Warnings that an experiment has gathered; they are said once, at its end.
+#[derive(Default)]
+pub struct Doubts {
+    of_runs: RefCell<Vec<Vec<String>>>,
+    /// Of what is measured without runs.
+    of_machine: RefCell<Vec<String>>,
 }
 
 impl<S: Study> Context<'_, S> {
@@ -135,10 +146,24 @@ impl<S: Study> Context<'_, S> {
         check_writable(&self.csv_file())?;
         // One file of the experiment's own stands for all: they go to one folder.
         check_writable(&self.file(".json"))?;
-        match (experiment.run)(self) {
+        let ended = (experiment.run)(self);
+        self.say_warnings()?;
+        match ended {
             Err(Error::Shared) => Ok(()),
             result => result,
         }
+    }
+
+    /// Prints every warning of what was published once, counted over the runs, unless standard output holds a document.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn say_warnings(&self) -> Result<(), Error> {
+        let of_runs = self.doubts.of_runs.take();
+        let of_machine = self.doubts.of_machine.take();
+        let lists = if of_runs.is_empty() { vec![of_machine] } else { of_runs };
+        let text = console::warnings(lists.iter().map(Vec::as_slice), self.console.style());
+        if text.is_empty() || self.is_json_printed() { Ok(()) } else { self.print(text) }
     }
 
     fn refuse(&self, experiment: &Experiment<S>) -> Result<(), Error> {
@@ -263,7 +288,7 @@ impl<S: Study> Context<'_, S> {
     }
 
     /// Publishes runs: the record, its rows, the plots, each with its file's suffix, and the tables as files; on standard
-    /// output `text`, the tables and every warning once, or the record.
+    /// output `text` and the tables, or the record. The runs' warnings are said at the end.
     ///
     /// # Errors
     /// [`Error::Output`].
@@ -289,7 +314,7 @@ impl<S: Study> Context<'_, S> {
             let space = if text.is_empty() { "" } else { "\n" };
             text.push_str(&format!("{space}{}", table.render(style)));
         }
-        text.push_str(&console::warnings(&record.runs, style));
+        self.doubts.of_runs.borrow_mut().extend(record.runs.into_iter().map(|run| run.warnings));
         self.print(if self.is_json_printed() { json } else { text })
     }
 
@@ -299,15 +324,11 @@ impl<S: Study> Context<'_, S> {
         }
     }
 
-    /// Prints every warning of measured rows once, after a table that was made of them, unless standard output holds a
-    /// document.
-    ///
-    /// # Errors
-    /// [`Error::Output`].
-    pub fn publish_warnings(&self, rows: Vec<Row>) -> Result<(), Error> {
+    /// Keeps the warnings of measured rows that a table was made of for the end.
+    pub fn keep_warnings(&self, rows: Vec<Row>) {
         let mut runs: Vec<Run> = rows.into_iter().map(|row| row.run).collect();
         self.spell_warnings(&mut runs);
-        if self.is_json_printed() { Ok(()) } else { self.print(console::warnings(&runs, self.console.style())) }
+        self.doubts.of_runs.borrow_mut().extend(runs.into_iter().map(|run| run.warnings));
     }
 
     /// Writes tables beside a record: each as CSV, and all of them as one document, which the page of a report shows.
@@ -356,6 +377,7 @@ impl<S: Study> Context<'_, S> {
         for (_, table) in more {
             printed.push_str(&format!("\n{}", table.render(self.console.style())));
         }
+        *self.doubts.of_machine.borrow_mut() = machine.warnings().iter().map(|text| self.console.spell(text)).collect();
         let text = json_text(&self.document(machine, table, more))?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), table.csv().as_bytes())?;

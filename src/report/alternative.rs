@@ -57,13 +57,20 @@ fn told<T: Named>(one: &T, telling: &BTreeSet<&str>) -> String {
     named.filter_map(|(name, value)| Some(format!(", {name} {}", text(value)?))).collect()
 }
 
-/// A plain value, or names such as those of meshes; lists of numbers tell a reader nothing.
+/// The most numbers of a list that a reader takes in at once, as extents are.
+const FEW: usize = 4;
+
+/// A plain value, names such as those of meshes, or a few numbers; longer lists tell a reader nothing.
 fn text(value: &Value) -> Option<String> {
     match value {
         Value::String(text) => Some(text.clone()),
+        Value::Array(items) if items.is_empty() => None,
+        Value::Array(items) if items.len() <= FEW && items.iter().all(Value::is_number) => {
+            Some(items.iter().map(Value::to_string).collect::<Vec<_>>().join("x"))
+        }
         Value::Array(items) => {
             let names: Option<Vec<&str>> = items.iter().map(Value::as_str).collect();
-            names.filter(|names| !names.is_empty()).map(|names| names.join(" "))
+            names.map(|names| names.join(" "))
         }
         Value::Object(_) => None,
         plain => Some(plain.to_string()),
@@ -84,15 +91,16 @@ mod tests {
             run.variant = variant.to_owned();
             run.config.insert("planes".to_owned(), planes.into());
             run.config.insert("shadow".to_owned(), has_shadow.into());
-            run.config.insert("density".to_owned(), json!([planes]));
+            run.config.insert("curve".to_owned(), json!([planes, 0, 0, 0, 0]));
             run
         };
         let mut runs =
             vec![run("slices", 7, true), run("slices", 11, true), run("march", 31, false), run("slices", 7, true)];
         runs[1].config.insert("seed".to_owned(), 3.into());
         runs[0].config.insert("mesh".to_owned(), json!(["teapot", "sphere"]));
+        runs[3].config.insert("density".to_owned(), json!([16, 8, 4]));
         let found = alternatives(&runs);
-        assert_eq!(found, [", planes 7, mesh teapot sphere", ", planes 11, seed 3", "", ", planes 7"]);
+        assert_eq!(found, [", planes 7, mesh teapot sphere", ", planes 11, seed 3", "", ", planes 7, density 16x8x4"]);
         for (run, found) in runs.iter().zip(found) {
             assert_eq!(alternative(run, &runs), found);
         }

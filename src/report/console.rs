@@ -22,31 +22,45 @@ pub fn record(record: &Record, style: Style) -> String {
     if let Some(limits) = record.runs.iter().find_map(|run| run.limits.as_ref()) {
         text.push_str(&limits_line(limits));
     }
-    text.push_str(&warnings(&record.runs, style));
+    text.push_str(&warnings(record.runs.iter().map(|run| run.warnings.as_slice()), style));
     text
 }
 
-/// Every warning of the runs once, a line each.
-pub fn warnings(runs: &[Run], style: Style) -> String {
-    counted_warnings(runs).iter().map(|warning| format!("{} {warning}\n", style.yellow("warning:"))).collect()
+/// Every warning of runs once, a line each.
+pub fn warnings<'a>(of_runs: impl IntoIterator<Item = &'a [String]>, style: Style) -> String {
+    counted_warnings(of_runs).iter().map(|warning| format!("{} {warning}\n", style.yellow("warning:"))).collect()
 }
 
-/// Every warning of the runs once, with the number of runs that it concerns.
-pub fn counted_warnings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<String> {
+/// What the warning of a noisy run begins with; the percentage follows.
+pub const SCATTERS_BY: &str = "noisy: repetitions of one frame scatter by ";
+
+/// Every warning of runs once, with the number of runs that it concerns; of noise the greatest.
+pub fn counted_warnings<'a>(of_runs: impl IntoIterator<Item = &'a [String]>) -> Vec<String> {
+    let percent = |warning: &str| warning.strip_prefix(SCATTERS_BY)?.strip_suffix(" %")?.parse::<u64>().ok();
     let mut warnings: Vec<(&str, usize)> = vec![];
     let mut count_of_runs = 0;
-    for run in runs {
+    for run in of_runs {
         count_of_runs += 1;
-        for warning in &run.warnings {
-            match warnings.iter_mut().find(|(known, _)| known == warning) {
-                Some((_, count)) => *count += 1,
+        for warning in run {
+            let is_of_one_kind = |known: &str| known == warning || percent(known).and(percent(warning)).is_some();
+            match warnings.iter_mut().find(|(known, _)| is_of_one_kind(known)) {
+                Some((known, count)) => {
+                    *count += 1;
+                    if percent(warning) > percent(known) {
+                        *known = warning;
+                    }
+                }
                 None => warnings.push((warning, 1)),
             }
         }
     }
     let counted = |(warning, count): (&str, usize)| {
         let runs = if count > 1 { format!(" ({count} of {count_of_runs} runs)") } else { String::new() };
-        one_line(warning) + &runs
+        let text = match percent(warning).filter(|_| count > 1) {
+            Some(most) => format!("{SCATTERS_BY}up to {most} %"),
+            None => one_line(warning),
+        };
+        text + &runs
     };
     warnings.into_iter().map(counted).collect()
 }

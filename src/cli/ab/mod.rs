@@ -125,6 +125,10 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
         }
     }
     let Some(mut comparison) = comparison else {
+        if has_two_blocks(&records) {
+            // Verdicts of an earlier call are none of these records.
+            let _gone = std::fs::remove_file(&verdicts);
+        }
         return Err(failed.unwrap_or_else(|| {
             let end = if interrupted.load(Ordering::Relaxed) { "interrupted" } else { "the --budget was over" };
             Failure::Running(format!("{end} before two blocks were measured; nothing can be said"))

@@ -335,6 +335,8 @@ pub(super) fn differences_between(a: &[Input], b: &[Input]) -> Vec<Difference> {
                 known.push(value);
             }
         }
+        // The same runs in another order are the same.
+        values.values_mut().for_each(|known| known.sort());
         values
     };
     let (a, b) = (of(a), of(b));

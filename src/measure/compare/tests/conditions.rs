@@ -111,3 +111,17 @@ fn compilers_of_many_passes_are_named_once() {
     assert!(text(&["naga"; 6]).contains("shader compilers of 6 passes: A glslang, B naga"));
     assert!(text(&["naga", "other"].repeat(3)).contains("shader compilers: 6 differ"));
 }
+
+#[test]
+fn the_same_runs_in_another_order_are_no_difference() {
+    let run = |planes: u32, sha256: &str| {
+        let mut run = with_passes(&[5.0; 4], &[1.0; 4], &[1.0; 4]);
+        run.config.insert("planes".to_owned(), planes.into());
+        run.image = Some(ImageFile { path: format!("{planes}.png"), sha256: sha256.to_owned() });
+        run
+    };
+    let runs = vec![run(3, "b"), run(11, "a")];
+    let a = [input("a.json", runs.clone())];
+    let b = [input("b.json", runs.into_iter().rev().collect())];
+    assert_eq!(compared(&a, &b, None).differences.len(), 0);
+}

@@ -82,7 +82,7 @@ impl Trade {
             series: vec![Series { name: "frame".to_owned(), points, reference: false }],
         };
         context.publish_plotted(&machine, &table, chart.to_svg())?;
-        context.publish_warnings(swept.rows)?;
+        context.keep_warnings(swept.rows);
         machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
