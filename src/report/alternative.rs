@@ -98,9 +98,9 @@ mod tests {
             vec![run("slices", 7, true), run("slices", 11, true), run("march", 31, false), run("slices", 7, true)];
         runs[1].config.insert("seed".to_owned(), 3.into());
         runs[0].config.insert("mesh".to_owned(), json!(["teapot", "sphere"]));
-        runs[3].config.insert("density".to_owned(), json!([16, 8, 4]));
+        runs[3].config.insert("splats".to_owned(), json!([16, 8, 4]));
         let found = alternatives(&runs);
-        assert_eq!(found, [", planes 7, mesh teapot sphere", ", planes 11, seed 3", "", ", planes 7, density 16x8x4"]);
+        assert_eq!(found, [", planes 7, mesh teapot sphere", ", planes 11, seed 3", "", ", planes 7, splats 16x8x4"]);
         for (run, found) in runs.iter().zip(found) {
             assert_eq!(alternative(run, &runs), found);
         }
