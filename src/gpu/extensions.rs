@@ -76,7 +76,7 @@ pub(super) fn supported(instance: &Instance, raw: vk::PhysicalDevice) -> Result<
         let calls = ext::calibrated_timestamps::Instance::new(&instance.entry, &instance.raw);
         // SAFETY: as above; the device offers the extension.
         let domains = unsafe { calls.get_physical_device_calibrateable_time_domains(raw) }
-            .context("listing", "the time domains of a device")?;
+            .before_a_device("listing", "the time domains of a device")?;
         is_calibrated = domains.contains(&vk::TimeDomainEXT::DEVICE);
     }
     listed.retain(|one| match one {

@@ -145,7 +145,7 @@ impl Instance {
             let info = self::messenger_info(&instance.messages);
             // SAFETY: the user data is owned by `instance`, which destroys the messenger before dropping it.
             let messenger = unsafe { utils.create_debug_utils_messenger(&info, None) }
-                .context("creating", "the debug messenger")?;
+                .before_a_device("creating", "the debug messenger")?;
             instance.messenger = Some((utils, messenger));
         }
         Ok(Arc::new(instance))

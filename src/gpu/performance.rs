@@ -138,7 +138,7 @@ pub(super) fn counters(
     let listing = "listing the performance counters of";
     // SAFETY: `raw` comes from this instance and offers the extension; the family is one of its own.
     let count = unsafe { calls.enumerate_physical_device_queue_family_performance_query_counters_len(raw, family) }
-        .context(listing, "a device")?;
+        .before_a_device(listing, "a device")?;
     let mut counters = vec![vk::PerformanceCounterKHR::default(); count];
     let mut descriptions = vec![vk::PerformanceCounterDescriptionKHR::default(); count];
     if count > 0 {
@@ -151,7 +151,7 @@ pub(super) fn counters(
                 &mut descriptions,
             )
         }
-        .context(listing, "a device")?;
+        .before_a_device(listing, "a device")?;
     }
     let described = counters.iter().zip(&descriptions).map(|(counter, words)| PerformanceCounter {
         name: text(&words.name),

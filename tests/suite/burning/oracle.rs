@@ -9,7 +9,7 @@ use fumarole::papers::burning::reference::refinement::Pattern;
 use fumarole::papers::burning::reference::{Node, State, boundary};
 use fumarole::papers::burning::{Parameters, Variant};
 use fumarole::scene::{Mesh, MeshSource, shapes};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::dump;
 use super::fire::{Fire, text};
@@ -35,6 +35,10 @@ fn bunny() -> Mesh {
 
 /// Burns on the device, and compares at every step; `show` sees the last state.
 fn compare_and(variant: Variant, parameters: &Parameters, mesh: &Mesh, show: impl Fn(&State)) {
+    compare_at(&STEPS, variant, parameters, mesh, show);
+}
+
+fn compare_at(steps: &[u32], variant: Variant, parameters: &Parameters, mesh: &Mesh, show: impl Fn(&State)) {
     for compiler in [Compiler::Glslang, Compiler::Naga] {
         gpu_test(|device| {
             let mut fire = Fire::compiled(device, compiler, variant, parameters, mesh);
@@ -42,7 +46,7 @@ fn compare_and(variant: Variant, parameters: &Parameters, mesh: &Mesh, show: imp
             let start = Comparison { fire: &fire, twin: &twin, at: format!("{variant:?} by {compiler} at rest") };
             start.rest(&dump::state(&fire, false));
             let mut done = 0;
-            for step in STEPS {
+            for &step in steps {
                 fire.ticks(step - 1 - done);
                 done = step;
                 let before = dump::state(&fire, false);
@@ -52,7 +56,7 @@ fn compare_and(variant: Variant, parameters: &Parameters, mesh: &Mesh, show: imp
                 let after = dump::state(&fire, true);
                 Comparison { fire: &fire, twin: &twin, at: format!("{variant:?} by {compiler} at step {step}") }
                     .all(&before, &after);
-                if Some(&step) == STEPS.last() {
+                if Some(&step) == steps.last() {
                     show(&after);
                 }
             }
@@ -327,4 +331,45 @@ fn what_comes_off_without_keeping_blocks_connected() {
         count.get()
     });
     assert!(0 < removed[0] && removed[0] < removed[1], "{removed:?}");
+}
+
+/// As many triangles around one vertex as are taken, beneath it or above it: the longest loops that there are, all of which
+/// the device has to end by themselves. The rim goes to and fro as it rises, so that no triangle is a needle.
+fn fan(is_apex_above: bool) -> Mesh {
+    const TRIANGLES: u32 = 8192;
+    let rim = (0..=TRIANGLES).map(|i| {
+        let along = i as f32 / TRIANGLES as f32;
+        let swept = (33.0 * along).rem_euclid(2.0);
+        let place = Vec2::from_angle(3.0 * if swept > 1.0 { 2.0 - swept } else { swept });
+        let height = 0.2 + 0.8 * along;
+        Vec3::new(place.x, if is_apex_above { -height } else { height }, place.y)
+    });
+    let mut mesh = Mesh {
+        name: "fan".to_owned(),
+        positions: std::iter::once(Vec3::ZERO).chain(rim).collect(),
+        indices: (1..=TRIANGLES).flat_map(|i| [0, i, i + 1]).collect(),
+        ..Mesh::default()
+    };
+    mesh.smooth_normals();
+    mesh.validate().unwrap();
+    mesh
+}
+
+/// The apex is where the fire begins: the lowest vertex, and of what melts the highest.
+#[test]
+fn a_fan_of_all_the_triangles_that_a_vertex_may_have() {
+    // At rest, ready, deformed, and with the rim's nearest on fire.
+    const STEPS: [u32; 4] = [1, 25, 40, 60];
+    for (variant, levels) in [
+        (Variant::Shell, 0),
+        (Variant::FullySubdivided, 1),
+        (Variant::LowPoly, 1),
+        (Variant::Solid, 0),
+        (Variant::Melting, 0),
+    ] {
+        let parameters = Parameters { levels: Some(levels), ..parameters() };
+        compare_at(&STEPS, variant, &parameters, &fan(variant == Variant::Melting), |state| {
+            assert!(state.left.iter().zip(&state.labels).any(|(left, label)| *label == 4 && *left < 40), "{variant:?}");
+        });
+    }
 }

@@ -7,6 +7,7 @@ use fumarole::image::{Rgba8, write_png};
 use serde_json::Value;
 
 use super::program::{ONCE, Program, assert_schema, burning, device, entries, folder, fumarole, read_json};
+use crate::faults::Layer;
 
 /// A fast fire of few triangles.
 const SMALL: &str = "--size 48x32 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10";
@@ -435,7 +436,6 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--speed 0", &["--speed 0"]),
         ("--area-width 0", &["--area-width 0"]),
         ("--levels 6", &["--levels 6"]),
-        ("--levels 5 --triangles 20000", &["(--levels)", "limit"]),
         ("--triangles 3", &["--triangles 3"]),
         ("--stretch 1,0,1", &["--stretch 1,0,1"]),
         ("--stretch 1,1,1001", &["--stretch 1,1,1001"]),
@@ -446,6 +446,8 @@ fn what_cannot_be_is_refused_by_its_option() {
     ] {
         burning("bench").on_test_device().args(options).args(ONCE).run().refused(2, parts);
     }
+    let fine = burning("bench --levels 5 --triangles 20000").on_test_device().args(ONCE);
+    Layer::new().least(fine).run().refused(2, &["(--levels)", "limit"]);
     for option in
         ["epsilon", "beta", "rho", "phi", "gamma", "psi", "speed", "area-width", "chi", "upsilon", "time-step"]
     {

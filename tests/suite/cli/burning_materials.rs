@@ -7,7 +7,7 @@ use super::program::{ONCE, burning, folder};
 const SMALL: &str = "--size 48x32 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10";
 
 /// Two boxes of several statements each, one on the other.
-fn pot() -> String {
+pub fn pot() -> String {
     let mut text = String::new();
     for (number, (name, y)) in
         [("o pot\ng base stand\nusemtl clay", 0.0), ("o lid\nusemtl tin # bright", 1.0)].iter().enumerate()

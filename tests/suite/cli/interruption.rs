@@ -1,4 +1,4 @@
-//! Ctrl-C keeps what is finished.
+//! Ctrl-C keeps what is finished, and so do the signals TERM and HUP.
 
 use std::fs;
 use std::path::Path;
@@ -42,16 +42,23 @@ fn wait_until(running: &mut Running, ready: impl Fn(u32) -> bool) {
     }
 }
 
+/// What ends a program: Ctrl-C, a batch system, a terminal that is closed.
+const SIGNALS: [&str; 3] = ["-INT", "-TERM", "-HUP"];
+
 /// Starts a program, presses Ctrl-C when it is `ready` and a while later, and returns how it ended. The while grows as
 /// long as nothing was finished in it, which a busy machine may need.
 fn interrupt(program: impl Fn() -> Program, ready: impl Fn(u32) -> bool) -> Ended {
+    interrupt_by("-INT", program, ready)
+}
+
+fn interrupt_by(signal: &str, program: impl Fn() -> Program, ready: impl Fn(u32) -> bool) -> Ended {
     let mut pause = Duration::from_millis(300);
     loop {
         let mut running = program().start();
         wait_until(&mut running, &ready);
         thread::sleep(pause);
         let group = format!("-{}", running.id());
-        let killed = Command::new("kill").args(["-INT", "--", &group]).status().unwrap();
+        let killed = Command::new("kill").args([signal, "--", &group]).status().unwrap();
         assert!(killed.success(), "{:?}", running.end().stderr);
         let pressed = Instant::now();
         let ended = running.end();
@@ -79,12 +86,14 @@ const LONG: &str = "bench --frames 100000 --repeat 100 --no-limits --variant lev
 
 #[test]
 fn a_bench_keeps_its_finished_frames() {
-    let out = folder();
-    let program = || caustics(LONG).args("--csv a.csv --image a.png").inside(out.path()).tiny();
-    let ended = interrupt(program, handles_interrupts).succeeded();
-    assert!(ended.stdout.contains("interrupted after"), "{}", ended.stdout);
-    assert_eq!(entries(out.path()), ["a.csv", "a.json", "a.png"]);
-    assert_interrupted(&out.path().join("a.json"));
+    for signal in SIGNALS {
+        let out = folder();
+        let program = || caustics(LONG).args("--csv a.csv --image a.png").inside(out.path()).tiny();
+        let ended = interrupt_by(signal, program, handles_interrupts).succeeded();
+        assert!(ended.stdout.contains("interrupted after"), "{signal}: {}", ended.stdout);
+        assert_eq!(entries(out.path()), ["a.csv", "a.json", "a.png"], "{signal}");
+        assert_interrupted(&out.path().join("a.json"));
+    }
 }
 
 #[test]
@@ -100,14 +109,16 @@ fn fresh_processes_keep_theirs() {
 
 #[test]
 fn a_range_of_pictures_keeps_those_that_it_names() {
-    let out = folder();
-    let program = || caustics("render --frame 0..1000000 --out .").inside(out.path()).tiny();
-    let ready = |id: u32| handles_interrupts(id) && !entries(out.path()).is_empty();
-    let ended = interrupt(program, ready).succeeded();
-    let named = ended.stderr.lines().filter_map(|line| line.strip_prefix("wrote ./"));
-    let named: Vec<&str> = named.collect();
-    assert_eq!(named, entries(out.path()));
-    fumarole::image::read_png(&out.path().join(named[named.len() - 1])).unwrap();
+    for signal in SIGNALS {
+        let out = folder();
+        let program = || caustics("render --frame 0..1000000 --out .").inside(out.path()).tiny();
+        let ready = |id: u32| handles_interrupts(id) && !entries(out.path()).is_empty();
+        let ended = interrupt_by(signal, program, ready).succeeded();
+        let named = ended.stderr.lines().filter_map(|line| line.strip_prefix("wrote ./"));
+        let named: Vec<&str> = named.collect();
+        assert_eq!(named, entries(out.path()), "{signal}");
+        fumarole::image::read_png(&out.path().join(named[named.len() - 1])).unwrap();
+    }
 }
 
 #[test]

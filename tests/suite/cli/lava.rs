@@ -7,6 +7,7 @@ use fumarole::papers::lava::Rock;
 use serde_json::Value;
 
 use super::program::{ONCE, Program, assert_schema, device, entries, file, folder, fumarole, lava, read_json};
+use crate::faults::Layer;
 
 /// Small enough for lavapipe's single-threaded geometry stage.
 const SMALL: &str = "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --splat-radius 0.2";
@@ -267,9 +268,6 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--radius 1.5", &["--radius 1.5", "shortest side"]),
         ("--density 0x8x8", &["--density 0x8x8"]),
         ("--density 65536x1024x8", &["--density 65536x1024x8"]),
-        ("--density 20000x4x4 --radius 0.001", &["density", "20000", "limit of 16384"]),
-        ("--density 4x20000x4 --particles 10", &["density", "5000", "limit of 2048"]),
-        ("--size 20000x20", &["20000", "limit of 16384"]),
         ("--object no-such.obj", &["no-such.obj"]),
         ("--exposure 0", &["--exposure 0"]),
         ("--object box --shading particles", &["--object box", "--shading"]),
@@ -309,9 +307,17 @@ fn what_cannot_be_is_refused_by_its_option() {
 }
 
 #[test]
-fn points_larger_than_the_device_s_are_refused_with_both_figures() {
-    let program = lava("bench --quiet --density 4096x4x1024 --radius 0.5 --splats 4x4").args(ONCE).on_test_device();
-    program.run().refused(2, &["point", "limit"]);
+fn what_the_device_cannot_hold_is_refused_with_both_figures() {
+    let layer = Layer::new();
+    for (options, parts) in [
+        ("--density 20000x4x4 --radius 0.001", &["density", "20000", "limit of 4096"][..]),
+        ("--density 4x20000x4 --particles 10", &["density", "5000", "limit of 256"]),
+        ("--size 20000x20", &["20000", "limit of 4096"]),
+        ("--density 4096x4x1024 --radius 0.5 --splats 4x4", &["point", "limit of 64"]),
+    ] {
+        let program = lava("bench --quiet").on_test_device().args(options).args(ONCE);
+        layer.least(program).run().refused(2, parts);
+    }
 }
 
 #[test]

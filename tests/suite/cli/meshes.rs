@@ -8,6 +8,7 @@ use std::time::Instant;
 use fumarole::scene::random::Random;
 
 use super::program::{ONCE, burning, caustics, entries, file, folder, gas, lava, terrain};
+use crate::faults::Layer;
 
 fn refuse(path: &Path, parts: &[&str]) {
     let name = path.file_name().unwrap().to_str().unwrap();
@@ -118,13 +119,14 @@ fn files_beyond_the_device_are_refused_unread() {
         file.set_len(84 + 50 * u64::from(count)).unwrap();
         path
     };
+    let layer = Layer::new();
     let started = Instant::now();
     let program = burning("bench --variant shell --mesh").arg(sparse(12_000_000)).on_test_device();
-    program.run().refused(2, &["--triangles", "144000000", "limit of 134217728"]);
+    layer.least(program).run().refused(2, &["--triangles", "144000000", "limit of 134217728"]);
     let program = burning("render --variant low-poly --mesh").arg(sparse(1_100_000)).on_test_device();
-    program.run().refused(2, &["--levels", "limit of"]);
+    layer.least(program).run().refused(2, &["--levels", "limit of"]);
     let program = gas("bench --object").arg(sparse(85_000_000)).on_test_device();
-    program.run().refused(2, &["--object", "2720000000", "limit of"]);
+    layer.least(program).run().refused(2, &["--object", "2720000000", "limit of"]);
     let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                   element face 100000000\nproperty list uchar int vertex_indices\nend_header\n";
     let ply = file(&out, "many.ply", header);
@@ -132,7 +134,7 @@ fn files_beyond_the_device_are_refused_unread() {
     let drawn = [(caustics("bench"), "--mesh"), (lava("bench"), "--object"), (terrain("bench"), "--object")];
     for (program, option) in drawn {
         let program = program.arg(option).arg(&ply).on_test_device();
-        program.run().refused(2, &[option, "2400000000", "limit of"]);
+        layer.least(program).run().refused(2, &[option, "2400000000", "limit of"]);
     }
     // Reading them would take many times as long.
     assert!(started.elapsed().as_secs_f64() < 10.0, "{:?}", started.elapsed());

@@ -8,7 +8,7 @@ mod bench;
 mod burning;
 mod burning_active;
 mod burning_dumps;
-mod burning_materials;
+pub mod burning_materials;
 pub mod compare;
 pub mod depth;
 mod devices;

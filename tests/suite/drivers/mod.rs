@@ -5,6 +5,7 @@
 //! No message of either layer, of this one or of the distribution's, is known to be false: no list is needed.
 
 mod layer;
+mod options;
 mod swiftshader;
 
 use std::env;

@@ -1,5 +1,6 @@
 //! Killed programs, full disks, folders that take no file, and two processes in one folder.
 
+use std::env;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -69,54 +70,69 @@ fn a_full_device_is_told() {
     }
 }
 
-/// A file system of few bytes of this test's own, if this process may make one.
-struct SmallDisk {
+/// A file system of a test's own.
+struct Disk {
     folder: tempfile::TempDir,
 }
 
-impl SmallDisk {
-    fn mount(options: &str) -> Option<Self> {
+impl Disk {
+    /// What `mount` said, where it made none.
+    fn mount(options: &str) -> Result<Self, String> {
         let folder = folder();
         let mut mount = Command::new("mount");
         mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(folder.path());
-        let mounted = mount.output().is_ok_and(|output| output.status.success());
-        mounted.then_some(SmallDisk { folder })
+        match mount.output() {
+            Ok(output) if output.status.success() => Ok(Disk { folder }),
+            Ok(output) => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
+            Err(error) => Err(error.to_string()),
+        }
     }
 }
 
-impl Drop for SmallDisk {
+impl Drop for Disk {
     fn drop(&mut self) {
         let _ = Command::new("umount").arg(self.folder.path()).status();
     }
 }
 
+/// Runs the body of `test` on a file system of its own. Whoever may not mount one is the root of name spaces of a process of
+/// the test's; where there are none either, the test fails.
+fn on_disk(options: &str, test: &str, body: impl FnOnce(&Path)) {
+    const INSIDE: &str = "FUMAROLE_TEST_NAME_SPACE";
+    let refusal = match Disk::mount(options) {
+        Ok(disk) => return body(disk.folder.path()),
+        Err(refusal) => refusal,
+    };
+    assert!(env::var_os(INSIDE).is_none(), "mounting a file system for the test: {refusal}; run it as root");
+    let mut again = Command::new("unshare");
+    again.args(["--map-root-user", "--mount"]).arg(env::current_exe().unwrap());
+    let output = again.args(["--exact", test, "--nocapture"]).env(INSIDE, "1").output().unwrap();
+    let said = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    assert!(said[0].contains("1 passed"), "{test} mounts no file system ({refusal}), and in name spaces: {said:?}");
+}
+
 #[test]
 fn a_full_disk_keeps_older_files() {
     // Two pages, of which the older record takes one.
-    let Some(disk) = SmallDisk::mount("size=8192") else {
-        eprintln!("no file system can be mounted here: a full disk was not tried");
-        return;
-    };
-    let out = disk.folder.path();
-    fs::write(out.join("a.json"), "older").unwrap();
-    for paper in &PAPERS {
-        let ended = paper.run("bench --quiet --json a.json").args(ONCE).inside(out).run();
-        ended.refused(2, &["a.json", "No space left"]);
-        assert_eq!(fs::read_to_string(out.join("a.json")).unwrap(), "older");
-        assert_eq!(entries(out), ["a.json"]);
-    }
+    on_disk("size=8192", "faults::files::a_full_disk_keeps_older_files", |out| {
+        fs::write(out.join("a.json"), "older").unwrap();
+        for paper in &PAPERS {
+            let ended = paper.run("bench --quiet --json a.json").args(ONCE).inside(out).run();
+            ended.refused(2, &["a.json", "No space left"]);
+            assert_eq!(fs::read_to_string(out.join("a.json")).unwrap(), "older");
+            assert_eq!(entries(out), ["a.json"]);
+        }
+    });
 }
 
 #[test]
 fn a_read_only_folder_is_told_before_the_work() {
-    let Some(disk) = SmallDisk::mount("ro") else {
-        eprintln!("no file system can be mounted here: a read-only folder was not tried");
-        return;
-    };
-    for paper in &PAPERS {
-        let long = paper.run("bench --frames 100000 --repeat 10000 --quiet --json a.json").inside(disk.folder.path());
-        long.run().refused(2, &["a.json"]);
-    }
+    on_disk("ro", "faults::files::a_read_only_folder_is_told_before_the_work", |out| {
+        for paper in &PAPERS {
+            let long = paper.run("bench --frames 100000 --repeat 10000 --quiet --json a.json").inside(out);
+            long.run().refused(2, &["a.json"]);
+        }
+    });
 }
 
 #[test]

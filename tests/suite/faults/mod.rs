@@ -47,6 +47,11 @@ impl Paper {
     }
 }
 
+/// The limits that refusals are tested by, so that they do not depend on the device at hand: the least that Vulkan 1.3 lets
+/// a device have.
+const LEAST: &str = "max-image-dimension-2d=4096,max-image-array-layers=256,max-framebuffer-size=4096,\
+                     max-storage-buffer-range=134217728,max-buffer-size=1073741824,max-point-size=64";
+
 /// Name of the layer in its manifest.
 const LAYER: &str = "VK_LAYER_FUMAROLE_test";
 const VALIDATION: &str = "VK_LAYER_KHRONOS_validation";
@@ -102,6 +107,11 @@ impl Layer {
         let folders = std::env::join_paths([self.above.path(), self.folder.path()]).unwrap();
         let program = program.env("VK_LAYER_PATH", folders).env("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}"));
         program.args("--validate")
+    }
+
+    /// Runs on a device with the least limits, whatever the one of the tests has.
+    pub fn least(&self, program: Program) -> Program {
+        self.before(program, false).env("FUMAROLE_LAYER_LIMITS", LEAST)
     }
 
     /// The calls that were counted, the name of the one that failed, and what was alive at the end.
