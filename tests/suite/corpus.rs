@@ -96,7 +96,7 @@ fn changed(inputs: &[Vec<u8>], random: &mut Pcg32) -> Vec<u8> {
             }
             6 => {
                 let word = WORDS[below(random, WORDS.len())];
-                let bytes = if random.next_u32() % 2 == 0 { word.to_le_bytes() } else { word.to_be_bytes() };
+                let bytes = if random.next_u32().is_multiple_of(2) { word.to_le_bytes() } else { word.to_be_bytes() };
                 input.iter_mut().skip(at).zip(bytes).for_each(|(byte, new)| *byte = new);
             }
             _ => with_number(&mut input, at, NUMBERS[below(random, NUMBERS.len())]),
