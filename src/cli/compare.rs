@@ -89,6 +89,18 @@ fn parse_margin(text: &str) -> Result<f64, String> {
 }
 
 impl VerdictArgs {
+    /// The first of these options that was given, but for those that have a value anyway.
+    pub fn option_given(&self) -> Option<&'static str> {
+        let given = [
+            (self.fail_above.is_some(), "--fail-above"),
+            (self.fail_unclear, "--fail-unclear"),
+            (self.fail_missing, "--fail-missing"),
+            (self.markdown, "--markdown"),
+            (self.json.is_some(), "--json"),
+        ];
+        given.into_iter().find_map(|(is_given, option)| is_given.then_some(option))
+    }
+
     /// Rules of the comparison.
     pub fn options(&self, design: Design) -> Options {
         Options {

@@ -17,7 +17,7 @@ use crate::report::{Record, environment, json};
 /// Options that the fresh processes do not get, and whether a value follows.
 const OURS: [(&str, bool); 4] = [("--processes", true), ("--process", true), ("--csv", true), ("--quiet", false)];
 /// Options that only the first process gets: it writes what all of them would write alike.
-const OF_THE_FIRST: [(&str, bool); 4] =
+pub const OF_THE_FIRST: [(&str, bool); 4] =
     [("--trace", true), ("--image", true), ("--profile", true), ("--capture", true)];
 
 /// Time that a process has to end by itself.
@@ -94,8 +94,20 @@ pub struct Ended {
 impl Ended {
     /// Its own message, or else how it ended.
     pub fn message(&self) -> String {
-        let message = self.errors.lines().find_map(|line| line.strip_prefix("error: "));
-        message.map_or_else(|| format!("ended with {}", self.status), str::to_owned)
+        self.own_message().map_or_else(|| format!("ended with {}", self.status), str::to_owned)
+    }
+
+    fn own_message(&self) -> Option<&str> {
+        self.errors.lines().find_map(|line| line.strip_prefix("error: "))
+    }
+
+    /// A message with its exit code as ours.
+    pub fn failure(&self, message: String) -> Failure {
+        match self.status.code() {
+            Some(2) => Failure::Input(message),
+            Some(3) => Failure::NoDevice(message),
+            _ => Failure::Running(message),
+        }
     }
 }
 
@@ -152,13 +164,8 @@ fn tell(_: &Child) -> bool {
 
 /// A process's own message and exit code as ours.
 pub fn failure(which: &str, ended: &Ended) -> Failure {
-    let message = ended.errors.lines().find_map(|line| line.strip_prefix("error: "));
-    let message = message.map_or_else(|| format!("{which} ended with {}", ended.status), str::to_owned);
-    match ended.status.code() {
-        Some(2) => Failure::Input(message),
-        Some(3) => Failure::NoDevice(message),
-        _ => Failure::Running(message),
-    }
+    let message = ended.own_message().map_or_else(|| format!("{which} ended with {}", ended.status), str::to_owned);
+    ended.failure(message)
 }
 
 /// The arguments without the options `removed`, and without `--json` and its optional value.

@@ -159,11 +159,15 @@ impl<S: Study> Context<'_, S> {
     /// # Errors
     /// [`Error::Output`].
     pub fn say_warnings(&self) -> Result<(), Error> {
-        let of_runs = self.doubts.of_runs.take();
-        let of_machine = self.doubts.of_machine.take();
-        let lists = if of_runs.is_empty() { vec![of_machine] } else { of_runs };
-        let text = console::warnings(lists.iter().map(Vec::as_slice), self.console.style());
+        let text = console::warning_lines(&self.warnings(), self.console.style());
         if text.is_empty() || self.is_json_printed() { Ok(()) } else { self.print(text) }
+    }
+
+    /// What has been doubted so far, each once: of the runs, or of the machine where there are none.
+    fn warnings(&self) -> Vec<String> {
+        let (of_runs, of_machine) = (self.doubts.of_runs.borrow(), self.doubts.of_machine.borrow());
+        let of_machine = of_runs.is_empty().then_some(of_machine.as_slice());
+        console::counted_warnings(of_runs.iter().map(Vec::as_slice).chain(of_machine))
     }
 
     fn refuse(&self, experiment: &Experiment<S>) -> Result<(), Error> {
@@ -344,11 +348,12 @@ impl<S: Study> Context<'_, S> {
 
     fn save_document(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
         let Some(((_, first), more)) = tables.split_first() else { return Ok(()) };
-        let document = self.document(machine, first, more);
+        // The warnings stand with the runs.
+        let document = self.document(machine, first, more, vec![]);
         self.save(&self.file("-tables.json"), json_text(&document)?.as_bytes())
     }
 
-    fn document(&self, machine: &Machine, table: &ResultTable, more: &[NamedTable]) -> Tables {
+    fn document(&self, machine: &Machine, table: &ResultTable, more: &[NamedTable], warnings: Vec<String>) -> Tables {
         Tables {
             schema: tables::SCHEMA.to_owned(),
             paper: S::PAPER.to_owned(),
@@ -357,6 +362,7 @@ impl<S: Study> Context<'_, S> {
             command: environment::command(),
             table: table.document(),
             more: more.iter().map(|(name, table)| ((*name).to_owned(), table.document())).collect(),
+            warnings,
         }
     }
 
@@ -378,7 +384,7 @@ impl<S: Study> Context<'_, S> {
             printed.push_str(&format!("\n{}", table.render(self.console.style())));
         }
         *self.doubts.of_machine.borrow_mut() = machine.warnings().iter().map(|text| self.console.spell(text)).collect();
-        let text = json_text(&self.document(machine, table, more))?;
+        let text = json_text(&self.document(machine, table, more, self.warnings()))?;
         self.save(&self.json_file(), text.as_bytes())?;
         self.save(&self.csv_file(), table.csv().as_bytes())?;
         for (name, table) in more {

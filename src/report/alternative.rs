@@ -1,60 +1,57 @@
 //! What tells runs of one method apart, in the names that people read.
 
+use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::record::Run;
 
-/// What has a name: its method's, with parameters where several have one method.
-pub trait Named {
-    /// Paper, variant and preset.
-    fn method(&self) -> (&str, &str, Option<&str>);
-
-    /// Every parameter under its option's name.
-    fn config(&self) -> &Map<String, Value>;
-}
-
-impl Named for Run {
-    fn method(&self) -> (&str, &str, Option<&str>) {
-        (&self.paper, &self.variant, self.preset.as_deref())
-    }
-
-    fn config(&self) -> &Map<String, Value> {
-        &self.config
-    }
-}
-
-/// The parameters that tell one from others of its variant and preset, with a comma before each; empty for one without
-/// such others.
-pub fn alternative<'a, T: Named + 'a>(one: &T, all: impl IntoIterator<Item = &'a T>) -> String {
-    let others: Vec<&T> = all.into_iter().filter(|other| other.method() == one.method()).collect();
-    told(one, &telling(&others))
-}
-
-/// [`alternative`] of each among all, in their order.
-pub fn alternatives<T: Named>(all: &[T]) -> Vec<String> {
-    let mut methods: HashMap<_, Vec<&T>> = HashMap::new();
-    for one in all {
-        methods.entry(one.method()).or_default().push(one);
+/// Of each run the parameters, the seed and the number of frames that tell it from others of its paper, variant and preset,
+/// with a comma before each; empty for one without such others. In the order of the runs.
+pub fn alternatives<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<String> {
+    let runs: Vec<&Run> = runs.into_iter().collect();
+    let mut methods: HashMap<_, Vec<&Run>> = HashMap::new();
+    for run in &runs {
+        methods.entry(method(run)).or_default().push(run);
     }
     let telling: HashMap<_, _> = methods.iter().map(|(method, others)| (*method, telling(others))).collect();
-    all.iter().map(|one| telling.get(&one.method()).map_or_else(String::new, |telling| told(one, telling))).collect()
+    runs.iter().map(|run| telling.get(&method(run)).map_or_else(String::new, |telling| told(run, telling))).collect()
+}
+
+fn method(run: &Run) -> (&str, &str, Option<&str>) {
+    (&run.paper, &run.variant, run.preset.as_deref())
+}
+
+/// What stands beside the parameters and may tell runs apart like one.
+const BESIDE: [&str; 2] = ["seed", "frames"];
+
+fn names(run: &Run) -> impl Iterator<Item = &str> {
+    let beside = BESIDE.into_iter().filter(|name| !run.config.contains_key(*name));
+    run.config.keys().map(String::as_str).chain(beside)
+}
+
+fn parameter<'a>(run: &'a Run, name: &str) -> Option<Cow<'a, Value>> {
+    match (run.config.get(name), name) {
+        (Some(value), _) => Some(Cow::Borrowed(value)),
+        (None, "seed") => Some(Cow::Owned(run.seed.into())),
+        (None, "frames") => Some(Cow::Owned(run.frames.into())),
+        (None, _) => None,
+    }
 }
 
 /// Names of the parameters in which not all are alike: whoever differs from another does so in one of them.
-fn telling<'a, T: Named>(others: &[&'a T]) -> BTreeSet<&'a str> {
+fn telling<'a>(others: &[&'a Run]) -> BTreeSet<&'a str> {
     let Some((first, rest)) = others.split_first() else { return BTreeSet::new() };
     let differing = rest.iter().flat_map(|other| {
-        let names = first.config().keys().chain(other.config().keys());
-        names.filter(move |name| first.config().get(*name) != other.config().get(*name))
+        names(first).chain(names(other)).filter(|name| parameter(first, name) != parameter(other, name))
     });
-    differing.map(String::as_str).collect()
+    differing.collect()
 }
 
-fn told<T: Named>(one: &T, telling: &BTreeSet<&str>) -> String {
-    let named = one.config().iter().filter(|(name, _)| telling.contains(name.as_str()));
-    named.filter_map(|(name, value)| Some(format!(", {name} {}", text(value)?))).collect()
+fn told(run: &Run, telling: &BTreeSet<&str>) -> String {
+    let named = names(run).filter(|name| telling.contains(name));
+    named.filter_map(|name| Some(format!(", {name} {}", text(&*parameter(run, name)?)?))).collect()
 }
 
 /// The most numbers of a list that a reader takes in at once, as extents are.
@@ -96,13 +93,17 @@ mod tests {
         };
         let mut runs =
             vec![run("slices", 7, true), run("slices", 11, true), run("march", 31, false), run("slices", 7, true)];
-        runs[1].config.insert("seed".to_owned(), 3.into());
+        runs[1].config.insert("layers".to_owned(), 3.into());
         runs[0].config.insert("mesh".to_owned(), json!(["teapot", "sphere"]));
         runs[3].config.insert("splats".to_owned(), json!([16, 8, 4]));
         let found = alternatives(&runs);
-        assert_eq!(found, [", planes 7, mesh teapot sphere", ", planes 11, seed 3", "", ", planes 7, splats 16x8x4"]);
-        for (run, found) in runs.iter().zip(found) {
-            assert_eq!(alternative(run, &runs), found);
-        }
+        assert_eq!(found, [", planes 7, mesh teapot sphere", ", planes 11, layers 3", "", ", planes 7, splats 16x8x4"]);
+
+        // What no parameter tells.
+        let mut runs = [run("slices", 7, true), run("slices", 7, true), run("march", 7, true)];
+        (runs[0].seed, runs[1].seed) = (5, 6);
+        assert_eq!(alternatives(&runs), [", seed 5", ", seed 6", ""]);
+        (runs[1].seed, runs[0].frames, runs[1].frames) = (5, 2, 3);
+        assert_eq!(alternatives(&runs), [", frames 2", ", frames 3", ""]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::alternative::alternative;
+use super::alternative::alternatives;
 use super::limits::Limit;
 use super::profile::profile;
 use super::record::{Limits, Pass, Record, Run, Summary};
@@ -14,21 +14,22 @@ use super::text::one_line;
 pub fn record(record: &Record, style: Style) -> String {
     let device = &record.environment.device;
     let mut text = format!("device: {} ({})\n", one_line(&device.name), device.kind.name());
-    for item in &record.runs {
+    for (item, alternative) in record.runs.iter().zip(alternatives(&record.runs)) {
         text.push('\n');
-        text.push_str(&run(item, &alternative(item, &record.runs), style));
+        text.push_str(&run(item, &alternative, style));
         text.push_str(&profile(item, style));
     }
     if let Some(limits) = record.runs.iter().find_map(|run| run.limits.as_ref()) {
         text.push_str(&limits_line(limits));
     }
-    text.push_str(&warnings(record.runs.iter().map(|run| run.warnings.as_slice()), style));
+    let warnings = counted_warnings(record.runs.iter().map(|run| run.warnings.as_slice()));
+    text.push_str(&warning_lines(&warnings, style));
     text
 }
 
-/// Every warning of runs once, a line each.
-pub fn warnings<'a>(of_runs: impl IntoIterator<Item = &'a [String]>, style: Style) -> String {
-    counted_warnings(of_runs).iter().map(|warning| format!("{} {warning}\n", style.yellow("warning:"))).collect()
+/// Warnings, a line each.
+pub fn warning_lines(warnings: &[String], style: Style) -> String {
+    warnings.iter().map(|warning| format!("{} {warning}\n", style.yellow("warning:"))).collect()
 }
 
 /// What the warning of a noisy run begins with; the percentage follows.
@@ -41,7 +42,11 @@ pub fn counted_warnings<'a>(of_runs: impl IntoIterator<Item = &'a [String]>) -> 
     let mut count_of_runs = 0;
     for run in of_runs {
         count_of_runs += 1;
-        for warning in run {
+        for (at, warning) in run.iter().enumerate() {
+            // Twice in one run is one run.
+            if run[..at].contains(warning) {
+                continue;
+            }
             let is_of_one_kind = |known: &str| known == warning || percent(known).and(percent(warning)).is_some();
             match warnings.iter_mut().find(|(known, _)| is_of_one_kind(known)) {
                 Some((known, count)) => {

@@ -224,5 +224,6 @@ pub fn tables() -> Tables {
         command: ["fumarole", "caustics", "experiment", "5-2"].map(str::to_owned).to_vec(),
         table,
         more: BTreeMap::from([("smallest".to_owned(), smallest)]),
+        warnings: vec!["the validation layer is on: times include it".to_owned()],
     }
 }

@@ -30,6 +30,9 @@ pub struct Tables {
     /// Tables after it, by their names.
     #[serde(default)]
     pub more: BTreeMap<String, Rows>,
+    /// Doubts about what was measured, one line each, where no record has them; empty in what older programs wrote.
+    #[serde(default)]
+    pub warnings: Vec<String>,
 }
 
 impl Tables {
@@ -117,13 +120,15 @@ mod tests {
             ("/table/rows/0/mesh", json!({})),
             ("/environment/device/type", json!("gpu")),
             ("/more/smallest", json!(3)),
+            ("/warnings", json!([1])),
         ] {
             let mut document = full.clone();
             *document.pointer_mut(pointer).unwrap() = wrong;
             assert!(!validator.is_valid(&document), "{pointer}");
         }
         for (pointer, fields) in [("", &full), ("/table", &full["table"])] {
-            for field in fields.as_object().unwrap().keys() {
+            // Older programs wrote no warnings.
+            for field in fields.as_object().unwrap().keys().filter(|field| *field != "warnings") {
                 let mut document = full.clone();
                 document.pointer_mut(pointer).unwrap().as_object_mut().unwrap().remove(field);
                 assert!(!validator.is_valid(&document), "{pointer}/{field}");

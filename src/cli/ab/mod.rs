@@ -19,7 +19,7 @@ use super::failure::Failure;
 use super::outcome;
 use super::watch::{interrupted, progress_bar};
 use crate::file;
-use crate::measure::compare::{Comparison, Design, Input, LOOKS, Verdict, compare};
+use crate::measure::compare::{Comparison, Design, Input, LOOKS, compare};
 use crate::measure::shard::Shard;
 use crate::report::record::Share;
 use crate::report::{Record, environment};
@@ -107,7 +107,7 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
                 Ok(found) => comparison = found,
                 Err(failure) => failed = failed.or(Some(failure)),
             }
-            if is_last || failed.is_some() || comparison.as_ref().is_some_and(is_decided) {
+            if is_last || failed.is_some() || comparison.as_ref().is_some_and(Comparison::is_decided) {
                 break;
             }
         }
@@ -146,12 +146,6 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
 /// True when there is enough for a comparison.
 fn has_two_blocks(records: &[Vec<Record>; 2]) -> bool {
     records.iter().all(|side| side.len() >= 4)
-}
-
-/// True when the frame and every pass that counts have a verdict, and stand on one side of the limit if there is one.
-fn is_decided(comparison: &Comparison) -> bool {
-    let counting = || comparison.quantities().filter(|quantity| quantity.counts);
-    !comparison.is_unclear() && counting().all(|quantity| quantity.verdict != Verdict::Unclear)
 }
 
 /// All records of one side as one.
@@ -204,12 +198,12 @@ impl AbArgs {
         Ok(())
     }
 
-    /// Measures a block, the first with the device's limits: they take seconds, and are the same in all.
-    fn measure_block(&self, block: u32, has_limits: bool) -> Result<Vec<(Side, Record)>, Failure> {
+    /// Measures a block; the limits of the device take seconds, and are the same in all.
+    fn measure_block(&self, block: u32, is_first: bool) -> Result<Vec<(Side, Record)>, Failure> {
         let (mut seen, mut measured) = ([0; 2], Vec::new());
         for side in BLOCK {
             let place = &mut seen[side as usize];
-            measured.push((side, self.measure(side, 2 * block + *place, has_limits && *place == 0)?));
+            measured.push((side, self.measure(side, 2 * block + *place, is_first && *place == 0)?));
             *place += 1;
         }
         Ok(measured)

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::AbArgs;
 use crate::cli::failure::Failure;
-use crate::cli::processes::{failure, finish};
+use crate::cli::processes::{OF_THE_FIRST, finish, without};
 use crate::cli::watch::interrupted;
 use crate::content;
 use crate::report::{Record, json as reader};
@@ -102,20 +102,26 @@ impl AbArgs {
         Ok(variables.into_iter().chain(words.map(|word| word.to_string_lossy().into_owned())).collect())
     }
 
-    /// Measures one side in a fresh process, its process of that number, with the device's limits if they are asked for at all.
-    pub fn measure(&self, side: Side, process: u32, has_limits: bool) -> Result<Record, Failure> {
+    /// Measures one side in a fresh process, its process of that number. The first of a side alone measures the device's
+    /// limits, if they are asked for at all, and writes what every one would write alike.
+    pub fn measure(&self, side: Side, process: u32, is_first: bool) -> Result<Record, Failure> {
         let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
         let program = self.binary(side).map_or_else(std::env::current_exe, |path| Ok(path.clone())).map_err(failed)?;
         let file = crate::file::temporary().map_err(failed)?;
         let mut words = self.words(side)?;
         let without_limits = "--no-limits";
-        if !has_limits && !words.iter().any(|word| word == without_limits) {
-            words.push(without_limits.into());
+        if !is_first {
+            words = without(&OF_THE_FIRST, words.into_iter());
+            if !words.iter().any(|word| word == without_limits) {
+                words.push(without_limits.into());
+            }
         }
         let mut command = Command::new(&program);
         command
             .args(words)
-            .args(["--process", &process.to_string(), "--quiet", "--json"])
+            .args(["--process", &process.to_string(), "--quiet", "--out"])
+            .arg(self.record_file(side).with_extension(""))
+            .arg("--json")
             .arg(file.path())
             .envs(self.variables(side).cloned())
             .stdin(Stdio::null());
@@ -123,7 +129,7 @@ impl AbArgs {
             Failure::Input(format!("side {side:?}: starting {}: {e}; name a build of fumarole", program.display()))
         })?;
         if !ended.status.success() {
-            return Err(failure(&format!("side {side:?}"), &ended));
+            return Err(ended.failure(format!("side {side:?}: {}", ended.message())));
         }
         Ok(reader::read(file.path())?)
     }

@@ -11,8 +11,8 @@ use crate::cli::failure::Failure;
 /// Options of a bench that say where its record goes and what is printed: in `ab` they are its own, wherever they stand.
 const OUTPUT: [&str; 4] = ["json", "out", "quiet", "help"];
 
-/// Options of which every process would write the same file.
-const FILES: [&str; 4] = ["--image", "--trace", "--csv", "--capture"];
+/// Options of which both sides would write the same file.
+const FILES: [&str; 3] = ["--image", "--trace", "--capture"];
 
 /// An option of `ab`.
 struct Own {
@@ -61,6 +61,8 @@ pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> V
     let mut first: Vec<OsString> = words.by_ref().take(2).collect();
     let mut words = words.peekable();
     let (mut common, mut of_paper) = (Vec::new(), None);
+    let is_paper = |word: &OsString| papers.iter().any(|paper| word == paper.name);
+    let mut ends_without_value = false;
     while let Some(word) = words.next() {
         let text = word.to_string_lossy().into_owned();
         let name = option_name(&text);
@@ -73,11 +75,13 @@ pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> V
         match own.iter().find(|option| option.is(name) && !is_paper_s(name)) {
             Some(option) => {
                 let has_value = name.len() < text.len();
-                let is_value = |next: &OsString| option.needs_value || next == "-" || !is_dashed(next);
+                let is_value = |next: &OsString| {
+                    option.needs_value || next == "-" || !is_dashed(next) && (of_paper.is_some() || !is_paper(next))
+                };
+                let value = if option.takes_value && !has_value { words.next_if(is_value) } else { None };
+                ends_without_value = option.takes_value && !has_value && value.is_none();
                 first.push(word);
-                if option.takes_value && !has_value {
-                    first.extend(words.next_if(is_value));
-                }
+                first.extend(value);
             }
             None => {
                 if of_paper.is_none() && !is_dashed(&word) {
@@ -86,6 +90,10 @@ pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> V
                 common.push(word);
             }
         }
+    }
+    if ends_without_value {
+        // Or the paper would be its value.
+        first.push("--".into());
     }
     first.extend(common);
     first
@@ -110,21 +118,39 @@ fn option_name(word: &str) -> &str {
 }
 
 impl AbArgs {
-    /// Refuses options with which blocks would be none, or a file would be written by all processes.
+    /// Refuses options with which blocks would be none, a file would be written twice, or that would do nothing.
     pub fn check_words(&self) -> Result<(), Failure> {
         let common: Vec<String> = self.common.iter().map(|word| word.to_string_lossy().into_owned()).collect();
         let has = |words: &[String], option: &str| words.iter().any(|word| option_name(word) == option);
-        if [&common, &self.a.0, &self.b.0].into_iter().any(|words| has(words, "--processes")) {
-            let message =
-                "ab: --processes: each place of a block A B B A is one process; --blocks says how many there are";
-            return Err(Failure::Input(message.to_owned()));
+        let sides = [("--a", &self.a.0), ("--b", &self.b.0)];
+        let anywhere = |option: &str| has(&common, option) || sides.iter().any(|(_, words)| has(words, option));
+        let refused = |message: String| Err(Failure::Input(format!("ab: {message}")));
+        if let Some(option) = ["--processes", "--process"].into_iter().find(|option| anywhere(option)) {
+            return refused(format!(
+                "{option}: each place of a block A B B A is one process; --blocks says how many there are"
+            ));
         }
-        match FILES.into_iter().find(|option| has(&common, option)) {
+        if anywhere("--csv") {
+            return refused(
+                "--csv: every process would write it anew; ab-a.json and ab-b.json in --out hold all of them"
+                    .to_owned(),
+            );
+        }
+        for (side, words) in sides {
+            if let Some(option) = ["--json", "--out", "--quiet", "-q"].into_iter().find(|option| has(words, option)) {
+                return refused(format!("{option} in {side}: the output is ab's own; give {option} outside of {side}"));
+            }
+        }
+        if let Some(option) = FILES.into_iter().find(|option| has(&common, option)) {
+            return refused(format!(
+                "{option} for both sides: both would write the same file; give each side its own, in --a and --b"
+            ));
+        }
+        match self.verdict.option_given().filter(|_| self.shard.is_some()) {
             None => Ok(()),
-            Some(option) => Err(Failure::Input(format!(
-                "ab: {option} for both sides: all processes would write the same file; give each side its own, in --a and \
-                 --b"
-            ))),
+            Some(option) => refused(format!(
+                "{option} with --shard: a shard compares nothing; give {option} to compare --blocks, after assemble"
+            )),
         }
     }
 }
@@ -144,6 +170,9 @@ mod tests {
             // Values that begin with a dash, that may be absent, and behind an equals sign.
             ("fumarole ab gas --planes 3 --a --seed=2 --b=x -q", "fumarole ab --a --seed=2 --b=x -q gas --planes 3"),
             ("fumarole ab gas --json --frames 2 --out x", "fumarole ab --json --out x gas --frames 2"),
+            ("fumarole ab --json gas --frames 2", "fumarole ab --json -- gas --frames 2"),
+            ("fumarole ab gas --frames 2 --json", "fumarole ab --json -- gas --frames 2"),
+            ("fumarole ab --json f gas --frames 2", "fumarole ab --json f gas --frames 2"),
             ("fumarole ab gas --json - --margin 3% bench", "fumarole ab --json - --margin 3% gas bench"),
             ("fumarole ab gas --env A:X=1 --env B:X=2", "fumarole ab --env A:X=1 --env B:X=2 gas"),
             // A name that the paper has too.

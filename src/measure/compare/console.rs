@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::{Clock, Comparison, Design, Difference, Gate, Quantity, RunComparison, Verdict};
-use crate::report::alternative::alternative;
 use crate::report::html::Section;
 use crate::report::table::{Align, Style, Table, markdown_text};
+use crate::report::text::one_line;
 
 /// Passes with the same value of what differs are shown as one line from this many on.
 const MANY: usize = 4;
@@ -16,11 +16,11 @@ pub fn render(comparison: &Comparison, style: Style) -> String {
     // Writing into a String cannot fail.
     let _ = writeln!(text, "{}", style.bold("what is compared"));
     for line in differences(comparison) {
-        let _ = writeln!(text, "  {line}");
+        let _ = writeln!(text, "  {}", one_line(&line));
     }
     text.push('\n');
     for run in &comparison.runs {
-        let _ = writeln!(text, "{}", style.bold(&title(run, comparison)));
+        let _ = writeln!(text, "{}", style.bold(&one_line(&title(run))));
         let _ = writeln!(text, "{}", headline(run, comparison, style));
         if !run.passes.is_empty() {
             text.push_str(&passes(run).render(style));
@@ -28,10 +28,10 @@ pub fn render(comparison: &Comparison, style: Style) -> String {
         text.push('\n');
     }
     for line in missing(comparison) {
-        let _ = writeln!(text, "{line}");
+        let _ = writeln!(text, "{}", one_line(&line));
     }
     for warning in &comparison.warnings {
-        let _ = writeln!(text, "{} {warning}", style.yellow("warning:"));
+        let _ = writeln!(text, "{} {}", style.yellow("warning:"), one_line(warning));
     }
     let _ = writeln!(text, "{}", legend(comparison));
     text
@@ -44,7 +44,7 @@ pub fn markdown(comparison: &Comparison) -> String {
         let _ = writeln!(text, "- {}", markdown_text(&line));
     }
     for run in &comparison.runs {
-        let _ = writeln!(text, "\n### {}\n", markdown_text(&title(run, comparison)));
+        let _ = writeln!(text, "\n### {}\n", markdown_text(&title(run)));
         let _ = writeln!(text, "{}\n", markdown_text(&headline(run, comparison, Style::default())));
         text.push_str(&passes(run).markdown());
     }
@@ -70,7 +70,7 @@ pub fn sections(comparison: &Comparison) -> Vec<Section> {
         table: None,
     };
     let runs = comparison.runs.iter().map(|run| Section {
-        title: title(run, comparison),
+        title: title(run),
         commands: vec![],
         lines: vec![headline(run, comparison, Style::default())],
         table: (!run.passes.is_empty()).then(|| passes(run)),
@@ -103,7 +103,12 @@ fn differences(comparison: &Comparison) -> Vec<String> {
                 false => format!("{plural}: {} differ", same_kind.len()),
             });
         } else if prefix != "shader_compiler of " {
-            lines.extend(same_kind.iter().map(|difference| format!("{} differs", difference.what)));
+            let alone = |side: &str, difference: &Difference| format!("{}: {side} alone has one", difference.what);
+            lines.extend(same_kind.iter().map(|difference| match (difference.a.is_empty(), difference.b.is_empty()) {
+                (_, true) => alone("A", difference),
+                (true, _) => alone("B", difference),
+                _ => format!("{} differs", difference.what),
+            }));
         } else {
             lines.extend(same_kind.iter().map(|difference| line(&difference.what, difference)));
         }
@@ -131,18 +136,14 @@ fn missing(comparison: &Comparison) -> impl Iterator<Item = String> {
     let alone =
         runs.into_iter().flat_map(|(side, names)| names.iter().map(move |name| format!("only in {side}: {name}")));
     let passes = comparison.runs.iter().filter(|run| !run.missing_passes.is_empty());
-    alone.chain(
-        passes
-            .map(move |run| format!("B lacks passes of {}: {}", title(run, comparison), run.missing_passes.join(", "))),
-    )
+    alone.chain(passes.map(move |run| format!("B lacks passes of {}: {}", title(run), run.missing_passes.join(", "))))
 }
 
 /// A run's name: paper, variant, preset, what tells it from others of these, size.
-fn title(run: &RunComparison, comparison: &Comparison) -> String {
+fn title(run: &RunComparison) -> String {
     let preset = run.preset.as_ref();
     let preset = preset.map_or_else(String::new, |preset| format!(", {preset}"));
-    let alternative = alternative(run, &comparison.runs);
-    format!("{} {}{preset}{alternative}: {} × {}", run.paper, run.variant, run.width, run.height)
+    format!("{} {}{preset}{}: {} × {}", run.paper, run.variant, run.alternative, run.width, run.height)
 }
 
 fn headline(run: &RunComparison, comparison: &Comparison, style: Style) -> String {
@@ -150,9 +151,9 @@ fn headline(run: &RunComparison, comparison: &Comparison, style: Style) -> Strin
     let mut text = verdict(&run.frame, style);
     if let (Some(a), Some(b), Some(ratio)) = (a_median_ms, b_median_ms, ratio) {
         let (a_count, b_count) = (processes(run.a_processes), processes(run.b_processes));
-        let interval = interval(&run.frame);
+        let interval = run.frame.interval.map_or_else(String::new, |ends| format!(" {}", between(ends)));
         let (ratio, a, b) = (digits(ratio, 4), digits(a, 3), digits(b, 3));
-        let _ = write!(text, ": frame B / A {ratio} {interval}, A {a} ms ({a_count}), B {b} ms ({b_count})");
+        let _ = write!(text, ": frame B / A {ratio}{interval}, A {a} ms ({a_count}), B {b} ms ({b_count})");
     }
     if let Some(limit) = comparison.fail_above {
         let gates = || run.passes.iter().map(|pass| (pass.name.as_str(), &pass.time)).chain([("frame", &run.frame)]);
@@ -219,7 +220,7 @@ fn passes(run: &RunComparison) -> Table {
             number(time.b_median_ms, 3),
             time.share.map_or("-".to_owned(), |share| format!("{} %", digits(100.0 * share, 1))),
             number(time.ratio, 4),
-            interval(time),
+            time.interval.map_or_else(|| "-".to_owned(), between),
             match &time.reason {
                 // What holds for the frame too is said once, with it.
                 Some(reason) if run.frame.reason.as_ref() != Some(reason) => {
@@ -232,8 +233,8 @@ fn passes(run: &RunComparison) -> Table {
     table
 }
 
-fn interval(quantity: &Quantity) -> String {
-    quantity.interval.map_or_else(|| "-".to_owned(), |[low, high]| format!("[{}, {}]", digits(low, 4), digits(high, 4)))
+fn between([low, high]: [f64; 2]) -> String {
+    format!("[{}, {}]", digits(low, 4), digits(high, 4))
 }
 
 /// A number with so many digits behind the point; beyond a billion, as no time of a frame is, by its power of ten.

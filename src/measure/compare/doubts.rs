@@ -30,7 +30,7 @@ mod tests {
         let noisy = |percent: u32| format!("noisy: repetitions of one frame scatter by {percent} %");
         let [six, seven, nine] = [6, 7, 9].map(noisy);
         let a = [
-            input("a.json", &["slow", "no\nstamps", &six]),
+            input("a.json", &["slow", "no\nstamps", &six, "slow"]),
             input("a1.json", &["slow", &nine]),
             input("a2.json", &[&seven]),
         ];

@@ -31,6 +31,7 @@ pub(super) fn run(a: &Configuration, b: &Configuration, options: &Options) -> Ru
         paper: first.paper.clone(),
         variant: first.variant.clone(),
         preset: first.preset.clone(),
+        alternative: a.alternative.clone(),
         config: first.config.clone(),
         width: first.width,
         height: first.height,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::{Design, Input};
-use crate::report::alternative::{Named, alternative};
+use crate::report::alternative::alternatives;
 use crate::report::record::{Environment, Record, Run};
 
 /// Reasons why two sides cannot be compared.
@@ -38,8 +38,8 @@ pub(super) struct Configuration<'a> {
     fields: BTreeMap<String, String>,
     first: &'a Run,
     source: &'a str,
-    /// Paper, variant, preset, what tells it from others of these, size and file.
-    pub name: String,
+    /// What tells it from others of its paper, variant and preset, as in [`alternatives`].
+    pub alternative: String,
     /// Runs of one process, process after process.
     processes: Vec<Vec<&'a Run>>,
 }
@@ -72,21 +72,12 @@ impl<'a> Configuration<'a> {
         self.processes.iter().filter_map(|runs| Some(runs.first()?.process)).collect()
     }
 
-    fn name_among(&self, side: &[Configuration]) -> String {
+    /// Paper, variant, preset, what tells it from others of these, size and file.
+    pub fn name(&self) -> String {
         let Run { paper, variant, width, height, .. } = self.first;
         let preset = self.first.preset.as_ref();
         let preset = preset.map_or_else(String::new, |preset| format!(", {preset}"));
-        format!("{paper} {variant}{preset}{}, {width} × {height} ({})", alternative(self, side), self.source)
-    }
-}
-
-impl Named for Configuration<'_> {
-    fn method(&self) -> (&str, &str, Option<&str>) {
-        self.first.method()
-    }
-
-    fn config(&self) -> &Map<String, Value> {
-        &self.first.config
+        format!("{paper} {variant}{preset}{}, {width} × {height} ({})", self.alternative, self.source)
     }
 }
 
@@ -148,8 +139,8 @@ pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'
     }
     Ok(Matched {
         pairs,
-        only_in_a: alone.into_iter().map(|configuration| configuration.name).collect(),
-        only_in_b: b.into_iter().map(|configuration| configuration.name).collect(),
+        only_in_a: alone.iter().map(Configuration::name).collect(),
+        only_in_b: b.iter().map(Configuration::name).collect(),
         differences: Vec::new(),
         warnings,
     })
@@ -164,7 +155,7 @@ pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matche
     for configuration in a {
         let nearest = (0..b.len()).min_by_key(|&index| differences(&configuration, &b[index]).len());
         let Some(index) = nearest else {
-            only_in_a.push(configuration.name);
+            only_in_a.push(configuration.name());
             continue;
         };
         let other = b.remove(index);
@@ -177,7 +168,7 @@ pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matche
         listed.extend(differing.filter(|difference| !listed.contains(difference)).collect::<Vec<_>>());
         pairs.push((configuration, other));
     }
-    let only_in_b = b.into_iter().map(|configuration| configuration.name).collect();
+    let only_in_b = b.iter().map(Configuration::name).collect();
     Ok(Matched { pairs, only_in_a, only_in_b, differences: listed, warnings })
 }
 
@@ -202,7 +193,7 @@ fn configurations<'a>(
             let index = found.iter().position(|known| known.fields == fields);
             let index = index.unwrap_or_else(|| {
                 let (first, source) = (runs[0], input.name.as_str());
-                found.push(Configuration { fields, first, source, name: String::new(), processes: vec![] });
+                found.push(Configuration { fields, first, source, alternative: String::new(), processes: vec![] });
                 found.len() - 1
             });
             let processes = &mut found[index].processes;
@@ -222,8 +213,8 @@ fn configurations<'a>(
     if found.is_empty() {
         return Err(CompareError::NoRun { side });
     }
-    let names: Vec<String> = found.iter().map(|configuration| configuration.name_among(&found)).collect();
-    found.iter_mut().zip(names).for_each(|(configuration, name)| configuration.name = name);
+    let names = alternatives(found.iter().map(|configuration| configuration.first));
+    found.iter_mut().zip(names).for_each(|(configuration, name)| configuration.alternative = name);
     Ok(found)
 }
 

@@ -32,7 +32,6 @@ pub use within::{Ratio, ratio_within_process};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::report::alternative::Named;
 use crate::report::environment;
 use crate::report::record::Record;
 use matching::commands;
@@ -156,6 +155,16 @@ impl Comparison {
         })
     }
 
+    /// True when more measurements would decide nothing: the frame and every pass that counts, as far as both sides have
+    /// them, have a verdict, and stand on one side of `fail_above` if there is one.
+    pub fn is_decided(&self) -> bool {
+        let on_both = |quantity: &&Quantity| quantity.a_median_ms.is_some() && quantity.b_median_ms.is_some();
+        let stands = |gate: Option<Gate>| gate.is_some_and(|gate| gate != Gate::Undecided);
+        self.quantities().filter(|quantity| quantity.counts).filter(on_both).all(|quantity| {
+            quantity.verdict != Verdict::Unclear && (self.fail_above.is_none() || stands(quantity.gate))
+        })
+    }
+
     /// True when B lacks a run or a pass of A.
     pub fn is_missing_any(&self) -> bool {
         !self.only_in_a.is_empty() || self.runs.iter().any(|run| !run.missing_passes.is_empty())
@@ -171,6 +180,10 @@ pub struct RunComparison {
     pub variant: String,
     /// Name of the preset; absent without one.
     pub preset: Option<String>,
+    /// What tells it from others of these, with a comma before each parameter; empty for one without such others, and in
+    /// what older programs wrote.
+    #[serde(default)]
+    pub alternative: String,
     /// Every parameter under its option's name, as A has it.
     pub config: Map<String, Value>,
     /// Pixels of the picture.
@@ -187,16 +200,6 @@ pub struct RunComparison {
     pub passes: Vec<PassComparison>,
     /// Passes of A that B lacks.
     pub missing_passes: Vec<String>,
-}
-
-impl Named for RunComparison {
-    fn method(&self) -> (&str, &str, Option<&str>) {
-        (&self.paper, &self.variant, self.preset.as_deref())
-    }
-
-    fn config(&self) -> &Map<String, Value> {
-        &self.config
-    }
 }
 
 impl RunComparison {

@@ -36,5 +36,5 @@ pub(super) fn check_blocks(a: &Configuration, b: &Configuration) -> Result<(), C
     if are_ascending && numbers.chunks(2).all(is_block) && numbers == b.process_numbers() {
         return Ok(());
     }
-    Err(CompareError::Blocks { name: a.name.clone() })
+    Err(CompareError::Blocks { name: a.name() })
 }

@@ -272,6 +272,32 @@ fn what_one_side_lacks_is_named() {
     assert!(render(&comparison, Style::default()).contains("B lacks passes of"));
 }
 
+/// `ab` would go on for a pass that it can never find on the other side.
+#[test]
+fn what_one_side_lacks_is_never_waited_for() {
+    let mut noise = Noise::new(1);
+    let mut times = |mean_ms: f64| noise.frame_times(FRAMES, mean_ms, 0.002);
+    let [a, b] = [1, 2].map(|passes| {
+        let runs = (0..10).map(|process| {
+            let mut run = Run { process, ..with_passes(&times(5.0), &times(1.0), &times(2.0)) };
+            run.passes.truncate(passes);
+            run
+        });
+        vec![input("x.json", runs.collect())]
+    });
+    for (a, b) in [(&a, &b), (&b, &a)] {
+        for fail_above in [None, Some(0.05)] {
+            let comparison = compared(a, b, fail_above);
+            let splat = &comparison.runs[0].passes[1].time;
+            assert!(splat.counts && splat.verdict == Verdict::Unclear, "{splat:?}");
+            assert!(comparison.is_decided() && comparison.is_unclear());
+        }
+    }
+    // What both have and nobody can tell yet is.
+    let [a, b] = [[5.0, 5.3], [5.4, 5.1]].map(|times| times.map(|ms| input("x.json", vec![run_of(&[ms; 4])])));
+    assert!(!compared(&a, &b, None).is_decided());
+}
+
 #[test]
 fn what_cannot_be_told_is_unclear_and_says_what_would_decide() {
     let levels = [[5.0, 5.3, 4.8, 5.1], [5.3, 5.0, 5.5, 5.2]];

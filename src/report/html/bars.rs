@@ -16,6 +16,10 @@ const NAMES: f64 = 210.0;
 const NUMBERS: f64 = 130.0;
 /// Width of a letter in a bar, about.
 const LETTER: f64 = 7.0;
+/// Width of the narrowest bar.
+const NARROW: f64 = 0.5;
+/// Width of the line between two passes of the stacked bar.
+const GAP: f64 = 1.5;
 
 /// Milliseconds of a pass that the drawings show: its time on the device, or of host work.
 pub(super) fn milliseconds(pass: &Pass) -> Option<f64> {
@@ -41,7 +45,7 @@ pub(super) fn drawings(run: &Run) -> Markup {
             Some(Timed { pass, start_ms, ms })
         })
         .collect();
-    if timed.is_empty() || total_ms <= 0.0 {
+    if timed.is_empty() || total_ms <= 0.0 || !total_ms.is_finite() {
         return html! {};
     }
     html! {
@@ -55,15 +59,30 @@ fn stacked(timed: &[Timed], total_ms: f64) -> Markup {
     html! {
         svg.bars.stacked viewBox=(format!("0 0 {WIDTH} {BAR}")) preserveAspectRatio="none" role="img"
             aria-label="times of the passes, stacked" {
-            @for one in timed {
+            // Narrow ones over what comes after them.
+            @for one in timed.iter().filter(|one| one.ms * scale >= NARROW).chain(timed.iter().filter(|one| one.ms * scale < NARROW)) {
                 rect class=(kind(one.pass.kind)) x=(format!("{:.2}", one.start_ms * scale)) y="0"
-                    width=(format!("{:.2}", (one.ms * scale).max(0.5))) height=(BAR) { (hint(one)) }
+                    width=(format!("{:.2}", (one.ms * scale).max(NARROW))) height=(BAR) { (hint(one)) }
                 @if one.ms * scale > LETTER * (one.pass.name.len() + 2) as f64 {
                     text.inside x=(format!("{:.2}", one.start_ms * scale + LETTER)) y=(BAR * 0.62) { (one.pass.name) }
                 }
             }
+            @for neighbours in timed.windows(2) {
+                @if let Some(x) = gap(neighbours[0].ms * scale, neighbours[1].ms * scale) {
+                    @let x = format!("{:.2}", neighbours[1].start_ms * scale + x);
+                    line x1=(x) y1="0" x2=(x) y2=(BAR) {}
+                }
+            }
         }
     }
+}
+
+/// Where the line between two passes of these widths lies, from their border: on the wider one, so that it hides none that is
+/// narrow; nowhere between two that are.
+fn gap(left: f64, right: f64) -> Option<f64> {
+    let is_on_left = left > right;
+    let wider = if is_on_left { left } else { right };
+    (wider >= 2.0 * GAP).then_some(if is_on_left { -0.5 * GAP } else { 0.5 * GAP })
 }
 
 fn timeline(timed: &[Timed], total_ms: f64) -> Markup {
@@ -74,7 +93,7 @@ fn timeline(timed: &[Timed], total_ms: f64) -> Markup {
             @for (index, one) in timed.iter().enumerate() {
                 @let (x, y) = (NAMES + one.start_ms * scale, ROW * index as f64 + 4.0);
                 text x=(NAMES - 8.0) y=(y + 13.0) text-anchor="end" { (one.pass.name) }
-                rect class=(kind(one.pass.kind)) x=(format!("{x:.2}")) y=(y) width=(format!("{:.2}", (one.ms * scale).max(0.5)))
+                rect class=(kind(one.pass.kind)) x=(format!("{x:.2}")) y=(y) width=(format!("{:.2}", (one.ms * scale).max(NARROW)))
                     height=(ROW - 5.0) { (hint(one)) }
                 text.number x=(format!("{:.2}", x + one.ms * scale + 6.0)) y=(y + 13.0) {
                     (format!("{:.3} ms, {:.1} %", one.ms, 100.0 * one.ms / total_ms))
@@ -90,4 +109,16 @@ fn hint(one: &Timed) -> Markup {
 
 fn kind(kind: PassKind) -> &'static str {
     kind.name()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_line_hides_a_narrow_pass() {
+        assert_eq!(gap(300.0, 0.5), Some(-0.75));
+        assert_eq!(gap(0.5, 300.0), Some(0.75));
+        assert_eq!(gap(2.0, 2.5), None);
+    }
 }

@@ -41,9 +41,9 @@ pub(super) fn configurations(runs: &[Run], record: usize) -> Vec<Configuration<'
     let mut found: Vec<Configuration> = vec![];
     for (shown, alternative) in shown(runs, record).into_iter().zip(alternatives(runs)) {
         let run = shown.run;
-        let Run { paper, variant, preset, width, height, seed, .. } = run;
-        let key =
-            (paper, variant, preset, width, height, seed, serde_json::Value::from(run.config.clone()).to_string());
+        let Run { paper, variant, preset, width, height, seed, frames, .. } = run;
+        let config = serde_json::Value::from(run.config.clone()).to_string();
+        let key = (paper, variant, preset, width, height, seed, frames, config);
         let place = *places.entry(key).or_insert(found.len());
         match found.get_mut(place) {
             Some(known) if known.first.run.process != run.process => known.others.push(shown),

@@ -154,6 +154,8 @@ pub(super) fn environment(environment: &Environment) -> Markup {
     let text = |value: &Option<String>| value.clone().unwrap_or_default();
     let rows = [
         ("device", format!("{} ({})", device.name, device.kind.name())),
+        ("device's UUID", text(&device.uuid)),
+        ("Vulkan", device.api_version.clone()),
         ("driver", format!("{} {}", text(&device.driver), text(&device.driver_version))),
         ("system", format!("{} {}", host.os, text(&host.kernel))),
         ("processor", text(&host.cpu)),

@@ -20,7 +20,9 @@ pub(super) fn run(Shown { run, id, title }: &Shown) -> Markup {
                         @if let Some(value) = value { ", " (name) " " (number(value, 3)) }
                     }
                     ", max " (number(frame.max, 3)) ", "
-                    (frame.samples.len()) " frames; " (number(1000.0 / frame.median, 1)) " frames/s)"
+                    (frame.samples.len()) " frames"
+                    @if frame.median > 0.0 { "; " (number(1000.0 / frame.median, 1)) " frames/s" }
+                    ")"
                     @for (name, value) in [
                         ("unaccounted", run.unaccounted_ms), ("overlap", run.overlap_ms), ("timestamp floor", run.stamp_floor_ms),
                         ("loading", run.load_ms), ("pipelines", run.pipeline_ms),
@@ -56,8 +58,9 @@ pub(super) fn number(value: f64, digits: usize) -> Markup {
     html! { span data-value=(value) title=(value) { (format!("{value:.digits$}")) } }
 }
 
-/// A cell that sorts by its number; empty without one.
+/// A cell that sorts by its number; empty without one, as is a share of nothing.
 pub(super) fn cell(value: Option<f64>, digits: usize) -> Markup {
+    let value = value.filter(|value| value.is_finite());
     html! {
         td.number data-value=[value] { @if let Some(value) = value { (format!("{value:.digits$}")) } }
     }

@@ -16,6 +16,7 @@ pub(super) fn tables(source: &TableSource, id: &str) -> Markup {
             (command("", &document.command))
             (environment(&document.environment))
             @for table in document.all() { (rows(table)) }
+            @for warning in &document.warnings { p.warning { "Warning: " (warning) } }
         }
     }
 }

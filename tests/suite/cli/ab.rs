@@ -1,6 +1,7 @@
 //! `fumarole ab`: two sides in turn.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
@@ -61,7 +62,7 @@ fn a_side_may_be_another_program_and_failures_name_the_side() {
     let nowhere = out.path().join("nowhere");
     let binary = |path: &str| common(ab("--binary").arg(format!("B:{path}")).arg("--out").arg(out.path()));
     binary(nowhere.to_str().unwrap()).run().refused(2, &["side B", "nowhere"]);
-    common(ab("--out").arg(out.path()).arg("--a").arg("--planes 0")).run().refused(2, &["planes"]);
+    common(ab("--out").arg(out.path()).arg("--a").arg("--planes 0")).run().refused(2, &["error: side A: ", "planes"]);
     assert!(!out.path().join("ab-a.json").exists(), "nothing was measured");
 }
 
@@ -149,52 +150,72 @@ fn its_own_options_may_stand_behind_the_paper() {
 fn what_would_make_no_blocks_or_one_file_of_all_is_refused() {
     let out = folder();
     let ab = || ab("--out").arg(out.path());
-    for (option, value) in [("--processes", "2"), ("--image", "x.png"), ("--trace", "x.json"), ("--csv", "x.csv")] {
+    for words in
+        ["--processes 2", "--process 2", "--image x.png", "--trace x.json", "--csv x.csv", "--capture renderdoc"]
+    {
+        let (option, value) = words.split_once(' ').unwrap();
         common(ab()).arg(option).arg(value).run().refused(2, &["ab: ", option]);
         common(ab()).arg(format!("{option}={value}")).run().refused(2, &["ab: ", option]);
     }
     for side in ["--a", "--b"] {
-        common(ab().arg(side).arg("--processes 2")).run().refused(2, &["--processes", "--blocks"]);
+        for words in ["--processes 2", "--csv x.csv", "--json x.json", "--json", "--out=x", "--quiet", "-q"] {
+            let option = words.split(['=', ' ']).next().unwrap();
+            common(ab().arg(side).arg(words)).run().refused(2, &["error: ab: ", option]);
+        }
+    }
+    for words in ["--fail-above 5%", "--fail-unclear", "--fail-missing", "--markdown", "--json"] {
+        let option = words.split(' ').next().unwrap();
+        common(ab().args("--shard 1/2").args(words)).run().refused(2, &[option, "--shard"]);
     }
     assert_eq!(entries(out.path()), [""; 0]);
 }
 
-/// They take seconds, and are the device's.
+/// Limits take seconds, and are the device's; a picture is the side's.
 #[test]
-fn the_first_process_of_a_side_alone_measures_the_limits() {
+fn the_first_process_of_a_side_alone_measures_the_limits_and_writes_files() {
     let out = folder();
     let once = ONCE.replace("--no-limits", "");
-    let program = ab("--out").arg(out.path()).args("caustics --variant level-map").args(SCENE).args(&once);
+    let program = ab("--out").arg(out.path()).arg("--a").arg(format!("--image {}/a.png", out.path().display()));
+    let program = program.args("caustics --variant level-map").args(SCENE).args(&once);
     program.arg("--device").arg(device()).run().succeeded();
+    assert_eq!(entries(out.path()), ["a.png", "ab-a.json", "ab-b.json", "ab.json"]);
     for name in ["ab-a.json", "ab-b.json"] {
         let record = read_json(&out.path().join(name));
         let runs = record["runs"].as_array().unwrap();
         let have_limits: Vec<bool> = runs.iter().map(|run| !run["limits"].is_null()).collect();
         assert_eq!(have_limits, [true, false, false, false], "{name}");
+        let have_pictures: Vec<bool> = runs.iter().map(|run| !run["image"].is_null()).collect();
+        assert_eq!(have_pictures, [name == "ab-a.json", false, false, false], "{name}");
     }
+}
+
+/// The program, but for calls of some numbers, which do something else.
+#[cfg(unix)]
+fn counting_script(folder: &Path, numbers: &str, other: &str) -> PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let (calls, script) = (folder.join("calls"), folder.join("script"));
+    let text = format!(
+        "#!/bin/sh\necho >> '{0}'\nif [ $(wc -l < '{0}') {numbers} ]; then {other}; fi\nexec '{1}' \"$@\"\n",
+        calls.display(),
+        env!("CARGO_BIN_EXE_fumarole")
+    );
+    fs::write(&script, text).unwrap();
+    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    script
 }
 
 /// A program that fails in the third block: two are compared, and all that was measured is kept.
 #[cfg(unix)]
 #[test]
 fn a_failure_throws_no_block_away() {
-    use std::os::unix::fs::PermissionsExt;
     let out = folder();
-    let (calls, script) = (out.path().join("calls"), out.path().join("script"));
-    let text = format!(
-        "#!/bin/sh\necho >> '{0}'\nif [ $(wc -l < '{0}') -ge 9 ]; then echo 'error: the ninth call' >&2; exit 1; fi\n\
-         exec '{1}' \"$@\"\n",
-        calls.display(),
-        env!("CARGO_BIN_EXE_fumarole")
-    );
-    fs::write(&script, text).unwrap();
-    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    let script = counting_script(out.path(), "-ge 9", "echo 'error: the ninth call' >&2; exit 1");
     let kept = out.path().join("kept");
     let [a, b] = ["A", "B"].map(|side| format!("{side}:{}", script.display()));
     let program = fumarole("ab --blocks 5 --quiet --out").arg(&kept).arg("--binary").arg(&a).arg("--binary").arg(&b);
     let ended = common(program).run();
     assert_eq!(ended.status.code(), Some(1), "{}{}", ended.stdout, ended.stderr);
-    assert_eq!(ended.stderr, "error: the ninth call\n");
+    assert_eq!(ended.stderr, "error: side A: the ninth call\n");
     assert!(ended.stdout.contains("blocks A B B A") && ended.stdout.contains("4 processes"), "{}", ended.stdout);
     for name in ["ab-a.json", "ab-b.json"] {
         let processes = read_json(&kept.join(name))["runs"].as_array().unwrap().len();
@@ -205,8 +226,27 @@ fn a_failure_throws_no_block_away() {
     // Before two blocks there is nothing to say.
     let none = out.path().join("none");
     let program = fumarole("ab --blocks 5 --quiet --out").arg(&none).arg("--binary").arg(&a);
-    common(program).run().refused(1, &["the ninth call"]);
+    common(program).run().refused(1, &["side A: the ninth call"]);
     assert!(!none.join("ab-a.json").exists());
+}
+
+/// Told to end in its third block, by a process that does not end by itself: two are compared.
+#[cfg(unix)]
+#[test]
+fn an_interruption_keeps_whole_blocks() {
+    let out = folder();
+    let script = counting_script(out.path(), "-eq 10", "kill -INT $PPID; exec sleep 1000");
+    let kept = out.path().join("kept");
+    let [a, b] = ["A", "B"].map(|side| format!("{side}:{}", script.display()));
+    let program = fumarole("ab --blocks 5 --quiet --out").arg(&kept).arg("--binary").arg(&a).arg("--binary").arg(&b);
+    let ended = common(program).run().succeeded();
+    assert!(ended.stdout.contains("4 processes"), "{}", ended.stdout);
+    assert_eq!(entries(&kept), ["ab-a.json", "ab-b.json", "ab.json"]);
+    for name in ["ab-a.json", "ab-b.json"] {
+        assert_eq!(read_json(&kept.join(name))["runs"].as_array().unwrap().len(), 4, "{name}");
+    }
+    assert_eq!(read_json(&kept.join("ab.json"))["runs"][0]["a_processes"], 4);
+    assert_eq!(fs::read_to_string(out.path().join("calls")).unwrap().lines().count(), 10);
 }
 
 #[test]

@@ -10,10 +10,10 @@ use super::program::{ONCE, Program, assert_schema, burning, device, entries, fol
 use crate::faults::Layer;
 
 /// A fast fire of few triangles.
-const SMALL: &str = "--size 48x32 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10";
+pub(super) const SMALL: &str = "--size 48x32 --blocks 3x3x3 --fire 60 --smoke 30 --speed 1 --flammability 10";
 const BALL: &str = "--mesh sphere --triangles 300";
 /// As `ONCE`, for what finds its frames itself.
-const BRIEF: &str = "--repeat 1 --warmup 1 --no-limits";
+pub(super) const BRIEF: &str = "--repeat 1 --warmup 1 --no-limits";
 
 /// Of every tick and frame.
 const SHELL: [&str; 10] = [
@@ -358,54 +358,6 @@ fn table_4_2_measures_until_half_is_refined() {
         curves.lines().skip(1).map(|line| line.split(',').nth(2).unwrap().parse().unwrap()).collect();
     assert_eq!(shares.iter().filter(|&&share| share >= 0.5).count(), 4, "{curves}");
     assert!(ended.stdout.contains("speed-up") && ended.stdout.contains("2.43"), "{}", ended.stdout);
-}
-
-#[test]
-fn optimisations_are_swept() {
-    let out = folder();
-    for name in ["blocks", "limits"] {
-        let experiment = small(&format!("experiment {name} --triangles 300 --out ."));
-        let words = SMALL.replace("--blocks 3x3x3", "");
-        let experiment = if name == "blocks" {
-            burning("experiment blocks --triangles 300 --out .").args(&words).on_test_device()
-        } else {
-            experiment
-        };
-        experiment.args("--frames 2").args(BRIEF).inside(out.path()).run().succeeded();
-    }
-    let record = read_json(&out.path().join("burning-blocks.json"));
-    assert_schema(&record);
-    let blocks: Vec<&Value> =
-        record["runs"].as_array().unwrap().iter().map(|run| &run["experiment"]["paper"]).collect();
-    assert_eq!(blocks, [&Value::Null, &Value::Null, &70.0.into(), &30.0.into(), &Value::Null]);
-    let rows = |name: &str| -> Vec<Vec<f64>> {
-        let text = fs::read_to_string(out.path().join(name)).unwrap();
-        let numbers = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
-        text.lines().skip(1).map(numbers).collect()
-    };
-    let active = rows("burning-limits-active.csv");
-    // A lower limit, fewer active vertices at once, a longer fire.
-    assert_eq!(active.len(), 3);
-    assert!(active[2][1] <= active[1][1] && active[1][1] <= active[0][1], "{active:?}");
-    assert!(active[2][2] >= active[1][2] && active[1][2] >= active[0][2] && active[2][2] > active[0][2], "{active:?}");
-    assert_eq!(rows("burning-limits-division.csv").iter().map(|row| row[0]).collect::<Vec<_>>(), [1.0, 2.0, 4.0, 8.0]);
-    // Nothing is loaded in a frame, or something that takes time.
-    let loading = rows("burning-limits-loading.csv");
-    assert!(loading.len() == 2 && loading[0][1].is_nan() && loading[1][1] > 0.0, "{loading:?}");
-}
-
-#[test]
-fn scaling_follows_the_active_triangles() {
-    let out = folder();
-    let experiment = burning("experiment scaling --counts 200,800 --size 48x32 --out .").args(ONCE).on_test_device();
-    experiment.inside(out.path()).run().succeeded();
-    assert_schema(&read_json(&out.path().join("burning-scaling.json")));
-    let rates = fs::read_to_string(out.path().join("burning-scaling-rates.csv")).unwrap();
-    let active = |count: &str| -> u32 {
-        let line = rates.lines().find(|line| line.starts_with(count) && line.contains("internal-deformation")).unwrap();
-        line.split(',').nth(1).unwrap().parse().unwrap()
-    };
-    assert!(active("800") > 2 * active("200") && active("200") > 0, "{rates}");
 }
 
 #[test]

@@ -1,21 +1,22 @@
 //! What an experiment says beside its runs: its tables, on the page too, and every warning once.
 
+use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::program::{ONCE, Program, caustics, folder, fumarole, gas, lava, read_json};
 use super::report::assert_table_schema;
 
 /// Asserts that the tables beside a record are printed and stand on the page of their folder, with the document's own
 /// digits, and gives them by their places.
-fn shown_tables(program: Program, folder: &Path, name: &str) -> Vec<Value> {
+pub(super) fn shown_tables(program: Program, folder: &Path, name: &str) -> Vec<Value> {
     let printed = program.arg("--out").arg(folder).on_test_device().run().succeeded().stdout;
     let document = read_json(&folder.join(format!("{name}-tables.json")));
     assert_table_schema(&document);
     let page = folder.join("page.html");
     fumarole("report --quiet").arg(folder).arg("--output").arg(&page).run().succeeded();
-    let text = std::fs::read_to_string(page).unwrap();
+    let text = fs::read_to_string(page).unwrap();
     let section = text.split_once("<section class=\"record tables\"").expect("the tables have a section").1;
     let tables: Vec<Value> =
         [&document["table"]].into_iter().chain(document["more"].as_object().unwrap().values()).cloned().collect();
@@ -97,6 +98,12 @@ fn what_is_measured_without_runs_has_the_machines_warnings() {
         "{}",
         ended.stdout
     );
+    let document = read_json(&out.path().join("caustics-5-4.json"));
+    assert_eq!(document["warnings"], json!(["the validation layer is on: times include it"]));
+    let page = out.path().join("page.html");
+    fumarole("report --quiet -o").arg(&page).arg(out.path()).run().succeeded();
+    let page = fs::read_to_string(page).unwrap();
+    assert_eq!(page.matches("Warning: the validation layer is on").count(), 1);
 }
 
 #[test]
@@ -107,4 +114,8 @@ fn warnings_of_runs_that_became_a_table_are_printed_too() {
     let said = "warning: the validation layer is on: times include it (2 of 2 runs)\n";
     assert_eq!(ended.stdout.matches(said).count(), 1, "{}", ended.stdout);
     assert!(ended.stdout.lines().last().unwrap().starts_with("warning: "), "{}", ended.stdout);
+    let document = read_json(&out.path().join("gas-noise.json"));
+    let warnings = document["warnings"].as_array().unwrap();
+    assert!(warnings.iter().all(|line| ended.stdout.contains(&format!("warning: {}\n", line.as_str().unwrap()))));
+    assert!(warnings.contains(&"the validation layer is on: times include it (2 of 2 runs)".into()), "{warnings:?}");
 }

@@ -165,6 +165,8 @@ fn assert_environment(browser: &mut Browser, environment: &Value) {
     let mut expected = Map::new();
     for (heading, parts) in [
         ("device", vec![text("/device/name"), format!("({})", text("/device/type"))]),
+        ("device's UUID", vec![text("/device/uuid")]),
+        ("Vulkan", vec![text("/device/api_version")]),
         ("driver", vec![text("/device/driver"), text("/device/driver_version")]),
         ("system", vec![text("/host/os"), text("/host/kernel")]),
         ("processor", vec![text("/host/cpu")]),

@@ -92,6 +92,9 @@ fn what_differs_beside_the_times_is_listed_first() {
     ] {
         assert!(first[1..].iter().any(|line| line.contains(part)), "{part} in {text}");
     }
+    a[0].record.runs[0].image = None;
+    let text = render(&compared(&a, &b, None), Style::default());
+    assert!(text.contains("picture of gas slices: B alone has one"), "{text}");
 }
 
 /// Of many passes the compiler that all were compiled by is named, not how many differ.

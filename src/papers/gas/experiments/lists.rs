@@ -59,8 +59,8 @@ pub fn run(context: &mut Context<'_>) -> Result<(), Error> {
         y_scale: Scale::Log,
         series: WAYS.iter().enumerate().map(series).collect(),
     };
-    context.publish_plotted(&machine, &table, chart.to_svg())?;
     context.keep_warnings(swept.rows);
+    context.publish_plotted(&machine, &table, chart.to_svg())?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }

@@ -148,8 +148,8 @@ fn noise(context: &mut Context<'_>) -> Result<(), Error> {
         columns: &["turbulent ms", "constant ms", "share", "paper"],
         rows: vec![vec![json!(turbulent), json!(constant), json!(fraction), json!(0.65)]],
     };
-    context.publish_table(&machine, &table)?;
     context.keep_warnings(swept.rows);
+    context.publish_table(&machine, &table)?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }

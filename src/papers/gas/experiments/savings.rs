@@ -83,8 +83,8 @@ fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title:
         "Luv mean",
         "Luv p99",
     ];
-    context.publish_table(&machine, &ResultTable { title, columns, rows: cells })?;
     context.keep_warnings(swept.rows);
+    context.publish_table(&machine, &ResultTable { title, columns, rows: cells })?;
     machine.check_validation()?;
     swept.stopped.map_or(Ok(()), Err)
 }

@@ -81,8 +81,8 @@ impl Trade {
             y_scale: Scale::Log,
             series: vec![Series { name: "frame".to_owned(), points, reference: false }],
         };
-        context.publish_plotted(&machine, &table, chart.to_svg())?;
         context.keep_warnings(swept.rows);
+        context.publish_plotted(&machine, &table, chart.to_svg())?;
         machine.check_validation()?;
         swept.stopped.map_or(Ok(()), Err)
     }
