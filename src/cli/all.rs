@@ -75,8 +75,9 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
     let record = Record::new(machine.environment(), environment::command(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)?;
-    if let (Some(page), Some(json)) = (&page, &output.json) {
-        report::write_record(&record, json, page, output.quiet)?;
+    if let Some(page) = &page {
+        let name = output.json.as_deref().filter(|_| !output.json_to_stdout()).unwrap_or(Path::new("fumarole all"));
+        report::write_record(&record, name, page, output.quiet)?;
     }
     if !output.quiet {
         summary(&record, &output, page.as_deref()).iter().for_each(|line| outcome::say(line));
@@ -99,7 +100,8 @@ fn summary(record: &Record, output: &OutputArgs, page: Option<&Path>) -> Vec<Str
         Some(format!("  {} {}: {}, {ms:.1} ms{near}", run.paper, run.variant, pass.name))
     }));
     let pictures = record.runs.iter().filter_map(|run| Some(run.image.as_ref()?.path.clone()));
-    let files = [output.json.as_deref(), output.csv.as_deref(), output.trace.as_deref(), page];
+    let json = output.json.as_deref().filter(|_| !output.json_to_stdout());
+    let files = [json, output.csv.as_deref(), output.trace.as_deref(), page];
     let files = files.into_iter().flatten().map(|path| path.display().to_string()).chain(pictures);
     lines.push(format!("files: {}", files.collect::<Vec<_>>().join(", ")));
     lines.push(
@@ -186,5 +188,7 @@ mod tests {
         assert_eq!(lines[1], "  gas slices: splat, 2.0 ms, 25 % of limit (vertices)");
         assert_eq!(lines[2], "files: out/fumarole.json, out/report.html, fumarole-out/gas.png");
         assert!(lines[3].starts_with("next: fumarole PAPER bench"), "{lines:?}");
+        let output = OutputArgs { json: Some("-".into()), ..output };
+        assert_eq!(summary(&example::full(), &output, None)[2], "files: fumarole-out/gas.png");
     }
 }

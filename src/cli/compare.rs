@@ -33,7 +33,7 @@ pub struct CompareArgs {
 /// Options of verdicts, whoever measured.
 #[derive(Debug, Clone, Args)]
 pub struct VerdictArgs {
-    /// Ratios within 1 ± this are the same
+    /// Ratios within 1 ± this are the same; a smaller --fail-above takes its place
     #[arg(long, value_name = "2%", value_parser = parse_margin, default_value_t = SAME_MARGIN)]
     margin: f64,
     /// Exit with 4 when the frame or a pass of B is slower than A's by more than this, with certainty

@@ -15,7 +15,7 @@ use super::outcome;
 use crate::content;
 use crate::file;
 use crate::image::{self, Rgba8};
-use crate::measure::compare::{self, Comparison, Input, Options, compare, sections};
+use crate::measure::compare::{self, Comparison, Input, Options, are_in_blocks, compare, sections};
 use crate::report::alternative::alternatives;
 use crate::report::html::{Contents, Pair, Picture, PictureDifference, Plot, Section, Source, TableSource, name, page};
 use crate::report::json::{self, ReadError};
@@ -76,7 +76,9 @@ pub fn run(arguments: &ReportArgs) -> Result<(), Failure> {
     }
     if let (Some(a), Some(b)) = (&arguments.a, &arguments.b) {
         let (a, b) = (a.read()?, b.read()?);
-        contents.verdicts.extend(sections(&compare(&a, &b, &Options::default())?));
+        let options = Options::default();
+        let options = if are_in_blocks(&a, &b) { options.for_blocks(&a, &b) } else { options };
+        contents.verdicts.extend(sections(&compare(&a, &b, &options)?));
         let [a, b] = [a, b].map(|side| {
             let records = side.into_iter().map(|input| add_record(&mut contents, Path::new(&input.name), input.record));
             records.flatten().collect::<Vec<_>>()

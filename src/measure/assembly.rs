@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::config::entries;
 use super::floor::floor;
-use super::measure::{FrameSpan, MeasuredPass, Measurement, Schedule};
+use super::measure::{COUNTED, FrameSpan, MeasuredPass, Measurement, Schedule};
 use super::statistics::{median, repetition_noise, summarize};
 use super::study::Identity;
 use crate::gpu::live::MemoryUse;
@@ -149,6 +149,7 @@ fn pass(measured: &MeasuredPass, limits: Option<&Limits>, is_cpu: bool) -> Pass 
             samples_passed: c.samples_passed,
         }),
         bytes: measured.work.as_ref().map(bytes),
+        counted_ms: median(&measured.counted_ms).filter(|_| measured.work.is_some()),
         floor_ms: floor.as_ref().map(|floor| floor.ms),
         bound: floor.as_ref().map(|floor| floor.bound.to_owned()),
         floors: floor.iter().flat_map(|f| &f.terms).map(|(name, ms)| ((*name).to_owned(), *ms)).collect(),
@@ -213,12 +214,14 @@ pub fn trace(name: String, measurement: &Measurement) -> TraceRun {
     TraceRun { name, events, frames_left_out: measurement.frames_without_spans }
 }
 
-/// Section, calls, bytes and counters of a pass in one frame; what is not known is left out.
+/// Section of a pass, its calls, and bytes and counters of the one frame that is counted, with its number; what is not known
+/// is left out.
 fn arguments(pass: &MeasuredPass) -> Map<String, Value> {
     let counts = pass.counts.unwrap_or_default();
     let work = pass.work.as_ref();
     let known = [
         ("calls", Some(u64::from(pass.calls))),
+        ("counted_frame", work.map(|_| u64::from(COUNTED))),
         ("bytes_read", work.map(|work| work.bytes.read)),
         ("bytes_written", work.map(|work| work.bytes.written)),
         ("bytes_read_at_most", work.and_then(|work| Some(work.bytes_at_most?.read))),

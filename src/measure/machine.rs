@@ -129,8 +129,11 @@ impl Machine {
             }
         }
         let is_cpu = self.device.physical().device_type == DeviceType::Cpu;
-        if is_cpu && std::env::var_os("LP_NUM_THREADS").is_none() {
-            warnings.push("LP_NUM_THREADS is not set: the driver takes as many threads as it likes".to_owned());
+        let threads = std::env::var_os("LP_NUM_THREADS");
+        if is_cpu && environment::lp_num_threads().is_none() {
+            let what = threads
+                .map_or_else(|| " is not set".to_owned(), |text| format!("={} is no number", text.to_string_lossy()));
+            warnings.push(format!("LP_NUM_THREADS{what}: the driver takes as many threads as it likes"));
         }
         if self.device.physical().queue.is_none_or(|(_, bits)| bits == 0) {
             warnings.push("the device has no time stamps: GPU times are absent".to_owned());

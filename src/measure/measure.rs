@@ -42,6 +42,9 @@ pub struct FrameSpan {
     pub span: Span,
 }
 
+/// The frame whose work is counted: the one that needs no other before it.
+pub const COUNTED: u32 = 0;
+
 /// Measurements of one pass: one sample a frame, repetition after repetition.
 #[derive(Debug, Clone)]
 pub struct MeasuredPass {
@@ -57,7 +60,9 @@ pub struct MeasuredPass {
     pub host_ms: Vec<f64>,
     /// Milliseconds that the host waited for the GPU, one sample a frame.
     pub wait_ms: Vec<f64>,
-    /// Pipeline statistics of one frame; `None` where none were taken.
+    /// Those of [`gpu_ms`](Self::gpu_ms) that are of the counted frame, one sample a repetition.
+    pub counted_ms: Vec<f64>,
+    /// Pipeline statistics of the first frame; `None` where none were taken.
     pub counts: Option<Counts>,
     /// Bytes, samples and triangles of that frame.
     pub work: Option<Work>,
@@ -145,7 +150,7 @@ pub fn measure(
                     let frame_start_ms = origin.elapsed().as_secs_f64() * 1e3;
                     let sample = recorder.run_unless(watch.interrupted, mode, |frame| paper.record(frame, number));
                     let Some(sample) = finished(sample)? else { return Ok(results) };
-                    result.take(mode, sample);
+                    result.take(mode, number, sample);
                     if result.spans.len() + sample.spans.len() < MOST_SPANS {
                         let of_frame = |&span| FrameSpan { mode, repetition, frame: number, frame_start_ms, span };
                         result.spans.extend(sample.spans.iter().map(of_frame));
@@ -162,7 +167,7 @@ pub fn measure(
 
     restart(papers)?;
     for (paper, result) in papers.iter_mut().zip(&mut results) {
-        let sample = recorder.run_unless(watch.interrupted, Mode::Counted, |frame| paper.record(frame, 0));
+        let sample = recorder.run_unless(watch.interrupted, Mode::Counted, |frame| paper.record(frame, COUNTED));
         let Some(sample) = finished(sample)? else { return Ok(results) };
         for pass in &sample.passes {
             let measured = result.pass(pass);
@@ -200,6 +205,7 @@ impl Measurement {
                 gpu_ms: Vec::new(),
                 host_ms: Vec::new(),
                 wait_ms: Vec::new(),
+                counted_ms: Vec::new(),
                 counts: None,
                 work: None,
             });
@@ -208,7 +214,7 @@ impl Measurement {
         &mut self.passes[at]
     }
 
-    fn take(&mut self, mode: Mode, sample: &FrameSample) {
+    fn take(&mut self, mode: Mode, frame: u32, sample: &FrameSample) {
         match mode {
             Mode::Plain => {
                 self.frame_ms.push(sample.frame_ms);
@@ -222,7 +228,9 @@ impl Measurement {
             Mode::Bracketed => self.bracket_ms.extend(sample.bracket_ms),
             Mode::Timestamped => {
                 for pass in &sample.passes {
-                    self.pass(pass).gpu_ms.extend(pass.gpu_ms);
+                    let measured = self.pass(pass);
+                    measured.gpu_ms.extend(pass.gpu_ms);
+                    measured.counted_ms.extend(pass.gpu_ms.filter(|_| frame == COUNTED));
                 }
             }
             Mode::Counted => {}

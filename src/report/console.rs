@@ -158,10 +158,7 @@ fn passes(run: &Run) -> Table {
 }
 
 fn fraction(pass: &Pass, run: &Run) -> Option<f64> {
-    let times = [&pass.gpu_ms, &pass.host_ms];
-    let known: Vec<f64> = times.into_iter().flatten().map(|time| time.median).collect();
-    let frame_ms = run.frame_ms.as_ref()?.median;
-    (!known.is_empty() && frame_ms > 0.0).then(|| known.iter().sum::<f64>() / frame_ms)
+    Some(pass.busy_ms()? / run.median_frame_ms().filter(|ms| *ms > 0.0)?)
 }
 
 fn frame(run: &Run, style: Style) -> String {

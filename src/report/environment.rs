@@ -28,14 +28,43 @@ pub fn host() -> Host {
         kernel: read("/proc/sys/kernel/osrelease").map(|text| text.trim().to_owned()),
         cpu: read("/proc/cpuinfo").and_then(|text| cpu_name(&text)),
         logical_cores: std::thread::available_parallelism().ok().and_then(|count| u32::try_from(count.get()).ok()),
-        lp_num_threads: std::env::var("LP_NUM_THREADS").ok().and_then(|value| value.trim().parse().ok()),
+        lp_num_threads: lp_num_threads(),
         cpu_governor: read("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor").map(|text| text.trim().to_owned()),
         variables: variables(std::env::vars_os()),
     }
 }
 
-/// Prefixes of the variables that the Vulkan loader, its layers and Mesa's drivers read.
-const VARIABLES: [&str; 8] = ["VK_", "LP_", "MESA_", "GALLIUM_", "GALLIVM_", "RADV_", "ANV_", "DRI_PRIME"];
+/// The thread count of Mesa's software drivers; absent where the variable is unset or no number.
+pub fn lp_num_threads() -> Option<u32> {
+    std::env::var("LP_NUM_THREADS").ok().and_then(|value| value.trim().parse().ok())
+}
+
+/// Prefixes of the variables that the Vulkan loader, its layers and drivers read.
+const VARIABLES: [&str; 23] = [
+    "VK_",
+    "LP_",
+    "MESA_",
+    "GALLIUM_",
+    "GALLIVM_",
+    "RADV_",
+    "ANV_",
+    "DRI_PRIME",
+    "ACO_",
+    "AMD_",
+    "AMDVLK_",
+    "INTEL_",
+    "NIR_",
+    "NVK_",
+    "NOUVEAU_",
+    "NV_",
+    "__NV_",
+    "__GL_",
+    "PVR_",
+    "PAN_",
+    "TU_",
+    "V3DV_",
+    "VN_",
+];
 
 fn variables(all: impl Iterator<Item = (OsString, OsString)>) -> BTreeMap<String, String> {
     let text = |value: OsString| value.to_string_lossy().into_owned();

@@ -17,7 +17,7 @@ pub struct Limits {
     pub fill_gpix_s: Option<f64>,
     /// Pixels blended additively into an 8-bit RGBA target, 10^9 a second.
     pub blend_gpix_s: Option<f64>,
-    /// Vertices of points that nothing is drawn of, 10^9 a second.
+    /// Vertices of triangles outside of the picture, 10^9 a second.
     #[serde(default)]
     pub vertex_gvertices_s: Option<f64>,
     /// Triangles without area, 10^9 a second.

@@ -35,6 +35,10 @@ pub struct Pass {
     pub statistics: Option<Statistics>,
     /// Bytes of the pass's declared accesses; absent for host work, and where no frame was counted.
     pub bytes: Option<Bytes>,
+    /// Median GPU time of the frame whose work was counted, the first of every repetition; absent where none was, and in what
+    /// older programs wrote.
+    #[serde(default)]
+    pub counted_ms: Option<f64>,
     /// Least time of its counted work at the device's limits, in milliseconds; absent where none of it is known.
     #[serde(default)]
     pub floor_ms: Option<f64>,
@@ -47,9 +51,17 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// The floor as a fraction of the median GPU time: how near the pass comes to the device's limits.
+    /// The floor as a fraction of the GPU time of the frame that it was counted in: how near the pass comes to the device's
+    /// limits. Of older records as a fraction of the median GPU time.
     pub fn share_of_limit(&self) -> Option<f64> {
-        Some(self.floor_ms? / self.gpu_ms.as_ref().filter(|time| time.median > 0.0)?.median)
+        let ms = self.counted_ms.or_else(|| Some(self.gpu_ms.as_ref()?.median))?;
+        Some(self.floor_ms? / Some(ms).filter(|ms| *ms > 0.0)?)
+    }
+
+    /// Its time on the device and of host work, in milliseconds; absent where neither was measured.
+    pub fn busy_ms(&self) -> Option<f64> {
+        let times = [&self.gpu_ms, &self.host_ms].map(|time| time.as_ref().map(|time| time.median));
+        times.into_iter().flatten().reduce(|sum, ms| sum + ms)
     }
 }
 

@@ -409,7 +409,8 @@ mod tests {
             ("/runs/0/passes/1", &full["runs"][0]["passes"][1]),
         ] {
             // What later programs of the schema added, older records lack.
-            let added = ["inputs", "loading", "started", "shaders", "samples", "floor_ms", "bound", "floors"];
+            let added =
+                ["inputs", "loading", "started", "shaders", "samples", "counted_ms", "floor_ms", "bound", "floors"];
             for field in fields.as_object().unwrap().keys().filter(|field| !added.contains(&field.as_str())) {
                 let mut document = full.clone();
                 let object = document.pointer_mut(pointer).unwrap();

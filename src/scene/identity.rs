@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::formats::gltf_buffer::percent_decoded;
 use super::{voxels, world_file};
 use crate::{content, file};
 
@@ -31,9 +32,9 @@ fn companions(path: &Path) -> Vec<PathBuf> {
             std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
         let buffers = document.as_ref().and_then(|document| document["buffers"].as_array()).into_iter().flatten();
         let uris = buffers.filter_map(|buffer| buffer["uri"].as_str()).filter(|uri| !uri.starts_with("data:"));
-        // A name that is percent-encoded is none of a plain file and stays out; the document itself names it.
         let folder = path.parent().unwrap_or(Path::new(""));
-        return uris.filter_map(|uri| file::below(folder, Path::new(uri)).ok()).filter(|file| file.is_file()).collect();
+        let files = uris.filter_map(percent_decoded).filter_map(|name| file::below(folder, Path::new(&name)).ok());
+        return files.filter(|file| file.is_file()).collect();
     }
     if ending == "png" {
         let beside = world_file::ENDINGS.map(|ending| path.with_extension(ending));
@@ -60,11 +61,13 @@ mod tests {
             std::fs::write(&path, text).unwrap();
             path
         };
-        let gltf = write("a.gltf", r#"{"buffers": [{"uri": "a.bin"}, {"uri": "data:,x"}]}"#);
-        write("a.bin", "one");
-        let first = source_sha256(&gltf).unwrap();
-        write("a.bin", "two");
-        assert_ne!(source_sha256(&gltf).unwrap(), first);
+        let gltf = write("a.gltf", r#"{"buffers": [{"uri": "a.bin"}, {"uri": "data:,x"}, {"uri": "a%20b.bin"}]}"#);
+        for name in ["a.bin", "a b.bin"] {
+            write(name, "one");
+            let first = source_sha256(&gltf).unwrap();
+            write(name, "two");
+            assert_ne!(source_sha256(&gltf).unwrap(), first, "{name}");
+        }
 
         let raster = write("b.bil", "raster");
         let alone = source_sha256(&raster).unwrap();

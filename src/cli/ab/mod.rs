@@ -135,6 +135,7 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
         }));
     };
     [comparison.a, comparison.b] = files.map(|file| vec![file.display().to_string()]);
+    arguments.list_variables(&mut comparison);
     comparison.a_commands = vec![arguments.command(Side::A)?];
     comparison.b_commands = vec![arguments.command(Side::B)?];
     // What the page of a report shows: compared again, without the options of this call, it might be decided otherwise.

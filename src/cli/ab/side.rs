@@ -11,6 +11,7 @@ use crate::cli::failure::Failure;
 use crate::cli::processes::{OF_THE_FIRST, finish, without};
 use crate::cli::watch::interrupted;
 use crate::content;
+use crate::measure::compare::{Comparison, Difference};
 use crate::report::{Record, json as reader};
 
 /// One of the two.
@@ -76,6 +77,21 @@ impl AbArgs {
 
     fn variables(&self, side: Side) -> impl Iterator<Item = &(String, String)> {
         self.env.iter().filter(move |(of, _)| *of == side).map(|(_, variable)| variable)
+    }
+
+    /// Lists the sides' own variables among the differences, as far as no record tells of them.
+    pub fn list_variables(&self, comparison: &mut Comparison) {
+        for (_, (name, _)) in &self.env {
+            let [a, b] = [Side::A, Side::B].map(|side| {
+                let given = self.variables(side).filter(|(known, _)| known == name).map(|(_, value)| value.clone());
+                given.last().or_else(|| std::env::var(name).ok()).into_iter().collect::<Vec<_>>()
+            });
+            let what = format!("host.variables.{name}");
+            let is_told = name == "LP_NUM_THREADS" || comparison.differences.iter().any(|known| known.what == what);
+            if a != b && !is_told {
+                comparison.differences.push(Difference { what, a, b });
+            }
+        }
     }
 
     /// What a side's program is given, but for where its record goes.

@@ -116,7 +116,7 @@ fn differences(comparison: &Comparison) -> Vec<String> {
     let others = comparison.differences.iter().filter(|difference| !difference.what.contains(" of "));
     lines.extend(others.map(|difference| line(&difference.what, difference)));
     if lines.is_empty() {
-        lines.push("the same program, shaders and environment on both sides".to_owned());
+        lines.push("nothing that the records tell of program, shaders and environment differs".to_owned());
     }
     lines
 }

@@ -146,19 +146,29 @@ pub(super) fn match_runs<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'
     })
 }
 
-/// Pairs each configuration of A with the one of B that differs from it least, and lists in which parameters.
+/// Pairs configurations of A with those of B, the least different first and equal variants before others, and lists in which
+/// parameters they differ. In the order of A.
 pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matched<'a>, CompareError> {
     let mut warnings = Vec::new();
     let a = configurations("A", a, Design::Blocks, &mut warnings)?;
-    let mut b = configurations("B", b, Design::Blocks, &mut warnings)?;
+    let b = configurations("B", b, Design::Blocks, &mut warnings)?;
+    let method = |c: &Configuration| (c.first.paper.clone(), c.first.variant.clone());
+    let distance = |at: usize, of: usize| (method(&a[at]) != method(&b[of]), differences(&a[at], &b[of]).len(), at, of);
+    let mut distances: Vec<_> = (0..a.len()).flat_map(|at| (0..b.len()).map(move |of| distance(at, of))).collect();
+    distances.sort_unstable();
+    let (mut partners, mut taken) = (vec![None; a.len()], vec![false; b.len()]);
+    for (_, _, at, of) in distances {
+        if partners[at].is_none() && !taken[of] {
+            (partners[at], taken[of]) = (Some(of), true);
+        }
+    }
+    let mut b: Vec<Option<Configuration>> = b.into_iter().map(Some).collect();
     let (mut pairs, mut only_in_a, mut listed) = (vec![], vec![], vec![]);
-    for configuration in a {
-        let nearest = (0..b.len()).min_by_key(|&index| differences(&configuration, &b[index]).len());
-        let Some(index) = nearest else {
+    for (configuration, partner) in a.into_iter().zip(partners) {
+        let Some(other) = partner.and_then(|of| b[of].take()) else {
             only_in_a.push(configuration.name());
             continue;
         };
-        let other = b.remove(index);
         let value = |side: &Configuration, field: &str| side.fields.get(field).cloned().into_iter().collect::<Vec<_>>();
         let differing = differences(&configuration, &other).into_iter().map(|field| Difference {
             a: value(&configuration, &field),
@@ -168,7 +178,7 @@ pub(super) fn match_nearest<'a>(a: &'a [Input], b: &'a [Input]) -> Result<Matche
         listed.extend(differing.filter(|difference| !listed.contains(difference)).collect::<Vec<_>>());
         pairs.push((configuration, other));
     }
-    let only_in_b = b.iter().map(Configuration::name).collect();
+    let only_in_b = b.iter().flatten().map(Configuration::name).collect();
     Ok(Matched { pairs, only_in_a, only_in_b, differences: listed, warnings })
 }
 
@@ -361,7 +371,10 @@ fn conditions(environment: &Environment) -> Vec<(String, String)> {
     .into_iter()
     .map(|(name, value)| (name.to_owned(), value))
     .collect();
-    conditions.extend(host.variables.iter().map(|(name, value)| (format!("host.variables.{name}"), value.clone())));
+    // The thread count stands above.
+    let variables =
+        host.variables.iter().filter(|(name, _)| *name != "LP_NUM_THREADS" || host.lp_num_threads.is_none());
+    conditions.extend(variables.map(|(name, value)| (format!("host.variables.{name}"), value.clone())));
     conditions
 }
 

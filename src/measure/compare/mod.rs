@@ -258,6 +258,15 @@ pub struct Quantity {
     pub gate_reason: Option<String>,
 }
 
+const OF_BLOCKS: &str = "the sides were measured in blocks A B B A, as by ab: compare --blocks takes the differences of \
+                         blocks, in which drift cancels";
+
+/// True when every configuration of both sides was measured in blocks A B B A, as `ab` leaves them.
+pub fn are_in_blocks(a: &[Input], b: &[Input]) -> bool {
+    matching::match_nearest(a, b)
+        .is_ok_and(|matched| !matched.pairs.is_empty() && matched.pairs.iter().all(|(a, b)| order::is_in_blocks(a, b)))
+}
+
 /// Compares side B with side A.
 ///
 /// # Errors
@@ -277,7 +286,12 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
     }
     let names = |side: &[Input]| side.iter().map(|input| input.name.clone()).collect();
     match options.design {
-        Design::Processes => matched.warnings.extend(matched.pairs.iter().find_map(|(a, b)| order::doubt(a, b))),
+        Design::Processes => {
+            matched.warnings.extend(matched.pairs.iter().find_map(|(a, b)| order::doubt(a, b)));
+            if matched.pairs.iter().any(|(a, b)| order::is_in_blocks(a, b)) {
+                matched.warnings.push(OF_BLOCKS.to_owned());
+            }
+        }
         Design::Blocks => matched.pairs.iter().try_for_each(|(a, b)| order::check_blocks(a, b))?,
     }
     Ok(Comparison {

@@ -26,6 +26,13 @@ pub(super) fn doubt(a: &Configuration, b: &Configuration) -> Option<String> {
     Some(format!("{how}, so that drift looks like a difference: measure them in turn with ab"))
 }
 
+/// True when the sides were measured in blocks A B B A: each of the blocks that [`check_blocks`] asks for in that order.
+pub(super) fn is_in_blocks(a: &Configuration, b: &Configuration) -> bool {
+    let (Some(of_a), Some(of_b)) = (a.started(), b.started()) else { return false };
+    let in_order = |(a, b): (&[&str], &[&str])| a[0] < b[0] && b[0] < b[1] && b[1] < a[1];
+    of_a.len() >= 4 && check_blocks(a, b).is_ok() && of_a.chunks(2).zip(of_b.chunks(2)).all(in_order)
+}
+
 /// Refuses sides that are not of the same blocks, each with two processes of both: block N has the processes 2 N and 2 N + 1.
 ///
 /// Any others would be paired as if drift cancelled in them, and make false certainty.

@@ -21,11 +21,6 @@ const NARROW: f64 = 0.5;
 /// Width of the line between two passes of the stacked bar.
 const GAP: f64 = 1.5;
 
-/// Milliseconds of a pass that the drawings show: its time on the device, or of host work.
-pub(super) fn milliseconds(pass: &Pass) -> Option<f64> {
-    pass.gpu_ms.as_ref().or(pass.host_ms.as_ref()).map(|time| time.median)
-}
-
 struct Timed<'a> {
     pass: &'a Pass,
     start_ms: f64,
@@ -39,7 +34,7 @@ pub(super) fn drawings(run: &Run) -> Markup {
         .passes
         .iter()
         .filter_map(|pass| {
-            let ms = milliseconds(pass)?;
+            let ms = pass.busy_ms()?;
             let start_ms = total_ms;
             total_ms += ms;
             Some(Timed { pass, start_ms, ms })

@@ -9,6 +9,7 @@ use super::configurations::{Configuration, configurations, shown};
 use super::run::{number, run};
 use super::tables::tables;
 use super::{Contents, Pair, Picture, Section, Source};
+use crate::report::console::counted_warnings;
 use crate::report::record::{Environment, Record};
 
 const STYLE: &str = include_str!("style.css");
@@ -116,6 +117,9 @@ fn record(source: &Source, index: usize) -> Markup {
             (experiment(record))
             (pictures(source))
             @for configuration in configurations(&record.runs, index) { (runs(&configuration)) }
+            @for warning in counted_warnings(record.runs.iter().map(|run| run.warnings.as_slice())) {
+                p.warning { "Warning: " (warning) }
+            }
         }
     }
 }

@@ -43,7 +43,6 @@ pub(super) fn run(Shown { run, id, title }: &Shown) -> Markup {
                     @if let Some(ratio) = row.ratio { " Ratio " (number(ratio, 3)) "." }
                 }
             }
-            @for warning in &run.warnings { p.warning { "Warning: " (warning) } }
             (details(run))
         }
     }
@@ -71,7 +70,7 @@ type Column = (&'static str, fn(&Pass, &Run) -> Option<f64>, usize);
 const COLUMNS: [Column; 18] = [
     ("GPU ms", |pass, _| Some(pass.gpu_ms.as_ref()?.median), 4),
     ("± MAD", |pass, _| pass.gpu_ms.as_ref()?.mad, 4),
-    ("% of frame", |pass, run| Some(100.0 * super::bars::milliseconds(pass)? / run.median_frame_ms()?), 1),
+    ("% of frame", |pass, run| Some(100.0 * pass.busy_ms()? / run.median_frame_ms()?), 1),
     ("share of limit, %", |pass, _| Some(100.0 * pass.share_of_limit()?), 0),
     ("floor ms", |pass, _| pass.floor_ms, 4),
     ("host ms", |pass, _| Some(pass.host_ms.as_ref()?.median), 4),

@@ -79,7 +79,8 @@ impl<'a> Buffers<'a> {
     }
 }
 
-fn percent_decoded(uri: &str) -> Option<String> {
+/// The name of a file that a URI tells; absent where it is not percent-encoded UTF-8.
+pub fn percent_decoded(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
     while let [first, after @ ..] = rest {

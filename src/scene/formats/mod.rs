@@ -4,7 +4,7 @@
 
 mod gltf;
 mod gltf_accessor;
-mod gltf_buffer;
+pub(super) mod gltf_buffer;
 mod obj;
 mod ply;
 mod stl;

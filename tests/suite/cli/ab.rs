@@ -22,10 +22,18 @@ fn sides_are_measured_in_turn_and_both_records_kept() {
     let out = folder();
     let report = out.path().join("ab.json");
     let program =
-        ab("--env A:LP_NUM_THREADS=2 --env B:LP_NUM_THREADS=1 --json").arg(&report).arg("--out").arg(out.path());
+        ab("--env A:LP_NUM_THREADS=2 --env B:LP_NUM_THREADS=1 --env B:FUMAROLE_AB=x --env B:NIR_DEBUG= --json")
+            .arg(&report)
+            .arg("--out")
+            .arg(out.path());
     let ended = common(program.arg("--b").arg("--waves 2 --seed 7")).run().succeeded();
     assert!(ended.stdout.starts_with("what is compared\n"), "{}", ended.stdout);
-    for part in ["seed: A 1, B 7", "host.lp_num_threads: A 2, B 1", "blocks A B B A"] {
+    for part in [
+        "seed: A 1, B 7",
+        "host.lp_num_threads: A 2, B 1",
+        "host.variables.FUMAROLE_AB: A unset, B x",
+        "blocks A B B A",
+    ] {
         assert!(ended.stdout.contains(part), "{part} in {}", ended.stdout);
     }
     let report = read_json(&report);
@@ -38,8 +46,10 @@ fn sides_are_measured_in_turn_and_both_records_kept() {
     };
     assert_eq!(command("a")[..2], ["env", "LP_NUM_THREADS=2"]);
     let of_b = command("b");
-    assert_eq!(of_b[..2], ["env", "LP_NUM_THREADS=1"]);
-    assert!(of_b[2].ends_with("fumarole") && of_b[3..5] == ["caustics", "bench"], "{of_b:?}");
+    assert_eq!(of_b[..4], ["env", "LP_NUM_THREADS=1", "FUMAROLE_AB=x", "NIR_DEBUG="]);
+    assert!(of_b[4].ends_with("fumarole") && of_b[5..7] == ["caustics", "bench"], "{of_b:?}");
+    let lists = |what: &str| report["differences"].as_array().unwrap().iter().filter(|one| one["what"] == what).count();
+    assert_eq!((lists("host.variables.NIR_DEBUG"), lists("host.variables.LP_NUM_THREADS")), (1, 0));
     assert!(of_b.ends_with(&["--waves", "2", "--seed", "7"].map(str::to_owned)), "{of_b:?}");
     assert!(report["command"].as_array().unwrap().contains(&"--env".into()), "{}", report["command"]);
     let run = &report["runs"][0];

@@ -140,7 +140,7 @@ fn the_limits_of_the_device_are_measured_and_every_pass_is_set_against_them() {
 
 /// The pass's share of its floor as the table prints it.
 fn printed_share(pass: &Value) -> Option<String> {
-    let (floor, gpu) = (pass["floor_ms"].as_f64()?, pass["gpu_ms"]["median"].as_f64()?);
+    let (floor, gpu) = (pass["floor_ms"].as_f64()?, pass["counted_ms"].as_f64()?);
     (gpu > 0.0).then(|| format!("{:.0} % {}", 100.0 * floor / gpu, pass["bound"].as_str().unwrap()))
 }
 

@@ -112,3 +112,37 @@ fn a_time_that_a_process_lacks_is_in_no_block() {
     assert_eq!((splat.verdict, splat.reason.as_deref()), (Verdict::Unclear, Some("not every block has this time")));
     assert_eq!(run.frame.verdict, Verdict::Same);
 }
+
+/// What one side lacks takes no other's place, and blocks that are compared as processes are told.
+#[test]
+fn blocks_of_several_variants_find_their_own() {
+    let mut noise = Noise::new(9);
+    let mut side = |variants: &[&str], seconds: [u32; 4]| {
+        let runs = seconds.into_iter().zip(0..).flat_map(|(second, process)| {
+            variants.iter().map(move |variant| (second, process, (*variant).to_owned())).collect::<Vec<_>>()
+        });
+        let runs = runs.map(|(second, process, variant)| Run {
+            process,
+            variant,
+            started: Some(format!("2026-01-31T12:00:0{second}Z")),
+            ..run_of(&noise.frame_times(FRAMES, 5.0, 0.01))
+        });
+        vec![input("x.json", runs.collect())]
+    };
+    let a = side(&["none", "slices", "march"], [0, 3, 4, 7]);
+    let b = side(&["slices", "march"], [1, 2, 5, 6]);
+    let blocks = Options { design: Design::Blocks, ..Options::default() };
+    for (a, b) in [(&a, &b), (&b, &a)] {
+        let comparison = compare(a, b, &blocks).unwrap();
+        let variants: Vec<&str> = comparison.runs.iter().map(|run| run.variant.as_str()).collect();
+        assert_eq!((variants, comparison.differences.len()), (vec!["slices", "march"], 0));
+        let alone = [&comparison.only_in_a[..], &comparison.only_in_b].concat();
+        assert!(alone.len() == 1 && alone[0].starts_with("gas none"), "{alone:?}");
+    }
+    assert!(are_in_blocks(&a, &b) && !are_in_blocks(&b, &a));
+    assert_eq!(compared(&a, &b, None).warnings, [OF_BLOCKS]);
+    // Another variant is compared where nothing else is left.
+    let [a, b] = [("none", [0, 3, 4, 7]), ("march", [1, 2, 5, 6])].map(|(variant, seconds)| side(&[variant], seconds));
+    let comparison = compare(&a, &b, &blocks).unwrap();
+    assert_eq!((comparison.runs.len(), comparison.differences[0].what.as_str()), (1, "variant"));
+}
