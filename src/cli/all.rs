@@ -185,7 +185,7 @@ mod tests {
         let output = OutputArgs { json: Some("out/fumarole.json".into()), ..AllArgs::plain().output };
         let lines = summary(&example::full(), &output, Some(Path::new("out/report.html")));
         assert_eq!(lines[0], "1 paper in 1 variant; the slowest pass of each");
-        assert_eq!(lines[1], "  gas slices: splat, 2.0 ms, 25 % of limit (vertices)");
+        assert_eq!(lines[1], "  gas slices: splat, 2.0 ms, 20 % of limit (vertices)");
         assert_eq!(lines[2], "files: out/fumarole.json, out/report.html, fumarole-out/gas.png");
         assert!(lines[3].starts_with("next: fumarole PAPER bench"), "{lines:?}");
         let output = OutputArgs { json: Some("-".into()), ..output };

@@ -259,7 +259,7 @@ mod tests {
             "min 1.5000, median 2.0000",
             "vertices 90000, clipped primitives 29000, fragments 1600000",
             "at most 4096 and 2048; not certain: density",
-            "floor: 0.5000 ms, 25 % of its time, bound by vertices",
+            "floor: 0.5000 ms, 20 % of its time, bound by vertices",
             "1.5000 ± 0.5000",
             "naga: lava/splat.vert: an atomic",
             "tells neither registers",
