@@ -187,6 +187,8 @@ impl<S: Study> Bench<'_, S> {
     ) -> Result<Vec<VariantRun>, Error> {
         let Bench { study, loaded, variants, schedule, .. } = *self;
         let started = environment::instant();
+        // As they were loaded: who changes a file meanwhile changes nothing that is measured.
+        let inputs = inputs(study)?;
         let studies = study.alternatives();
         let sides = variants.iter().flat_map(|&variant| studies.iter().map(move |study| (study, variant)));
         let estimates = sides.clone().map(|(study, variant)| study.estimate(&machine.device, &loaded.scene, variant));
@@ -225,7 +227,6 @@ impl<S: Study> Bench<'_, S> {
         let validation = machine.check_validation()?;
         let warnings = [machine.warnings(), self.limits.and_then(limits::warning).into_iter().collect()].concat();
         let identity = study.identity();
-        let inputs = inputs(study)?;
         let runs = measured.iter().zip(metrics).zip(sides).map(|(((built, measurement), metrics), (study, _))| {
             let metadata = RunMetadata {
                 paper: S::PAPER,

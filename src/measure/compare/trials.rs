@@ -1,7 +1,10 @@
 //! How often verdicts are right, of many made families of twelve quantities.
 
 use super::synthetic::Noise;
-use super::{Evidence, Gate, LOOKS, Rules, Verdict, decide, gate};
+use super::{Evidence, Gate, Input, LOOKS, Options, Rules, Verdict, compare, decide, gate};
+use crate::measure::statistics::summarize;
+use crate::report::example;
+use crate::report::record::{Pass, PassKind, Record, Run};
 
 const SEEDS: u64 = 100;
 
@@ -75,4 +78,47 @@ fn blocks_keep_their_error_under_drift() {
     }
     assert!(wrong <= 7, "{wrong} of {SEEDS}");
     assert!(same >= 93 && found >= 93, "{same} the same, {found} slower of {SEEDS}");
+}
+
+/// A record of ten processes that differ by 1 %: a frame of 20 ms, and eleven passes of which the first takes 5 % of it.
+fn record(noise: &mut Noise, factor: f64) -> Vec<Input> {
+    let mut of_processes =
+        |ms: f64| noise.process_log_medians(10, 0.01, 0.01).into_iter().map(|log| ms * log.exp()).collect::<Vec<_>>();
+    let frames = of_processes(20.0);
+    let passes: Vec<Vec<f64>> = (0..11).map(|index| of_processes(if index == 0 { factor } else { 1.9 })).collect();
+    let names: Vec<String> = (0..11).map(|index| format!("pass-{index}")).collect();
+    let runs = (0..10).map(|process| {
+        let at = process as usize;
+        let passes = names.iter().zip(&passes);
+        let passes = passes.map(|(name, times)| Pass {
+            gpu_ms: summarize(&times[at..=at]),
+            ..example::pass(name, PassKind::Graphics)
+        });
+        Run { process, frame_ms: summarize(&frames[at..=at]), passes: passes.collect(), ..example::run() }
+    });
+    let record = Record::new(example::environment(), vec![], runs.collect());
+    vec![Input { name: "x.json".to_owned(), record }]
+}
+
+/// The same of whole records, as `compare` decides on its exit code: the limit of 5 % stops a pass of 5 % share that is 10 %
+/// slower, and hardly ever sides that are alike.
+#[test]
+fn records_end_as_their_passes_do() {
+    let options = Options { fail_above: Some(0.05), ..Options::default() };
+    let (mut found, mut stopped, mut wrong, mut stopped_alike) = (0, 0, 0, 0);
+    for seed in 0..SEEDS {
+        let mut noise = Noise::new(4000 + seed);
+        let [a, alike, slower] = [1.0, 1.0, 1.1].map(|factor| record(&mut noise, factor));
+        let comparison = compare(&a, &slower, &options).unwrap();
+        let verdicts: Vec<Verdict> = comparison.quantities().map(|quantity| quantity.verdict).collect();
+        assert!(comparison.quantities().all(|quantity| quantity.counts) && verdicts.len() == 12);
+        found += u64::from(verdicts[1] == Verdict::Slower);
+        stopped += u64::from(comparison.has_regression());
+        let comparison = compare(&a, &alike, &options).unwrap();
+        let is_wrong = |verdict: Verdict| matches!(verdict, Verdict::Faster | Verdict::Slower);
+        wrong += u64::from(comparison.quantities().any(|quantity| is_wrong(quantity.verdict)));
+        stopped_alike += u64::from(comparison.has_regression());
+    }
+    assert!(found >= 93 && stopped >= 93, "{found} found and {stopped} stopped of {SEEDS}");
+    assert!(wrong <= 7 && stopped_alike <= 1, "{wrong} false verdicts and {stopped_alike} stopped of {SEEDS}");
 }
