@@ -63,7 +63,7 @@ RaySegment ray_segment(vec3 eye, vec3 direction, float limit_m) {
     float a = q.z / (abs(sum) < 1.0e-30 ? 1.0e-30 : sum);
     float b = sum / q.x;
     vec2 range = vec2(max(0.0, min(a, b)), min(limit_m, max(a, b)));
-    if (terrain.base_kind == CYLINDER) {
+    if (is_kind(terrain.base_kind, CYLINDER, range.x)) {
         // From a little outside, so that a ray is seen to come in through the wall.
         float outside = terrain.rounding_nodes;
         float low = -(terrain.middle_node.y + outside) / terrain.nodes_per_unit.y;
@@ -106,7 +106,7 @@ Subsegment subsegment_of(RaySegment ray, float start, float size) {
     float angle = length(move) / radius;
     float longitude_slack = min(0.125 * angle * angle, 0.5 * angle);
     vec3 slack = vec3(longitude_slack * terrain.nodes_per_unit.x, 0.0, 0.125 * length(move) * angle);
-    if (terrain.base_kind != CYLINDER) {
+    if (!is_kind(terrain.base_kind, CYLINDER, radius)) {
         float bend = length(b - a) / terrain.smallest_radius_m;
         float second = 0.125 * bend * bend * (2.0 + terrain.curvature_change + terrain.smallest_radius_m / radius);
         slack.y = min(second, 0.5 * bend) * abs(terrain.nodes_per_unit.y);

@@ -1,19 +1,17 @@
-// Kinds of base; 2 is an ellipsoid.
-const int PLANE = 0;
-const int CYLINDER = 1;
+#include "terrain/kinds.glsl"
 
 // The base's normal below a point of the world `height_m` over it.
 vec3 up_at(vec3 point, float height_m) {
-    if (light.base_kind == PLANE) {
-        return vec3(0.0, 1.0, 0.0);
-    }
     vec3 from_center = point - light.base_center;
     float along = dot(from_center, light.base_axis);
     vec3 across = from_center - along * light.base_axis;
     vec2 squares = light.base_radii * light.base_radii;
     float radius = max(length(across), 1.0e-20);
+    if (is_kind(light.base_kind, PLANE, radius)) {
+        return vec3(0.0, 1.0, 0.0);
+    }
     vec2 up = vec2(radius, 0.0);
-    if (light.base_kind != CYLINDER) {
+    if (!is_kind(light.base_kind, CYLINDER, radius)) {
         // The point is (N + h) cos, (N b^2 / a^2 + h) sin of the latitude, whose radius of curvature N changes little with it.
         up = vec2(radius, along) / squares;
         for (int i = 0; i < 4; i++) {

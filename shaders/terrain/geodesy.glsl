@@ -88,7 +88,7 @@ vec3 map_coordinates(vec3 point, float side) {
     }
     float grown = off > 0.0 ? point.y + point.x * point.x / (radius + off) : radius - terrain.axis_distance_m;
     vec2 found = vec2(point.z, grown);
-    if (terrain.base_kind != CYLINDER) {
+    if (!is_kind(terrain.base_kind, CYLINDER, radius)) {
         found = geodetic(grown, point.z);
     }
     return vec3(terrain.middle_node.x + longitude * terrain.nodes_per_unit.x,
@@ -98,7 +98,8 @@ vec3 map_coordinates(vec3 point, float side) {
 
 // F = P + n h (eq. 6): the point over a place in nodes, in the map's frame.
 vec3 frame_point(vec2 place, float height) {
-    if (terrain.base_kind == PLANE) {
+    float away = max(abs(place.x), abs(place.y));
+    if (is_kind(terrain.base_kind, PLANE, away)) {
         return vec3(place, height);
     }
     vec2 moved = (place - terrain.middle_node) / terrain.nodes_per_unit;
@@ -108,7 +109,7 @@ vec3 frame_point(vec2 place, float height) {
     float dc = -2.0 * sh * sh;
     float off = height_m;
     float along = moved.y;
-    if (terrain.base_kind != CYLINDER) {
+    if (!is_kind(terrain.base_kind, CYLINDER, away)) {
         Meridian foot = meridian_at(moved.y);
         off = foot.off + height_m * foot.c;
         along = foot.along + height_m * foot.s;

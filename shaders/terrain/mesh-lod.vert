@@ -23,7 +23,7 @@ void main() {
     ivec2 vertex = ivec2(index % (PATCH_SIDE + 1), index / (PATCH_SIDE + 1));
     bool is_low = false;
     bool is_here = true;
-    if (mesh.surface != TERRAIN) {
+    if (!is_kind(mesh.surface, TERRAIN, float(index))) {
         // Six vertices for each piece of a wall: near top, near foot, far top; far top, near foot, far foot.
         int of_piece = index % 6;
         int along = index / 6 + (of_piece == 2 || of_piece == 3 || of_piece == 5 ? 1 : 0);

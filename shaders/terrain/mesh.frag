@@ -13,7 +13,7 @@ void main() {
     vec3 direction = direction_of(floor(gl_FragCoord.xy));
     vec3 point = terrain.eye + depth_m * direction;
     vec2 place = point.xy;
-    if (terrain.base_kind != PLANE) {
+    if (!is_kind(terrain.base_kind, PLANE, depth_m)) {
         place = map_coordinates(point, point.x).xy;
     }
     depth = vec4(depth_m, clamp(place, vec2(0.0), vec2(terrain.size - 1)), surface_code(mesh.surface, 0, 0));

@@ -15,7 +15,7 @@ void main() {
     ivec2 last = terrain.size - 1;
     ivec2 node = ivec2(index % terrain.size.x, index / terrain.size.x + mesh.first_row);
     bool is_low = false;
-    if (mesh.surface != TERRAIN) {
+    if (!is_kind(mesh.surface, TERRAIN, float(index))) {
         // Six vertices for each piece of a wall: near top, near foot, far top; far top, near foot, far foot.
         int corner = index % 6;
         int along = index / 6 + (corner == 2 || corner == 3 || corner == 5 ? 1 : 0);

@@ -20,7 +20,8 @@ struct Local {
 
 Local local_at(vec2 place, float height_m) {
     Local local = Local(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), terrain.spacing_m);
-    if (terrain.base_kind != PLANE) {
+    float away = max(abs(place.x), abs(place.y));
+    if (!is_kind(terrain.base_kind, PLANE, away)) {
         float half_longitude = 0.5 * (place.x - terrain.middle_node.x) / terrain.nodes_per_unit.x;
         float s = 2.0 * sine(half_longitude) * cosine(half_longitude);
         float c = 1.0 - 2.0 * sine(half_longitude) * sine(half_longitude);
@@ -28,7 +29,7 @@ Local local_at(vec2 place, float height_m) {
         local.up = vec3(s, c, 0.0);
         float across_m = (terrain.axis_distance_m + height_m) / terrain.nodes_per_unit.x;
         local.spacing_m = vec2(across_m, 1.0 / abs(terrain.nodes_per_unit.y));
-        if (terrain.base_kind != CYLINDER) {
+        if (!is_kind(terrain.base_kind, CYLINDER, away)) {
             Meridian foot = meridian_at((place.y - terrain.middle_node.y) / terrain.nodes_per_unit.y);
             local.up = vec3(foot.c * s, foot.c * c, foot.s);
             local.south = vec3(foot.s * s, foot.s * c, -foot.c);

@@ -46,9 +46,7 @@ layout(set = 0, binding = 0, std140) uniform Terrain {
     float node_normals_below; // nodes that a pixel covers, below which normals are those between the nodes'
 } terrain;
 
-// Kinds of base, numbered as src/papers/terrain/blocks.rs does; 2 is an ellipsoid.
-const int PLANE = 0;
-const int CYLINDER = 1;
+#include "terrain/kinds.glsl"
 
 layout(set = 0, binding = 1) uniform utexture2DArray levels;
 

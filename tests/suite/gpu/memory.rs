@@ -79,6 +79,18 @@ fn materials_need_no_more_memory_from_frame_to_frame() {
     is_flat::<burning::setup::Setup>("low-poly", &format!("size=32x24 levels=2 first-frame=60 speed=0.3 {files}"));
 }
 
+#[test]
+fn terrain_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
+    for (variant, options) in [
+        ("gpu-fragment", "base=earth shadows=true drape=slope object=sphere"),
+        ("dda-fragment", "base=earth shadows=true drape=slope"),
+        ("gpu-compute", "base=cylinder:100000 shadows=true drape=contours"),
+        ("mesh-lod", "base=earth drape=contours"),
+    ] {
+        is_flat::<terrain::setup::Setup>(variant, &format!("size=32x24 resolution=64 {options}"));
+    }
+}
+
 /// `parameters` make the frames of every variant short.
 fn stays_flat<S: Study>(parameters: &str) {
     S::Variant::ALL.iter().for_each(|variant| is_flat::<S>(variant.as_str(), parameters));
