@@ -188,7 +188,9 @@ impl Image {
     /// # Errors
     /// [`Error::Vulkan`] when the device refuses.
     pub fn view(self: &Arc<Self>) -> Result<Arc<ImageView>, Error> {
-        let kind = if self.desc.array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
+        // A view that is no array has one layer.
+        let is_array = self.desc.array || self.desc.layers > 1;
+        let kind = if is_array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
         ImageView::new(self, kind, self.aspect(), 0..self.desc.layers)
     }
 

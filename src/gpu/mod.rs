@@ -10,8 +10,8 @@
 //!
 //! No safe call of this layer breaks a rule of Vulkan. What the types do not rule out is checked before it is recorded;
 //! for a draw that is a few comparisons of integers. Every line is tried under validation: in `tests/suite/gpu` by
-//! `misuse.rs` and `misuse_passes.rs`, what a build refuses also by `pass_desc.rs`, reads of nothing by `refusals.rs`;
-//! failed waits in `src/gpu/tests.rs`.
+//! `misuse.rs`, `misuse_passes.rs` and `misuse_targets.rs`, what a build refuses also by `pass_desc.rs`, reads of nothing
+//! by `refusals.rs`; failed waits in `src/gpu/tests.rs`.
 //!
 //! | a caller cannot | because | checked by |
 //! | --- | --- | --- |
@@ -25,6 +25,7 @@
 //! | join stages that do not fit, or attachments that no stage writes | inputs, outputs and formats are compared | `pass_check` |
 //! | want what a device was not opened with: stages, stores, capabilities, blending, formats | the features are asked for each | `pass_check`, `program`, `shader`, [`Image::new`] |
 //! | touch what a pass writes a second time in that pass | uses are compared with each other | `pass_check` |
+//! | write depth that a pass only tests, or fill it with what lies outside 0 to 1 | loads, clear values and the tests of counting draws are compared; hosts upload none | `render_pass`, `pass_check`, [`transfer`] |
 //! | read what nothing has written | each layer and byte range knows if it was | `barrier` |
 //! | copy more than fits, between formats, or onto itself | sizes, formats and ranges are compared | [`transfer`] |
 //! | leave an image's tracked layout wrong by an error, a panic or a failed submission | states are committed when the submission has finished | `tracked` |

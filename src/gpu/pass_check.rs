@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::access::Stages;
+use super::access::{Access, Stages};
 use super::bindings::{Resource, Use};
 use super::buffer::BufferView;
 use super::device::Device;
@@ -18,7 +18,7 @@ use super::pass_info::PassKind;
 use super::physical::Feature;
 use super::pipeline::Topology;
 use super::program::Program;
-use super::render_pass::{Blend, Targets};
+use super::render_pass::{Blend, Load, Targets};
 use super::shader::ShaderModule;
 use crate::shader_build::{Location, Scalar};
 
@@ -159,7 +159,15 @@ pub(super) fn counting(
     targets: &Targets,
 ) -> Result<(), Error> {
     stages(device, desc, modules)?;
-    let alone = PassDesc { targets: targets.clone(), ..desc.clone() };
+    let mut alone = PassDesc { targets: targets.clone(), ..desc.clone() };
+    if let (Some((own, test)), Some((target, counting))) = (&desc.targets.depth, &mut alone.targets.depth) {
+        if test.access() == Access::DepthReadOnly && counting.access() != Access::DepthReadOnly {
+            let name = own.view.image().name();
+            return Err(desc.problem(format!("its counting draws write depth {name}, which it declares read only")));
+        }
+        // The render pass is the pass's own, which loads as its own test may.
+        target.load = Load::Keep;
+    }
     attachments(device, &alone)?;
     let Some(fragment) = modules.last() else { return Ok(()) };
     for binding in &fragment.interface.bindings {

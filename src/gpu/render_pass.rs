@@ -14,7 +14,7 @@ use super::live::Kind;
 /// Contents of an attachment when a pass begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// A clear value: four colour components, or depth in the first.
+    /// A clear value: four colour components, or depth, from 0 to 1, in the first.
     Clear([f32; 4]),
     /// The contents that the passes before left.
     Keep,
@@ -195,14 +195,24 @@ impl Targets {
         }
     }
 
-    /// One extent for all, and nothing cleared that is not written.
+    /// One extent for all, depth cleared to what it can hold, and nothing cleared or discarded that is not written: both
+    /// write, which no barrier of a reader waits for.
     pub(super) fn check(&self, pass: &str) -> Result<(), Error> {
         let problem = |problem: String| Err(Error::Pass { pass: pass.to_owned(), problem });
-        if let Some((target, test)) = &self.depth
-            && matches!(target.load, Load::Clear(_))
-            && test.access() == Access::DepthReadOnly
-        {
-            return problem(format!("clears depth {}, which it declares read only", target.view.image().name()));
+        if let Some((target, test)) = &self.depth {
+            let name = target.view.image().name();
+            let writes = match target.load {
+                // Not a number lies in no range.
+                Load::Clear([value, ..]) if !(0.0..=1.0).contains(&value) => {
+                    return problem(format!("clears depth {name} to {value}, which lies outside 0 to 1"));
+                }
+                Load::Clear(_) => Some("clears"),
+                Load::Discard => Some("discards"),
+                Load::Keep => None,
+            };
+            if let (Some(writes), Access::DepthReadOnly) = (writes, test.access()) {
+                return problem(format!("{writes} depth {name}, which it declares read only"));
+            }
         }
         let mut views = self.views().map(|t| &t.view);
         let Some(first) = views.next() else { return Ok(()) };

@@ -20,6 +20,7 @@ use super::error::{Context, Error};
 use super::image::ImageView;
 use super::live::Kind;
 use super::surface::{Presenting, Surface};
+use super::transfer;
 
 /// Nanoseconds that a frame waits for an image. A hidden window may get none, and must not hold its user up.
 const PATIENCE_NS: u64 = 100_000_000;
@@ -58,12 +59,13 @@ pub struct Swapchain {
     commands: Commands,
     plan: Plan,
     device: Arc<Device>,
-    _surface: Arc<Surface>,
+    surface: Arc<Surface>,
 }
 
 impl Swapchain {
     /// The swapchain of `surface`, of `window` pixels where the display lets the window choose; `None` for a window
-    /// without any, as a minimised one. `old` is taken over, and gone afterwards.
+    /// without any, as a minimised one. `old` is taken over where it is of the same device and surface, and gone
+    /// afterwards.
     ///
     /// # Errors
     /// [`Error::Unsupported`] where the surface has no image that a picture can be copied into, or not this way of
@@ -80,6 +82,16 @@ impl Swapchain {
         if !Arc::ptr_eq(surface.instance(), device.instance()) {
             return Err(Error::Foreign { pass: "present".into(), object: "the surface".into() });
         }
+        let family = device.queue_family;
+        // SAFETY: surface and device belong to the same living instance, as checked, and the family is the device's.
+        let presents = unsafe { surface.calls.get_physical_device_surface_support(physical, family, surface.raw) }
+            .context("asking about the surface of", "the window")?;
+        if !presents {
+            let problem = format!("presenting to it from {}", device.physical().name);
+            return Err(Error::Unsupported { object: "the window".into(), problem });
+        }
+        // Vulkan takes over what was made of the same parents alone; any other goes before, and lets go of its window.
+        let old = old.filter(|old| Arc::ptr_eq(&old.device, device) && Arc::ptr_eq(&old.surface, surface));
         let (capabilities, formats, modes);
         // SAFETY: surface and device belong to the same living instance, as checked.
         unsafe {
@@ -113,7 +125,7 @@ impl Swapchain {
             .clipped(true)
             .old_swapchain(old.as_ref().map_or_else(vk::SwapchainKHR::null, |old| old.raw));
         // SAFETY: the plan is made of what the surface offers; the surface is held below; `old`, if any, is of the same
-        // surface or retired, and not used again.
+        // device and surface, not retired before, and not used again.
         let raw = unsafe { presenting.swapchains.create_swapchain(&info, None) }
             .context("creating the swapchain of", "the window")?;
         device.live().add(Kind::Swapchain);
@@ -126,7 +138,7 @@ impl Swapchain {
             commands: Commands::new(device, "present")?,
             plan,
             device: device.clone(),
-            _surface: surface.clone(),
+            surface: surface.clone(),
         };
         // SAFETY: the swapchain was just made on this device.
         let images = unsafe { presenting.swapchains.get_swapchain_images(raw) }
@@ -158,10 +170,15 @@ impl Swapchain {
     /// Shows a picture of the swapchain's extent and [format](Swapchain::picture_format), and waits until it is copied.
     ///
     /// # Errors
-    /// [`Error::Pass`] for a picture of another format, any error of Vulkan, as a lost device.
+    /// [`Error::Pass`] for a picture of another format, of several layers, or not made to be copied from;
+    /// [`Error::Foreign`]; [`Error::ReadBeforeWrite`]; [`Error::InUse`]; any error of Vulkan, as a lost device.
     pub fn present(&mut self, picture: &Arc<ImageView>) -> Result<Presented, Error> {
         if picture.image().desc().format != self.plan.picture_format {
             let problem = format!("{} is not of the swapchain's format", picture.image().name());
+            return Err(Error::Pass { pass: "present".into(), problem });
+        }
+        if picture.layer_count() != 1 {
+            let problem = format!("{} has {} layers; give one", picture.image().name(), picture.layer_count());
             return Err(Error::Pass { pass: "present".into(), problem });
         }
         if (picture.width(), picture.height()) != self.extent() || self.is_broken {
@@ -169,11 +186,19 @@ impl Swapchain {
         }
         let device = self.device.clone();
         let presenting = presenting(&device)?;
+        // Whatever is wrong with the picture is found before an image is acquired, which could not be given back.
+        let source = [Use { resource: picture.into(), access: Access::CopySource, discard: false }];
+        transfer::check_uses(&device, "present", &source)?;
+        self.commands.begin()?;
+        self.commands.synchronise("present", &source).inspect_err(|_| self.commands.abandon())?;
         // SAFETY: the semaphore is unsignalled: the submission of the last acquired image has waited for it, or the
         // swapchain is broken and does not come here.
         let acquired = unsafe {
             presenting.swapchains.acquire_next_image(self.raw, PATIENCE_NS, self.acquired.raw, vk::Fence::null())
         };
+        if acquired.is_err() {
+            self.commands.abandon();
+        }
         let (index, is_suboptimal) = match acquired {
             Ok(acquired) => acquired,
             Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => return Ok(Presented::Busy),
@@ -197,7 +222,11 @@ impl Swapchain {
         // SAFETY: the image was acquired, and is in the layout of presents by `copy`, which signals the semaphore; the fence
         // is unsignalled and not pending by `copy`; the queue is locked for the call.
         let presented = unsafe { presenting.swapchains.queue_present(*device.queue(), &info) };
-        slot.is_pending = slot.released.is_some();
+        // What ran out of memory did nothing: the semaphore stays signalled, and the image acquired.
+        let is_queued =
+            !matches!(presented, Err(vk::Result::ERROR_OUT_OF_HOST_MEMORY | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY));
+        self.is_broken = !is_queued;
+        slot.is_pending = is_queued && slot.released.is_some();
         match presented {
             Ok(false) if !is_suboptimal => Ok(Presented::Shown),
             Ok(_) | Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => Ok(Presented::Stale),
@@ -206,26 +235,25 @@ impl Swapchain {
         }
     }
 
-    /// Copies the picture into the acquired image at `index`, and signals its semaphore.
+    /// Copies the picture, whose barrier is recorded, into the acquired image at `index`, and signals its semaphore.
     fn copy(&mut self, index: usize, picture: &Arc<ImageView>) -> Result<(), Error> {
         let slot = &mut self.slots[index];
         if let Some(fence) = slot.released.as_ref().filter(|_| slot.is_pending) {
             // Its present is over, or the image would not have been acquired again.
-            fence.wait_and_reset()?;
+            fence.wait_and_reset().inspect_err(|_| self.commands.abandon())?;
             slot.is_pending = false;
         }
         let commands = &mut self.commands;
-        let source = Use { resource: picture.into(), access: Access::CopySource, discard: false };
-        commands.begin()?;
-        commands.synchronise("present", &[source])?;
+        let from = transfer::subresource(picture);
         let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
         let extent = vk::Extent3D { width: picture.width(), height: picture.height(), depth: 1 };
-        let region = vk::ImageCopy::default().src_subresource(layers).dst_subresource(layers).extent(extent);
+        let region = vk::ImageCopy::default().src_subresource(from).dst_subresource(layers).extent(extent);
         let layout = Access::CopySource.info().layout;
         let written = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
         let raw = &self.device.raw;
-        // SAFETY: recording; the picture is in that layout by its barrier, and kept until the submission has finished; the
-        // image is the swapchain's own, acquired, of the picture's extent and of a format of as many bytes.
+        // SAFETY: recording since `present`; the picture is in that layout by its barrier there, and kept until the
+        // submission has finished; the image is the swapchain's own, acquired, of the picture's extent and of a format of as
+        // many bytes.
         unsafe {
             barrier(raw, commands.buffer, slot.image, vk::ImageLayout::UNDEFINED, written);
             raw.cmd_copy_image(commands.buffer, picture.image().raw, layout, slot.image, written, &[region]);
@@ -292,6 +320,9 @@ impl Drop for Swapchain {
             {
                 // The present may still use both: leaked on purpose.
                 slot.copied.leak();
+                if let Some(fence) = &mut slot.released {
+                    fence.leak();
+                }
             }
         }
         if let Some(presenting) = &self.device.presenting {

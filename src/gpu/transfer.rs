@@ -123,13 +123,15 @@ const CHUNK_BYTES: u64 = 8 << 20;
 /// `fill` writes rows, tightly packed, from the given one on into the bytes it is handed.
 ///
 /// # Errors
-/// [`Error::Limit`] when the rectangle is larger than the view; any error of Vulkan.
+/// [`Error::Pass`] for an image of depth; [`Error::Limit`] when the rectangle is larger than the view; any error of
+/// Vulkan.
 pub fn upload_rows(
     device: &Arc<Device>,
     view: &Arc<ImageView>,
     (width, height): (u32, u32),
     mut fill: impl FnMut(u32, &mut [u8]),
 ) -> Result<(), Error> {
+    check_upload(view)?;
     check_rectangle("upload", view, (0, width), (0, height))?;
     let row_bytes = u64::from(width) * texel_bytes(view.image());
     let chunk_rows = ((CHUNK_BYTES / row_bytes).max(1) as u32).min(height);
@@ -164,13 +166,15 @@ pub fn upload_rows(
 /// of `to`, a view of one layer. The rest of `to` keeps what it holds.
 ///
 /// # Errors
-/// [`Error::Limit`] when the rectangle leaves the view or the buffer holds less; any error of Vulkan.
+/// [`Error::Pass`] for an image of depth; [`Error::Limit`] when the rectangle leaves the view or the buffer holds less; any
+/// error of Vulkan.
 pub fn upload_rectangle(
     staging: &Arc<Buffer>,
     to: &Arc<ImageView>,
     (column, row): (u32, u32),
     (width, height): (u32, u32),
 ) -> Result<(), Error> {
+    check_upload(to)?;
     check_rectangle("upload", to, (column, width), (row, height))?;
     let bytes = u64::from(width) * u64::from(height) * texel_bytes(to.image());
     let from = staging.range(0..bytes)?;
@@ -223,6 +227,16 @@ pub fn copy_rectangle(
         // outlive the submission.
         unsafe { raw.cmd_copy_image(commands, from.image.raw, source, to.image.raw, destination, &[region]) };
     })
+}
+
+/// Depth comes from draws, which keep it inside 0 to 1, as Vulkan wants of copied bytes too.
+fn check_upload(view: &Arc<ImageView>) -> Result<(), Error> {
+    if !view.image().aspect().contains(vk::ImageAspectFlags::DEPTH) {
+        return Ok(());
+    }
+    let name = view.image().name();
+    let problem = format!("{name} holds depth, which passes fill: bytes from the host may lie outside 0 to 1");
+    Err(Error::Pass { pass: "upload".into(), problem })
 }
 
 /// The rectangle, given as first and count of columns and rows, is no empty one and lies inside a view of one layer.
@@ -295,7 +309,7 @@ pub(crate) fn check_uses(device: &Arc<Device>, pass: &str, uses: &[Use]) -> Resu
     pass_check::uses(device, pass, uses)
 }
 
-fn subresource(view: &ImageView) -> vk::ImageSubresourceLayers {
+pub(super) fn subresource(view: &ImageView) -> vk::ImageSubresourceLayers {
     vk::ImageSubresourceLayers::default()
         .aspect_mask(copied_aspect(view.image.aspect()))
         .base_array_layer(view.layers.start)

@@ -68,12 +68,20 @@ impl Fence {
             raw.reset_fences(&[self.raw]).context("resetting", "a fence of a present")
         }
     }
+
+    /// Keeps it from being destroyed.
+    pub fn leak(&mut self) {
+        self.raw = vk::Fence::null();
+    }
 }
 
 impl Drop for Fence {
     fn drop(&mut self) {
-        // SAFETY: the swapchain waits for the presents that were given it before it drops.
+        // SAFETY: the swapchain waits for the present that was given it before it drops, or leaks it; a null handle is
+        // ignored.
         unsafe { self.device.raw.destroy_fence(self.raw, None) };
-        self.device.live().remove(Kind::Fence);
+        if self.raw != vk::Fence::null() {
+            self.device.live().remove(Kind::Fence);
+        }
     }
 }
