@@ -100,9 +100,15 @@ fn differences(comparison: &Comparison) -> Vec<String> {
             let are_alike = same_kind.iter().all(|one| (&one.a, &one.b) == (&first.a, &first.b));
             lines.push(match are_alike && plural == "shader compilers" {
                 true => line(&format!("{plural} of {} passes", same_kind.len()), first),
-                false => format!("{plural}: {} differ", same_kind.len()),
+                false => {
+                    let places = same_kind.iter().take(MANY).map(|one| &one.what[prefix.len()..]).collect::<Vec<_>>();
+                    let more = same_kind.len() - places.len();
+                    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+                    format!("{plural}: {} differ: {}{more}", same_kind.len(), places.join(", "))
+                }
             });
         } else if prefix != "shader_compiler of " {
+            // As of a stage that the pass has on one side.
             let alone = |side: &str, difference: &Difference| format!("{}: {side} alone has one", difference.what);
             lines.extend(same_kind.iter().map(|difference| match (difference.a.is_empty(), difference.b.is_empty()) {
                 (_, true) => alone("A", difference),

@@ -2,7 +2,7 @@
 //!
 //! Two runs are the same configuration when everything that fixes their work is equal: [`fields`]. Input files count by
 //! their content, whatever their path. What else may shift a time (device, driver, program, shaders, ...) may be what is
-//! compared: [`differences_between`] lists it.
+//! compared: [`super::conditions`] lists it.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 
 use super::{Design, Input};
 use crate::report::alternative::alternatives;
-use crate::report::record::{Environment, Record, Run};
+use crate::report::record::Run;
 
 /// Reasons why two sides cannot be compared.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
@@ -324,95 +324,4 @@ pub(super) fn commands(side: &[Input]) -> Vec<Vec<String>> {
         }
     }
     commands
-}
-
-/// All that differs between the sides beside their times: environment, program and shaders.
-pub(super) fn differences_between(a: &[Input], b: &[Input]) -> Vec<Difference> {
-    let of = |side: &[Input]| {
-        let mut values: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for (what, value) in side.iter().flat_map(|input| all_conditions(&input.record)) {
-            let known = values.entry(what).or_default();
-            if !known.contains(&value) {
-                known.push(value);
-            }
-        }
-        // The same runs in another order are the same.
-        values.values_mut().for_each(|known| known.sort());
-        values
-    };
-    let (a, b) = (of(a), of(b));
-    let mut names: Vec<&String> = a.keys().chain(b.keys()).collect();
-    names.sort();
-    names.dedup();
-    let differing = names.into_iter().filter(|name| a.get(*name) != b.get(*name));
-    let values = |side: &BTreeMap<String, Vec<String>>, name: &String| side.get(name).cloned().unwrap_or_default();
-    differing.map(|name| Difference { what: name.clone(), a: values(&a, name), b: values(&b, name) }).collect()
-}
-
-/// What a time may depend on of device, host and build, by its path in the record.
-fn conditions(environment: &Environment) -> Vec<(String, String)> {
-    let (device, host, build) = (&environment.device, &environment.host, &environment.build);
-    let some = |value: &Option<String>| value.clone().unwrap_or_else(|| "unknown".to_owned());
-    let number = |value: Option<u32>| value.map_or_else(|| "unset".to_owned(), |value| value.to_string());
-    let mut conditions: Vec<(String, String)> = [
-        ("device.name", device.name.clone()),
-        ("device.type", device.kind.name().to_owned()),
-        ("device.driver_version", some(&device.driver_version)),
-        ("host.os", host.os.clone()),
-        ("host.cpu", some(&host.cpu)),
-        ("host.cpu_governor", some(&host.cpu_governor)),
-        ("host.logical_cores", number(host.logical_cores)),
-        ("host.lp_num_threads", number(host.lp_num_threads)),
-        ("layers", environment.layers.join(", ")),
-        ("build.git_commit", some(&build.git_commit)),
-        ("build.profile", some(&build.profile)),
-        ("build.executable_sha256", some(&build.executable_sha256)),
-    ]
-    .into_iter()
-    .map(|(name, value)| (name.to_owned(), value))
-    .collect();
-    // The thread count stands above.
-    let variables =
-        host.variables.iter().filter(|(name, _)| *name != "LP_NUM_THREADS" || host.lp_num_threads.is_none());
-    conditions.extend(variables.map(|(name, value)| (format!("host.variables.{name}"), value.clone())));
-    conditions
-}
-
-/// The first of [`conditions`] in which two machines differ, with the values of both.
-pub fn difference_of_machines(a: &Environment, b: &Environment) -> Option<[String; 3]> {
-    let [a, b] = [a, b].map(|environment| conditions(environment).into_iter().collect::<BTreeMap<_, _>>());
-    let what = a.keys().chain(b.keys()).find(|what| a.get(*what) != b.get(*what))?;
-    let value = |of: &BTreeMap<String, String>| of.get(what).cloned().unwrap_or_else(|| "unset".to_owned());
-    Some([what.clone(), value(&a), value(&b)])
-}
-
-/// Everything beside the work that a time may depend on, by its path in the record.
-fn all_conditions(record: &Record) -> Vec<(String, String)> {
-    let mut conditions = conditions(&record.environment);
-    let (device, host, build) = (&record.environment.device, &record.environment.host, &record.environment.build);
-    let some = |value: &Option<String>| value.clone().unwrap_or_else(|| "unknown".to_owned());
-    // None of these keeps parts of one measurement apart, but each may be what a difference comes from.
-    let others = [
-        ("device.driver", some(&device.driver)),
-        ("device.uuid", some(&device.uuid)),
-        ("device.api_version", device.api_version.clone()),
-        ("host.kernel", some(&host.kernel)),
-        ("loader", some(&record.environment.loader)),
-        ("build.rustc", some(&build.rustc)),
-    ];
-    conditions.extend(others.map(|(name, value)| (name.to_owned(), value)));
-    for run in &record.runs {
-        let picture = run.image.iter().map(|image| image.sha256.clone());
-        conditions.extend(picture.map(|sha256| (format!("picture of {} {}", run.paper, run.variant), sha256)));
-    }
-    for (run, pass) in record.runs.iter().flat_map(|run| run.passes.iter().map(move |pass| (run, pass))) {
-        let place = format!("{} {} {}", run.paper, run.variant, pass.name);
-        if let Some(compiler) = &pass.shader_compiler {
-            conditions.push((format!("shader_compiler of {place}"), compiler.clone()));
-        }
-        conditions.extend(
-            pass.shaders.iter().map(|shader| (format!("SPIR-V of {place}: {}", shader.name), shader.sha256.clone())),
-        );
-    }
-    conditions
 }

@@ -8,6 +8,7 @@
 //! - `SLOWER`, `FASTER`: it lies above or below 1, and not certainly within the margin;
 //! - `UNCLEAR`: anything else, and always when a side has one process only: how much processes differ is then unknown.
 
+mod conditions;
 mod console;
 mod decision;
 mod doubts;
@@ -23,10 +24,11 @@ mod tests;
 mod trials;
 mod within;
 
+pub use conditions::difference_of_machines;
 pub use console::{markdown, render, sections};
 pub use decision::{CONFIDENCE, Gate, Rules, SAME_MARGIN, Verdict, decide, gate, needed, needed_for_gate};
 pub use evidence::Evidence;
-pub use matching::{CompareError, Difference, difference_of_machines};
+pub use matching::{CompareError, Difference};
 pub use within::{Ratio, ratio_within_process};
 
 use serde::{Deserialize, Serialize};
@@ -306,7 +308,7 @@ pub fn compare(a: &[Input], b: &[Input], options: &Options) -> Result<Comparison
         margin: options.rules.margin,
         fail_above: options.fail_above,
         min_share: options.min_share,
-        differences: [matched.differences, matching::differences_between(a, b)].concat(),
+        differences: [matched.differences, conditions::differences_between(a, b, &matched.pairs)].concat(),
         runs: matched.pairs.iter().map(|(a, b)| judge::run(a, b, &options)).collect(),
         only_in_a: matched.only_in_a,
         only_in_b: matched.only_in_b,

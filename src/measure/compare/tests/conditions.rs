@@ -94,7 +94,19 @@ fn what_differs_beside_the_times_is_listed_first() {
     }
     a[0].record.runs[0].image = None;
     let text = render(&compared(&a, &b, None), Style::default());
-    assert!(text.contains("picture of gas slices: B alone has one"), "{text}");
+    assert!(!text.contains("picture of"), "{text}");
+    // Of what is not compared, another variant and a pass that one side lacks, nothing is said.
+    b[0].record.runs[0].passes[1].name = "drawn".to_owned();
+    let mut other = b[0].record.runs[0].clone();
+    other.variant = "none".to_owned();
+    b[0].record.runs.push(other);
+    let comparison = compared(&a, &b, None);
+    let of_drawing = comparison.differences.iter().map(|one| one.what.as_str()).filter(|what| what.contains(" of "));
+    assert_eq!(of_drawing.collect::<Vec<_>>(), ["shader_compiler of gas slices cluster"]);
+    // A stage that the pass has on one side.
+    a[0].record.runs[0].passes[0].shaders = shader("1");
+    let text = render(&compared(&a, &b, None), Style::default());
+    assert!(text.contains("SPIR-V of gas slices cluster: s.comp: A alone has one"), "{text}");
 }
 
 /// Of many passes the compiler that all were compiled by is named, not how many differ.
