@@ -3,6 +3,8 @@
 //! They run on lavapipe (`FUMAROLE_TEST_DEVICE` names another device) and fail where there is none.
 
 mod ab;
+#[cfg(unix)]
+mod ab_looks;
 mod arguments;
 mod bench;
 mod burning;

@@ -1,6 +1,8 @@
 //! Every feature of the capability report taken away, and every limit lowered: each paper falls back and says so, or
 //! refuses by name.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::{Layer, PAPERS, Paper};
@@ -148,6 +150,36 @@ fn a_device_of_the_portability_subset_is_used_and_its_lacks_are_named() {
         let program = paper.run("bench --quiet --json").args(ONCE);
         layer.before(program, false).env("FUMAROLE_LAYER_LACKS", "whole-vulkan").run().succeeded();
     }
+}
+
+/// A trace of a device whose clock cannot be read beside the host's: the work of a submission begins where it was handed in, and
+/// takes as long as the timestamps say.
+#[test]
+fn work_that_no_calibrated_clock_places_begins_where_it_was_submitted() {
+    let layer = Layer::new();
+    let path = layer.folder.path().join("trace.json");
+    let begins_with_wait = |lacks: &str| {
+        let program = program::caustics("bench --variant level-map --quiet --trace").arg(&path).tiny().args(ONCE);
+        layer.before(program, false).env("FUMAROLE_LAYER_LACKS", lacks).run().succeeded();
+        let trace = program::read_json(&path);
+        let spans = trace["traceEvents"].as_array().unwrap().iter().filter(|event| event["ph"] == "X");
+        let mut first = BTreeMap::<_, [f64; 2]>::new();
+        for span in spans {
+            let (arguments, start) = (&span["args"], span["ts"].as_f64().unwrap());
+            let track = ["GPU", "wait"].into_iter().position(|track| span["cat"] == track);
+            let frame = ["mode", "repetition", "frame"].map(|name| arguments[name].to_string());
+            if let Some(track) = track {
+                let earliest = &mut first.entry(frame).or_insert([f64::INFINITY; 2])[track];
+                *earliest = earliest.min(start);
+            }
+        }
+        let timed: Vec<_> = first.into_iter().filter(|(frame, _)| frame[0] != "\"plain\"").collect();
+        assert_eq!(timed.len(), 4, "two frames, timestamped and bracketed");
+        assert!(timed.iter().all(|(_, [gpu, wait])| gpu.is_finite() && wait.is_finite()));
+        timed.iter().filter(|(_, [gpu, wait])| gpu == wait).count()
+    };
+    assert_eq!(begins_with_wait("whole-vulkan"), 4, "the subset's device has no other extension");
+    assert!(begins_with_wait("") < 4);
 }
 
 #[test]
