@@ -38,12 +38,17 @@ pub fn parse_rows(text: &str) -> Result<Range<u32>, String> {
 /// Everything that fixes the pixels of a film but its frames, beside the device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
+    /// Name of the paper's command, such as `lava`.
     pub paper: String,
+    /// Name of the variant that is drawn.
     pub variant: String,
+    /// Name of the preset; `None` without one.
     pub preset: Option<String>,
     /// Every parameter as it is typed.
     pub parameters: std::collections::BTreeMap<String, String>,
+    /// Files that the parameters name, by path and content.
     pub inputs: Vec<InputFile>,
+    /// Compiler whose SPIR-V runs, `glslang` or `naga`.
     pub shader_compiler: String,
     /// SHA-256 of the shaders that stand in for the built-in ones.
     pub shaders: Option<String>,
@@ -51,12 +56,14 @@ pub struct Settings {
     pub program: [Option<String>; 3],
 }
 
-/// What stands beside a part's picture.
+/// Description of a part of a film, the file beside its picture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
+    /// [`SCHEMA`] of the version that wrote it.
     pub schema: String,
     /// SHA-256 of the settings, the device and the film's frames and size.
     pub identity: String,
+    /// Everything else that fixes the pixels; equal in all parts of a film.
     pub settings: Settings,
     /// Name, driver and its version.
     pub device: [Option<String>; 3],
@@ -64,6 +71,7 @@ pub struct Part {
     pub frames: [u32; 2],
     /// The film's pixels.
     pub size: [u32; 2],
+    /// Number of the frame that the picture shows rows of.
     pub frame: u32,
     /// From the first up to but not including the second.
     pub rows: [u32; 2],

@@ -293,7 +293,8 @@ struct Drawn {
     picture: Rgba8,
 }
 
-/// What both sides have drawn, in the order of A; of several processes a side the first one's. Where the sides have other
+/// The pictures that both sides have drawn, in the order of A; of several processes a side the first one's. Where the
+/// sides have other
 /// parameters, those are put together that differ in the fewest.
 fn pairs(a: &[Drawn], b: &[Drawn]) -> Vec<Pair> {
     let [a, b] = [a, b].map(first_ones);

@@ -14,7 +14,7 @@ use super::outcome::say;
 use crate::measure::measure::Watch;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-/// What an interruption does instead of setting the flag.
+/// Called at an interruption in place of setting the flag.
 static QUIT: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
 
 /// The flag that Ctrl-C sets, as do the signals TERM and HUP; a second one ends the program at once.

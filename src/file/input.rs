@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 /// Opens a regular file, which rules out devices and pipes that never end, and tells its size in bytes.
 ///
 /// # Errors
-/// What the system answers; [`io::ErrorKind::InvalidInput`] for what is no regular file.
+/// Those of the system; [`io::ErrorKind::InvalidInput`] for anything but a regular file.
 pub fn open(path: &Path) -> io::Result<(File, u64)> {
     // Asked before it is opened: opening a pipe waits for its writer.
     let metadata = fs::metadata(path)?;

@@ -16,15 +16,31 @@ use super::temporary;
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     #[error("cannot create the directory {}: {source}; name a place where directories can be made", .path.display())]
-    CreateDirectory { path: PathBuf, source: io::Error },
+    CreateDirectory {
+        /// Directory that was to be made.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
     #[error("cannot write {}: it is a directory; name a file in it", .path.display())]
-    IsDirectory { path: PathBuf },
+    IsDirectory {
+        /// Destination, which is a directory.
+        path: PathBuf,
+    },
     #[error("cannot write {}: the file is read-only; make it writable or name another", .path.display())]
-    ReadOnly { path: PathBuf },
+    ReadOnly {
+        /// Destination, which may not be written.
+        path: PathBuf,
+    },
     #[error(
         "cannot write {}: {source}; name a file in a writable directory with free space", .path.display()
     )]
-    Write { path: PathBuf, source: io::Error },
+    Write {
+        /// Destination, of which an older file is untouched.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
 }
 
 /// Writes `bytes` to `path`, whole or not at all.

@@ -8,57 +8,153 @@ pub enum Error {
     #[error(
         "loading the Vulkan loader: {reason}; install it (Debian, Ubuntu: apt-get install libvulkan1) or the GPU vendor's driver"
     )]
-    NoLoader { reason: String },
+    NoLoader {
+        /// The system's message on the library.
+        reason: String,
+    },
     #[error(
         "creating a Vulkan instance: {reason}; check that a driver is installed (Debian, Ubuntu: apt-get install mesa-vulkan-drivers)"
     )]
-    NoInstance { reason: String },
+    NoInstance {
+        /// Vulkan's result, or the version, extension or handle that is missing.
+        reason: String,
+    },
     #[error("looking for a Vulkan device: {reason}; `fumarole devices` lists what is there")]
-    NoDevice { reason: String },
+    NoDevice {
+        /// Vulkan's result, or why none of the devices serves.
+        reason: String,
+    },
     #[error(
         "enabling validation: the layer VK_LAYER_KHRONOS_validation is not installed; install it (Debian, Ubuntu: apt-get install vulkan-validationlayers) or leave --validate out"
     )]
     NoValidationLayer,
     #[error("choosing a device: {wanted:?} names none of: {present}; give an index, a part of a name or a UUID")]
-    UnknownDevice { wanted: String, present: String },
+    UnknownDevice {
+        /// Index, part of a name or UUID that the user gave.
+        wanted: String,
+        /// Devices that are there, as one text.
+        present: String,
+    },
     #[error("choosing a device: {wanted:?} names several: {matching}; give the index or the UUID")]
-    AmbiguousDevice { wanted: String, matching: String },
+    AmbiguousDevice {
+        /// Part of a name that the user gave.
+        wanted: String,
+        /// Devices that have it, as one text.
+        matching: String,
+    },
     #[error("using device {device}: it lacks {missing}; choose another with --device")]
-    MissingFeature { device: String, missing: String },
+    MissingFeature {
+        /// The driver's name for the device.
+        device: String,
+        /// Features that it lacks, as one text.
+        missing: String,
+    },
     #[error("{object}: {what} {wanted} is beyond this device's limit of {limit}; lower it")]
-    Limit { object: String, what: &'static str, wanted: u64, limit: u64 },
+    Limit {
+        /// Resource or pass that is too large; the parameter that sets its size may follow.
+        object: String,
+        /// Quantity that is compared, with its unit.
+        what: &'static str,
+        /// Value of the quantity.
+        wanted: u64,
+        /// Greatest value that the device allows.
+        limit: u64,
+    },
     #[error("{}{object}: out of memory; lower the sizes or choose a device with more", allocating(*bytes))]
-    OutOfMemory { object: String, bytes: u64 },
+    OutOfMemory {
+        /// Resource that was to be made.
+        object: String,
+        /// Size of the allocation that failed; 0 where the driver tells none.
+        bytes: u64,
+    },
     #[error("{operation} {object}: {result}")]
-    Vulkan { operation: &'static str, object: String, result: vk::Result },
+    Vulkan {
+        /// The operation as a participle, such as `creating image`.
+        operation: &'static str,
+        /// Name of the object that it was done to.
+        object: String,
+        /// Result code of the call.
+        result: vk::Result,
+    },
     #[error("allocating memory for {object}: {reason}")]
-    Allocation { object: String, reason: String },
+    Allocation {
+        /// Resource whose memory was to be allocated.
+        object: String,
+        /// Message of the allocator.
+        reason: String,
+    },
     #[error("pass {pass}: reads {resource}, which no pass has written")]
-    ReadBeforeWrite { pass: String, resource: String },
+    ReadBeforeWrite {
+        /// Name of the pass that reads.
+        pass: String,
+        /// Name of the resource whose contents are undefined.
+        resource: String,
+    },
     #[error(
         "pass {pass}: {resource} is in use by a frame, a copy or a reader that has not finished; let that finish first"
     )]
-    InUse { pass: String, resource: String },
+    InUse {
+        /// Name of the pass, or of the copy, that wants it too.
+        pass: String,
+        /// Name of the resource that an unfinished submission holds.
+        resource: String,
+    },
     #[error("pass {pass}: {object} belongs to another device; make it on this one")]
-    Foreign { pass: String, object: String },
+    Foreign {
+        /// Name of the pass, or of the operation.
+        pass: String,
+        /// Name of the object of another device.
+        object: String,
+    },
     #[error("{object}: neither this layer nor this device has {problem}")]
-    Unsupported { object: String, problem: String },
+    Unsupported {
+        /// Name of the object that was to be made.
+        object: String,
+        /// Feature or combination that is missing.
+        problem: String,
+    },
     #[error("host access to {object}: {problem}")]
-    HostAccess { object: String, problem: String },
+    HostAccess {
+        /// Name of the buffer.
+        object: String,
+        /// Reason why the host may not read or write there.
+        problem: String,
+    },
     #[error("pass {pass}: it lies behind the end that this frame was given")]
-    BeyondEnd { pass: String },
+    BeyondEnd {
+        /// Name of the pass that the host would have waited for.
+        pass: String,
+    },
     #[error("interrupted between two submissions of a frame")]
     Interrupted,
     #[error("pass {pass}: {problem}")]
-    Pass { pass: String, problem: String },
+    Pass {
+        /// Name of the pass.
+        pass: String,
+        /// The fault in its description or in its recording.
+        problem: String,
+    },
     #[error("shader {name}: {problem}")]
-    Shader { name: String, problem: String },
+    Shader {
+        /// Path of the shader under `shaders/`, or folder of those that replace them.
+        name: String,
+        /// The fault, with file and line where a compiler names them.
+        problem: String,
+    },
     #[error(
         "capturing a frame: {reason}; start the program from RenderDoc, or as `renderdoccmd capture PROGRAM OPTIONS`"
     )]
-    Capture { reason: String },
+    Capture {
+        /// Reason why RenderDoc captured nothing.
+        reason: String,
+    },
     #[error("validation: {} message(s), the first: {first}", count)]
-    Validation { count: usize, first: String },
+    Validation {
+        /// Messages of the layer, 1 or more.
+        count: usize,
+        /// Text of the first one, with the names of its objects.
+        first: String,
+    },
 }
 
 /// Begin of the message on memory; a driver that ran out of it elsewhere tells no size.

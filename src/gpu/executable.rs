@@ -1,4 +1,4 @@
-//! What the driver's compiler made of a pass: registers, spills, occupancy, instructions, as far as the device tells
+//! A pass as the driver's compiler made it: registers, spills, occupancy, instructions, as far as the device tells
 //! (`VK_KHR_pipeline_executable_properties`).
 
 use std::sync::Arc;

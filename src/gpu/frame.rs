@@ -37,7 +37,7 @@ pub struct Frame<'a> {
     pub(super) work: f64,
 }
 
-/// Where a frame ends.
+/// End of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// Behind its last pass.

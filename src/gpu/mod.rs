@@ -1,12 +1,12 @@
 //! The explicit Vulkan layer. It knows no paper.
 //!
-//! - **Who synchronises**: [`Frame`] alone. Each pass declares its reads and writes; barriers are derived from them
+//! - **Synchronisation**: [`Frame`] alone. Each pass declares its reads and writes; barriers are derived from them
 //!   ([`access`]) and recorded by the one envelope. Passes run in the order they are written.
-//! - **Who keeps what alive**: every object is an `Arc` with `Drop` and holds its parents; a frame holds its passes
+//! - **Lifetimes**: every object is an `Arc` with `Drop` and holds its parents; a frame holds its passes
 //!   until its fence, and each recorder has one frame in flight.
-//! - **What can fail**: [`Error`], one line each. An error of a pass ends its frame, which is not submitted.
+//! - **Errors**: [`Error`], one line each. An error of a pass ends its frame, which is not submitted.
 //!
-//! # What a caller cannot get wrong
+//! # Misuse that no caller can commit
 //!
 //! No safe call of this layer breaks a rule of Vulkan. What the types do not rule out is checked before it is recorded;
 //! for a draw that is a few comparisons of integers. Every line is tried under validation: in `tests/suite/gpu` by

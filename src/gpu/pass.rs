@@ -52,21 +52,33 @@ pub(crate) struct Inner {
 
 pub(crate) enum Body {
     Graphics {
+        /// Render pass of the targets, with their load operations and layouts.
         render_pass: Arc<RenderPass>,
+        /// Views of the targets.
         framebuffer: Framebuffer,
+        /// Width and height of all targets, pixels.
         extent: vk::Extent2D,
+        /// Clear value of each target, in their order; unused of targets that are loaded.
         clears: Vec<vk::ClearValue>,
+        /// Vertex buffer; `None` where the shader makes or fetches its vertices itself.
         vertices: Option<BufferView>,
+        /// Index buffer of 32-bit indices, for indexed draws.
         indices: Option<BufferView>,
+        /// Kernel that clamps the parameters of an indirect draw.
         indirect: Option<Box<Clamp>>,
+        /// Elements that draws may fetch.
         bounds: DrawBounds,
     },
     Compute {
+        /// Size of a workgroup, and the order of workgroups.
         workgroup: Workgroup,
+        /// Kernel that clamps the parameters of an indirect dispatch.
         indirect: Option<Box<Clamp>>,
     },
     Copy {
+        /// Image or byte range that is read.
         from: Resource,
+        /// Buffer that is written from its start on.
         to: Arc<Buffer>,
     },
 }

@@ -55,7 +55,7 @@ pub struct PassInfo {
     pub compiler: Option<Compiler>,
     /// The SPIR-V of each stage.
     pub binaries: Vec<Binary>,
-    /// What the driver's compiler made of them; `None` where the device does not tell, or was not asked to.
+    /// The shaders as the driver's compiler made them; `None` where the device does not tell, or was not asked to.
     pub executables: Option<Vec<Executable>>,
 }
 

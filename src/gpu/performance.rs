@@ -111,7 +111,7 @@ impl CounterValue {
     }
 }
 
-/// What a device counted of a pass in one frame.
+/// A device's own counters of a pass in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PerformanceReadings {
     /// Times that the frame was replayed.

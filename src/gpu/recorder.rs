@@ -53,7 +53,7 @@ pub(super) struct Counted {
     /// Index into `sample.passes`.
     pass: usize,
     recorded: Pass,
-    /// What its draws fetched, known once they are recorded.
+    /// Vertices and indices that its draws fetch, known once they are recorded.
     pub fetched: Fetched,
     samples: Option<u32>,
     graphics: Option<u32>,

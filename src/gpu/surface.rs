@@ -78,6 +78,7 @@ fn window_handle(window: &impl HasWindowHandle, display: RawDisplayHandle) -> Re
 
 /// The calls of swapchains on an open device.
 pub(super) struct Presenting {
+    /// Entry points of `VK_KHR_swapchain`.
     pub swapchains: khr::swapchain::Device,
     /// A present can signal a fence when it has let go of its semaphore (`VK_EXT_swapchain_maintenance1`).
     pub has_fences: bool,

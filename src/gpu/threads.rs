@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 /// The variable that the drivers read when devices are enumerated.
 const VARIABLE: &str = "LP_NUM_THREADS";
 
-/// What the variable was before [`draw_in_place`].
+/// Value of the variable before [`draw_in_place`].
 static KEPT: OnceLock<Option<OsString>> = OnceLock::new();
 
 /// Sets `LP_NUM_THREADS` to the number of cores that this process may use, unless the user has set it: without it the

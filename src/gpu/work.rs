@@ -1,7 +1,8 @@
 //! The work of a pass that follows from its declaration and its counters: bytes by access, samples by target, triangles,
 //! multiply-adds.
 //!
-//! What is certain stands apart from what is merely bound: a shader may read all of a buffer, a part of it, or parts many
+//! Certain work stands apart from resources that are merely bound: a shader may read all of a buffer, a part of it, or
+//! parts many
 //! times, which no declaration tells unless the pass declares the access [whole](super::PassBuilder::whole).
 
 use std::ops::AddAssign;
@@ -314,7 +315,7 @@ impl Attachment {
         Attachment { is_color: true, reads: blends, writes, blends, is_certain: !is_counting, ..Self::new(target) }
     }
 
-    /// What fails the test is read as well, how often nobody counts; a stencil changes by rules of its own.
+    /// Samples that fail the test are read as well, and nobody counts them; a stencil changes by rules of its own.
     fn depth(target: &Target, test: DepthTest, is_counting: bool) -> Self {
         let is_certain = !is_counting && !test.has_stencil();
         Attachment { reads: true, writes: test.writes(), is_certain, ..Self::new(target) }

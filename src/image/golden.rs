@@ -23,15 +23,40 @@ pub struct Tolerance {
 #[derive(Debug, thiserror::Error)]
 pub enum GoldenError {
     #[error("golden {golden} is missing: look at {actual}, and run again with FUMAROLE_BLESS=1 to accept it")]
-    Missing { golden: PathBuf, actual: PathBuf },
+    Missing {
+        /// File that was looked for.
+        golden: PathBuf,
+        /// File to which the picture was written.
+        actual: PathBuf,
+    },
     #[error(
         "golden {golden} is {} x {} pixels and the picture {actual} is {} x {}: render at the golden's size, or run again with FUMAROLE_BLESS=1 to accept it", .expected.0, .expected.1, .found.0, .found.1
     )]
-    Size { golden: PathBuf, actual: PathBuf, expected: (u32, u32), found: (u32, u32) },
+    Size {
+        /// File of the golden picture.
+        golden: PathBuf,
+        /// File to which the picture was written.
+        actual: PathBuf,
+        /// Width and height of the golden picture, pixels.
+        expected: (u32, u32),
+        /// Width and height of the picture, pixels.
+        found: (u32, u32),
+    },
     #[error(
         "picture differs from golden {golden} by {:.3} on average (at most {:.3} passes) and {:.3} at the 99th percentile (at most {:.3}): look at {actual} and {heat_map}, and run again with FUMAROLE_BLESS=1 to accept it", .difference.mean, .tolerance.mean, .difference.p99, .tolerance.p99
     )]
-    Different { golden: PathBuf, actual: PathBuf, heat_map: PathBuf, difference: Difference, tolerance: Tolerance },
+    Different {
+        /// File of the golden picture.
+        golden: PathBuf,
+        /// File to which the picture was written.
+        actual: PathBuf,
+        /// File to which the distances of its pixels were written, as colours.
+        heat_map: PathBuf,
+        /// Distance of both in CIE L\*u\*v\*.
+        difference: Difference,
+        /// Largest distance that passes.
+        tolerance: Tolerance,
+    },
     #[error(transparent)]
     Image(#[from] Error),
 }

@@ -52,7 +52,9 @@ pub fn read_png_within(path: &Path, max_side: u32) -> Result<Rgba8, Error> {
 pub enum Refusal {
     /// Pixels, by its header.
     TooLarge {
+        /// Pixels a row.
         width: u32,
+        /// Rows.
         height: u32,
     },
     Damaged(DecodingError),

@@ -36,7 +36,7 @@ pub struct RunMetadata {
     pub started: String,
     /// Milliseconds of loading the input.
     pub load_ms: f64,
-    /// What loading its mesh files consisted of.
+    /// Times of the steps of loading its mesh files.
     pub loading: Option<Loading>,
     /// Milliseconds of making the variant's resources and pipelines.
     pub build_ms: f64,

@@ -26,7 +26,7 @@ pub struct Loaded<S: Study> {
     pub scene: S::Scene,
     /// Milliseconds of loading it.
     pub load_ms: f64,
-    /// What loading its mesh files consisted of; none where there are none.
+    /// Times of the steps of loading its mesh files; none where there are none.
     pub loading: Option<Loading>,
 }
 

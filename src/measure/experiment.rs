@@ -163,7 +163,7 @@ impl<S: Study> Context<'_, S> {
         if text.is_empty() || self.is_json_printed() { Ok(()) } else { self.print(text) }
     }
 
-    /// What has been doubted so far, each once: of the runs, or of the machine where there are none.
+    /// Warnings so far, each once: of the runs, or of the machine where there are none.
     fn warnings(&self) -> Vec<String> {
         let (of_runs, of_machine) = (self.doubts.of_runs.borrow(), self.doubts.of_machine.borrow());
         let of_machine = of_runs.is_empty().then_some(of_machine.as_slice());

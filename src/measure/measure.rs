@@ -30,7 +30,7 @@ pub const MOST_SPANS: usize = 500_000;
 /// A span of time with the frame that it belongs to.
 #[derive(Debug, Clone, Copy)]
 pub struct FrameSpan {
-    /// What was measured of the frame.
+    /// Kind of measurement of the frame.
     pub mode: Mode,
     /// Number of the repetition, from 0.
     pub repetition: u32,

@@ -97,7 +97,7 @@ pub struct Target {
     pub columns: u32,
     /// Of a buffer's values; images have their own format.
     pub kind: Kind,
-    /// What a texel or row holds, with units; empty of what its name says.
+    /// Contents of a texel or row, with units; empty where the name says it all.
     pub holds: &'static str,
     /// Near and far plane of the perspective whose depths it holds, 0 to 1, in the camera's unit of length.
     pub planes: Option<[f32; 2]>,

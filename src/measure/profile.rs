@@ -96,7 +96,7 @@ pub fn profile<S: Study>(
     Ok(Some(Profile { pass: pass.to_owned(), compilers, performance_counters, counters_unread }))
 }
 
-/// What became of the device's own counters.
+/// The device's own counters, or the reason why there are none.
 enum Counted {
     All(PerformanceReadings),
     /// The device has none.

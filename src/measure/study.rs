@@ -81,7 +81,7 @@ pub trait Study: Clone + Default + 'static {
         Ok(0)
     }
 
-    /// What so many triangles of mesh files take in a variant at least: they are not even read where the device cannot hold
+    /// Least memory of so many triangles of mesh files in a variant: they are not even read where the device cannot hold
     /// it.
     fn foresee(&self, _triangles: u64, _variant: Self::Variant) -> Estimate {
         Estimate::default()
@@ -122,7 +122,7 @@ pub trait Study: Clone + Default + 'static {
         Vec::new()
     }
 
-    /// What `stress` makes larger, the default first.
+    /// Axes that `stress` makes larger, the default first.
     fn axes() -> Vec<Axis<Self>> {
         Vec::new()
     }

@@ -157,7 +157,7 @@ impl TriangleTree {
         tree
     }
 
-    /// Whether a ray of unit direction meets a triangle, on either side; as `first_hit` of `common/triangle-tree.glsl`.
+    /// True when a ray of unit direction meets a triangle, on either side; as `first_hit` of `common/triangle-tree.glsl`.
     pub fn is_met(&self, origin: Vec3, direction: Vec3) -> bool {
         self.find(origin, direction, f32::INFINITY, |_| true).is_some()
     }

@@ -1,4 +1,4 @@
-//! What tells runs of one method apart, in the names that people read.
+//! Parameters that tell runs of one method apart, in the names that people read.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
@@ -23,7 +23,7 @@ fn method(run: &Run) -> (&str, &str, Option<&str>) {
     (&run.paper, &run.variant, run.preset.as_deref())
 }
 
-/// What stands beside the parameters and may tell runs apart like one.
+/// Fields beside the parameters that may tell runs apart like one.
 const BESIDE: [&str; 2] = ["seed", "frames"];
 
 fn names(run: &Run) -> impl Iterator<Item = &str> {

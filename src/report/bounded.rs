@@ -23,7 +23,7 @@ pub(super) fn begin(size_bytes: usize) {
 /// An object of values of any shape.
 ///
 /// # Errors
-/// What is no object, and more values than the document may have.
+/// Anything but an object, and more values than the document may have.
 pub(super) fn map<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     match Any.deserialize(deserializer)? {
         Value::Object(map) => Ok(map),

@@ -32,7 +32,7 @@ pub fn warning_lines(warnings: &[String], style: Style) -> String {
     warnings.iter().map(|warning| format!("{} {warning}\n", style.yellow("warning:"))).collect()
 }
 
-/// What the warning of a noisy run begins with; the percentage follows.
+/// Begin of the warning of a noisy run; the percentage follows.
 pub const SCATTERS_BY: &str = "noisy: repetitions of one frame scatter by ";
 
 /// Every warning of runs once, with the number of runs that it concerns; of noise the greatest.

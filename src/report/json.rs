@@ -16,24 +16,46 @@ use crate::file;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     #[error("cannot read the record {}: {source}; name a file written by --json", .path.display())]
-    Unreadable { path: PathBuf, source: io::Error },
+    Unreadable {
+        /// File that was to be read.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
     #[error(
         "cannot read the record {}: it ends too early, at line {line}; the file is truncated, write it again with --json",
         .path.display()
     )]
-    Truncated { path: PathBuf, line: usize },
+    Truncated {
+        /// File that was read.
+        path: PathBuf,
+        /// Line at which it ends, from 1.
+        line: usize,
+    },
     #[error("cannot read the record {}: no JSON: {source}; name a file written by --json", .path.display())]
-    NotJson { path: PathBuf, source: serde_json::Error },
+    NotJson {
+        /// File that was read.
+        path: PathBuf,
+        /// The parser's error, with line and column.
+        source: serde_json::Error,
+    },
     #[error(
         "cannot read the record {}: its schema is {found}, not \"{SCHEMA}\"; name a file written by --json of this version",
         .path.display()
     )]
-    WrongSchema { path: PathBuf, found: String },
+    WrongSchema {
+        /// File that was read.
+        path: PathBuf,
+        /// Its schema in quotes, or `absent` or `no text`.
+        found: String,
+    },
     #[error("cannot read the record {}: field {field}: {source}; write it again with --json", .path.display())]
     WrongField {
+        /// File that was read.
         path: PathBuf,
         /// Path inside the document, e.g. `runs[0].passes[2].gpu_ms`.
         field: String,
+        /// The parser's error on the field.
         source: serde_json::Error,
     },
 }
@@ -62,7 +84,7 @@ pub fn read(path: &Path) -> Result<Record, ReadError> {
     parse(&text, path)
 }
 
-/// What every document of ours begins with.
+/// Begin of every document of ours.
 #[derive(Deserialize)]
 struct Header {
     schema: Option<String>,

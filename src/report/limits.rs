@@ -59,7 +59,7 @@ pub const LIMITS: [(&str, &str, &str); 16] = [
 
 /// A limit that was measured.
 pub struct Limit<'a> {
-    /// What it is: its name in the record where that is not one of [`LIMITS`].
+    /// Description; its name in the record where that is not one of [`LIMITS`].
     pub what: &'a str,
     /// Unit of value and spread; empty where it is not known.
     pub unit: &'static str,

@@ -149,7 +149,7 @@ pub struct BytesAtMost {
 pub struct Profile {
     /// Name of the pass.
     pub pass: String,
-    /// What each compiler's binaries take.
+    /// Times and code of each compiler's binaries.
     pub compilers: Vec<CompiledPass>,
     /// Names of the device's own counters (`VK_KHR_performance_query`); absent where it has none.
     pub performance_counters: Option<Vec<String>>,
@@ -169,7 +169,7 @@ pub struct CompiledPass {
     pub gpu_ms: Option<Summary>,
     /// The binaries that ran.
     pub binaries: Vec<ShaderBinary>,
-    /// What the driver's compiler made of them; absent where the device does not tell.
+    /// Its stages as the driver's compiler made them; absent where the device does not tell.
     pub stages: Option<Vec<CompiledStage>>,
     /// The device's own counters of the pass in frame 0; absent where it has none.
     #[serde(default)]

@@ -90,7 +90,7 @@ pub(super) fn spread(time: &Summary) -> String {
     text
 }
 
-/// How often each time occurred: the beginning of each bin, and its samples. Empty where all are alike.
+/// Histogram of the times: the beginning of each bin, and its samples. Empty where all are alike.
 pub(super) fn bins(time: &Summary) -> Vec<(f64, usize)> {
     let width = (time.max - time.min) / BINS as f64;
     if width <= 0.0 {
@@ -137,12 +137,12 @@ fn binaries(profile: &Profile) -> Table {
     table
 }
 
-/// What the device's own counters were read to, in so far as one compiler's were.
+/// Readings of the device's own counters, in so far as one compiler's were read.
 pub(super) fn readings(profile: &Profile) -> Option<&CounterReadings> {
     profile.compilers.iter().find_map(|compiled| compiled.counters.as_ref())
 }
 
-/// Whether the device has counters, and whether they were read.
+/// Lines that say if the device has counters, and if they were read.
 pub(super) fn told_of_counters(profile: &Profile) -> Vec<String> {
     let Some(names) = &profile.performance_counters else {
         return vec!["performance counters (VK_KHR_performance_query): the device has none".to_owned()];

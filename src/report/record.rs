@@ -199,7 +199,7 @@ pub struct Run {
     pub stamp_floor_ms: Option<f64>,
     /// Loading of the input.
     pub load_ms: Option<f64>,
-    /// What loading mesh files consisted of; absent where none was loaded.
+    /// Times of the steps of loading mesh files; absent where none was loaded.
     #[serde(default)]
     pub loading: Option<Loading>,
     /// Making of the resources and pipelines, and the first frame less the median of the others.

@@ -23,9 +23,9 @@ pub struct StressRecord {
     pub command: Vec<String>,
     /// Name of the paper's command.
     pub paper: String,
-    /// What grows from step to step.
+    /// Axis that grows from step to step.
     pub axis: AxisName,
-    /// What grows from series to series; absent without a matrix.
+    /// Axis that grows from series to series; absent without a matrix.
     pub across: Option<AxisName>,
     /// Factor between two steps.
     pub factor: f64,
@@ -43,7 +43,9 @@ pub struct StressRecord {
 /// An axis as its paper declares it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AxisName {
+    /// Name after `--axis`.
     pub name: String,
+    /// One line on what it makes larger.
     pub help: String,
     /// Unit of the values.
     pub unit: String,
@@ -77,6 +79,7 @@ pub struct Settings {
 /// Steps along the axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
+    /// Name of the variant.
     pub variant: String,
     /// Value of the second axis; absent without a matrix.
     pub across: Option<u64>,
@@ -93,7 +96,7 @@ pub struct Series {
 pub struct Step {
     /// Of the axis.
     pub value: u64,
-    /// What the step really had, in the axis's `amount_unit`.
+    /// Amount of work that the step really had, in the axis's `amount_unit`.
     pub amount: f64,
     /// Amount over the median frame.
     pub throughput_per_s: Option<f64>,
@@ -148,9 +151,10 @@ impl StopKind {
     }
 }
 
-/// What ended a series.
+/// End of a series.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stop {
+    /// Kind of the limit.
     pub kind: StopKind,
     /// Value of the step that was not finished or not begun; of a wrong one, the step's.
     pub value: u64,
@@ -158,7 +162,7 @@ pub struct Stop {
     pub reason: String,
 }
 
-/// How one cost grows.
+/// Growth of one cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// A pass, or `frame`, `load`, `pipelines`, `device memory`, `process memory`.
@@ -183,8 +187,11 @@ pub struct Scaling {
 /// A range of amounts with one exponent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
+    /// Least amount of the range.
     pub from: f64,
+    /// Greatest amount of the range.
     pub to: f64,
+    /// Power of the amount with which the cost grows in the range.
     pub exponent: f64,
     /// 95 %; absent without a point too many.
     pub interval: Option<[f64; 2]>,

@@ -10,10 +10,13 @@ pub(super) enum ByteOrder {
 
 /// The raw rows of a raster.
 pub(super) struct Rows {
+    /// Samples in a row.
     pub(super) width: usize,
+    /// Number of rows.
     pub(super) height: usize,
     /// Bytes from one row's start to the next one's, at least the row's own.
     pub(super) stride_bytes: u64,
+    /// Order of a sample's bytes.
     pub(super) order: ByteOrder,
 }
 

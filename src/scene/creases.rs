@@ -52,7 +52,7 @@ pub(super) fn fill_normals(parts: &mut Parts, crease_deg: f32) {
     }
 }
 
-/// What is known of a vertex's normal.
+/// Source of a vertex's normal.
 #[derive(Clone, Copy, PartialEq)]
 enum State {
     Missing,
@@ -100,7 +100,7 @@ fn assign(parts: &mut Parts, states: &mut [State], points: &mut Vec<u32>, groups
 
 /// Corners of triangles, by the point that they lie at.
 struct Around {
-    /// Where the corners of each point begin, and the end.
+    /// Begin of the corners of each point in `corners`, and the end.
     offsets: Vec<u32>,
     /// Places in the list of indices, in order for each point.
     corners: Vec<u32>,

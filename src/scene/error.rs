@@ -6,19 +6,54 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("cannot read {}: {source}; name a file that can be read", path.display())]
-    Read { path: PathBuf, source: io::Error },
+    Read {
+        /// File that was to be read.
+        path: PathBuf,
+        /// The system's error.
+        source: io::Error,
+    },
     #[error("cannot read {}: it is not a regular file; name a {asset} file", path.display())]
-    NotAFile { path: PathBuf, asset: Asset },
+    NotAFile {
+        /// Directory, pipe or device that was named.
+        path: PathBuf,
+        /// Contents that were expected.
+        asset: Asset,
+    },
     #[error("cannot load {asset} {}: unknown file ending {ending:?}; known endings are {known}", path.display())]
-    UnknownEnding { path: PathBuf, asset: Asset, ending: String, known: String },
+    UnknownEnding {
+        /// File that was named.
+        path: PathBuf,
+        /// Contents that were expected.
+        asset: Asset,
+        /// Its ending, without the dot.
+        ending: String,
+        /// Endings that are read as such contents.
+        known: String,
+    },
     #[error("cannot load {asset} {}: {fault}", path.display())]
-    Malformed { path: PathBuf, asset: Asset, fault: Fault },
+    Malformed {
+        /// File that was read.
+        path: PathBuf,
+        /// Contents that were expected.
+        asset: Asset,
+        /// The fault and its place in the file.
+        fault: Fault,
+    },
     #[error("interrupted while reading {}", path.display())]
-    Interrupted { path: PathBuf },
+    Interrupted {
+        /// File that was being read.
+        path: PathBuf,
+    },
     #[error("cannot use the camera: {reason}")]
-    Camera { reason: String },
+    Camera {
+        /// The fault in its position, target, angle or planes.
+        reason: String,
+    },
     #[error("cannot use the height map: {reason}")]
-    HeightMap { reason: String },
+    HeightMap {
+        /// The fault in its size, spacing or heights.
+        reason: String,
+    },
 }
 
 /// Kind of contents that a file is read as.

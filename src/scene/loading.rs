@@ -1,4 +1,4 @@
-//! How a mesh is loaded, who waits for it, and what its parts took.
+//! Options of loading a mesh, who waits for it, and the times of its steps.
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::formats::Stop;
 
-/// What is made of a mesh file.
+/// Options of loading a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshOptions {
     /// Degrees between two triangles along an edge up to which they share a normal there, where the file has none.
@@ -64,7 +64,7 @@ impl Watch<'_> {
     }
 }
 
-/// What holds for all loads of this process.
+/// Conditions of all loads of this process.
 #[derive(Clone)]
 pub struct Conditions {
     /// Who waits.

@@ -87,7 +87,7 @@ impl Mesh {
     }
 }
 
-/// What an affine transform does to normals and windings.
+/// Effect of an affine transform on normals and windings.
 pub(super) struct Placement {
     cofactor: Mat3,
     /// It turns triangles over.
@@ -110,9 +110,10 @@ impl Placement {
     }
 }
 
-/// What a file gives of a mesh; none of it is checked.
+/// A mesh as a file gives it, unchecked.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Parts {
+    /// Positions of the vertices, in the file's unit.
     pub positions: Vec<Vec3>,
     /// None, or as many as positions; zero or not finite where there is none.
     pub normals: Vec<Vec3>,

@@ -20,7 +20,7 @@ use crate::{content, file};
 
 /// Files below this load about as fast as their entries, bytes.
 pub(super) const LEAST_BYTES: u64 = 1 << 20;
-/// What all entries may take together, bytes.
+/// Most bytes of all entries together.
 const MOST_BYTES: u64 = 4 << 30;
 const ENDING: &str = "mesh";
 /// The layout of an entry and the readers that it came from: one more wherever either gives something else.

@@ -19,7 +19,7 @@ pub(super) struct PolygonMesh {
     pub texture_coordinates: Vec<Vec2>,
     /// Vertex numbers of all polygons, one after the other.
     pub corners: Vec<u32>,
-    /// Where one ends and the next begins.
+    /// Number of corners of each polygon.
     pub arities: Arities,
     /// Of the vertices, where they are asked for.
     pub tags: Tags,

@@ -1,4 +1,4 @@
-//! What a mesh file says of its vertices beside where they are: the named parts that they belong to, and their colours.
+//! Tags of a mesh file's vertices beside their positions: the named parts that they belong to, and their colours.
 
 use std::collections::HashMap;
 
@@ -51,7 +51,7 @@ impl Tags {
     }
 }
 
-/// What names a part.
+/// Statement that names a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Level {
     Object,

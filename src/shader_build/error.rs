@@ -6,34 +6,73 @@ use super::Compiler;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("reading {}: {source}; check that the path exists and is readable", path.display())]
-    Read { path: PathBuf, source: std::io::Error },
+    Read {
+        /// File or folder that was to be read.
+        path: PathBuf,
+        /// The system's error.
+        source: std::io::Error,
+    },
     #[error("reading shader {}: the first line must be `#version 450`", path.display())]
-    Version { path: PathBuf },
+    Version {
+        /// File of the shader.
+        path: PathBuf,
+    },
     #[error("{}:{line}: {problem}", path.display())]
-    Directive { path: PathBuf, line: usize, problem: DirectiveProblem },
+    Directive {
+        /// File with the line.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The fault in the line.
+        problem: DirectiveProblem,
+    },
     #[error(
         "{}{}: {compiler} refuses the shader `{shader}`: {message}",
         path.display(),
         line.map(|line| format!(":{line}")).unwrap_or_default()
     )]
     Compile {
+        /// Name of the shader: its path under the shader folder, with the values of its variants.
         shader: String,
+        /// Compiler that refuses it.
         compiler: Compiler,
+        /// File that the message is about, which may be an included one.
         path: PathBuf,
         /// Line in `path`, from 1; absent when the compiler names none (a missing `main`).
         line: Option<usize>,
+        /// The compiler's message on one line.
         message: String,
     },
     #[error(
         "shader `{shader}` must build with naga too, but: {reason}; rewrite it or give the reason in NAGA_EXCEPTIONS"
     )]
-    NagaRefused { shader: String, reason: String },
+    NagaRefused {
+        /// Name of the shader.
+        shader: String,
+        /// naga's message, or the construct outside its subset.
+        reason: String,
+    },
     #[error("`{}` and `{}` both make the shader `{shader}`; rename one", files[0], files[1])]
-    MadeTwice { shader: String, files: [String; 2] },
+    MadeTwice {
+        /// Name that both make.
+        shader: String,
+        /// Their paths under the shader folder.
+        files: [String; 2],
+    },
     #[error("NAGA_EXCEPTIONS lists `{shader}`, {problem}; remove the entry")]
-    StaleException { shader: String, problem: &'static str },
+    StaleException {
+        /// Name of the shader in the table.
+        shader: String,
+        /// Reason why it does not belong there, as a clause.
+        problem: &'static str,
+    },
     #[error("shader `{shader}`: {source}")]
-    Reflect { shader: String, source: ReflectError },
+    Reflect {
+        /// Name of the shader.
+        shader: String,
+        /// The fault in its binary's interface.
+        source: ReflectError,
+    },
 }
 
 /// A fault in a preprocessor line that the includes depend on.

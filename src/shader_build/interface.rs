@@ -60,10 +60,16 @@ pub struct ImageShape {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BindingKind {
     UniformBuffer,
-    StorageBuffer { readonly: bool },
+    StorageBuffer {
+        /// No stage writes it.
+        readonly: bool,
+    },
     SampledImage,
     Sampler,
-    StorageImage { format: ImageFormat },
+    StorageImage {
+        /// Format of a texel, as the shader declares it.
+        format: ImageFormat,
+    },
     CombinedImageSampler,
 }
 

@@ -22,7 +22,7 @@ use super::screen::{Drawn, Screen};
 use crate::gpu::live::LiveObjects;
 use crate::gpu::swapchain::PresentMode;
 
-/// What a window is opened with.
+/// Options of a window.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Names of the papers, in the order of their list.
@@ -49,7 +49,7 @@ pub struct Options {
     pub controls: Option<PathBuf>,
 }
 
-/// What wakes the loop, beside the display's own events.
+/// Events that wake the loop, beside the display's own.
 #[derive(Debug)]
 pub enum Wake {
     /// The worker has said something.
@@ -149,7 +149,7 @@ struct Open {
     controls: Option<PathBuf>,
 }
 
-/// Whether the window goes on.
+/// Continuation of the window, or its end.
 enum Flow {
     On,
     Ended,

@@ -18,7 +18,7 @@ use crate::gpu::for_another_process;
 pub struct Bench {
     running: Option<Running>,
     record: Option<Value>,
-    /// Where the record lies.
+    /// File of the record.
     path: Option<PathBuf>,
     problem: Option<String>,
 }

@@ -15,11 +15,13 @@ const LEAST_POLAR_RAD: f64 = 0.02;
 /// Eye and target; +Y is up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
+    /// Position of the camera, in the scene's unit of length.
     pub eye: DVec3,
+    /// Point in the middle of the picture, in the scene's unit of length.
     pub target: DVec3,
 }
 
-/// What is known of the camera while it moves: the worker's own follows late.
+/// The camera as far as it is known while it moves: the worker's own follows late.
 #[derive(Debug, Clone, Default)]
 pub struct Flight {
     view: Option<View>,
@@ -33,7 +35,7 @@ impl View {
         View { eye: DVec3::new(a, b, c), target: DVec3::new(d, e, f) }
     }
 
-    /// What the text says, where it is six numbers.
+    /// The view of a text of six numbers; `None` of any other.
     fn parse(text: &str) -> Option<Self> {
         let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
         numbers?.try_into().ok().map(Self::from_numbers)

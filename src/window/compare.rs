@@ -109,7 +109,7 @@ fn both(face: &Interface, x: u32, y: u32) -> Option<String> {
     Some(format!("pixel {x}, {y}: {} | {} (8-bit sRGB)", of(0)?, of(1)?))
 }
 
-/// How the sides are shown, and their distance.
+/// Choice between the ways to show both sides, and their distance.
 fn show_choice(ui: &mut Ui, face: &mut Interface) {
     ui.horizontal(|ui| {
         let choices = [

@@ -1,4 +1,4 @@
-//! Where the window's controls are, for those who drive it from outside.
+//! Places of the window's controls, for those who drive it from outside.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What of the window must be drawn again: the shapes of a frame set against those of the last one.
+//! Damage of the window, the parts to be drawn again: the shapes of a frame set against those of the last one.
 //!
 //! Shapes that stay keep their order, so that a pixel which no other shape touches keeps its colour; all others lie in a
 //! few rectangles, and only there is anything drawn.
@@ -12,9 +12,13 @@ use egui::{Color32, CornerRadius, Pos2, Rect, TextureId};
 /// A rectangle of whole pixels that is not empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Area {
+    /// First column, from 0 at the window's left edge.
     pub left: u32,
+    /// First row, from 0 at the window's upper edge.
     pub top: u32,
+    /// Column after the last one.
     pub right: u32,
+    /// Row after the last one.
     pub bottom: u32,
 }
 
@@ -99,7 +103,7 @@ pub struct Canvas {
     is_all_stale: bool,
 }
 
-/// What is seen in a rectangle.
+/// The visible contents of a rectangle.
 pub struct Seen {
     /// A picture that leaves nothing below it to be seen.
     pub picture: Option<Sheet>,
@@ -112,8 +116,9 @@ pub struct Seen {
 /// A texture that lies on the window texel by pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sheet {
+    /// The texture as the interface knows it.
     pub texture: TextureId,
-    /// Where its first texel lies, and where it ends.
+    /// Its pixels of the window, from the first texel on.
     pub place: Area,
 }
 
@@ -191,13 +196,13 @@ impl Canvas {
         Rect::from_min_max(point(area.left, area.top), point(area.right, area.bottom))
     }
 
-    /// What lies under all shapes: black.
+    /// The ground under all shapes: black.
     pub fn ground(&self, area: Area) -> ClippedShape {
         let shape = Shape::rect_filled(self.points(area).expand(4.0), CornerRadius::ZERO, Color32::BLACK);
         ClippedShape { clip_rect: Rect::EVERYTHING, shape }
     }
 
-    /// What can be seen in a rectangle.
+    /// The visible contents of a rectangle.
     pub fn seen_in(&self, area: Area) -> Seen {
         let base = self.pieces.iter().rposition(|piece| piece.covered.is_some_and(|covered| covered.holds(area)));
         let picture = base.and_then(|base| sheet(&self.pieces[base].shape.shape, self.pixels_per_point));
@@ -309,7 +314,7 @@ fn differences(old: &[Piece], new: &[Piece], redrawn: &HashSet<TextureId>, mut t
     old[at_old..].iter().chain(&new[at_new..]).for_each(|piece| tell(piece.area, false));
 }
 
-/// How many shapes of each list are to be passed over until the next of both are equal; `None` where none are near.
+/// Number of shapes of each list to be passed over until the next of both are equal; `None` where none are near.
 fn next_equal(old: &[Piece], new: &[Piece]) -> Option<(usize, usize)> {
     let is_equal = |a: usize, b: usize| old.get(a).zip(new.get(b)).is_some_and(|(a, b)| are_equal(&a.shape, &b.shape));
     // One in the place of one is what happens most.

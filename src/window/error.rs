@@ -8,11 +8,17 @@ pub enum Error {
     #[error(
         "opening a window: {reason}; run it where there is a display (DISPLAY or WAYLAND_DISPLAY is set), or use `render`, which needs none"
     )]
-    NoDisplay { reason: String },
+    NoDisplay {
+        /// Message of the display's library.
+        reason: String,
+    },
     #[error(transparent)]
     Gpu(#[from] gpu::Error),
     #[error("starting the program that draws for the window: {reason}")]
-    Worker { reason: String },
+    Worker {
+        /// The system's message, or the part of the connection that is missing.
+        reason: String,
+    },
     /// The first worker did not get as far as its first words.
     #[error("{message}")]
     Refused {
@@ -22,7 +28,15 @@ pub enum Error {
         code: i32,
     },
     #[error("running the window: {reason}")]
-    Loop { reason: String },
+    Loop {
+        /// Message of the event loop.
+        reason: String,
+    },
     #[error("writing {path}: {reason}")]
-    Controls { path: String, reason: String },
+    Controls {
+        /// File of the controls' places.
+        path: String,
+        /// The system's message.
+        reason: String,
+    },
 }

@@ -4,20 +4,22 @@ use egui::{Color32, ColorImage};
 
 use super::protocol::{TargetValues, ValueKind};
 
-/// How values become colours.
+/// Mapping of values to colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drawing {
+    /// The channel that is drawn, or three as a colour.
     pub channel: Channel,
     /// Values at the two ends.
     pub range: (f64, f64),
     /// Powers of two that values are multiplied by.
     pub exposure: f32,
+    /// Colours of a single channel.
     pub ramp: Ramp,
     /// Of depths: the distance along the view, between these planes.
     pub linear_between: Option<[f64; 2]>,
 }
 
-/// What is drawn of a texel.
+/// Channels of a texel that are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Channel {
     /// The first three as red, green and blue.

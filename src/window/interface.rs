@@ -15,7 +15,7 @@ use super::sent::Sent;
 use super::session::Session;
 use super::{camera, compare, drawer, keys, parameters_panel, passes_panel, picture_view, target_view, top_bar};
 
-/// What the interface wants done.
+/// A wish of the interface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wish {
     /// A request to the worker.
@@ -30,14 +30,14 @@ pub enum Wish {
     Quit,
 }
 
-/// What the middle of the window shows.
+/// Contents of the middle of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     Picture,
     Target,
 }
 
-/// What the answer with a command line is for.
+/// Use of the answer with a command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CommandUse {
     Copy,
@@ -121,7 +121,7 @@ impl Interface {
         }
     }
 
-    /// What is asked for once the worker is ready.
+    /// Requests a frame, and that the clock plays, once the worker is ready.
     pub fn begin(&mut self, frame: u32, is_playing: bool) {
         if frame > 0 {
             self.first.push(Request::GoTo(frame));
@@ -131,7 +131,7 @@ impl Interface {
         }
     }
 
-    /// What the worker has told.
+    /// The worker as far as it has told.
     pub fn session(&self) -> &Session {
         &self.session
     }
@@ -202,7 +202,7 @@ impl Interface {
         }
     }
 
-    /// What the interface has wished since the last call.
+    /// Wishes since the last call.
     pub fn wishes(&mut self) -> Vec<Wish> {
         std::mem::take(&mut self.wishes)
     }

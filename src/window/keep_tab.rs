@@ -5,7 +5,7 @@ use egui::{DragValue, TextEdit, Ui};
 use super::interface::Interface;
 use super::protocol::{Keep, Request};
 
-/// What is typed here.
+/// Text typed here.
 #[derive(Debug)]
 pub struct Saving {
     /// Folder of the files.

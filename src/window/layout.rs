@@ -9,21 +9,29 @@ use crate::file;
 /// A file that is larger holds something else.
 const MOST_BYTES: u64 = 1 << 16;
 
-/// What is remembered.
+/// The layout that is remembered from window to window.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layout {
     /// Width and height of the window in points of the display.
     pub window_size: (f32, f32),
+    /// Light or dark colours.
     pub theme: Theme,
+    /// The panel of passes is open.
     pub has_passes: bool,
+    /// The panel of parameters is open.
     pub has_parameters: bool,
+    /// The drawer below the picture is open.
     pub has_drawer: bool,
     /// Widths of the panels at the sides and height of the drawer, points.
     pub passes_width: f32,
+    /// Width of the panel of parameters, points.
     pub parameters_width: f32,
+    /// Height of the drawer, points.
     pub drawer_height: f32,
+    /// Tab of the drawer that is in front.
     pub tab: Tab,
+    /// Way to show two sides.
     pub comparison: Comparison,
     /// Samples that medians of times are taken of.
     pub samples: u32,
@@ -38,7 +46,7 @@ pub enum Theme {
     Dark,
 }
 
-/// What the drawer shows.
+/// Tab of the drawer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Tab {
     Times,
@@ -49,7 +57,7 @@ pub enum Tab {
     Bench,
 }
 
-/// How two sides are shown.
+/// Way to show two sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Comparison {
     /// One left of the other.
@@ -79,7 +87,7 @@ impl Default for Layout {
 }
 
 impl Layout {
-    /// What was remembered, or the default where nothing was, or nothing that makes sense.
+    /// The remembered layout, or the default where there is none, or none that makes sense.
     pub fn load() -> Self {
         let text = path().and_then(|path| file::read_text(&path, MOST_BYTES).ok());
         text.map(|text| Self::parsed(&text)).unwrap_or_default()

@@ -80,7 +80,7 @@ struct Run {
     count: u32,
 }
 
-/// What one frame draws, in the buffers' order.
+/// Meshes of one frame, in the buffers' order.
 #[derive(Default)]
 struct Batch {
     corners: Vec<Corner>,

@@ -11,7 +11,7 @@ use super::camera;
 use super::interface::Interface;
 use super::protocol::{Cost, ParameterInfo};
 
-/// What is being typed.
+/// Texts being typed.
 #[derive(Debug, Default)]
 pub struct Fields {
     search: String,

@@ -245,7 +245,7 @@ fn show_pass(ui: &mut Ui, face: &mut Interface, index: usize, pass: &PassInfo) {
     show_thumbnails(ui, face, pass);
 }
 
-/// What the device could do at most, where that and the pass's work were measured.
+/// The device's limit, where that and the pass's work were measured.
 fn show_bound(ui: &mut Ui, face: &mut Interface, index: usize) {
     if face.session.limits.is_none() && ui.small_button("Measure the device's limits").clicked() {
         face.ask(Request::Limits);

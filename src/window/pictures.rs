@@ -10,8 +10,11 @@ use super::session::Session;
 /// Textures of the last frame.
 #[derive(Default)]
 pub struct Pictures {
+    /// Picture of each side; `None` where it is not drawn.
     pub sides: [Option<TextureHandle>; 2],
+    /// Heat map of the distance of both sides; `None` unless it is asked for.
     pub difference: Option<TextureHandle>,
+    /// Small picture of each target, by the target's name.
     pub thumbnails: HashMap<String, TextureHandle>,
     /// A frame has come since the last update.
     pub is_new: bool,

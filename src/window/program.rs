@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The umbrella program, which knows every paper: this one, or from a paper's own binary the one beside it.
 ///
 /// # Errors
-/// Where this program has no place, or nothing lies beside it.
+/// This program has no place, or nothing lies beside it.
 pub fn umbrella() -> io::Result<PathBuf> {
     let own = std::env::current_exe()?;
     let name = format!("fumarole{}", std::env::consts::EXE_SUFFIX);

@@ -12,7 +12,7 @@ use crate::gpu::surface::{Display, Surface};
 use crate::gpu::swapchain::{PresentMode, Presented, Swapchain};
 use crate::gpu::{Device, Error, ImageView, Instance};
 
-/// What a window shows itself with.
+/// Means by which a window shows itself.
 pub struct Screen {
     // In the order in which they are dropped: each needs what follows.
     painter: Painter,

@@ -1,4 +1,4 @@
-//! What was asked of the worker and is shown as if it were there already, until the worker says what is: a worker that draws
+//! Requests to the worker that are shown as if they were done already, until the worker says what is: a worker that draws
 //! a frame of seconds answers late.
 
 use std::collections::HashMap;
@@ -53,7 +53,7 @@ impl Sent {
         }
     }
 
-    /// What was asked for so far has gone to the worker as request `id`, or before it.
+    /// Notes that all requests so far have gone to the worker as request `id`, or before it.
     pub fn number(&mut self, id: u64) {
         self.parameters.values_mut().for_each(|one| one.number(id));
         self.is_playing.iter_mut().for_each(|one| one.number(id));
@@ -80,12 +80,12 @@ impl Sent {
         self.parameters.get(name)?.value.as_deref()
     }
 
-    /// Whether the worker has yet to hear of a parameter's last change.
+    /// True while the worker has yet to hear of a parameter's last change.
     pub fn is_underway(&self, name: &str) -> bool {
         self.parameters.contains_key(name)
     }
 
-    /// Whether the clock plays.
+    /// True when the clock was asked to play, false to pause; `None` when the worker's own word holds.
     pub fn is_playing(&self) -> Option<bool> {
         self.is_playing.as_ref().map(|one| one.value)
     }

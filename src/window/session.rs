@@ -1,4 +1,4 @@
-//! What the worker has told so far.
+//! State of the worker as far as it has told.
 
 use std::collections::VecDeque;
 use std::time::Instant;
@@ -25,25 +25,37 @@ pub struct Point {
 /// The worker as the window knows it.
 #[derive(Default)]
 pub struct Session {
+    /// Device, paper and parameters of the worker; `None` until it has said them.
     pub ready: Option<Ready>,
+    /// Values of all parameters; `None` until the first set-up holds.
     pub setup: Option<Setup>,
     /// Eye and target of the camera where none is set by hand, as it was last told.
     pub home: Option<[f64; 6]>,
+    /// Passes and targets of the sides; `None` until they are made.
     pub built: Option<Built>,
+    /// The last frame; `None` before the first.
     pub frame: Option<Frame>,
+    /// Times of each side's frame and passes, as they came last.
     pub times: Vec<SideTimes>,
     /// Milliseconds of frames, each side's.
     pub frames: VecDeque<Point>,
     /// Milliseconds of passes of the first side, as medians came.
     pub passes: VecDeque<Point>,
+    /// Work that takes long and is under way.
     pub progress: Option<Progress>,
-    /// What could not be done last.
+    /// Message of the last request that failed.
     pub problem: Option<String>,
+    /// Latest warnings, the newest last.
     pub warnings: Vec<String>,
+    /// The device's own limits; `None` until they are measured.
     pub limits: Option<DeviceLimits>,
+    /// Memory of device and process, as it was last asked for.
     pub memory: Option<Memory>,
+    /// Files that were written, one line each.
     pub kept: Vec<String>,
+    /// Latest messages of the validation layer, the newest last.
     pub validation: Vec<String>,
+    /// End of the worker's process; `None` while it runs.
     pub ended: Option<Ended>,
     /// Last request that something was heard of.
     pub heeds: u64,
@@ -124,7 +136,7 @@ impl Session {
         self.parameters().iter().position(|parameter| parameter.name == name)
     }
 
-    /// What is set on a side.
+    /// Everything that is set on a side.
     pub fn side(&self, side: usize) -> Option<&SideSetup> {
         self.setup.as_ref()?.sides.get(side)
     }

@@ -8,9 +8,10 @@ use super::picture_view::{PictureView, navigate, paint, texel_at};
 use super::protocol::{Statistics, TargetChoice, TargetInfo, TargetShape, TargetValues, ValueKind};
 use super::table_view;
 
-/// How the target is looked at.
+/// View of the target.
 #[derive(Default)]
 pub struct TargetView {
+    /// Place and scale of the target in the middle of the window.
     pub view: PictureView,
     channel: Option<Channel>,
     /// Ends of the range that the user chose.
@@ -20,7 +21,7 @@ pub struct TargetView {
     is_linear_depth: bool,
     is_logarithmic: bool,
     texture: Option<TextureHandle>,
-    /// What the texture shows: the frame and the drawing.
+    /// Contents of the texture: the frame and the drawing.
     drawn: Option<(u64, TargetChoice, Drawing, bool)>,
 }
 

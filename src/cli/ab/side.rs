@@ -94,7 +94,7 @@ impl AbArgs {
         }
     }
 
-    /// What a side's program is given, but for where its record goes.
+    /// Arguments of a side's program, without those that say where its record goes.
     pub fn words(&self, side: Side) -> Result<Vec<OsString>, Failure> {
         let own = if side == Side::A { &self.a.0 } else { &self.b.0 };
         let (paper, options) = match &self.common[..] {

@@ -144,7 +144,7 @@ fn whole_name(part: &Part) -> String {
     name
 }
 
-/// What of two parts' settings differs.
+/// The settings in which two parts differ, for a message.
 fn difference(a: &Part, b: &Part) -> String {
     let parameters =
         a.settings.parameters.iter().filter(|(name, value)| b.settings.parameters.get(*name) != Some(*value));

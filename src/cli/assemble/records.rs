@@ -105,7 +105,7 @@ impl Part {
         }
     }
 
-    /// What differs between the measurements that two parts are of.
+    /// The difference between the measurements that two parts are of; `None` where they are of the same one.
     fn difference(&self, other: &Part) -> Option<String> {
         if let Some([what, a, b]) = difference_of_machines(self.environment(), other.environment()) {
             return Some(format!("{what} is {a} and {b}"));

@@ -29,7 +29,7 @@ pub struct Children<'a> {
     is_quiet: bool,
 }
 
-/// What came back from a process.
+/// End of a step's process, and its report.
 struct Returned {
     ended: Ended,
     report: Option<Report>,
@@ -71,12 +71,17 @@ fn failed(error: &io::Error) -> Failure {
 
 /// Takes steps on this machine.
 pub struct MachineClimber<'a> {
+    /// Starts the process of each step.
     pub children: Children<'a>,
     /// The record without its series.
     pub template: StressRecord,
+    /// The record's file, written anew after every step.
     pub file: File,
+    /// Time at which the call began; the budget counts from here.
     pub started: Instant,
+    /// Unit of the axis, plural, for the lines about steps.
     pub unit: &'static str,
+    /// Set when the user wants no more steps.
     pub interrupted: &'a AtomicBool,
     /// A step has been finished.
     pub has_steps: bool,
@@ -162,7 +167,8 @@ fn step(value: u64, measured: Measured, wall_s: f64) -> Step {
     Step { value, amount, throughput_per_s: frame_ms.map(|ms| amount / ms * 1e3), wall_s, peak_bytes, not_finite, run }
 }
 
-/// What a process that left no report died of. Where the system tells that it has killed nothing for memory, a kill came from
+/// Cause of the end of a process that left no report. Where the system tells that it has killed nothing for memory, a kill
+/// came from
 /// elsewhere, and another call tries the step again.
 fn crashed(ended: &Ended, has_memory: bool) -> Outcome {
     #[cfg(unix)]

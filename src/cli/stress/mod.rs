@@ -76,7 +76,7 @@ pub struct StressArgs {
     step: StepArgs,
 }
 
-/// What ends the steps.
+/// Options that end the steps.
 #[derive(Debug, Clone, Args)]
 struct LimitArgs {
     /// Factor from step to step, 1.05 to 100
@@ -174,7 +174,7 @@ struct Ascent<'a, S: Study> {
     machine: &'a MachineArgs,
     json: Option<PathBuf>,
     csv: Option<PathBuf>,
-    /// What a step's process is started with, but for the step.
+    /// Arguments of a step's process, without the step itself.
     words: Vec<OsString>,
     /// Goes after the names of files.
     suffix: String,

@@ -1,4 +1,4 @@
-//! What a swapchain is made of: a decision on what the surface offers.
+//! Plan of a swapchain: a decision on what the surface offers.
 
 use ash::vk;
 
@@ -43,16 +43,22 @@ impl PresentMode {
     }
 }
 
-/// What a swapchain is made of.
+/// Choices that a swapchain is made by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Plan {
+    /// Size of the images in pixels, within the surface's bounds.
     pub extent: vk::Extent2D,
+    /// Format and colour space of the images.
     pub format: vk::SurfaceFormatKHR,
     /// Format of the pictures whose bytes are copied into its images.
     pub picture_format: vk::Format,
+    /// Present mode, one that the surface has.
     pub mode: PresentMode,
+    /// Least number of images that is asked for.
     pub image_count: u32,
+    /// The surface's current transform, which the display then need not apply.
     pub transform: vk::SurfaceTransformFlagsKHR,
+    /// Way in which the display blends the window with those below it.
     pub alpha: vk::CompositeAlphaFlagsKHR,
 }
 

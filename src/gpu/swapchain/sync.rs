@@ -13,6 +13,7 @@ const PATIENCE_NS: u64 = 1_000_000_000;
 
 /// A binary semaphore.
 pub(super) struct Semaphore {
+    /// The handle; null once it is leaked.
     pub raw: vk::Semaphore,
     device: Arc<Device>,
 }
@@ -45,6 +46,7 @@ impl Drop for Semaphore {
 
 /// A fence that a present signals.
 pub(super) struct Fence {
+    /// The handle; null once it is leaked.
     pub raw: vk::Fence,
     device: Arc<Device>,
 }

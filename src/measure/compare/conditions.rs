@@ -1,4 +1,4 @@
-//! What may make a time another beside the work: environment, program, shaders, and the pictures that were drawn.
+//! Conditions beside the work that may change a time: environment, program, shaders, and the pictures that were drawn.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -63,7 +63,7 @@ fn of_drawing(a: &Configuration, b: &Configuration) -> Vec<Difference> {
     conditions(a).differences(&conditions(b))
 }
 
-/// What a time may depend on of device, host and build, by its path in the record.
+/// The properties of device, host and build that a time may depend on, by their paths in the record.
 fn conditions(environment: &Environment) -> Vec<(String, String)> {
     let (device, host, build) = (&environment.device, &environment.host, &environment.build);
     let some = |value: &Option<String>| value.clone().unwrap_or_else(|| "unknown".to_owned());

@@ -10,7 +10,7 @@ use crate::report::text::one_line;
 /// Passes with the same value of what differs are shown as one line from this many on.
 const MANY: usize = 4;
 
-/// What differs between the sides, every run with the verdicts on frame and passes, what only one side has, warnings.
+/// Differences between the sides, every run with the verdicts on frame and passes, runs of one side alone, warnings.
 pub fn render(comparison: &Comparison, style: Style) -> String {
     let mut text = String::new();
     // Writing into a String cannot fail.

@@ -1,4 +1,4 @@
-//! What the measured runs of both sides were doubted for: whoever reads a verdict has not seen what their programs printed.
+//! Warnings of the measured runs of both sides: whoever reads a verdict has not seen what their programs printed.
 
 use super::Input;
 use crate::report::console::counted_warnings;

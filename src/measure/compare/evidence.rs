@@ -1,4 +1,4 @@
-//! What two sides' times say of the logarithm of their ratio B / A, and with which error.
+//! Estimate of the logarithm of the ratio B / A of two sides' times, with its error.
 //!
 //! Sides that were measured apart give one number a process, the logarithm of its median: Welch's t-test compares them,
 //! so that the noise of frames counts once, as it shows between processes. Sides that were measured in turn, in blocks

@@ -17,19 +17,43 @@ use crate::report::record::Run;
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CompareError {
     #[error("cannot compare: side {side} has no run; name at least one record with a finished run a side")]
-    NoRun { side: &'static str },
+    NoRun {
+        /// Name of the side, `A` or `B`.
+        side: &'static str,
+    },
     #[error("cannot compare: a sample of {time} in {name} is {sample} ms; no time is negative, measure it again")]
-    Negative { name: String, time: String, sample: String },
+    Negative {
+        /// Record that holds the sample.
+        name: String,
+        /// Description of the time: `the frame` or a pass, with paper and variant.
+        time: String,
+        /// The sample, milliseconds.
+        sample: String,
+    },
     #[error(
         "cannot compare {a_name} with {b_name}: {field} is {a_value} in the first and {b_value} in the second; measure \
          both sides alike"
     )]
-    Different { field: String, a_name: String, a_value: String, b_name: String, b_value: String },
+    Different {
+        /// Name of the field that differs; a parameter's own name.
+        field: String,
+        /// Record of side A.
+        a_name: String,
+        /// Value in A; `absent` where it has none.
+        a_value: String,
+        /// Record of side B.
+        b_name: String,
+        /// Value in B; `absent` where it has none.
+        b_value: String,
+    },
     #[error(
         "cannot compare blocks of {name}: the processes of the sides are not of the same blocks, two of each side in every \
          one; name ab-a.json and ab-b.json of one folder"
     )]
-    Blocks { name: String },
+    Blocks {
+        /// Name of the configuration.
+        name: String,
+    },
 }
 
 /// The runs of one configuration on one side.
@@ -38,7 +62,7 @@ pub(super) struct Configuration<'a> {
     fields: BTreeMap<String, String>,
     first: &'a Run,
     source: &'a str,
-    /// What tells it from others of its paper, variant and preset, as in [`alternatives`].
+    /// Parameters that tell it from others of its paper, variant and preset, as in [`alternatives`].
     pub alternative: String,
     /// Runs of one process, process after process.
     processes: Vec<Vec<&'a Run>>,

@@ -182,8 +182,8 @@ pub struct RunComparison {
     pub variant: String,
     /// Name of the preset; absent without one.
     pub preset: Option<String>,
-    /// What tells it from others of these, with a comma before each parameter; empty for one without such others, and in
-    /// what older programs wrote.
+    /// Parameters that tell it from others of these, with a comma before each; empty for one without such others, and in
+    /// records of older programs.
     #[serde(default)]
     pub alternative: String,
     /// Every parameter under its option's name, as A has it.
@@ -255,7 +255,7 @@ pub struct Quantity {
     pub reason: Option<String>,
     /// Standing against `fail_above`; absent without it, and for what does not count or has no verdict.
     pub gate: Option<Gate>,
-    /// What would decide on a standing that is not certain; absent in what older programs wrote.
+    /// Measurement that would decide on an uncertain standing; absent in records of older programs.
     #[serde(default)]
     pub gate_reason: Option<String>,
 }

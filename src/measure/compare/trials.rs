@@ -1,4 +1,4 @@
-//! How often verdicts are right, of many made families of twelve quantities.
+//! Rates of right and wrong verdicts, over many simulated families of twelve quantities.
 
 use super::synthetic::Noise;
 use super::{Evidence, Gate, Input, LOOKS, Options, Rules, Verdict, compare, decide, gate};

@@ -86,7 +86,7 @@ pub fn one<'a>(texts: &[&'a OsStr]) -> Result<&'a str, String> {
 /// an `@` itself.
 ///
 /// # Errors
-/// What is a number neither way.
+/// The part of the text that ought to be a number and is none.
 pub fn with_place(text: &OsStr) -> Result<Option<(&str, Vec<f32>)>, String> {
     let is_number = |c: char| c.is_ascii_digit() || "+-.,eE ".contains(c);
     match text.to_str().and_then(|text| text.rsplit_once('@')) {

@@ -23,7 +23,7 @@ pub struct Axis<S> {
     pub most: u64,
     /// Parameter that it sets, and that must not be given beside it; empty where there is none.
     pub parameter: &'static str,
-    /// What a step really had.
+    /// Source of the amount of work that a step really had.
     pub amount: Amount<S>,
     set: Set<S>,
 }
@@ -32,7 +32,7 @@ pub struct Axis<S> {
 pub enum Amount<S> {
     /// The axis's value.
     Value,
-    /// What the value was rounded to.
+    /// The value after rounding.
     Rounded(fn(&S) -> f64),
     /// An entry of the run's `config`, in the axis's unit.
     Counted(&'static str),

@@ -9,6 +9,7 @@ use crate::report::stress::{Series, Step, Stop, StopKind};
 /// A step that is due.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
+    /// Name of the variant.
     pub variant: String,
     /// Value of the second axis, in a matrix.
     pub across: Option<u64>,
@@ -16,7 +17,7 @@ pub struct Cell {
     pub value: u64,
 }
 
-/// How a step ended.
+/// End of a step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     Finished(Box<Step>),
@@ -39,7 +40,7 @@ pub trait Climber {
     /// Takes a step within so many seconds.
     ///
     /// # Errors
-    /// What makes every step impossible.
+    /// A reason why no step at all can be taken.
     fn take(&mut self, cell: &Cell, left_s: f64) -> Result<Outcome, Self::Error>;
 
     /// Keeps what there is so far, whatever comes.
@@ -49,12 +50,14 @@ pub trait Climber {
     fn keep(&mut self, series: &[Series]) -> Result<(), Self::Error>;
 }
 
-/// What is to be climbed.
+/// The series to be measured, and the budget for them.
 #[derive(Debug, Clone)]
 pub struct Climb {
+    /// Values of the axis from step to step.
     pub ladder: Ladder,
     /// Of the second axis, in a matrix.
     pub across: Option<Ladder>,
+    /// Names of the variants, each with series of its own.
     pub variants: Vec<String>,
     /// Amounts of steps are values, only rounded up: values that a step has had already are passed over.
     pub counts_values: bool,
@@ -260,7 +263,7 @@ fn all(tracks: &[Track], known: &[Series]) -> Vec<Series> {
     all
 }
 
-/// What a step has wrong that the first one had right: numbers of a target or results that are none.
+/// A fault of a step that the first one did not have: numbers of a target or results that are not finite.
 fn wrong(first: &Step, step: &Step) -> Option<String> {
     let target = step.not_finite.iter().find(|(name, count)| **count > 0 && !first.not_finite.contains_key(*name));
     if let Some((name, count)) = target {

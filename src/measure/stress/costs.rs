@@ -1,4 +1,4 @@
-//! What grows with the amounts of a series, and how fast.
+//! Costs that grow with the amounts of a series, and their exponents.
 
 use super::fit::scaling;
 use crate::report::record::{Pass, Run};

@@ -1,4 +1,4 @@
-//! What the next step will take, from the exponent of the steps before it.
+//! Time and memory of the next step, from the exponent of the steps before it.
 
 use crate::report::stress::{Series, Step};
 

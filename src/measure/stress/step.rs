@@ -16,13 +16,13 @@ use crate::measure::{Error, Paper};
 use crate::report::record::{Environment, Run};
 use crate::report::stress::StopKind;
 
-/// What a step's process tells.
+/// Report of a step's process.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Report {
-    /// Where it would be measured.
+    /// Machine that it would be measured on.
     Machine(Box<Environment>),
-    /// What was measured.
+    /// The finished step.
     Measured(Box<Measured>),
     /// The limit that it met.
     Stopped { kind: StopKind, reason: String },
@@ -33,7 +33,9 @@ pub enum Report {
 /// A finished step, but for what only its parent knows.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Measured {
+    /// The run as a bench records it.
     pub run: Run,
+    /// Amount of work that the step really had, in the axis's `amount_unit`.
     pub amount: f64,
     /// Numbers of each target that are not finite, where there are any.
     pub not_finite: BTreeMap<String, u64>,

@@ -1,4 +1,4 @@
-//! What a set-up looks like: what follows of its material and its look for each variant.
+//! Appearance of a set-up: the consequences of its material and its look for each variant.
 
 use glam::Vec3;
 

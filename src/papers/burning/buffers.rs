@@ -132,6 +132,7 @@ const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 
 /// Every buffer by the name that the shaders give it, in snake case. N vertices, T finest triangles, C draw vertices.
 pub struct Buffers {
+    /// Uniform block of the configuration's constants, one of all passes.
     pub(super) constants: Arc<Buffer>,
     /// [`RestVertex`]\[N\].
     pub rest: Arc<Buffer>,

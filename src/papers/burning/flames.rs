@@ -67,6 +67,7 @@ pub struct Flames {
     pub groups: Arc<Buffer>,
     /// [`Particle`]s: fire, then smoke.
     pub particles: Arc<Buffer>,
+    /// Particles of fire and smoke together.
     pub(super) particle_count: u32,
 }
 

@@ -174,7 +174,7 @@ pub struct Parameters {
     pub preload: bool,
     /// Keeps what holds a neighbouring block to the rest (3.5.4), where parts do not fall.
     pub keep_connected: bool,
-    /// What is ours beside the text.
+    /// The dissertation's look, or ours with all that goes beyond its text.
     pub look: Look,
     /// Lets parts that nothing holds fall, of the natural look.
     pub collapse: bool,

@@ -43,7 +43,7 @@ host_block! {
 }
 
 host_block! {
-    /// How far the search is (`burning/parting.glsl`).
+    /// Progress of the search (`burning/parting.glsl`).
     #[derive(Default)]
     pub(super) struct Progress {
         is_unsettled: u32,
@@ -86,7 +86,9 @@ pub struct Parts {
     pub parts: Arc<Buffer>,
     /// uint\[N\]: the weight of each vertex.
     pub weights: Arc<Buffer>,
+    /// [`Progress`] of the search.
     pub(super) progress: Arc<Buffer>,
+    /// Moments of the parts while they are summed up, [`MOMENTS`] words each.
     pub(super) sums: Arc<Buffer>,
     /// Takes over the parts that were found, and sums their moments.
     take: [[Pass; 4]; 2],

@@ -37,7 +37,7 @@ pub fn build(shaders: &ShaderLibrary, pass: PassBuilder, swapped: &[Swapped<'_>]
 pub enum Work {
     /// For so many elements.
     Elements(u32),
-    /// What the pass's indirect buffer says.
+    /// By the pass's indirect buffer.
     Indirect,
     /// The one workgroup that lists chunks, of so many.
     Lists(ChunkCount),

@@ -95,7 +95,7 @@ impl CausticsMap {
         Ok(CausticsMap { drawing: Drawing::Hit(Box::new(hit)), coverage: None, map })
     }
 
-    /// Where the rays of the water's vertices land, in the variant `hit`.
+    /// Landing points of the rays of the water's vertices, in the variant `hit`.
     pub fn landings(&self) -> Option<&Arc<Buffer>> {
         match &self.drawing {
             Drawing::Hit(hit) => Some(&hit.landings),

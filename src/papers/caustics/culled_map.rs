@@ -291,7 +291,7 @@ impl CulledMap {
         })
     }
 
-    /// Where smart slicing placed the planes of the last frame.
+    /// The planes of the last frame as smart slicing placed them.
     pub fn smart_planes(&self) -> Option<&SmartPlanes> {
         self.smart_planes.as_ref()
     }

@@ -69,7 +69,7 @@ pub struct HitMap {
     constants: HitConstants,
     /// uint\[2\]: invocations of `land` and of `straddle` whose loops the driver left early.
     unfinished: Arc<Buffer>,
-    /// Where the rays of the water's vertices land.
+    /// Landing points of the rays of the water's vertices.
     pub landings: Arc<Buffer>,
 }
 

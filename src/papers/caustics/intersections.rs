@@ -83,12 +83,15 @@ impl OptionConstants {
 /// Resources of a pass that draws intersection triangles.
 #[derive(Clone, Copy)]
 pub struct Scope<'a> {
+    /// Device, shaders and parameters.
     pub context: Context<'a>,
+    /// Refracted rays of the water's vertices, which bound the illumination volumes.
     pub volumes: &'a IlluminationVolumes,
+    /// The water's mesh.
     pub water: &'a WaterSurface,
     /// Heights that decide which plane lights a texel; none where every plane lights all that it meets.
     pub position_map: Option<&'a Arc<ImageView>>,
-    /// Where receivers cast shadows on one another.
+    /// Occluders, when receivers cast shadows on one another.
     pub shadows: Option<&'a ShadowMap>,
 }
 

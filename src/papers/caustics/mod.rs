@@ -278,7 +278,8 @@ impl Caustics {
         f64::from(number) * f64::from(self.parameters.time_step_s)
     }
 
-    /// Where the rays of light `light` land on each receiver, in the variant `hit`; the cells that the device placed on each, by the
+    /// Landing points of the rays of light `light` on each receiver, in the variant `hit`; the cells that the device
+    /// placed on each, by the
     /// variant `culled` with smart slicing.
     fn tables(&self, light: usize) -> Vec<Target> {
         let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique else { return Vec::new() };
@@ -465,7 +466,7 @@ impl Paper for Caustics {
     }
 }
 
-/// What a texel of a receiver's map holds.
+/// Contents of a texel of a receiver's map, with units.
 fn holds(map: &str) -> &'static str {
     match map {
         "position-map" => "height in metres along the light",

@@ -113,6 +113,7 @@ pub struct Parameters {
     pub smart: SmartParameters,
     /// Texels a side of the caustics map that are drawn and averaged for each of its texels, 1 to 64.
     pub coverage: u32,
+    /// Places that the intensity of eq. 4-18 belongs to: triangles or vertices of the water.
     pub intensity: IntensityRule,
     /// Steps of the variant `culled`.
     pub cull: CullSteps,

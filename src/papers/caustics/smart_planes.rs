@@ -74,7 +74,8 @@ pub struct SmartPlanes {
 }
 
 impl Parameters {
-    /// Where the variant `culled` fits planes on the device, the acceptance threshold that is given. Of uniform planes it drops those
+    /// The acceptance threshold that is given, when the variant `culled` fits planes on the device. Of uniform planes it
+    /// drops those
     /// without a texel by itself.
     pub fn smart_on_device(&self) -> Option<Option<f32>> {
         match self.smart.placement {

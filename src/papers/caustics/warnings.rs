@@ -1,4 +1,5 @@
-//! What a user may not expect of a configuration: options that a variant does not heed, and light that point sampling does not
+//! Surprises of a configuration that a user is warned of: options that a variant does not heed, and light that point
+//! sampling does not
 //! show as it is.
 
 use super::Caustics;

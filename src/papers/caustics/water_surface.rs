@@ -59,8 +59,18 @@ host_block! {
 
 /// Shape of the water on the device.
 pub enum Shape {
-    Waves { list: Arc<Buffer>, count: u32 },
-    Map { coefficients: Arc<Buffer>, place: MapBlock },
+    Waves {
+        /// [`WaveBlock`]\[count\], of one element at least.
+        list: Arc<Buffer>,
+        /// Number of waves; 0 for flat water.
+        count: u32,
+    },
+    Map {
+        /// Coefficients of the interpolating spline, one float a sample, row by row.
+        coefficients: Arc<Buffer>,
+        /// Position, spacing and size of the map.
+        place: MapBlock,
+    },
 }
 
 impl Shape {

@@ -1,5 +1,6 @@
-//! What the densities of the volumes are taken from: functions or files, or the table of their values; and where they are
-//! asked for: everywhere, or where there are some.
+//! Sources of the densities of the volumes: functions or files, or the table of their values; and the places at which they
+//! are
+//! asked for: all, or those where there are some.
 
 use super::bricks::Bricks;
 use super::context::Context;

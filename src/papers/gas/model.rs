@@ -14,7 +14,9 @@ pub enum Shape {
     Cylinder,
     /// Radii at the bottom and at the top as fractions of the half extents, 0 to 1.
     Frustum {
+        /// Radius at the lower end.
         bottom: f32,
+        /// Radius at the upper end.
         top: f32,
     },
 }

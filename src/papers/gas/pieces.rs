@@ -71,7 +71,7 @@ struct Cutting<'a> {
     most_triangles: usize,
     /// The next triangle: its object, and its number in the mesh.
     next: (usize, usize),
-    /// Where each vertex is in the piece, if it is there.
+    /// Index of each vertex in the piece, if it is there.
     places: Vec<u32>,
     /// Of the piece: numbers of its vertices among those of all objects.
     vertices: Vec<u32>,

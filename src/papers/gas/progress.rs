@@ -18,7 +18,7 @@ host_block! {
 }
 
 host_block! {
-    /// What is left after the last dispatch of each pass.
+    /// Work that is left after the last dispatch of each pass.
     pub struct UnfinishedBlock {
         /// The dispatches after which some pixel was not finished, 0 where all are.
         unfinished: [u32; 4],
@@ -54,7 +54,7 @@ impl Carried {
         }
     }
 
-    /// What makes less work of it.
+    /// Advice in messages that makes less work of it.
     fn way_out(self) -> &'static str {
         match self {
             Carried::Sort | Carried::Resolve => "give a larger `size` or an `object` of fewer triangles",

@@ -59,7 +59,7 @@ pub struct Setup {
     placements: Vec<Placement>,
     /// Volumes of files, in place of the scene's.
     volume_files: Vec<VolumeFile>,
-    /// What their densities are made by.
+    /// Rules by which their densities are made of samples.
     reading: Reading,
     /// The scene's own first volume, or the one that stands for it.
     first_volume: model::Volume,

@@ -15,7 +15,7 @@ pub struct Extract {
     /// The points of the surface; capacity for all grid points.
     pub vertices: Arc<Buffer>,
     grid: Grid,
-    /// Where the surface is that of one point for each column.
+    /// The columns, of a surface of one point for each of them.
     columns: Option<Columns>,
     clusters: usize,
     clusters_done: usize,
@@ -25,7 +25,7 @@ pub struct Extract {
     pub density_range: [f32; 2],
 }
 
-/// What a frame accepted.
+/// Grid points that a frame accepted as lava, by their number and densities.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accepted {
     /// Grid points.

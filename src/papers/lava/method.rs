@@ -74,7 +74,7 @@ impl Method {
         }
     }
 
-    /// What the last frame accepted; the device is asked where the host does not know.
+    /// Grid points that the last frame accepted; the device is asked where the host does not know.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.

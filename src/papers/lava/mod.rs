@@ -113,7 +113,7 @@ pub struct Lava {
     view_warnings: Vec<String>,
     /// The objects' meshes, to be held against the surface once it is drawn.
     meshes: Vec<Mesh>,
-    /// What the last frame accepted, as far as the host knows.
+    /// Grid points that the last frame accepted, as far as the host knows.
     accepted: Option<Accepted>,
     /// On objects under the surface of the last frame.
     buried: Vec<String>,
@@ -327,7 +327,7 @@ impl Lava {
         self.variant
     }
 
-    /// What the last frame accepted: nothing known before any, and of `gpu-driven` before it has settled.
+    /// Grid points that the last frame accepted: unknown before any, and of `gpu-driven` before it has settled.
     pub fn accepted(&self) -> Option<Accepted> {
         match &self.method {
             Method::Paper(read_back) => (self.animate.steps() > 0).then(|| read_back.accepted()),

@@ -34,7 +34,7 @@ pub enum Place {
 pub struct Object {
     /// Shape or file.
     pub source: MeshSource,
-    /// Where it stands.
+    /// Its foot, size and rotation.
     pub place: Place,
 }
 
@@ -109,7 +109,7 @@ pub fn space_warning(camera: &Camera, space_m: Vec3, (width, height): (u32, u32)
     })
 }
 
-/// Whether all points lie beyond one side of the picture or of its depths.
+/// True when all points lie beyond one side of the picture or of its depths.
 fn is_outside(clip: &[Vec4]) -> bool {
     let beyond = |is_beyond: fn(Vec4) -> bool| clip.iter().all(|&p| is_beyond(p));
     beyond(|p| p.x > p.w)

@@ -98,7 +98,7 @@ impl ReadBack {
         &self.accumulate_depths.sums
     }
 
-    /// What the last frame accepted.
+    /// Grid points that the last frame accepted.
     pub fn accepted(&self) -> Accepted {
         Accepted { count: self.extract.accepted.len(), density_range: self.extract.density_range }
     }

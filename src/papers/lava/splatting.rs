@@ -16,7 +16,7 @@ use crate::gpu::{Blend, Error, Frame, ImageView, Load, Pass, ShaderLibrary};
 
 /// The stage.
 pub struct Splatting {
-    /// What is drawn.
+    /// The scene that is drawn: surface, uniform block, rock and emission.
     pub(super) scene: Scene,
     drawing: Drawing,
     /// Eye-space depth of the nearest splat plus epsilon, as a fraction of [`depth_range_m`](super::depth_range_m).

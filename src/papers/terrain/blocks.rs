@@ -140,7 +140,7 @@ host_block! {
         pub drape_scale: f32,
         /// Of a curved base, a unit vector.
         pub base_axis: Vec3,
-        /// Where the maps' heights are 0, above the base.
+        /// Distance from the base up to the maps' height 0, metres.
         pub zero_m: f32,
         /// Of a curved base, off the axis and along it.
         pub base_radii: Vec2,

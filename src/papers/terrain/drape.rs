@@ -1,4 +1,4 @@
-//! What lies over the land in place of its colours.
+//! The drape over the land in place of its colours.
 
 use glam::{UVec2, Vec2, Vec3};
 

@@ -1,4 +1,4 @@
-//! What a user lays over the land in place of the colour ramp.
+//! The drape that a user chooses in place of the colour ramp.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, parse_finite};
 use crate::scene::{HeightMap, world_file};
 
-/// What lies over the land.
+/// Source of a drape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DrapeSource {
     /// PNG over the first map.

@@ -62,7 +62,7 @@ pub struct Ground {
     pub highest: f64,
     /// The base's h.
     pub base: f64,
-    /// How many times as high as wide a pixel's footprint on the land is, at least 1: a footprint as wide as a pixel is then higher
+    /// Height of a pixel's footprint on the land over its width, at least 1: a footprint as wide as a pixel is then higher
     /// than one.
     pub steepness: f64,
     /// None over a plane.

@@ -155,7 +155,8 @@ struct ObjectPasses {
     objects: Objects,
 }
 
-/// Where objects are seen, and what reaches them of the sun's light past the maps and past each other.
+/// Points at which objects are seen, and the fraction of the sun's light that reaches them past the maps and past each
+/// other.
 struct ObjectShadows {
     hits: ObjectHits,
     shadow: PixelPass,

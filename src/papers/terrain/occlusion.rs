@@ -18,7 +18,7 @@ use crate::papers::triangle_tree::{DeviceTree, TriangleTree};
 /// Of what a place is made of, what its rounding may be; as in the shader.
 const ROUNDING: f32 = 2e-6;
 
-/// What the objects of `tree` leave of the light that `prior` has, on what `depth` has: 0 in a shadow.
+/// Light of `prior` that the objects of `tree` leave on the surface in `depth`: 0 in a shadow.
 ///
 /// # Errors
 /// Errors of the Vulkan layer.
@@ -47,7 +47,7 @@ impl HostOcclusion {
         HostOcclusion { pass: HostPass::new(info, parameters, 1.0), tree }
     }
 
-    /// What the objects leave of the light that `sunlit` has.
+    /// Light of `sunlit` that the objects leave.
     pub fn record(&mut self, frame: &mut Frame<'_>, view: &SceneView, (hits, sunlit): (&[Hit], &[f32])) -> &[f32] {
         let HostOcclusion { pass: HostPass { info, width, values }, tree } = self;
         let (width, light) = (*width as usize, &view.light);

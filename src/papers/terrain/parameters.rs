@@ -126,11 +126,14 @@ pub enum Base {
     /// An ellipsoid of revolution, by its semi-axes, 1 to 100,000,000 m and within a factor of 4 of each other. Maps lie by
     /// longitude and latitude.
     Ellipsoid {
+        /// Semi-axis in the plane of the equator, metres.
         equatorial_m: f32,
+        /// Semi-axis to the poles, metres.
         polar_m: f32,
     },
     /// By its radius, 1 to 100,000,000 m. Its axis runs north and south; maps are wound around it eastwards.
     Cylinder {
+        /// Radius in metres.
         radius_m: f32,
     },
 }

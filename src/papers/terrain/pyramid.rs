@@ -63,7 +63,7 @@ pub enum Bound {
     Lowest,
 }
 
-/// What the texels of the first level above the data cover; each coarser one covers four of those.
+/// Nodes that a texel of the first level above the data covers; each coarser one covers four of those.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cover {
     /// 2 x 2 nodes: the paper's.

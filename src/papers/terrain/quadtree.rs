@@ -13,7 +13,7 @@ use crate::host_block;
 
 /// Cells a side of a patch.
 pub const PATCH_SIDE: u32 = 16;
-/// What rounding in single precision may have taken from an error: a share of it, and of the heights in each level.
+/// Allowance for rounding in single precision: a factor of an error, and a fraction of the heights in each level.
 const ROUNDING: [f64; 2] = [1.0 + 1e-5, 1.0 / (1 << 22) as f64];
 
 host_block! {

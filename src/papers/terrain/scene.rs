@@ -56,7 +56,7 @@ pub struct Scene {
     pub range_m: (f64, f64),
     /// The maps' height at which the base lies, metres.
     pub base_level_m: f64,
-    /// What lies over the land, if anything does.
+    /// The drape over the land, if there is one.
     pub draping: Option<Draping>,
 }
 
@@ -116,7 +116,7 @@ pub struct DeviceScene {
     pub light: Arc<Buffer>,
     /// The draped picture; a white texel without one.
     pub drape: Arc<ImageView>,
-    /// What lies over the land, if anything does.
+    /// The drape over the land, if there is one.
     pub draping: Option<Draping>,
     /// A single texel, of the sky: what is found before the first map.
     pub no_hits: Arc<ImageView>,

@@ -155,9 +155,9 @@ pub struct Selection {
     divided: Vec<Vec<bool>>,
     /// Those that are, of each level.
     lists: Vec<Vec<Place>>,
-    /// What is drawn, those at the map's border first.
+    /// The patches that are drawn, those at the map's border first.
     pub patches: Vec<Patch>,
-    /// How many lie at the border.
+    /// Number of patches at the border.
     pub at_border: usize,
 }
 

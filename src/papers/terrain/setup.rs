@@ -42,7 +42,7 @@ pub struct Setup {
     pub objects: Vec<ObjectSource>,
     /// Crease angle of meshes without normals, degrees.
     pub crease_deg: f32,
-    /// What lies over the land in place of the colour ramp.
+    /// The drape over the land in place of the colour ramp.
     pub drape: Option<DrapeSource>,
     /// Heights for the samples that maps leave void.
     pub voids: Voids,
@@ -114,7 +114,7 @@ pub struct Scene {
     pub maps: Vec<MapInput>,
     /// Polygon objects in the maps' frame.
     pub objects: Vec<Mesh>,
-    /// What lies over the land.
+    /// The drape over the land, loaded.
     pub drape: Option<Drape>,
 }
 

@@ -1,5 +1,6 @@
-//! What a record's runs are of: a configuration is shown once, by its first process; what other processes measured of it is
-//! folded away behind that.
+//! Configurations of a record's runs: each is shown once, by its first process; runs of other processes are folded away
+//! behind
+//! that.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,8 +10,9 @@ use crate::report::record::Run;
 
 /// A run under the name that it has among the record's.
 pub(super) struct Shown<'a> {
+    /// The run in its record.
     pub run: &'a Run,
-    /// Where it stands on the page.
+    /// Its anchor on the page.
     pub id: String,
     /// Its configuration's name, and which process it is.
     pub title: String,
@@ -18,8 +20,9 @@ pub(super) struct Shown<'a> {
 
 /// The runs of one configuration.
 pub(super) struct Configuration<'a> {
-    /// What the page's navigation calls it.
+    /// Its name in the page's navigation.
     pub label: String,
+    /// The run of the first process that measured it.
     pub first: Shown<'a>,
     /// The same by other processes.
     pub others: Vec<Shown<'a>>,

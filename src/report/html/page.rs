@@ -216,7 +216,7 @@ fn experiment(record: &Record) -> Markup {
     }
 }
 
-/// What both sides have drawn of a run.
+/// Pictures of a run by both sides.
 fn sides(pair: &Pair) -> Markup {
     let [a, b] = [("A", &pair.pngs[0]), ("B", &pair.pngs[1])].map(|(side, png)| {
         html! { img src=(data("image/png", png)) alt=(format!("picture of {} by side {side}", pair.title)); }

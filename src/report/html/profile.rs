@@ -44,7 +44,7 @@ pub(super) fn profile(run: &Run) -> Markup {
     }
 }
 
-/// How often each time of the pass occurred.
+/// Histogram of the times of the pass.
 fn distribution(pass: &str, time: &Summary) -> Markup {
     let bins = bins(time);
     let most = bins.iter().map(|(_, count)| *count).max().unwrap_or(1).max(1) as f64;
@@ -72,7 +72,7 @@ fn distribution(pass: &str, time: &Summary) -> Markup {
     }
 }
 
-/// What the driver's compiler told of the stages.
+/// The stages as the driver's compiler made them.
 fn stages(profile: &Profile) -> Markup {
     let told = profile.compilers.iter().flat_map(|compiled| {
         compiled.stages.iter().flatten().map(|stage| (compiled.compiler.as_str(), stage)).collect::<Vec<_>>()

@@ -23,9 +23,17 @@ pub const SIZE: (u32, u32) = (960, 540);
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
     #[error("cannot draw the plot \"{title}\": it has no point that can be drawn; measure at least one")]
-    NoData { title: String },
+    NoData {
+        /// Title of the plot.
+        title: String,
+    },
     #[error("cannot draw the plot \"{title}\": {message}; write the numbers with --csv instead")]
-    Drawing { title: String, message: String },
+    Drawing {
+        /// Title of the plot.
+        title: String,
+        /// Message of the plotting library.
+        message: String,
+    },
 }
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;

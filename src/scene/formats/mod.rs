@@ -117,7 +117,7 @@ fn open(path: &Path) -> Result<(File, u64), Error> {
     Err(file::failed(path, Asset::Mesh, io::Error::new(ErrorKind::FileTooLarge, reason)))
 }
 
-/// What the reader makes of a stream; the time that it does not count itself is that of reading.
+/// Result of the reader on a stream; the time that it does not count itself is that of reading.
 fn parts(read: Read, stream: &mut Stream<'_>, directory: &Path) -> Result<Parts, Stop> {
     let (started, before) = (Instant::now(), LoadParts::current().weld_ms);
     let parts = read(stream, directory);

@@ -133,7 +133,7 @@ fn read_text(start: Vec<u8>, stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     }
 }
 
-/// What is left of a stream, as a reader.
+/// The rest of a stream, as a reader.
 struct Rest<'s, 'a> {
     stream: &'s mut Stream<'a>,
     /// Why it stopped.

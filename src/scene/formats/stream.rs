@@ -14,9 +14,9 @@ const WAVE_BYTES: usize = 1 << 20;
 /// Why a file is not read to its end.
 #[derive(Debug)]
 pub enum Stop {
-    /// What is wrong in it.
+    /// A fault in its contents.
     Fault(Fault),
-    /// What the system answered.
+    /// An error of the system.
     Read(io::Error),
     /// Nobody waits for it any more.
     Interrupted,

@@ -6,13 +6,17 @@ use glam::DVec2;
 
 /// Output of a reader: the samples as the source holds them, row by row from the north-west.
 pub(super) struct Grid<T> {
+    /// Samples in a row.
     pub(super) width: u32,
+    /// Number of rows.
     pub(super) height: u32,
+    /// Heights as the source holds them, in its own unit; rows from north to south.
     pub(super) values: Vec<T>,
     /// True when all values that are not void are whole numbers.
     pub(super) integral: bool,
     /// The value of a sample without a height.
     pub(super) no_data: Option<f64>,
+    /// Spacing and coordinates, as far as the source has them.
     pub(super) placement: Placement,
 }
 

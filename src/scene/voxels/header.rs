@@ -1,4 +1,4 @@
-//! What the header of a file of samples says of them.
+//! Headers of files of samples.
 
 use std::io::{self, BufRead, Read, Seek, SeekFrom};
 
@@ -10,17 +10,20 @@ use super::raw::Raw;
 use crate::scene::binary::{skip, spare_bytes};
 use crate::scene::error::{Fault, Place};
 
-/// What a header says of the samples.
+/// Layout, order and scale of the samples, by their header.
 #[derive(Debug, PartialEq)]
 pub(super) struct Header {
+    /// Size, type and order of the samples.
     pub(super) raw: Raw,
     /// From a sample to the next of each axis, in the space of [`VoxelGrid`].
     pub(super) steps: [DVec3; 3],
     /// Lines before the samples, and then bytes.
     pub(super) skip_lines: u64,
+    /// Bytes between those lines and the samples.
     pub(super) skip: Skip,
     /// Behind the lines it is packed by gzip or zlib.
     pub(super) is_packed: bool,
+    /// Conversion of a sample to the value that it means.
     pub(super) scale: Scale,
 }
 
@@ -32,10 +35,12 @@ pub(super) enum Skip {
     ToTheEnd,
 }
 
-/// What a sample means: value times slope plus intercept.
+/// Meaning of a sample: value times slope plus intercept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Scale {
+    /// Value of one unit of a sample.
     pub(super) slope: f32,
+    /// Value of the sample 0.
     pub(super) intercept: f32,
 }
 

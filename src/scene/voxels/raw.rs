@@ -58,8 +58,11 @@ impl Kind {
 /// Order and numbers of the samples in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Raw {
+    /// Samples along x, y and z; x runs fastest in the file.
     pub(super) size: [u32; 3],
+    /// Type of a value.
     pub(super) kind: Kind,
+    /// Order of a value's bytes.
     pub(super) order: ByteOrder,
     /// Values of a sample.
     pub(super) components: u64,

@@ -1,4 +1,4 @@
-//! What a volume is read from.
+//! Sources of a volume.
 
 use std::path::{Path, PathBuf};
 

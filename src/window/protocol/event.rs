@@ -1,10 +1,10 @@
-//! What the worker tells: what there is to draw, and what became of requests.
+//! Events from the worker: what there is to draw, and what became of requests.
 
 use serde::{Deserialize, Serialize};
 
 use super::{DeviceLimits, Ended, Frame, Memory, Progress, SideChoice, SideTimes};
 
-/// What the worker tells the window.
+/// An event from the worker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Event {
@@ -18,7 +18,7 @@ pub enum Event {
     Frame(Box<Frame>),
     /// Times and counters, as of the last frames recorded for them.
     Times(Vec<SideTimes>),
-    /// How far something long has come.
+    /// Progress of something long.
     Progress(Progress),
     /// A request could not be done; what was shown last stays.
     Failed {
@@ -147,7 +147,7 @@ pub struct ChoiceInfo {
     pub help: String,
 }
 
-/// What is set.
+/// Everything that is set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
     /// The last request that it heeds.
@@ -158,7 +158,7 @@ pub struct Setup {
     pub sides: Vec<SideSetup>,
 }
 
-/// What is set on a side.
+/// Everything that is set on a side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SideSetup {
     /// Variant, compiler and preset, none of them left open but a preset that there is none of.
@@ -294,6 +294,6 @@ pub struct TargetInfo {
     pub planes: Option<[f64; 2]>,
     /// 8-bit sRGB, as a picture is.
     pub is_srgb: bool,
-    /// What a texel or row holds, with units; empty of what the name says.
+    /// Contents of a texel or row, with units; empty where the name says it all.
     pub holds: String,
 }

@@ -1,4 +1,4 @@
-//! What comes with a frame: pictures, values, times, memory.
+//! Parts of a frame's event: pictures, values, times, memory.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ pub struct Block {
     pub offset: u64,
     /// Number of bytes.
     pub len: u64,
-    /// What they are, read by the client.
+    /// Their values, read by the client.
     #[serde(skip)]
     pub bytes: Vec<u8>,
 }
@@ -79,7 +79,7 @@ pub struct Difference {
 /// A layer of a target, or rows of a table, at full precision.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetValues {
-    /// What it answers.
+    /// The choice that it answers.
     pub choice: TargetChoice,
     /// Values.
     pub kind: ValueKind,
@@ -185,7 +185,7 @@ pub struct Counters {
 /// Something long.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Progress {
-    /// What it is.
+    /// Kind of work.
     pub what: Work,
     /// Steps or frames done.
     pub done: u64,
@@ -231,7 +231,7 @@ pub struct Memory {
     pub peak_bytes: u64,
     /// Size of the device's largest heap.
     pub heap_bytes: u64,
-    /// What the worker's process holds in memory, the driver's part included; `None` where the system does not tell.
+    /// Memory of the worker's process, the driver's part included; `None` where the system does not tell.
     pub process_bytes: Option<u64>,
 }
 

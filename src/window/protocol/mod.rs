@@ -1,4 +1,4 @@
-//! What the window and its worker say to each other.
+//! Protocol between the window and its worker.
 //!
 //! One JSON document a line: [`Numbered`] requests on the worker's standard input, [`Event`]s on its standard output.
 //! Pictures and values lie in a file that both have open, in memory where the system offers such a folder: an event names

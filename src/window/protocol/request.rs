@@ -1,4 +1,4 @@
-//! What the window asks of the worker.
+//! Requests of the window to the worker.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +11,7 @@ pub struct Numbered {
     pub request: Request,
 }
 
-/// What the window asks of the worker. Of requests that wait, a later one of the same kind takes an earlier one's place
+/// A request of the window to the worker. Of requests that wait, a later one of the same kind takes an earlier one's place
 /// where only the last matters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -20,7 +20,7 @@ pub enum Request {
     Set(Vec<Assignment>),
     /// Takes the numbers of a preset (`None`: the defaults) and forgets what was set, but for the size.
     Preset(Option<String>),
-    /// What is drawn: one side, or two beside each other.
+    /// Sides to be drawn: one, or two beside each other.
     Sides(Vec<SideChoice>),
     /// Frames one after the other.
     Play,
@@ -129,7 +129,7 @@ pub enum Verb {
     Render,
 }
 
-/// What is to be written.
+/// A file to be written.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Keep {

@@ -1,4 +1,4 @@
-//! What is set: a preset, the values set by hand over it, and the sides.
+//! The choice that is set: a preset, the values set by hand over it, and the sides.
 
 use std::ffi::{OsStr, OsString};
 

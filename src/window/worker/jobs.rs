@@ -1,4 +1,4 @@
-//! What a window wants done beside frames: limits, memory, command lines, files.
+//! Jobs of a window beside frames: limits, memory, command lines, files.
 
 use std::path::Path;
 

@@ -36,7 +36,7 @@ use crate::measure::Error;
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::study::Study;
 
-/// What the worker begins with.
+/// Start of a worker.
 pub struct Start {
     /// Preset of the whole.
     pub preset: Option<String>,

@@ -16,7 +16,7 @@ use crate::window::protocol::{PassInfo, SideBuilt, TargetInfo};
 
 /// A paper's method, made.
 pub struct Side<S: Study> {
-    /// What it is made of.
+    /// Parameters that it is made of.
     pub resolved: Resolved<S>,
     scene: S::Scene,
     /// The method.
@@ -32,7 +32,7 @@ pub struct Side<S: Study> {
     load_ms: Option<f64>,
 }
 
-/// Where the state of a paper stands.
+/// Position of the state of a paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum At {
     /// On the way to that frame at most, without having drawn one.

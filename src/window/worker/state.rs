@@ -24,7 +24,7 @@ use crate::window::protocol::{
 /// Time in which the files of one saving change.
 const SAVING: Duration = Duration::from_millis(60);
 
-/// What the window wants to see.
+/// Contents that the window wants to see.
 #[derive(Default)]
 pub(super) struct Wanted {
     pub(super) after: Option<u32>,
@@ -58,9 +58,9 @@ pub struct State<S: Study> {
     pub(super) shaders: Shaders,
     pub(super) machine: Machine,
     pub(super) options: MachineOptions,
-    /// What is asked for.
+    /// The choice that is asked for.
     pub(super) choice: Choice,
-    /// What the sides are made of.
+    /// The choice that the sides are made of.
     pub(super) made: Option<Choice>,
     /// Shaders that were compiled anew since, and what was made of them.
     pub(super) replaced: Option<(Libraries, Option<Choice>)>,

@@ -1,4 +1,4 @@
-//! What else than times is compared, and what may not differ.
+//! Comparison of all but times: differences that are told, and those that are refused.
 
 use super::*;
 use crate::report::record::{DeviceKind, ImageFile, InputFile, ShaderBinary};

@@ -68,7 +68,7 @@ fn sides_in_turn_cancel_drift() {
     assert_eq!(comparison.runs[0].frame.verdict, Verdict::Slower);
 }
 
-/// What is paired as a block, and is none, cancels no drift: every record with K processes, a process too few, other blocks.
+/// Pairs of records that are no block cancel no drift: every record with K processes, a process too few, other blocks.
 #[test]
 fn processes_that_are_not_two_a_block_are_refused() {
     let side = |records: &[&[u32]]| -> Vec<Input> {
@@ -113,7 +113,7 @@ fn a_time_that_a_process_lacks_is_in_no_block() {
     assert_eq!(run.frame.verdict, Verdict::Same);
 }
 
-/// What one side lacks takes no other's place, and blocks that are compared as processes are told.
+/// A run that one side lacks takes no other's place, and blocks that are compared as processes are told.
 #[test]
 fn blocks_of_several_variants_find_their_own() {
     let mut noise = Noise::new(9);

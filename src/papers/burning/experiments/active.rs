@@ -1,4 +1,4 @@
-//! What a tick costs by the share of the vertices that are active: its passes follow the fire, not the mesh.
+//! Cost of a tick by the fraction of the vertices that are active: its passes follow the fire, not the mesh.
 
 use serde_json::json;
 

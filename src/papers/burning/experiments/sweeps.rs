@@ -22,7 +22,7 @@ pub fn gpu_ms(run: &Run, names: &[&str]) -> Option<f64> {
     (!times.is_empty()).then(|| times.iter().sum())
 }
 
-/// What a run counted.
+/// A run's result of that name; null where it has none.
 pub fn result(run: &Run, name: &str) -> Value {
     run.results.get(name).cloned().unwrap_or(Value::Null)
 }

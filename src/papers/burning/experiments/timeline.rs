@@ -89,7 +89,7 @@ fn at_rest(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Bur
 /// The radii at which the boundary reaches the vertices.
 ///
 /// # Errors
-/// What loading and the Vulkan layer answer.
+/// Those of loading and of the Vulkan layer.
 pub fn reaches(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Vec<f64>, Error> {
     let paper = at_rest(machine, setup, variant)?;
     Ok(paper.model().rest.iter().map(|rest| f64::from(rest.boundary_distance)).collect())

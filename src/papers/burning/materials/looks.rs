@@ -1,4 +1,4 @@
-//! What materials look like, on the device.
+//! Colours and patterns of materials, on the device.
 
 use std::sync::Arc;
 

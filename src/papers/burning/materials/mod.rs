@@ -46,7 +46,7 @@ pub struct Substance {
     pub rho: f32,
     /// phi.
     pub phi: f32,
-    /// How many times as far heat comes in it along its edges as through the air; at least 1.
+    /// Distance that heat spreads in it along its edges, as a multiple of that through the air; at least 1.
     pub conductivity: f32,
     /// Linear RGB.
     pub albedo: Vec3,
@@ -116,7 +116,7 @@ impl Substance {
         }
     }
 
-    /// What the options say of the whole object.
+    /// The substance that the options give to the whole object.
     pub fn own(variant: Variant, parameters: &Parameters) -> Self {
         Substance {
             kind: None,
@@ -159,7 +159,7 @@ impl Substance {
     }
 }
 
-/// Which vertex of a mesh is of which material.
+/// The material of each vertex of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Materials {
     /// All but the object's own, which has number 0; the first has number 1.

@@ -49,7 +49,7 @@ impl Chunks {
         Self::new(&triangles.iter().map(reach).collect::<Vec<_>>())
     }
 
-    /// How many there are.
+    /// Number of chunks.
     pub fn count(&self) -> u32 {
         self.spans.len() as u32
     }

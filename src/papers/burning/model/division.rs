@@ -1,4 +1,4 @@
-//! How far a mesh is divided. Chapters 5 and 6 divide large triangles only: where few are large, their edges are split
+//! Levels of division of a mesh. Chapters 5 and 6 divide large triangles only: where few are large, their edges are split
 //! before the fire, on both sides at once so that no crack opens, and all triangles have fewer levels.
 
 use std::borrow::Cow;

@@ -1,4 +1,4 @@
-//! Where separate parts of a mesh touch at rest: a lid lies on its pot, a leg is stuck into a body.
+//! Places where separate parts of a mesh touch at rest: a lid lies on its pot, a leg is stuck into a body.
 
 use std::collections::HashMap;
 

@@ -12,7 +12,7 @@ const DIRECTIONS: usize = 8;
 const LEAN: f64 = 0.1;
 /// Of the ground, in diagonals.
 const NEAR_GROUND: f64 = 0.01;
-/// What topples leans out by so much.
+/// Distance beyond its foot by which a toppling part leans out, in diagonals.
 const MARGIN: f64 = 0.005;
 /// Coulomb's.
 const FRICTION: f64 = 0.6;
@@ -49,11 +49,15 @@ pub fn components(count: usize, triangles: &[[usize; 3]], pairs: &[[usize; 2]]) 
 /// A rigid part: a place p of the object is at `turn * p + offset`.
 #[derive(Debug, Clone, Copy)]
 pub struct Body {
+    /// Rotation since rest, of unit length.
     pub turn: DQuat,
+    /// Displacement after the rotation, in diagonals.
     pub offset: DVec3,
+    /// It lies still, and takes part in no further tick.
     pub rests: bool,
     /// Of the centre of mass.
     pub velocity: DVec3,
+    /// Angular velocity, radians a second, in the axes of the world.
     pub spin: DVec3,
 }
 

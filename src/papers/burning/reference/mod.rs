@@ -32,15 +32,23 @@ use super::{Parameters, Variant};
 pub struct Constants {
     /// L at the start.
     pub flammability: u32,
+    /// Coefficient epsilon of table 3.1, of the internal deformation (3.4).
     pub epsilon: f64,
+    /// Coefficient beta of table 3.1, of the internal deformation (3.4).
     pub beta: f64,
+    /// Coefficient rho of table 3.1.
     pub rho: f64,
+    /// Coefficient phi of table 3.1.
     pub phi: f64,
+    /// Coefficient gamma of eq. 4.
     pub gamma: f64,
     /// Fraction of a block's own rotation that its neighbours take over.
     pub spread: f64,
+    /// Coefficient omega of table 6.1, of melting.
     pub omega: f64,
+    /// Coefficient chi of table 6.1, of melting.
     pub chi: f64,
+    /// Coefficient upsilon of table 6.1, of melting.
     pub upsilon: f64,
     /// Growth of the boundary in a second.
     pub speed: f64,
@@ -54,6 +62,7 @@ pub struct Constants {
     pub floor: f64,
     /// Active vertices above which the boundary waits; 0 is no limit (section 3.7.1).
     pub active_limit: u32,
+    /// Blocks that hold a neighbour to the rest are kept (3.5.4).
     pub keep_connected: bool,
     /// Signs of rotations are random (3.5.1).
     pub random_rotation: bool,
@@ -97,10 +106,13 @@ impl Constants {
 /// All that a tick changes.
 #[derive(Debug, Clone)]
 pub struct State {
+    /// Ticks since the start.
     pub tick: u32,
+    /// Ticks in which the heat boundary has grown: all but those in which it waited for the active limit.
     pub growth_ticks: u32,
     /// Of the last heat boundary: what the active limit is held against.
     pub active_vertices: u32,
+    /// Position of each vertex, in diagonals; deformed, but not rotated with its block.
     pub positions: Vec<DVec3>,
     /// Flammability left.
     pub left: Vec<u32>,
@@ -110,7 +122,9 @@ pub struct State {
     pub alive: Vec<bool>,
     /// Of the refinement pattern's nodes.
     pub statuses: Vec<i32>,
+    /// Block of each vertex, an index into `blocks`.
     pub cells: Vec<usize>,
+    /// Weight and this tick's events of each cell of the grid (3.5).
     pub blocks: Vec<Block>,
     /// Pitch, yaw and roll of each block, in radians.
     pub rotations: Vec<DVec3>,
@@ -118,12 +132,15 @@ pub struct State {
     pub guides: Vec<DVec3>,
     /// Displacement by which each vertex has followed the guides.
     pub flows: Vec<DVec3>,
+    /// Position of each vertex after the rotation of its block, in diagonals.
     pub mapped: Vec<DVec3>,
     /// Of the finest triangles.
     pub removed: Vec<bool>,
     /// Of the drawn vertices, like what follows.
     pub normals: Vec<DVec3>,
+    /// Charring of each drawn vertex, 0 to 1.
     pub chars: Vec<f64>,
+    /// Glow of each drawn vertex, 0 to 1.
     pub glows: Vec<f64>,
 }
 
@@ -166,8 +183,11 @@ impl State {
 /// The inputs of a tick besides the state.
 #[derive(Clone, Copy)]
 pub struct Tick<'a> {
+    /// Method by which the object burns.
     pub variant: Variant,
+    /// The mesh at rest with its refinement pattern.
     pub model: &'a Model,
+    /// Numbers that no tick changes.
     pub constants: &'a Constants,
 }
 

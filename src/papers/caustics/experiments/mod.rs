@@ -213,7 +213,7 @@ fn look_from_below(context: &mut Context<'_>) {
     }
 }
 
-/// What methods were compared on, and the tables that are published.
+/// The meshes that methods were compared on, and the tables that are published.
 struct Compared {
     meshes: Vec<MeshSource>,
     machine: Machine,

@@ -44,7 +44,7 @@ pub const NORMAL_AGAINST_SMART: Comparison = Comparison {
     others: &[Variant::LevelMap],
 };
 
-/// What chapter 6 proposes.
+/// The comparison that chapter 6 proposes.
 pub const CHAPTER_6: Comparison = Comparison {
     title: "Sections 6.1 and 6.3: culled and hit against the level map",
     base: Variant::LevelMap,
@@ -117,7 +117,7 @@ pub struct Outcome {
     runs: Vec<Run>,
     rows: Vec<Row>,
     ratios: Vec<Ratios>,
-    /// What was drawn, where the comparison is of that.
+    /// The pictures, where the comparison is of them.
     drawn: Vec<Drawn>,
 }
 

@@ -9,7 +9,7 @@ use super::flux::{area, clip};
 pub struct LandedTriangle {
     /// Places in texels of the map, from its first corner.
     pub corners: [DVec2; 3],
-    /// What it brings to the map, as the I_c of one texel.
+    /// Light that it brings to the map, as the I_c of one texel.
     pub light: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What tables of densities and skipped bricks save, and what they change in the picture.
+//! Time that tables of densities and skipped bricks save, and their error in the picture.
 
 use serde_json::json;
 

@@ -20,7 +20,7 @@ const GREY: Vec3 = Vec3::splat(0.6);
 pub struct PlacedObject {
     /// Shape or file.
     pub source: MeshSource,
-    /// Where it stands; without, at the file's own coordinates, metres.
+    /// Place and paint; without, it stands at the file's own coordinates, metres.
     pub stand: Option<Stand>,
 }
 

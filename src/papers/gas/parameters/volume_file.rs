@@ -18,7 +18,7 @@ use crate::scene::load_voxels;
 pub struct VolumeFile {
     /// The file.
     pub path: PathBuf,
-    /// Where its box stands; without, in that of the scene's first volume.
+    /// Place of its box; without, in that of the scene's first volume.
     pub stand: Option<Stand>,
 }
 
@@ -46,7 +46,7 @@ impl Choice for Upright {
         &[("z", "As scanners have it, and y from the front to the back"), ("y", "As most that is modelled")];
 }
 
-/// What is done with a sample that is no density.
+/// Treatment of a sample that is no density.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unfit {
     Refuse,
@@ -61,14 +61,14 @@ impl Choice for Unfit {
     ];
 }
 
-/// What densities are made of samples by.
+/// Rules by which densities are made of a file's samples.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading {
     /// Component of samples of several values, from 0.
     pub component: u32,
     /// Values of density 0 and 1.
     pub range: Option<[f32; 2]>,
-    /// What is done with others.
+    /// Treatment of samples that are no number or lie outside the range.
     pub unfit: Unfit,
     /// The file's upright axis.
     pub upright: Upright,

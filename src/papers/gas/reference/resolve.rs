@@ -7,10 +7,13 @@ use glam::DVec3;
 #[derive(Debug, Clone, Copy)]
 pub enum Layer {
     Surface {
+        /// A bit for each of the 32 sub-pixels that it covers.
         mask: u32,
         /// Nearest and farthest depth, metres.
         depth_m: [f64; 2],
+        /// Number of its object: fragments of one object do not intersect each other.
         object: u32,
+        /// Fraction of the light from behind that it takes away, 0 to 1.
         opacity: f64,
         /// Linear RGB, not premultiplied.
         color: DVec3,

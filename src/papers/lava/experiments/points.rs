@@ -1,4 +1,4 @@
-//! What the passes that draw points or splats cost without their fragments: the same points with an empty fragment stage.
+//! Cost of the passes that draw points or splats without their fragments: the same points with an empty fragment stage.
 
 use serde_json::{Map, Value, json};
 

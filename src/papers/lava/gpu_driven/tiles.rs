@@ -6,7 +6,9 @@ const LEAST: [u32; 3] = [8, 8, 1];
 /// Invocations from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tile {
+    /// First invocation along x, y and z.
     pub first: [u32; 3],
+    /// Invocations along x, y and z, at least 1 each.
     pub count: [u32; 3],
 }
 

@@ -4,17 +4,19 @@ use glam::DVec3;
 
 /// The fluid's numbers, in metres, seconds and kilograms.
 pub struct Fluid {
+    /// Extent of the space along x, y and z, from 0 on; the floor is y = 0, and y has no upper end.
     pub space: DVec3,
     /// Distance of the particles at rest.
     pub spacing: f64,
     /// Radius of the kernel.
     pub support: f64,
+    /// Time of one step.
     pub step: f64,
     /// Viscosity over density.
     pub kinematic: f64,
     /// Nearest that a particle comes to a wall.
     pub margin: f64,
-    /// Whether x and z repeat instead of having walls.
+    /// x and z repeat instead of having walls.
     pub is_periodic: bool,
 }
 
@@ -91,7 +93,7 @@ impl Fluid {
         if distance >= self.support { 0.0 } else { integral(distance, self.support, |z| self.over_plane(z)) }
     }
 
-    /// How much a wall drags: as if the speed beyond it went on linearly through 0 at the wall.
+    /// Drag of a wall: as if the speed beyond it went on linearly through 0 at the wall.
     fn wall_drag(&self, distance: f64) -> f64 {
         if distance >= self.support {
             return 0.0;
@@ -147,7 +149,7 @@ impl Fluid {
         if self.is_periodic { DVec3::new(place.x, clamped.y, place.z) } else { clamped }
     }
 
-    /// What is left of the equation of implicit viscosity for one particle: `before` after gravity, `after` after viscosity.
+    /// Residual of the equation of implicit viscosity for one particle: `before` after gravity, `after` after viscosity.
     pub fn viscous_residual(&self, places: &[DVec3], before: &[DVec3], after: &[DVec3], at: usize) -> DVec3 {
         let (_, volume) = self.volumes();
         let rate = 2.0 * self.step * self.kinematic;

@@ -1,6 +1,6 @@
 //! Coefficients of Chebyshev's semi-iteration.
 
-/// What the last change keeps and the residual gains, in each iteration.
+/// Factors of the last change and of the residual, in each iteration.
 pub type Coefficients = [f32; 2];
 
 /// Largest eigenvalue of the viscous matrix, whose smallest is 1, by Gershgorin's circles: `stiffness` is step times

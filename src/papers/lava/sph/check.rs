@@ -1,4 +1,4 @@
-//! What the fluid's numbers may be together.
+//! Ranges of the fluid's numbers that depend on one another.
 
 use super::super::parameters::Parameters;
 use super::MOST_ITERATIONS;

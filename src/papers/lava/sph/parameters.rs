@@ -22,7 +22,7 @@ impl Choice for Simulation {
     ];
 }
 
-/// What bounds the fluid along x and z.
+/// Bounds of the fluid along x and z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sides {
     /// Walls that the lava sticks to.
@@ -51,7 +51,7 @@ pub struct Flow {
     pub gravity_m_s2: f32,
     /// Slope of the floor down along x in degrees, 0 to 80.
     pub slope_deg: f32,
-    /// What bounds the fluid along x and z.
+    /// Bounds of the fluid along x and z.
     pub sides: Sides,
     /// Corrections of the density in a step, 1 to 100.
     pub corrections: u32,

@@ -21,11 +21,15 @@ const FAR_M: f64 = 1.0e8;
 pub enum Body {
     /// A point that moves straight from one place to another.
     Segment {
+        /// First place of the point.
         from: DVec3,
+        /// Last place of the point.
         to: DVec3,
     },
     Sphere {
+        /// Place of its middle.
         center: DVec3,
+        /// Radius in metres, above 0.
         radius_m: f64,
     },
 }
@@ -107,7 +111,7 @@ pub fn collide(setup: &Setup, bodies: &[Body]) -> Result<(Vec<Collision>, Vec<St
     Ok((collisions, void_warnings(scene.maps.iter().map(|input| &*input.map)), seconds))
 }
 
-/// What `collide` found, as it is written.
+/// Record of `collide`, as it is written.
 #[derive(serde::Serialize)]
 pub struct Record<'a> {
     /// In the order of the bodies.

@@ -37,7 +37,7 @@ fn paper_ms(variant: &str, side: f64) -> Option<f64> {
     }
 }
 
-/// How a run's time grew since the first point, or how the paper's did.
+/// Growth of a run's time since the first point, or of the paper's.
 fn growth(run: &Run, whose: &str) -> Option<f64> {
     run.results.get("growth")?.get(whose)?.as_f64()
 }
@@ -252,7 +252,7 @@ impl Outcome {
         text
     }
 
-    /// Where triangles are faster than rays and where slower, and where the level of detail changes nothing.
+    /// The points at which triangles are faster than rays or slower, and at which the level of detail changes nothing.
     pub fn tables(&self) -> Vec<NamedTable> {
         let of = |variant: Variant| self.rows.iter().filter(move |row| row.run.variant == variant.as_str());
         let mut triangles = ResultTable {

@@ -24,6 +24,7 @@ pub struct Grid {
     pub spacing: [f64; 2],
     /// The map goes once round: the first column follows the last one along u.
     pub closes: bool,
+    /// Lowest and highest height of all nodes, metres.
     pub(super) range_m: [f64; 2],
 }
 

@@ -4,7 +4,9 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
+    /// Lower end, no greater than `high`.
     pub(super) low: f64,
+    /// Upper end.
     pub(super) high: f64,
 }
 

@@ -9,15 +9,20 @@ use std::f64::consts::TAU;
 /// A ray over a map.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path<'a> {
+    /// Base surface that the heights are added to.
     pub(super) base: Base,
+    /// Heights of the map.
     pub(super) grid: &'a Grid,
+    /// The ray, in metres.
     pub(super) ray: Ray,
 }
 
 /// A part of a ray between two crossings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece {
+    /// Distance along the ray at which it begins, metres.
     pub(super) from: f64,
+    /// Distance along the ray at which it ends, metres.
     pub(super) to: f64,
     /// The one cell below it; `None` outside the map.
     pub(super) cell: Option<[usize; 2]>,

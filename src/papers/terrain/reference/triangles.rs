@@ -23,7 +23,7 @@ impl Square {
         [node(a, b), node(c, b), node(a, d), node(c, d)]
     }
 
-    /// Where a place in nodes lies in the square, 0 to 1.
+    /// Coordinates in the square, 0 to 1, of a place in nodes.
     fn part(self, grid: &Grid, place: [f64; 2]) -> [f64; 2] {
         let end = self.end(grid);
         [0, 1].map(|axis| (place[axis] - self.first[axis] as f64) / (end[axis] - self.first[axis]) as f64)

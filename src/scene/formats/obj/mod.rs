@@ -48,7 +48,7 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     Ok(timed(|parts| &mut parts.weld_ms, || mesh.into_parts(size_bytes))?)
 }
 
-/// What was read so far.
+/// All pieces read so far, joined.
 struct Joined {
     positions: Vec<Vec3>,
     texture_coordinates: Vec<Vec2>,

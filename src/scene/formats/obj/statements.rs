@@ -16,15 +16,20 @@ pub const WHITE: Vec3 = Vec3::ONE;
 /// No index of its kind.
 pub const ABSENT: u32 = u32::MAX;
 
-/// What one thread has read.
+/// A piece of the file as one thread has read it.
 #[derive(Default)]
 pub struct Piece {
+    /// Coordinates of its `v` statements, in the file's unit.
     pub positions: Vec<Vec3>,
+    /// Coordinates of its `vt` statements.
     pub texture_coordinates: Vec<Vec2>,
+    /// Directions of its `vn` statements, of any length.
     pub normals: Vec<Vec3>,
-    /// What corners of faces of three corners and more name of each kind; of texture coordinates and normals only up to the
-    /// last corner that names one.
+    /// Indices of each kind at the corners of faces of three corners and more; of texture coordinates and normals only up
+    /// to the
+    /// last corner that has one.
     pub corners: [Vec<Named>; 3],
+    /// Number of corners of each face of three corners and more.
     pub arities: Arities,
     /// Faces of three corners and more.
     pub faces: usize,
@@ -39,16 +44,16 @@ pub struct Piece {
     pub largest: [(u64, usize); 3],
     /// The farthest that an index of each kind counts back beyond the piece.
     pub lowest: [Lowest; 3],
-    /// Where and why it was not read on.
+    /// Line of the piece, from 1, at which reading stopped, and the reason.
     pub fault: Option<(usize, Reason)>,
 }
 
-/// What a corner names of one kind: nothing, or a place from the start of the file or of the piece.
+/// Index of one kind at a corner: none, or a place from the start of the file or of the piece.
 #[derive(Clone, Copy)]
 pub struct Named(i64);
 
 impl Named {
-    /// What places in the piece are moved down by, to tell them from those in the file: no file has so many.
+    /// Offset of places in the piece, which tells them from those in the file: no file has so many.
     const IN_PIECE: i64 = i64::MIN / 2;
     /// Farthest that an index may count back.
     const FARTHEST: i64 = 1 << 60;
@@ -69,20 +74,24 @@ impl Named {
 pub struct Lowest {
     /// From the start of the piece; 0 for none that lies before it.
     pub place: i64,
+    /// Line of the piece, from 1.
     pub line: usize,
+    /// The index as it stands in the file, below 0.
     pub index: i64,
-    /// How many of its kind precede it in the piece.
+    /// Number of its kind before it in the piece.
     pub count: usize,
 }
 
-/// What is wrong in a line.
+/// Fault of a line.
 pub enum Reason {
     Text(String),
     /// An index that nothing has.
     Index {
+        /// The index as it stands in the file.
         index: i64,
+        /// 0 for a position, 1 for texture coordinates, 2 for a normal.
         kind: usize,
-        /// How many of its kind precede it in the piece.
+        /// Number of its kind before it in the piece.
         count: usize,
     },
 }

@@ -13,25 +13,33 @@ const STEP_BYTES: usize = 1 << 12;
 
 /// A header whose counts the file can hold.
 pub struct Header {
+    /// ASCII, or binary with its byte order.
     pub(super) encoding: Encoding,
+    /// The elements in the file's order.
     pub(super) elements: Vec<Element>,
-    /// What was read beyond it.
+    /// Bytes behind the header that were read with it.
     pub(super) payload: Vec<u8>,
     /// Its own lines.
     pub(super) lines: usize,
 }
 
 pub(super) struct Element {
+    /// Name in the header, such as `vertex`.
     pub name: String,
+    /// Use of its rows.
     pub purpose: Purpose,
+    /// Number of its rows, which the file can hold.
     pub count: usize,
+    /// The properties of a row, in their order.
     pub properties: Vec<Property>,
 }
 
 pub(super) struct Property {
+    /// Name in the header, such as `nx`.
     pub name: String,
+    /// Type of its number, or types of its list.
     pub kind: PropertyType,
-    /// Where it goes in a vertex.
+    /// Index among a vertex's numbers, as in `SLOTS`; none where it is left out.
     pub slot: Option<usize>,
     /// It is the list of a face's corners.
     pub is_corners: bool,
@@ -39,7 +47,7 @@ pub(super) struct Property {
 
 impl Header {
     /// # Errors
-    /// What is wrong with it, at its line; counts that the rest of the file cannot hold.
+    /// A fault in it, at its line; counts that the rest of the file cannot hold.
     pub fn read(stream: &mut Stream<'_>) -> Result<Self, Stop> {
         let mut bytes = Vec::new();
         while !has_end(&bytes) && bytes.len() < LONGEST_BYTES && stream.append(&mut bytes, STEP_BYTES)? > 0 {}
@@ -90,7 +98,7 @@ impl Element {
     }
 }
 
-/// Where the numbers of a property go in a vertex; colours that are lists go nowhere.
+/// Index of a property among a vertex's numbers; none for colours that are lists.
 fn slot(name: &str, kind: &PropertyType) -> Option<usize> {
     let (_, slot) = SLOTS.iter().find(|(known, _)| name == *known)?;
     Some(*slot).filter(|slot| *slot < FIRST_COLOR || matches!(kind, PropertyType::Scalar(_)))

@@ -37,7 +37,7 @@ pub(super) fn read(stream: &mut Stream<'_>) -> Result<Parts, Stop> {
     Ok(timed(|parts| &mut parts.weld_ms, || mesh.into_parts(size_bytes))?)
 }
 
-/// What an element is read for.
+/// Purpose of an element.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Purpose {
     Vertices,
@@ -45,7 +45,7 @@ enum Purpose {
     Nothing,
 }
 
-/// Where the number of a property goes in a vertex.
+/// Index of each property among a vertex's numbers.
 const SLOTS: [(&str, usize); 15] = [
     ("x", 0),
     ("y", 1),
@@ -70,7 +70,7 @@ const FIRST_COLOR: usize = 8;
 /// Numbers of a vertex, by their [`SLOTS`].
 type Vertex = [f32; 11];
 
-/// What the vertices of a file have.
+/// Attributes of the vertices of a file.
 #[derive(Clone, Copy)]
 struct Carried {
     normals: bool,

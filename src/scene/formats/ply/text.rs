@@ -50,7 +50,7 @@ pub(super) fn read(header: Header, stream: &mut Stream<'_>, mesh: &mut PolygonMe
     Ok(())
 }
 
-/// What one thread has read.
+/// A piece of the file as one thread has read it.
 #[derive(Default)]
 struct Piece {
     mesh: PolygonMesh,

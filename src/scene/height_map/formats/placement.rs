@@ -22,9 +22,13 @@ const COARSEST_DEG: f64 = 0.1;
 /// Placement of a raster in map coordinates of an unnamed unit: the centre of its north-west sample, and the steps east
 /// and south between samples.
 pub(super) struct MapCoordinates {
+    /// Centre of the north-west sample, x and y; `None` where the file does not say.
     pub(super) north_west: Option<DVec2>,
+    /// Steps east and south between samples, both above 0.
     pub(super) step: DVec2,
+    /// Samples in a row.
     pub(super) width: u32,
+    /// Number of rows.
     pub(super) height: u32,
 }
 

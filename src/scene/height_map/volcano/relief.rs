@@ -47,6 +47,7 @@ pub(super) struct Relief {
 /// The uneroded terrain at one place.
 #[derive(Clone, Copy)]
 pub(super) struct Bare {
+    /// Height in metres.
     pub(super) height_m: f32,
     /// Relative depth of gullies, 0 to 1: not into loose debris, which swallows the rain, nor into a crest, where none
     /// falls from above.

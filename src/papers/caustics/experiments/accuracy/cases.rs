@@ -10,6 +10,7 @@ use crate::scene::Light;
 /// A light and a water.
 #[derive(Clone)]
 pub struct Case {
+    /// Name in tables, such as `steep`.
     pub name: &'static str,
     change: fn(&mut Setup),
     /// Parameters that it sets: where one of them is given, the case is left out.
@@ -17,7 +18,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// What the user set up, with that mesh and the case's own light or water.
+    /// The user's set-up, with that mesh and the case's own light or water.
     pub fn setup(&self, context: &Context<'_>, mesh: &NamedMesh) -> Setup {
         let mut setup = Setup { meshes: vec![mesh.source.clone()], ..context.setup.clone() };
         (self.change)(&mut setup);
@@ -35,7 +36,7 @@ const MURKY: f32 = 1.0;
 const LIGHTS: &[&str] = &["light", "point-light"];
 const WATER: &[&str] = &["amplitude", "waves", "wavelength", "water-map"];
 
-/// What is set up as it is, then the others that set nothing which the user has set.
+/// The user's set-up as it is, then the other cases that set no parameter which the user has set.
 pub fn cases(context: &Context<'_>) -> Vec<Case> {
     let all = [
         Case { name: "as set", change: |_| (), sets: &[] },

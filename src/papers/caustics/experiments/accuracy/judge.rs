@@ -1,4 +1,4 @@
-//! How far a method's maps are from the light that truly lands.
+//! Distance of a method's maps from the light that truly lands.
 
 use super::super::super::reference::correlation;
 use super::truth::{Truth, shrunk};
@@ -8,6 +8,7 @@ const NOWHERE: f32 = -1e29;
 
 /// One receiver's map under one light, by a method.
 pub struct Found {
+    /// I_c of each texel, row by row.
     pub light: Vec<f32>,
     /// The position map.
     pub heights: Vec<f32>,
@@ -60,7 +61,7 @@ pub fn judge(found: &[Found], truths: &[Truth]) -> Option<Verdict> {
     verdict.rms.is_finite().then_some(verdict)
 }
 
-/// What a map holds and should hold.
+/// Values of a map's texels, and the true ones.
 #[derive(Default)]
 struct Pairs {
     found: Vec<f64>,

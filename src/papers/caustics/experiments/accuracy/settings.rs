@@ -9,11 +9,15 @@ use crate::measure::Variant as _;
 /// A method with its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setting {
+    /// The method.
     pub variant: Variant,
+    /// Texels a side of its maps.
     pub map_size: u32,
     /// Of no meaning to `hit`.
     pub plane_count: u32,
+    /// Texels a side that are drawn and averaged for each texel of the map.
     pub coverage: u32,
+    /// Places that the intensity of eq. 4-18 belongs to.
     pub intensity: IntensityRule,
 }
 

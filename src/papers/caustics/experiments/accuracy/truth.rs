@@ -19,7 +19,7 @@ const PLACES: [f64; 2] = [0.25, 0.75];
 /// By which a surface must lie above a landing to hide it from the map, of the box's height.
 const ABOVE: f64 = 1e-6;
 
-/// What the map of one receiver under one light would hold, by two estimates that share no photon.
+/// True map of one receiver under one light, by two estimates that share no photon.
 pub struct Truth {
     /// I_c of eq. 4-18, row by row.
     pub halves: [Vec<f64>; 2],
@@ -60,7 +60,7 @@ impl Surface {
     }
 }
 
-/// Where point lights aim: the middle of all receivers.
+/// The point that point lights aim at: the middle of all receivers.
 fn center_of(receivers: &[ReceiverInput]) -> DVec3 {
     Bounds::of_points(receivers.iter().flat_map(|r| r.mesh.positions.iter().copied())).center().as_dvec3()
 }

@@ -7,13 +7,19 @@ use std::str::FromStr;
 /// Contents of an ESRI `.hdr` file: the layout of the samples beside it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Header {
+    /// Samples in a row (`NCOLS`).
     pub(super) columns: u32,
+    /// Number of rows (`NROWS`).
     pub(super) rows: u32,
+    /// Type of a sample (`NBITS`, `PIXELTYPE`).
     pub(super) kind: Kind,
+    /// Order of a sample's bytes (`BYTEORDER`).
     pub(super) order: ByteOrder,
+    /// Bytes before the first row (`SKIPBYTES`).
     pub(super) skip_bytes: u64,
     /// From one row to the next, if the header says so.
     pub(super) stride_bytes: Option<u64>,
+    /// Value of a sample without a height (`NODATA`), if there is one.
     pub(super) no_data: Option<f64>,
     /// Centre of the north-west sample, in map coordinates.
     pub(super) north_west: Option<DVec2>,
