@@ -294,8 +294,7 @@ struct Drawn {
 }
 
 /// The pictures that both sides have drawn, in the order of A; of several processes a side the first one's. Where the
-/// sides have other
-/// parameters, those are put together that differ in the fewest.
+/// sides have other parameters, those are put together that differ in the fewest.
 fn pairs(a: &[Drawn], b: &[Drawn]) -> Vec<Pair> {
     let [a, b] = [a, b].map(first_ones);
     let like = |a: &Run, b: &Run| name(a, "") == name(b, "");

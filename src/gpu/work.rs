@@ -2,8 +2,7 @@
 //! multiply-adds.
 //!
 //! Certain work stands apart from resources that are merely bound: a shader may read all of a buffer, a part of it, or
-//! parts many
-//! times, which no declaration tells unless the pass declares the access [whole](super::PassBuilder::whole).
+//! parts many times, which no declaration tells unless the pass declares the access [whole](super::PassBuilder::whole).
 
 use std::ops::AddAssign;
 

@@ -168,8 +168,7 @@ fn step(value: u64, measured: Measured, wall_s: f64) -> Step {
 }
 
 /// Cause of the end of a process that left no report. Where the system tells that it has killed nothing for memory, a kill
-/// came from
-/// elsewhere, and another call tries the step again.
+/// came from elsewhere, and another call tries the step again.
 fn crashed(ended: &Ended, has_memory: bool) -> Outcome {
     #[cfg(unix)]
     {

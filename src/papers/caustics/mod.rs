@@ -279,8 +279,7 @@ impl Caustics {
     }
 
     /// Landing points of the rays of light `light` on each receiver, in the variant `hit`; the cells that the device
-    /// placed on each, by the
-    /// variant `culled` with smart slicing.
+    /// placed on each, by the variant `culled` with smart slicing.
     fn tables(&self, light: usize) -> Vec<Target> {
         let Technique::LevelMap(LevelMap { receivers, .. }) = &self.technique else { return Vec::new() };
         let of_light = self.lit_receivers.iter().zip(receivers).filter(|(lit, _)| lit.light == light);

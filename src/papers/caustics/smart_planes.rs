@@ -75,8 +75,7 @@ pub struct SmartPlanes {
 
 impl Parameters {
     /// The acceptance threshold that is given, when the variant `culled` fits planes on the device. Of uniform planes it
-    /// drops those
-    /// without a texel by itself.
+    /// drops those without a texel by itself.
     pub fn smart_on_device(&self) -> Option<Option<f32>> {
         match self.smart.placement {
             SmartPlacement::Fitted { epsilon_m } if self.culled_smart => Some(epsilon_m),

@@ -1,6 +1,5 @@
 //! Surprises of a configuration that a user is warned of: options that a variant does not heed, and light that point
-//! sampling does not
-//! show as it is.
+//! sampling does not show as it is.
 
 use super::Caustics;
 use super::parameters::{CullSteps, IntensityRule, Parameters, Variant};

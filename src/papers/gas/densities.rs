@@ -1,6 +1,5 @@
 //! Sources of the densities of the volumes: functions or files, or the table of their values; and the places at which they
-//! are
-//! asked for: all, or those where there are some.
+//! are asked for: all, or those where there are some.
 
 use super::bricks::Bricks;
 use super::context::Context;

@@ -73,8 +73,7 @@ fn stacked(timed: &[Timed], total_ms: f64) -> Markup {
 }
 
 /// Place of the line between two passes of these widths, from their border: on the wider one, so that it hides none that
-/// is
-/// narrow; nowhere between two that are.
+/// is narrow; nowhere between two that are.
 fn gap(left: f64, right: f64) -> Option<f64> {
     let is_on_left = left > right;
     let wider = if is_on_left { left } else { right };

@@ -1,6 +1,5 @@
 //! Configurations of a record's runs: each is shown once, by its first process; runs of other processes are folded away
-//! behind
-//! that.
+//! behind that.
 
 use std::collections::{HashMap, HashSet};
 

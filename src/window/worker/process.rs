@@ -12,8 +12,7 @@ pub fn end_now() -> ! {
 }
 
 /// Degree to which the process gives way to others that want a core: at 5, a thread of theirs has three quarters of it; on
-/// a core
-/// that nobody else wants nothing changes.
+/// a core that nobody else wants nothing changes.
 #[cfg(unix)]
 const NICENESS: nix::libc::c_int = 5;
 

@@ -26,8 +26,7 @@ pub struct Piece {
     /// Directions of its `vn` statements, of any length.
     pub normals: Vec<Vec3>,
     /// Indices of each kind at the corners of faces of three corners and more; of texture coordinates and normals only up
-    /// to the
-    /// last corner that has one.
+    /// to the last corner that has one.
     pub corners: [Vec<Named>; 3],
     /// Number of corners of each face of three corners and more.
     pub arities: Arities,
