@@ -1,17 +1,27 @@
 //! The variant `culled` (section 6.1): of the pairs of water triangle and plane those that may light a texel of the
 //! plane's own cell, found on the device and drawn in one indirect draw, in the level map's order.
 
+mod cull;
+mod cull_compact;
+mod cull_count;
+mod cull_sum;
+
 use std::sync::Arc;
 
 use ash::vk;
 use glam::DVec3;
 
+use self::cull::cull;
+use self::cull_compact::cull_compact;
+use self::cull_count::cull_count;
+use self::cull_sum::cull_sum;
 use super::intersections::{OptionConstants, Options, Scope};
 use super::planes::{self, Cell};
 use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
 use super::resources::{BLACK, Context};
 use super::smart_planes::SmartPlanes;
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Blend, Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 use crate::measure::parameter::Choice;
@@ -126,6 +136,11 @@ fn uniform_cells(context: Context<'_>, lit: &LitReceiver, middle_m: f64) -> Resu
     context.upload("plane-cells", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::cast_slice(&blocks))
 }
 
+/// Begins a pass over the pairs of water triangle and plane.
+fn over_pairs(name: &'static str, shader: &str) -> PassBuilder {
+    Pass::compute(name, "6.1", shader).constants::<CullConstants>()
+}
+
 /// Passes of one receiver under one light.
 pub struct CulledMap {
     /// Planes by the position map; uniform ones without.
@@ -197,7 +212,6 @@ impl CulledMap {
         let arguments = buffer("culled-arguments", 20, vk::BufferUsageFlags::INDIRECT_BUFFER)?;
         let pairs = buffer("culled-pairs", 4 * indices, vk::BufferUsageFlags::INDEX_BUFFER)?;
 
-        let kernel = |name, shader: &str| Pass::compute(name, "6.1", shader).constants::<CullConstants>();
         let extent = lit.aligned.extent;
         let center = [offset.x as f32, offset.z as f32];
         let texels = f64::from(context.parameters.map_size);
@@ -227,39 +241,11 @@ impl CulledMap {
         if let Some(shadows) = shadows {
             caustics_map = caustics_map.with("shadow_map", &shadows.map);
         }
-        let cull = match &smart_planes {
-            None => kernel("cull", "caustics/cull-even.comp"),
-            Some(smart) => kernel("cull", "caustics/cull-fitted.comp")
-                .with("bounds", &smart.bounds)
-                .with("sliced", &smart.sliced)
-                .with("placed", &smart.placed),
-        };
         Ok(CulledMap {
-            cull: cull
-                .with("rays", &volumes.rays)
-                .with("indices", &water.indices)
-                .with("steps", &steps)
-                .with("pyramid", &position_pyramid.heights)
-                .with("levels", &position_pyramid.table)
-                .with("cells", &cells)
-                .with("kept", &kept)
-                .build(shaders)?,
-            cull_count: kernel("cull-count", "caustics/cull-count.comp")
-                .with("kept", &kept)
-                .with("before", &before)
-                .with("blocks", &block_sums)
-                .build(shaders)?,
-            cull_sum: kernel("cull-sum", "caustics/cull-sum.comp")
-                .with("blocks", &block_sums)
-                .with("arguments", &arguments)
-                .build(shaders)?,
-            cull_compact: kernel("cull-compact", "caustics/cull-compact.comp")
-                .with("indices", &water.indices)
-                .with("kept", &kept)
-                .with("before", &before)
-                .with("blocks", &block_sums)
-                .with("pairs", &pairs)
-                .build(shaders)?,
+            cull: cull(scope, &steps, &cells, &position_pyramid, smart_planes.as_ref(), &kept)?,
+            cull_count: cull_count(shaders, &kept, [&before, &block_sums])?,
+            cull_sum: cull_sum(shaders, &block_sums, &arguments)?,
+            cull_compact: cull_compact(scope, &kept, [&before, &block_sums], &pairs)?,
             caustics_map: caustics_map.build(shaders)?,
             constants: CullConstants {
                 center,

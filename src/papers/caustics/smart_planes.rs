@@ -1,15 +1,19 @@
 //! Passes `depth-profile`, `sub-boxes` and `smart-planes`: smart slicing (section 4.7.2) where the position map is, for the
 //! culled map (section 6.1). Nothing is read back, and the planes are those that the host would place, bit for bit.
 
+mod sub_boxes;
+
 use std::sync::Arc;
 
 use ash::vk;
 
+use self::sub_boxes::sub_boxes;
 use super::culled_map::CellBlock;
 use super::parameters::Parameters;
 use super::planes::{self, Fit, SmartPlacement};
 use super::receiver::LitReceiver;
 use super::resources::Context;
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, ImageView, Pass};
 use crate::host_block;
@@ -55,6 +59,16 @@ host_block! {
 const ROWS: u32 = 64;
 /// Invocations of the workgroup that finds the sub-boxes.
 const WORKGROUP: u32 = 256;
+
+/// Begins a pass over the levels of the profile.
+fn over_levels(name: &'static str, shader: &str, [held, fits, boxes, placed]: [&Arc<Buffer>; 4]) -> PassBuilder {
+    Pass::compute(name, "4.7.2, 6.1", shader)
+        .constants::<SmartConstants>()
+        .with("held", held)
+        .with("fits", fits)
+        .with("sub_boxes", boxes)
+        .with("placed", placed)
+}
 
 /// Passes of one receiver under one light.
 pub struct SmartPlanes {
@@ -119,14 +133,6 @@ impl SmartPlanes {
         let cells = buffer("plane-cells", size_of::<CellBlock>() as u64 * u64::from(most))?;
         let sliced = buffer("levels-sliced", 16 * u64::from(levels))?;
         let placed = buffer("planes-placed", size_of::<PlacedBlock>() as u64)?;
-        let kernel = |name, shader: &str| {
-            Pass::compute(name, "4.7.2, 6.1", shader)
-                .constants::<SmartConstants>()
-                .with("held", &held)
-                .with("fits", &fits)
-                .with("sub_boxes", &boxes)
-                .with("placed", &placed)
-        };
         let top = (height / 2.0) as f32;
         Ok(SmartPlanes {
             depth_profile: Pass::compute("depth-profile", "4.7.2, 6.1", "caustics/depth-profile.comp")
@@ -136,8 +142,8 @@ impl SmartPlanes {
                 .with("bounds", &bounds)
                 .with("held", &held)
                 .build(context.shaders)?,
-            sub_boxes: kernel("sub-boxes", "caustics/sub-boxes.comp").build(context.shaders)?,
-            smart_planes: kernel("smart-planes", "caustics/smart-planes.comp")
+            sub_boxes: sub_boxes(context.shaders, [&held, &fits, &boxes, &placed])?,
+            smart_planes: over_levels("smart-planes", "caustics/smart-planes.comp", [&held, &fits, &boxes, &placed])
                 .with("bounds", &bounds)
                 .with("cells", &cells)
                 .with("sliced", &sliced)

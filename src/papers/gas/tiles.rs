@@ -1,7 +1,18 @@
 //! `tiles-*` and their `fragments`: the triangles of tiles of 8 x 8 pixels, and what they leave in each pixel.
 
+mod tiles_count;
+mod tiles_empty;
+mod tiles_fill;
+mod tiles_pixels;
+mod tiles_sum;
+
 use std::sync::Arc;
 
+use self::tiles_count::tiles_count;
+use self::tiles_empty::tiles_empty;
+use self::tiles_fill::tiles_fill;
+use self::tiles_pixels::tiles_pixels;
+use self::tiles_sum::tiles_sum;
 use super::a_buffer::{ABuffer, read};
 use super::band::{Band, BandConstants};
 use super::capacity::Capacity;
@@ -51,6 +62,64 @@ struct PieceOfTiles {
     fragments: Pass,
 }
 
+/// Resources of the passes.
+struct Scope<'a> {
+    scene: &'a SceneBuffers,
+    lists: &'a ABuffer,
+    /// As in [`Tiles`].
+    tiles: &'a Arc<Buffer>,
+    /// As in [`Tiles`].
+    triangles: &'a Arc<Buffer>,
+    /// uint\[chunks\]: the tile of each chunk.
+    chunk_tiles: &'a Arc<Buffer>,
+    /// uvec2\[64 chunks\]: of each pixel of a chunk's tile the triangles that touch it, and those that fill it and are opaque.
+    pixels: &'a Arc<Buffer>,
+}
+
+impl Scope<'_> {
+    /// Begins a pass over tiles.
+    fn pass(&self, name: &'static str, shader: &str) -> PassBuilder {
+        Pass::compute(name, "A-buffer", shader)
+            .with("frame", &self.scene.frame)
+            .with("Tiles", self.tiles)
+            .constants::<BandConstants>()
+    }
+
+    /// Begins a pass over the triangles of a piece, in their tiles' chunks.
+    fn pass_of_chunks(&self, name: &'static str, shader: &str, piece: &Piece) -> PassBuilder {
+        self.pass(name, shader)
+            .with("Objects", &self.scene.objects)
+            .with("TileTriangles", self.triangles)
+            .with("Vertices", &piece.vertices)
+            .with("Triangles", &piece.triangles)
+            .with("counts", &self.scene.counts)
+    }
+}
+
+/// The pass `fragments` by tiles; `losses` takes what lists of the nearest fragments alone leave out.
+fn fragments(
+    context: &Context<'_>,
+    scope: &Scope<'_>,
+    piece: &Piece,
+    losses: Option<&Arc<Buffer>>,
+) -> Result<Pass, Error> {
+    let Scope { scene, lists, .. } = scope;
+    let shader = match context.parameters.lists.nearest() {
+        Some(_) => "gas/fragments-nearest.comp",
+        None => "gas/fragments-tiles.comp",
+    };
+    let pass = scope
+        .pass_of_chunks("fragments", shader, piece)
+        .with("Volumes", &scene.volumes)
+        .with("Offsets", &scene.offsets)
+        .with("Heads", &lists.heads)
+        .with("Links", &lists.links)
+        .with("Surfaces", &lists.surfaces)
+        .with("Colors", &lists.colors);
+    let pass = losses.into_iter().fold(pass, |pass, losses| pass.with("Losses", losses));
+    pass.with("TilePixels", scope.pixels).with("Counters", &lists.counters).build(context.shaders)
+}
+
 /// Tiles of a band of full height.
 fn tile_count(parameters: &Parameters, capacity: Capacity) -> u64 {
     u64::from(parameters.width.div_ceil(TILE)) * u64::from(capacity.rows.div_ceil(TILE))
@@ -86,54 +155,25 @@ impl Tiles {
         let pixel_count = u64::from(context.parameters.width) * u64::from(capacity.rows);
         let has_losses = context.parameters.lists.nearest().is_some();
         let losses = has_losses.then(|| context.storage::<u32>("losses", pixel_count)).transpose()?;
-        let named = |name, shader| {
-            let pass = Pass::compute(name, "A-buffer", shader).with("frame", &scene.frame).with("Tiles", &tiles);
-            pass.constants::<BandConstants>()
-        };
-        let of_triangles =
-            |name, shader| named(name, shader).with("Objects", &scene.objects).with("TileTriangles", &triangles);
-        let buffers = [("ChunkTiles", &chunk_tiles), ("TilePixels", &pixels), ("Counters", &lists.counters)];
-        let [chunk_tiles, tile_pixels, counters] = buffers;
-        let with = |pass: PassBuilder, (name, buffer): (&'static str, &Arc<Buffer>)| pass.with(name, buffer);
+        let scope =
+            Scope { scene, lists, tiles: &tiles, triangles: &triangles, chunk_tiles: &chunk_tiles, pixels: &pixels };
         let mut pieces: Vec<PieceOfTiles> = Vec::with_capacity(scene.pieces.len());
         for piece in &scene.pieces {
             let passes = match pieces.first() {
                 Some(first) => first.rebound(context, piece)?,
-                None => {
-                    let of_piece =
-                        |pass: PassBuilder| pass.with("Vertices", &piece.vertices).with("Triangles", &piece.triangles);
-                    let count = of_piece(named("tiles-count", "gas/tiles-count.comp")).with("Objects", &scene.objects);
-                    let fill =
-                        of_piece(of_triangles("tiles-fill", "gas/tiles-fill.comp")).with("counts", &scene.counts);
-                    let pixels =
-                        of_piece(of_triangles("tiles-pixels", "gas/tiles-pixels.comp")).with("counts", &scene.counts);
-                    let shader = match context.parameters.lists.nearest() {
-                        Some(_) => "gas/fragments-nearest.comp",
-                        None => "gas/fragments-tiles.comp",
-                    };
-                    let fragments = of_piece(of_triangles("fragments", shader))
-                        .with("counts", &scene.counts)
-                        .with("Volumes", &scene.volumes)
-                        .with("Offsets", &scene.offsets)
-                        .with("Heads", &lists.heads)
-                        .with("Links", &lists.links)
-                        .with("Surfaces", &lists.surfaces)
-                        .with("Colors", &lists.colors);
-                    let fragments = losses.iter().fold(fragments, |pass, losses| pass.with("Losses", losses));
-                    PieceOfTiles {
-                        first_triangle: piece.first_triangle,
-                        triangle_count: piece.triangle_count,
-                        count: with(count, counters).build(context.shaders)?,
-                        fill: with(with(fill, chunk_tiles), counters).build(context.shaders)?,
-                        pixels: with(with(with(pixels, chunk_tiles), tile_pixels), counters).build(context.shaders)?,
-                        fragments: with(with(fragments, tile_pixels), counters).build(context.shaders)?,
-                    }
-                }
+                None => PieceOfTiles {
+                    first_triangle: piece.first_triangle,
+                    triangle_count: piece.triangle_count,
+                    count: tiles_count(context.shaders, &scope, piece)?,
+                    fill: tiles_fill(context.shaders, &scope, piece)?,
+                    pixels: tiles_pixels(context.shaders, &scope, piece)?,
+                    fragments: fragments(context, &scope, piece, losses.as_ref())?,
+                },
             };
             pieces.push(passes);
         }
-        let empty = named("tiles-empty", "gas/tiles-empty.comp").build(context.shaders)?;
-        let sum = with(named("tiles-sum", "gas/tiles-sum.comp"), counters).build(context.shaders)?;
+        let empty = tiles_empty(context.shaders, &scope)?;
+        let sum = tiles_sum(context.shaders, &scope)?;
         Ok(Tiles { chunks: capacity.chunks, tiles, triangles, empty, sum, pieces })
     }
 

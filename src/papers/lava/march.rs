@@ -1,10 +1,12 @@
-//! Passes `highest-rows`, `highest` and `march`: a ray for each pixel against the height field, from its highest place on, in
-//! place of the splats of sections 7.1 and 7.2. Ours.
+//! Pass `march`, behind `highest-rows` and `highest`: a ray for each pixel against the height field, from its highest place on,
+//! in place of the splats of sections 7.1 and 7.2. Ours.
 
 use std::sync::Arc;
 
 use ash::vk;
 
+use super::highest::highest;
+use super::highest_rows::highest_rows;
 use super::parameters::{Parameters, Shading};
 use super::scene::Scene;
 use super::targets::{Context, FAR, ZERO};
@@ -27,13 +29,13 @@ host_block! {
 }
 
 host_block! {
-    struct FieldConstants {
+    pub(super) struct FieldConstants {
         columns: u32,
         rows: u32,
     }
 }
 
-/// The passes.
+/// The pass, with those before it.
 pub struct March {
     highest_rows: Pass,
     highest: Pass,
@@ -60,17 +62,6 @@ impl March {
         let desc = BufferDesc::new(context.name("heights"), 4 * u64::from(columns) * u64::from(rows));
         let heights = Buffer::new(context.device(), desc.usage(vk::BufferUsageFlags::STORAGE_BUFFER))
             .map_err(|error| error.set_by("density"))?;
-        let highest_rows = Pass::compute("highest-rows", "", "lava/highest-rows.comp")
-            .constants::<FieldConstants>()
-            .with("normal_height", &scene.normal_height)
-            .with("highest", &found)
-            .with("heights", &heights)
-            .whole(&["normal_height", "heights"])
-            .build(context.shaders)?;
-        let highest = Pass::compute("highest", "", "lava/highest.comp")
-            .constants::<FieldConstants>()
-            .with("highest", &found)
-            .build(context.shaders)?;
         let march = Pass::graphics("march", "", "common/fullscreen.vert", "lava/march.frag")
             .constants::<RayConstants>()
             .with("scene", &scene.block)
@@ -85,7 +76,14 @@ impl March {
             .build(context.shaders)?;
         let shading = context.parameters.shading;
         let field = FieldConstants { columns, rows };
-        Ok(March { highest_rows, highest, field, march, shading, rays: rays(context.parameters) })
+        Ok(March {
+            highest_rows: highest_rows(context, scene, &found, &heights)?,
+            highest: highest(context.shaders, &found)?,
+            field,
+            march,
+            shading,
+            rays: rays(context.parameters),
+        })
     }
 
     /// Sets the rays to those of the parameters' camera.

@@ -70,7 +70,7 @@ impl Method {
     pub fn sums(&self) -> &Arc<ImageView> {
         match self {
             Method::Paper(read_back) => read_back.sums(),
-            Method::GpuDriven(driven) => driven.sums(),
+            Method::GpuDriven(driven) => &driven.sums,
         }
     }
 

@@ -26,6 +26,8 @@ mod estimate;
 pub mod experiments;
 mod extract;
 mod gpu_driven;
+mod highest;
+mod highest_rows;
 #[cfg(test)]
 mod layouts;
 mod march;

@@ -46,6 +46,7 @@ mod ray_caster;
 mod ray_segment;
 pub mod reference;
 mod scene;
+mod select;
 mod selection;
 pub mod setup;
 mod shadow;

@@ -3,7 +3,7 @@
 use super::super::estimate::TEXEL;
 use super::super::parameters::Parameters;
 use super::cells::Cells;
-use super::{columns, density, sort};
+use super::{accumulate_depths, density, sort};
 use crate::measure::estimate::Estimate;
 
 /// Device memory, passes and the work of a frame, the particles' textures included.
@@ -13,7 +13,7 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let clusters = f64::from(parameters.clusters());
     let cells = Cells::new(parameters, parameters.particles);
     let seen = cells.seen(parameters);
-    let taps = columns::taps(parameters);
+    let taps = accumulate_depths::taps(parameters);
     Estimate {
         bytes: vec![
             ("particles", 6.0 * TEXEL * particles + sort::bytes(&cells)),
@@ -22,7 +22,7 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
         buffers: vec![("particles", 8.0 * particles)],
         passes: Some((
             "density",
-            columns::dispatches(parameters) + u64::from(density::pieces(parameters.particles)) + 64,
+            accumulate_depths::dispatches(parameters) + u64::from(density::pieces(parameters.particles)) + 64,
         )),
         invocations: vec![("radius", columns * rows * (clusters * seen + taps)), ("particles", 16.0 * particles)],
         ..Estimate::default()

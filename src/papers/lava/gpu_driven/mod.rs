@@ -10,10 +10,11 @@
 //! where the thesis draws the particles over the grid planes; a column of grid points is summed up by itself, and eq. 6.3
 //! gathers those sums, where the thesis draws a splat for each accepted point.
 
+mod accumulate_depths;
 mod cells;
-mod columns;
 mod density;
 mod estimate;
+mod extract;
 pub mod sort;
 mod tiles;
 
@@ -21,8 +22,9 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use self::columns::Columns;
+use self::accumulate_depths::AccumulateDepths;
 use self::density::GatheredDensity;
+use self::extract::Extract;
 use self::sort::Sort;
 use super::animate::Animate;
 use super::extract::Accepted;
@@ -43,7 +45,12 @@ pub struct GpuDriven {
     pub sort: Sort,
     /// Densities at the grid points.
     pub density: GatheredDensity,
-    columns: Columns,
+    extract: Extract,
+    accumulate_depths: AccumulateDepths,
+    /// Number of accepted points, their heights' sum or the height that stands for them, lowest and highest density.
+    columns: Arc<ImageView>,
+    /// Sum of weighted heights in red, metres; sum of weights in alpha.
+    pub sums: Arc<ImageView>,
     /// Turns of the loops of `density` and `accumulate-depths` in one submission. A frame of more is several.
     pub most_work: f64,
 }
@@ -55,9 +62,12 @@ impl GpuDriven {
         let cells = Cells::new(context.parameters, particle_count);
         let sort = Sort::new(context, &cells, &animate.states.each_ref().map(|state| &state.positions))?;
         let density = GatheredDensity::new(context, &cells, &sort)?;
-        let columns = Columns::new(context, &density.density)?;
+        let columns = context.stored("columns")?;
+        let sums = context.stored("accumulated-depths")?;
+        let extract = Extract::new(context, &density.density, &columns, &sums)?;
+        let accumulate_depths = AccumulateDepths::new(context, &columns, &sums)?;
         let most_work = SUBMISSION_S * per_second(context.device());
-        Ok(GpuDriven { sort, density, columns, most_work })
+        Ok(GpuDriven { sort, density, extract, accumulate_depths, columns, sums, most_work })
     }
 
     /// Sorts the particles of the state with this index.
@@ -74,12 +84,8 @@ impl GpuDriven {
     /// Errors of the Vulkan layer.
     pub fn accumulate(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         self.density.record(frame, self.most_work)?;
-        self.columns.record(frame, self.most_work)
-    }
-
-    /// Sum of weighted heights in red, metres; sum of weights in alpha.
-    pub fn sums(&self) -> &Arc<ImageView> {
-        &self.columns.sums
+        self.extract.record(frame)?;
+        self.accumulate_depths.record(frame, self.most_work)
     }
 
     /// Reads back what the last frame accepted.
@@ -87,7 +93,7 @@ impl GpuDriven {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn accepted(&self, device: &Arc<Device>) -> Result<Accepted, Error> {
-        let bytes = read_image(device, &self.columns.columns)?;
+        let bytes = read_image(device, &self.columns)?;
         let columns = bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(&bytes);
         Ok(columns.iter().fold(Accepted::NONE, |sum, &[count, _, lowest, highest]| Accepted {
             count: sum.count + count as usize,

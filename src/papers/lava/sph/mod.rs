@@ -15,6 +15,12 @@ pub mod chebyshev;
 pub mod check;
 pub mod kernel;
 pub mod parameters;
+mod sph_correct;
+mod sph_density;
+mod sph_finish;
+mod sph_forces;
+mod sph_predict;
+mod sph_viscosity;
 pub mod start;
 
 use std::sync::Arc;
@@ -23,11 +29,18 @@ use ash::vk;
 use glam::DVec3;
 
 use self::chebyshev::Coefficients;
+use self::sph_correct::sph_correct;
+use self::sph_density::sph_density;
+use self::sph_finish::sph_finish;
+use self::sph_forces::sph_forces;
+use self::sph_predict::sph_predict;
+use self::sph_viscosity::sph_viscosity;
 use super::animate::State;
 use super::gpu_driven::Cells;
 use super::gpu_driven::sort::{self, Sort};
 use super::parameters::Parameters;
 use super::targets::Context;
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::read_buffer;
 use crate::gpu::{Buffer, BufferDesc, Device, Error, Frame, Pass};
 use crate::host_block;
@@ -149,68 +162,24 @@ impl Sph {
         let (pushed, change, factors) = (buffer("pushed", 16)?, buffer("change", 16)?, buffer("factors", 8)?);
         let crowded = context.upload("crowded", vk::BufferUsageFlags::STORAGE_BUFFER, bytemuck::bytes_of(&0u32))?;
 
-        let kernel = |name, shader: &str| {
-            let [xs, ys, zs] = &sort.places;
-            Pass::compute(name, "9", shader)
-                .constants::<FlowConstants>()
-                .with("starts", &sort.starts)
-                .with("xs", xs)
-                .with("ys", ys)
-                .with("zs", zs)
-        };
-        let forces = |state: &State| {
-            kernel("sph-forces", "lava/sph-forces.comp")
-                .with("velocities", &state.velocities)
-                .with("items", &sort.items)
-                .with("pushed", &pushed)
-                .with("to", &velocities[0])
-                .with("change", &change)
-                .build(shaders)
-        };
-        let viscosity = |from: usize| {
-            kernel("sph-viscosity", "lava/sph-viscosity.comp")
-                .with("pushed", &pushed)
-                .with("from", &velocities[from])
-                .with("to", &velocities[1 - from])
-                .with("change", &change)
-                .build(shaders)
-        };
         let coefficients = chebyshev::coefficients(scale.stiffness);
-        let predict = kernel("sph-predict", "lava/sph-predict.comp")
-            .with("from", &velocities[coefficients.len() % 2])
-            .with("predicted", &predicted[0])
-            .build(shaders)?;
-        let density = |from: usize| {
-            kernel("sph-density", "lava/sph-density.comp")
-                .with("predicted", &predicted[from])
-                .with("factors", &factors)
-                .with("crowded", &crowded)
-                .build(shaders)
-        };
-        let correct = |from: usize| {
-            kernel("sph-correct", "lava/sph-correct.comp")
-                .with("predicted", &predicted[from])
-                .with("factors", &factors)
-                .with("corrected", &predicted[1 - from])
-                .build(shaders)
-        };
         let corrections = parameters.flow.corrections;
-        let finish = |state: &State| {
-            kernel("sph-finish", "lava/sph-finish.comp")
-                .with("predicted", &predicted[corrections as usize % 2])
-                .with("items", &sort.items)
-                .with("positions", &state.positions)
-                .with("velocities", &state.velocities)
-                .build(shaders)
+        let forces = |state| sph_forces(shaders, &sort, state, [&pushed, &velocities[0], &change]);
+        let viscosity = |[from, to]: [usize; 2]| {
+            sph_viscosity(shaders, &sort, [&velocities[from], &velocities[to]], [&pushed, &change])
         };
+        let density = |from: usize| sph_density(shaders, &sort, &predicted[from], [&factors, &crowded]);
+        let correct =
+            |[from, to]: [usize; 2]| sph_correct(shaders, &sort, [&predicted[from], &predicted[to]], &factors);
+        let finish = |state| sph_finish(shaders, &sort, &predicted[corrections as usize % 2], state);
         Ok(Sph {
             forces: [forces(states[0])?, forces(states[1])?, forces(states[2])?],
-            viscosity: [viscosity(0)?, viscosity(1)?],
+            viscosity: [viscosity([0, 1])?, viscosity([1, 0])?],
+            predict: sph_predict(shaders, &sort, &velocities[coefficients.len() % 2], &predicted[0])?,
             density: [density(0)?, density(1)?],
-            correct: [correct(0)?, correct(1)?],
+            correct: [correct([0, 1])?, correct([1, 0])?],
             finish: [finish(states[0])?, finish(states[1])?],
             constants: constants(parameters, &scale, &cells, states[0].positions.width()),
-            predict,
             sort,
             coefficients,
             corrections,
@@ -266,6 +235,17 @@ impl Sph {
                 .to_owned();
         Err(Error::Pass { pass: "sph-density".to_owned(), problem })
     }
+}
+
+/// Begins a pass over the particles by cells.
+fn over_cells(name: &'static str, shader: &str, sort: &Sort) -> PassBuilder {
+    let [xs, ys, zs] = &sort.places;
+    Pass::compute(name, "9", shader)
+        .constants::<FlowConstants>()
+        .with("starts", &sort.starts)
+        .with("xs", xs)
+        .with("ys", ys)
+        .with("zs", zs)
 }
 
 /// Device memory, passes and the work of a step. A particle looks at those of 27 cells, of its own volume each as long as they

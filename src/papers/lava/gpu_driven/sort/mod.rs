@@ -1,13 +1,27 @@
 //! Passes `cell-keys` to `cell-starts`: the particles in the order of their cells, in place of the thesis's clusters (section
 //! 5.2). The sort is stable and takes no atomics, so that sums over its order are the same to the bit in every run.
 
+mod arrange;
+mod cell_keys;
+mod cell_starts;
+mod sort_count;
+mod sort_scatter;
+mod sort_sum;
+
 use std::sync::Arc;
 
 use ash::vk;
 
+use self::arrange::arrange;
+use self::cell_keys::cell_keys;
+use self::cell_starts::cell_starts;
+use self::sort_count::sort_count;
+use self::sort_scatter::sort_scatter;
+use self::sort_sum::sort_sum;
 use super::super::targets::Context;
 use super::cells::Cells;
 use super::density;
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
 
@@ -119,23 +133,12 @@ impl Sort {
         let pieces = density::pieces(particles);
         let reached = buffer("reached-pieces", pieces)?;
 
-        let first = Pass::compute("cell-keys", "5.2", "lava/cell-keys.comp")
-            .constants::<CellConstants>()
-            .with("positions", positions[0])
-            .with("items", &items[0])
-            .build(shaders)?;
-        let cell_keys = of_each(first, positions, context)?;
+        let cell_keys = cell_keys(context, positions, &items[0])?;
         let digit = |n: u32| -> Result<Digit, Error> {
-            let from = &items[n as usize % 2];
-            let kernel = |name, shader: &str| {
-                let pass = Pass::compute(name, "5.2", shader).constants::<SortConstants>();
-                pass.with("from", from).with("counts", &counts)
-            };
+            let [from, to] = [n, n + 1].map(|n| &items[n as usize % 2]);
             Ok(Digit {
-                sort_count: kernel("sort-count", "lava/sort-count.comp").build(shaders)?,
-                sort_scatter: kernel("sort-scatter", "lava/sort-scatter.comp")
-                    .with("to", &items[(n as usize + 1) % 2])
-                    .build(shaders)?,
+                sort_count: sort_count(shaders, from, &counts)?,
+                sort_scatter: sort_scatter(shaders, [from, to], &counts)?,
                 constants: SortConstants {
                     items: particles,
                     blocks: layout.blocks,
@@ -146,28 +149,9 @@ impl Sort {
             })
         };
         let digits = (0..cells.bits().div_ceil(BITS)).map(digit).collect::<Result<Vec<_>, _>>()?;
-        let sort_sum = Pass::compute("sort-sum", "5.2", "lava/sort-sum.comp")
-            .constants::<SumConstants>()
-            .with("counts", &counts)
-            .build(shaders)?;
         let ends = [0, layout.first_sum, layout.second_sum, layout.third_sum];
         let sums = ends.windows(2).map(|ends| SumConstants { first: ends[0], count: ends[1] - ends[0], to: ends[1] });
         let sorted = &items[digits.len() % 2];
-        let first = Pass::compute("arrange", "5.2", "lava/arrange.comp")
-            .constants::<CellConstants>()
-            .with("positions", positions[0])
-            .with("items", sorted)
-            .with("xs", &places[0])
-            .with("ys", &places[1])
-            .with("zs", &places[2])
-            .with("reached", &reached)
-            .build(shaders)?;
-        let arrange = of_each(first, positions, context)?;
-        let cell_starts = Pass::compute("cell-starts", "5.2", "lava/cell-starts.comp")
-            .constants::<CellConstants>()
-            .with("items", sorted)
-            .with("starts", &starts)
-            .build(shaders)?;
         let constants = CellConstants {
             space_m: parameters.space_m.to_array(),
             particles,
@@ -178,13 +162,13 @@ impl Sort {
         Ok(Sort {
             cell_keys,
             digits,
-            sort_sum,
+            sort_sum: sort_sum(shaders, &counts)?,
             sums: sums.collect(),
-            arrange,
-            items: sorted.clone(),
-            cell_starts,
+            arrange: arrange(context, positions, sorted, &places, &reached)?,
+            cell_starts: cell_starts(shaders, sorted, &starts)?,
             constants,
             cell_count: cells.count(),
+            items: sorted.clone(),
             places,
             starts,
             reached,
@@ -221,7 +205,8 @@ impl Sort {
 }
 
 /// The pass on the first texture of positions, and on each other.
-fn of_each(first: Pass, positions: &[&Arc<ImageView>], context: Context<'_>) -> Result<Vec<Pass>, Error> {
+fn of_each(first: PassBuilder, positions: &[&Arc<ImageView>], context: Context<'_>) -> Result<Vec<Pass>, Error> {
+    let first = first.build(context.shaders)?;
     let other = |view: &&Arc<ImageView>| first.rebind().with("positions", *view).build(context.shaders);
     let others = positions.iter().skip(1).map(other).collect::<Result<Vec<_>, _>>()?;
     Ok([first].into_iter().chain(others).collect())

@@ -1,4 +1,4 @@
-//! Passes `extract` (section 6.2) and `accumulate-depths` (section 6.3) on columns of grid points.
+//! Pass `accumulate-depths` (section 6.3) on the device: each grid point gathers eq. 6.3 over the columns around it.
 
 use std::sync::Arc;
 
@@ -8,15 +8,6 @@ use super::super::targets::Context;
 use super::tiles::{Tile, tiles};
 use crate::gpu::{Error, Frame, ImageView, Pass};
 use crate::host_block;
-
-host_block! {
-    struct ExtractConstants {
-        grid: [u32; 3],
-        rho: f32,
-        space_m: f32,
-        kind: u32,
-    }
-}
 
 host_block! {
     struct AccumulateConstants {
@@ -34,60 +25,38 @@ host_block! {
 /// Most iterations of a dispatch: lavapipe ends all loops of a shader after 65,535.
 const MOST_TAPS: i64 = 60_000;
 
-/// The passes.
-pub struct Columns {
-    extract: Pass,
-    accumulate_depths: Pass,
-    constants: ExtractConstants,
+/// The pass.
+pub struct AccumulateDepths {
+    pass: Pass,
+    grid: [u32; 3],
     bands: Vec<AccumulateConstants>,
-    /// Number of accepted points, their heights' sum or the height that stands for them, lowest and highest density.
-    pub columns: Arc<ImageView>,
-    /// Sum of weighted heights in red, metres; sum of weights in alpha.
-    pub sums: Arc<ImageView>,
 }
 
-impl Columns {
+impl AccumulateDepths {
+    /// Adds to `sums` the heights of `columns`.
+    ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, density: &Arc<ImageView>) -> Result<Self, Error> {
-        let Context { shaders, parameters, .. } = context;
-        let columns = context.stored("columns")?;
-        let sums = context.stored("accumulated-depths")?;
-        let extract = Pass::compute("extract", "6.2", "lava/extract.comp")
-            .constants::<ExtractConstants>()
-            .with("density", density)
-            .with("columns", &columns)
-            .with("sums", &sums)
-            .whole(&["density", "columns", "sums"])
-            .build(shaders)?;
-        let accumulate_depths = Pass::compute("accumulate-depths", "6.3", "lava/accumulate-depths.comp")
+    pub fn new(context: Context<'_>, columns: &Arc<ImageView>, sums: &Arc<ImageView>) -> Result<Self, Error> {
+        let pass = Pass::compute("accumulate-depths", "6.3", "lava/accumulate-depths.comp")
             .constants::<AccumulateConstants>()
-            .with("columns", &columns)
-            .with("sums", &sums)
-            .build(shaders)?;
-        let constants = ExtractConstants {
-            grid: parameters.density,
-            rho: parameters.rho(),
-            space_m: parameters.space_m.y,
-            kind: parameters.surface as u32,
-        };
-        Ok(Columns { extract, accumulate_depths, constants, bands: bands(parameters), columns, sums })
+            .with("columns", columns)
+            .with("sums", sums)
+            .build(context.shaders)?;
+        Ok(AccumulateDepths { pass, grid: context.parameters.density, bands: bands(context.parameters) })
     }
 
-    /// Sums up the columns of the densities, and eq. 6.3 over the columns; `most_work` is that of one submission.
+    /// Sums up eq. 6.3 over the columns; `most_work` is that of one submission.
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn record(&self, frame: &mut Frame<'_>, most_work: f64) -> Result<(), Error> {
-        let [columns, _, rows] = self.constants.grid;
-        frame.compute(&self.extract, |dispatch| {
-            dispatch.constants(&self.constants).threads(columns, rows, 1);
-        })?;
+        let [columns, _, rows] = self.grid;
         for band in &self.bands {
             let each = band.taps();
             for tile in tiles([columns, rows, 1], each, most_work) {
-                frame.make_room(&self.accumulate_depths, tile.work(each), most_work)?;
-                frame.compute(&self.accumulate_depths, |dispatch| {
+                frame.make_room(&self.pass, tile.work(each), most_work)?;
+                frame.compute(&self.pass, |dispatch| {
                     let Tile { first: [x, y, _], count } = tile;
                     let constants = AccumulateConstants { first: [x as i32, y as i32], ..*band };
                     dispatch.constants(&constants).threads(count[0], count[1], 1);

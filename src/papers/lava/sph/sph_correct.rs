@@ -1,0 +1,25 @@
+//! Pass `sph-correct` (chapter 9): places after the constraints and the walls have pushed each particle (Macklin and Mueller 2013,
+//! eq. 12).
+
+use std::sync::Arc;
+
+use super::over_cells;
+use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
+
+/// Makes the pass from predicted places to corrected ones.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn sph_correct(
+    shaders: &ShaderLibrary,
+    sort: &Sort,
+    [predicted, corrected]: [&Arc<Buffer>; 2],
+    factors: &Arc<Buffer>,
+) -> Result<Pass, Error> {
+    over_cells("sph-correct", "lava/sph-correct.comp", sort)
+        .with("predicted", predicted)
+        .with("factors", factors)
+        .with("corrected", corrected)
+        .build(shaders)
+}

@@ -1,0 +1,25 @@
+//! Pass `sph-density` (chapter 9): the density at the predicted places over that at rest, walls included, and the factor of its
+//! constraint (Macklin and Mueller 2013, eq. 8 to 11).
+
+use std::sync::Arc;
+
+use super::over_cells;
+use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
+
+/// Makes the pass; `factors` takes factor and density, `crowded` a 1 where a loop was cut off.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn sph_density(
+    shaders: &ShaderLibrary,
+    sort: &Sort,
+    predicted: &Arc<Buffer>,
+    [factors, crowded]: [&Arc<Buffer>; 2],
+) -> Result<Pass, Error> {
+    over_cells("sph-density", "lava/sph-density.comp", sort)
+        .with("predicted", predicted)
+        .with("factors", factors)
+        .with("crowded", crowded)
+        .build(shaders)
+}

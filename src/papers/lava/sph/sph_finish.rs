@@ -1,0 +1,21 @@
+//! Pass `sph-finish` (chapter 9): velocities from the places, both into the textures at the particles' numbers.
+
+use std::sync::Arc;
+
+use super::over_cells;
+use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::animate::State;
+use crate::papers::lava::gpu_driven::sort::Sort;
+
+/// Makes the pass from the last places into a state.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn sph_finish(shaders: &ShaderLibrary, sort: &Sort, predicted: &Arc<Buffer>, state: &State) -> Result<Pass, Error> {
+    over_cells("sph-finish", "lava/sph-finish.comp", sort)
+        .with("predicted", predicted)
+        .with("items", &sort.items)
+        .with("positions", &state.positions)
+        .with("velocities", &state.velocities)
+        .build(shaders)
+}

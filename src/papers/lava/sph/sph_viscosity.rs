@@ -1,0 +1,25 @@
+//! Pass `sph-viscosity` (chapter 9): one iteration of Chebyshev's on the implicit viscosity of Morris et al. (1997).
+
+use std::sync::Arc;
+
+use super::over_cells;
+use crate::gpu::{Buffer, Error, Pass, ShaderLibrary};
+use crate::papers::lava::gpu_driven::sort::Sort;
+
+/// Makes the pass from one iterate of the velocities to the next; `pushed` is the right side, `change` the last change.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn sph_viscosity(
+    shaders: &ShaderLibrary,
+    sort: &Sort,
+    [from, to]: [&Arc<Buffer>; 2],
+    [pushed, change]: [&Arc<Buffer>; 2],
+) -> Result<Pass, Error> {
+    over_cells("sph-viscosity", "lava/sph-viscosity.comp", sort)
+        .with("pushed", pushed)
+        .with("from", from)
+        .with("to", to)
+        .with("change", change)
+        .build(shaders)
+}
