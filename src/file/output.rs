@@ -61,13 +61,24 @@ pub fn write_unsynced(
     path: &Path,
     fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    let failed = |source| OutputError::Write { path: path.to_owned(), source };
     let folder = parent(path);
     create_directory(&folder)?;
     temporary::sweep(&folder);
-    let mut temporary = create_beside(path).map_err(failed)?;
-    buffered(temporary.as_file_mut(), fill).map_err(failed)?;
-    temporary.persist(path).map_err(|error| failed(error.error))?;
+    replace(path, fill, false).map_err(|source| OutputError::Write { path: path.to_owned(), source })
+}
+
+/// Fills a temporary file beside `path`, and puts it in its place.
+fn replace(
+    path: &Path,
+    fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>,
+    is_synced: bool,
+) -> io::Result<()> {
+    let mut temporary = create_beside(path)?;
+    buffered(temporary.as_file_mut(), fill)?;
+    if is_synced {
+        temporary.as_file().sync_all()?;
+    }
+    temporary.persist(path)?;
     Ok(())
 }
 
@@ -85,13 +96,7 @@ pub fn write_with(
             let mut stream = File::options().write(true).open(path).map_err(failed)?;
             buffered(&mut stream, fill).map_err(failed)
         }
-        Destination::File(target) => {
-            let mut temporary = create_beside(&target).map_err(failed)?;
-            buffered(temporary.as_file_mut(), fill).map_err(failed)?;
-            temporary.as_file().sync_all().map_err(failed)?;
-            temporary.persist(&target).map_err(|error| failed(error.error))?;
-            Ok(())
-        }
+        Destination::File(target) => replace(&target, fill, true).map_err(failed),
     }
 }
 

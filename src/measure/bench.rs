@@ -8,11 +8,11 @@ use super::error::Error;
 use super::estimate::Estimate;
 use super::limits;
 use super::machine::Machine;
-use super::measure::{Schedule, Watch, measure};
+use super::measure::{Measurement, Schedule, Watch, measure};
 use super::study::Study;
-use crate::gpu;
 use crate::gpu::live::MemoryUse;
 use crate::gpu::physical::DeviceType;
+use crate::gpu::{self, Device, Recorder, ShaderLibrary};
 use crate::measure::{Paper, Variant};
 use crate::report::environment;
 use crate::report::record::{InputFile, Limits, Loading, Run};
@@ -51,6 +51,37 @@ pub fn load<S: Study>(study: &S) -> Result<Loaded<S>, Error> {
     };
     let has_files = parts.bytes > 0 || parts.from_cache > 0;
     Ok(Loaded { scene, load_ms, loading: has_files.then_some(loading) })
+}
+
+/// Measures papers, each with the shaders that it is made of, again and again until their buffers suffice.
+///
+/// # Errors
+/// [`Error::Interrupted`] where a paper has no whole frame; any error of the Vulkan layer.
+pub fn measure_settled(
+    device: &Device,
+    recorder: &mut Recorder,
+    papers: &mut [(&mut dyn Paper, &ShaderLibrary)],
+    schedule: Schedule,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Measurement>, Error> {
+    loop {
+        let mut measured: Vec<&mut dyn Paper> = Vec::with_capacity(papers.len());
+        for (paper, _) in papers.iter_mut() {
+            measured.push(&mut **paper);
+        }
+        let measurements = measure(recorder, &mut measured, schedule, watch)?;
+        device.wait_idle()?;
+        if measurements.iter().any(|m| m.frame_ms.is_empty()) {
+            return Err(Error::Interrupted);
+        }
+        let mut are_settled = true;
+        for (paper, shaders) in papers.iter_mut() {
+            are_settled &= paper.settle(shaders)?;
+        }
+        if are_settled {
+            return Ok(measurements);
+        }
+    }
 }
 
 /// Triangles of files that are read before it is known what device there is: moments.
@@ -206,21 +237,9 @@ impl<S: Study> Bench<'_, S> {
             .collect::<Result<Vec<_>, _>>()?;
         machine.device.wait_idle()?;
         let stamp_floor_ms = machine.recorder.timestamp_floor_ms()?;
-        let measurements = loop {
-            let mut papers: Vec<&mut dyn Paper> = built.iter_mut().map(|b| &mut b.paper as &mut dyn Paper).collect();
-            let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
-            machine.device.wait_idle()?;
-            if measurements.iter().any(|m| m.frame_ms.is_empty()) {
-                return Err(Error::Interrupted);
-            }
-            let mut are_settled = true;
-            for paper in papers {
-                are_settled &= paper.settle(&machine.shaders)?;
-            }
-            if are_settled {
-                break measurements;
-            }
-        };
+        let mut papers: Vec<(&mut dyn Paper, _)> =
+            built.iter_mut().map(|b| (&mut b.paper as &mut dyn Paper, &machine.shaders)).collect();
+        let measurements = measure_settled(&machine.device, &mut machine.recorder, &mut papers, schedule, watch)?;
         let mut measured: Vec<_> = built.into_iter().zip(measurements).collect();
         let metrics = study.metrics(machine, &mut measured)?;
         measured.iter_mut().try_for_each(|(built, _)| inspect(machine, &mut built.paper))?;

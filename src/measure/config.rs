@@ -2,11 +2,19 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::scene::{Camera, Light};
+use crate::scene::{Camera, Light, Mesh};
 
 /// Named values as the record has them.
 pub fn entries<const N: usize>(entries: [(&str, Value); N]) -> Map<String, Value> {
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// Adds the triangles of objects beside the phenomenon, where there are any.
+pub fn add_object_triangles(config: &mut Map<String, Value>, objects: &[Mesh]) {
+    if !objects.is_empty() {
+        let triangles: usize = objects.iter().map(Mesh::triangle_count).sum();
+        config.insert("object_triangles".to_owned(), json!(triangles));
+    }
 }
 
 /// A light: where it shines to or where it stands, and how bright it is.

@@ -7,10 +7,10 @@ use crate::gpu::{self, Binary, Compiler, CounterValue, Counting, Mode, PassInfo,
 use crate::measure::Paper;
 use crate::measure::Variant;
 use crate::measure::assembly::shader_binary;
-use crate::measure::bench::Loaded;
+use crate::measure::bench::{Loaded, measure_settled};
 use crate::measure::error::Error;
 use crate::measure::machine::{Machine, MachineOptions};
-use crate::measure::measure::{Schedule, Watch, measure};
+use crate::measure::measure::{Schedule, Watch};
 use crate::measure::statistics::summarize;
 use crate::measure::study::Study;
 use crate::report::record::{CompiledPass, CompiledStage, CounterReading, CounterReadings, Profile, StageStatistic};
@@ -52,21 +52,9 @@ pub fn profile<S: Study>(
         let paper = study.make(&shaders, &label, &loaded.scene, variant);
         made.push((compiler, paper.map_err(|error| shaders.blamed(error))?, shaders));
     }
-    let measurements = loop {
-        let mut papers: Vec<&mut dyn Paper> = made.iter_mut().map(|(_, paper, _)| paper as &mut dyn Paper).collect();
-        let measurements = measure(&mut machine.recorder, &mut papers, schedule, watch)?;
-        machine.device.wait_idle()?;
-        if measurements.iter().any(|m| m.frame_ms.is_empty()) {
-            return Err(Error::Interrupted);
-        }
-        let mut are_settled = true;
-        for (_, paper, shaders) in &mut made {
-            are_settled &= paper.settle(shaders)?;
-        }
-        if are_settled {
-            break measurements;
-        }
-    };
+    let mut papers: Vec<(&mut dyn Paper, _)> =
+        made.iter_mut().map(|(_, paper, shaders)| (paper as &mut dyn Paper, &*shaders)).collect();
+    let measurements = measure_settled(&machine.device, &mut machine.recorder, &mut papers, schedule, watch)?;
     let mut compilers = Vec::new();
     let mut counters_unread = None;
     for ((compiler, paper, _), measurement) in made.iter_mut().zip(&measurements) {

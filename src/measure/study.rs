@@ -207,6 +207,13 @@ pub struct Identity {
     pub seed: u64,
 }
 
+impl Identity {
+    /// Of a preset's name, the size of the picture in pixels, and the seed.
+    pub fn new(preset: &Option<String>, (width, height): (u32, u32), seed: u64) -> Self {
+        Identity { preset: preset.clone(), width, height, seed }
+    }
+}
+
 /// A paper's own results of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Metrics {

@@ -1,5 +1,6 @@
 //! The papers, one folder each. They know no option's spelling, no window and no terminal.
 
+mod device_mesh;
 #[cfg(test)]
 mod layout;
 mod triangle_tree;

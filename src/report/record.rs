@@ -325,6 +325,14 @@ pub struct ExperimentRow {
     pub interval: Option<[f64; 2]>,
 }
 
+impl ExperimentRow {
+    /// The row with the ratio of our number and the paper's.
+    pub fn new(row: String, paper: impl Into<Option<f64>>, ours: Option<f64>, interval: Option<[f64; 2]>) -> Self {
+        let paper = paper.into();
+        ExperimentRow { row, paper, ours, ratio: ours.zip(paper).map(|(ours, paper)| ours / paper), interval }
+    }
+}
+
 /// State of the validation layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

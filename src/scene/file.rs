@@ -35,3 +35,20 @@ pub(super) fn beside(path: &Path, ending: &str) -> Result<Option<PathBuf>, Error
         Err(source) => Err(Error::Read { path, source }),
     }
 }
+
+/// The file beside `path` with one of some endings, the first that is there.
+///
+/// # Errors
+/// As [`beside`]; `missing` of the name without an ending where there is none.
+pub(super) fn first_beside(
+    path: &Path,
+    endings: &[&str],
+    missing: impl FnOnce(&str) -> Error,
+) -> Result<PathBuf, Error> {
+    for ending in endings {
+        if let Some(found) = beside(path, ending)? {
+            return Ok(found);
+        }
+    }
+    Err(missing(&path.with_extension("").file_name().unwrap_or_default().to_string_lossy()))
+}

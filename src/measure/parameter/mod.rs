@@ -7,6 +7,7 @@
 //!     .help("Absorption K of the water").section("eq. 4-17").cost(Cost::Constants)
 //! ```
 
+mod common;
 mod error;
 mod range;
 mod value;
@@ -17,6 +18,7 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value as Json};
 
+pub use common::{crease_angle, size};
 pub use error::{ParameterError, components};
 pub use range::Range;
 pub use value::{
@@ -80,15 +82,6 @@ pub struct Parameter<S> {
     default_text: Option<&'static str>,
     is_recorded: bool,
     access: Box<dyn Access<S>>,
-}
-
-/// The crease angle of mesh files, which every paper that draws meshes has.
-pub fn crease_angle<S: 'static>(field: Field<S, f32>) -> Parameter<S> {
-    Parameter::new("crease-angle", field)
-        .range(Range::from(0.0).to(180.0))
-        .unit("degrees")
-        .help("Largest angle between two triangles of a mesh file without normals that are lit as one smooth surface")
-        .cost(Cost::Buffers)
 }
 
 impl<S: 'static> Parameter<S> {

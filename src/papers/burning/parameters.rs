@@ -8,10 +8,10 @@ use super::framing::seen_from;
 use super::level_of_detail::LevelOfDetail;
 use super::materials::Materials;
 use super::texture::Texture;
-use crate::field;
 use crate::measure::ParameterError;
-use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Size, Value};
+use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Value};
 use crate::scene::Camera;
+use crate::{field, size_field};
 
 /// The methods, one a chapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -278,11 +278,6 @@ const CAMERA: Field<Parameters, Option<EyeAndTarget>> = Field {
     set: |p, place| p.camera = place.map(|place| seen_from(place.eye, place.target)),
 };
 
-const SIZE: Field<Parameters, Size> = Field {
-    get: |p| Size { width: p.width, height: p.height },
-    set: |p, size| (p.width, p.height) = (size.width, size.height),
-};
-
 /// Between zero and one, as most numbers of tables 3.1 and 6.1.
 const FRACTION: Range = Range::above(0.0).below(1.0);
 /// A length of at most a diagonal.
@@ -405,7 +400,7 @@ impl Parameters {
                 .default_text("the object fills 80 % of the picture")
                 .cost(Cost::Constants)
                 .everyday(),
-            row("size", SIZE, R::from(1.0), "Size of the picture", "").unit("pixel").everyday().unrecorded(),
+            parameter::size(size_field!(Parameters)),
             row("seed", p!(seed), any, "Seed of the boundary's noise and of the particles", "").unrecorded(),
             row("time-step", p!(time_step_s), R::from(0.0).to(10.0), "Simulated time between two frames", "")
                 .unit("seconds")

@@ -9,17 +9,10 @@ use super::normalisation::Normalisation;
 use super::parameters::Parameters;
 use super::scene::Scene;
 use super::targets::{Context, DEPTH, FAR};
-use crate::gpu::transfer::upload_each;
 use crate::gpu::{Blend, DepthTest, Error, Frame, Image, ImageDesc, ImageView, Load, Pass};
 use crate::host_block;
+use crate::papers::device_mesh::{DeviceMesh, MeshVertex};
 use crate::scene::Mesh;
-
-host_block! {
-    struct ObjectVertex {
-        position: [f32; 3],
-        normal: [f32; 3],
-    }
-}
 
 host_block! {
     struct ObjectConstants {
@@ -53,20 +46,10 @@ impl Objects {
         let depth = Image::new(context.device(), desc.usage(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT))?.view()?;
         let mut passes: Vec<(Pass, u32)> = Vec::with_capacity(meshes.len());
         for mesh in meshes {
-            let buffer =
-                |what: &str, usage, bytes: &[u8]| context.upload(&format!("{}/{what}", mesh.name), usage, bytes);
-            let vertex = |at: usize| ObjectVertex {
-                position: mesh.positions[at].to_array(),
-                normal: mesh.normals[at].to_array(),
-            };
-            let name = context.name(&format!("{}/vertices", mesh.name));
-            let (usage, count) = (vk::BufferUsageFlags::VERTEX_BUFFER, mesh.positions.len());
-            let vertices = upload_each(context.device(), &name, usage, count, vertex)?;
-            let index_usage = vk::BufferUsageFlags::INDEX_BUFFER;
-            let indices = buffer("indices", index_usage, bytemuck::cast_slice(&mesh.indices))?;
+            let DeviceMesh { vertices, indices, index_count } = DeviceMesh::new(context.device(), context.label, mesh)?;
             let pass = match passes.first() {
                 None => Pass::graphics("objects", "", "lava/object.vert", "lava/object.frag")
-                    .vertices::<ObjectVertex>(&vertices)
+                    .vertices::<MeshVertex>(&vertices)
                     .indices(&indices)
                     .constants::<ObjectConstants>()
                     .with("scene", &scene.block)
@@ -78,7 +61,7 @@ impl Objects {
                     first.rebind().vertices(&vertices).indices(&indices).depth(&depth, Load::Keep).build(shaders)?
                 }
             };
-            passes.push((pass, mesh.indices.len() as u32));
+            passes.push((pass, index_count));
         }
         Ok(Objects { passes, constants: constants(parameters) })
     }

@@ -7,10 +7,10 @@ use super::cameras::{self, CAMERAS};
 use super::color;
 use super::sph;
 use super::sph::parameters::{Flow, Simulation};
-use crate::field;
 use crate::measure::ParameterError;
-use crate::measure::parameter::{self, Choice, Cost, Extents, Field, Parameter, Range, Size, Value as _};
+use crate::measure::parameter::{self, Choice, Cost, Extents, Field, Parameter, Range, Value as _};
 use crate::scene::Camera;
+use crate::{field, size_field};
 
 /// The methods that are compared: the thesis's, and ours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -236,10 +236,6 @@ const DENSITY: Field<Parameters, Extents<u32, 3>> =
     Field { get: |p| Extents(p.density), set: |p, density| p.density = density.0 };
 const SPLATS: Field<Parameters, Extents<u32, 2>> =
     Field { get: |p| Extents(p.splats), set: |p, splats| p.splats = splats.0 };
-const SIZE: Field<Parameters, Size> = Field {
-    get: |p| Size { width: p.width, height: p.height },
-    set: |p, size| (p.width, p.height) = (size.width, size.height),
-};
 
 impl Parameters {
     /// The numbers of figures 5.1, 5.2 and 6.2.
@@ -367,13 +363,7 @@ impl Parameters {
             Parameter::new("camera", cameras::FIELD)
                 .help("Camera: fig-8.1, fig-8.2, fig-8.3, fig-8.4, or eye and target x,y,z,x,y,z in metres")
                 .everyday(),
-            Parameter::new("size", SIZE)
-                .range(Range::from(1.0))
-                .unit("pixel")
-                .help("Size of the picture")
-                .cost(Cost::Buffers)
-                .everyday()
-                .unrecorded(),
+            parameter::size(size_field!(Parameters)),
             Parameter::new("seed", field!(Parameters.seed))
                 .help("Seed of the particles")
                 .cost(Cost::Buffers)

@@ -13,7 +13,7 @@ use crate::image::read_png_within;
 use crate::measure::Error;
 use crate::measure::Paper;
 use crate::measure::bench::Built;
-use crate::measure::config::entries;
+use crate::measure::config::{add_object_triangles, entries};
 use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
@@ -141,12 +141,7 @@ impl Study for Setup {
     }
 
     fn identity(&self) -> Identity {
-        Identity {
-            preset: self.preset.clone(),
-            width: self.parameters.width,
-            height: self.parameters.height,
-            seed: self.parameters.seed,
-        }
+        Identity::new(&self.preset, (self.parameters.width, self.parameters.height), self.parameters.seed)
     }
 
     fn config(&self, scene: &Scene, paper: &Lava) -> Map<String, Value> {
@@ -156,10 +151,7 @@ impl Study for Setup {
             config.insert("temperatures".to_owned(), json!(self.parameters.temperatures_k()));
         }
         config.insert("rho".to_owned(), json!(self.parameters.rho()));
-        if !scene.objects.is_empty() {
-            let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();
-            config.insert("object_triangles".to_owned(), json!(triangles));
-        }
+        add_object_triangles(&mut config, &scene.objects);
         config
     }
 

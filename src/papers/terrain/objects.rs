@@ -3,24 +3,14 @@
 
 use std::sync::Arc;
 
-use ash::vk;
-
 use super::geometric_transformation::SceneView;
 use super::object_depth::ObjectDepth;
 use super::stage::Build;
 use crate::gpu::pass::PassBuilder;
-use crate::gpu::transfer::{upload, upload_each};
-use crate::gpu::{Blend, Buffer, DepthTest, Error, Frame, ImageView, Load, Pass};
+use crate::gpu::{Blend, DepthTest, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
+use crate::papers::device_mesh::{DeviceMesh, MeshVertex};
 use crate::scene::Mesh;
-
-host_block! {
-    struct ObjectVertex {
-        /// World, metres.
-        position: [f32; 3],
-        normal: [f32; 3],
-    }
-}
 
 host_block! {
     struct ObjectConstants {
@@ -64,33 +54,20 @@ impl Objects {
 }
 
 /// A polygon object on the device.
-pub struct ObjectMesh {
-    vertices: Arc<Buffer>,
-    indices: Arc<Buffer>,
-    index_count: u32,
-}
+pub struct ObjectMesh(DeviceMesh);
 
 impl ObjectMesh {
     /// # Errors
     /// Errors of the Vulkan layer.
     pub fn new(build: &Build<'_>, mesh: &Mesh) -> Result<Self, Error> {
-        let vertex =
-            |at: usize| ObjectVertex { position: mesh.positions[at].to_array(), normal: mesh.normals[at].to_array() };
-        let name = |what: &str| format!("{}/{}/{what}", build.label, mesh.name);
-        let (device, vertex_usage) = (build.shaders.device(), vk::BufferUsageFlags::VERTEX_BUFFER);
-        let indices = bytemuck::cast_slice(&mesh.indices);
-        Ok(ObjectMesh {
-            vertices: upload_each(device, &name("vertices"), vertex_usage, mesh.positions.len(), vertex)?,
-            indices: upload(device, &name("indices"), vk::BufferUsageFlags::INDEX_BUFFER, indices)?,
-            index_count: mesh.indices.len() as u32,
-        })
+        DeviceMesh::new(build.shaders.device(), build.label, mesh).map(ObjectMesh)
     }
 
     /// A pass that draws the mesh; both that do find the same depths.
     pub fn pass(&self, name: &'static str, fragment: &str) -> PassBuilder {
         Pass::graphics(name, "1", "terrain/object.vert", fragment)
-            .vertices::<ObjectVertex>(&self.vertices)
-            .indices(&self.indices)
+            .vertices::<MeshVertex>(&self.0.vertices)
+            .indices(&self.0.indices)
             .constants::<ObjectConstants>()
     }
 
@@ -99,7 +76,7 @@ impl ObjectMesh {
     pub fn draw(&self, frame: &mut Frame<'_>, pass: &Pass, view: &SceneView) -> Result<(), Error> {
         let constants = ObjectConstants { to_clip: view.to_clip.as_mat4().to_cols_array() };
         frame.graphics(pass, |draw| {
-            draw.constants(&constants).indices(self.index_count);
+            draw.constants(&constants).indices(self.0.index_count);
         })
     }
 }

@@ -7,12 +7,12 @@ use glam::Vec3;
 use serde_json::{Value as Json, json};
 
 use super::placement::Placement;
-use crate::field;
 use crate::measure::parameter::{
-    self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Size, Value, one, parse_finite, parse_numbers,
+    self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Shape, Value, one, parse_finite, parse_numbers,
 };
 use crate::measure::{self, ParameterError, components, config};
 use crate::scene::Camera;
+use crate::{field, size_field};
 
 /// The applications of section 4, and what a user would do without them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -280,11 +280,6 @@ const SUN: Field<Parameters, [f32; 2]> = Field {
     },
 };
 
-const SIZE: Field<Parameters, Size> = Field {
-    get: |p| Size { width: p.width, height: p.height },
-    set: |p, size| (p.width, p.height) = (size.width, size.height),
-};
-
 impl Default for Parameters {
     fn default() -> Self {
         Parameters {
@@ -357,13 +352,7 @@ impl Parameters {
             Parameter::new("camera", field!(Parameters.view))
                 .help("Camera: side, top, or eye and target x,y,z,x,y,z in metres: east, up from the base, south")
                 .everyday(),
-            Parameter::new("size", SIZE)
-                .range(Range::from(1.0))
-                .unit("pixel")
-                .help("Size of the picture")
-                .cost(Cost::Buffers)
-                .everyday()
-                .unrecorded(),
+            parameter::size(size_field!(Parameters)),
         ]
     }
 

@@ -12,7 +12,7 @@ use super::experiments::{self, Options, figures};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
 use crate::measure::bench::Built;
-use crate::measure::config::entries;
+use crate::measure::config::{add_object_triangles, entries};
 use crate::measure::estimate::{DRAWN_BYTES, Estimate};
 use crate::measure::experiment::Experiment;
 use crate::measure::machine::Machine;
@@ -242,12 +242,7 @@ impl Study for Setup {
     }
 
     fn identity(&self) -> Identity {
-        Identity {
-            preset: self.preset.clone(),
-            width: self.parameters.width,
-            height: self.parameters.height,
-            seed: self.seed,
-        }
+        Identity::new(&self.preset, (self.parameters.width, self.parameters.height), self.seed)
     }
 
     fn config(&self, scene: &Scene, terrain: &Terrain) -> Map<String, Json> {
@@ -268,10 +263,7 @@ impl Study for Setup {
         if let Some(Draping::Contours { interval_m }) = scene.drape.as_ref().map(Drape::draping) {
             config.insert("contour_interval".to_owned(), json!(interval_m / self.exaggeration));
         }
-        if !scene.objects.is_empty() {
-            let triangles: usize = scene.objects.iter().map(Mesh::triangle_count).sum();
-            config.insert("object_triangles".to_owned(), json!(triangles));
-        }
+        add_object_triangles(&mut config, &scene.objects);
         config
     }
 

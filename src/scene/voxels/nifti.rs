@@ -55,13 +55,8 @@ pub(super) fn data_path(path: &Path) -> Result<Option<PathBuf>, Error> {
 }
 
 fn beside(path: &Path, endings: [&str; 2], what: &str) -> Result<PathBuf, Error> {
-    for ending in endings {
-        if let Some(found) = file::beside(path, ending)? {
-            return Ok(found);
-        }
-    }
-    let name = path.with_extension("").file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Err(malformed(path, Fault::new(Place::Whole, format!("it lacks its {what}; put that beside it, named {name}"))))
+    let fault = |name: &str| format!("it lacks its {what}; put that beside it, named {name}");
+    file::first_beside(path, &endings, |name| malformed(path, Fault::new(Place::Whole, fault(name))))
 }
 
 /// The bytes of a header and their order.

@@ -41,13 +41,8 @@ impl Claim {
     /// Notes the dissertation's figure beside ours.
     pub fn note(&self, run: &mut Run) {
         let ours = run.median_frame_ms().map(|ms| 1e3 / ms);
-        run.experiment = Some(ExperimentRow {
-            row: format!("{}: frames per second", self.section),
-            paper: Some(self.frames_per_s),
-            ours,
-            interval: None,
-            ratio: ours.map(|ours| ours / self.frames_per_s),
-        });
+        let row = format!("{}: frames per second", self.section);
+        run.experiment = Some(ExperimentRow::new(row, self.frames_per_s, ours, None));
     }
 
     /// The table: passes with their times, what is burning, the frame rate beside the dissertation's.

@@ -112,14 +112,9 @@ impl Measured {
         let mut measured = Measured { line, snapshots, rows };
         for load in LOADS {
             let speed_up = measured.pair(load).and_then(|pair| pair.speed_up());
-            let ratio = speed_up.as_ref().map(|r| r.ratio);
-            let row = ExperimentRow {
-                row: format!("{} triangles {load}", measured.finest()),
-                paper: Some(line.speed_up),
-                ours: ratio,
-                interval: speed_up.and_then(|r| r.interval),
-                ratio: ratio.map(|ours| ours / line.speed_up),
-            };
+            let ours = speed_up.as_ref().map(|r| r.ratio);
+            let name = format!("{} triangles {load}", measured.finest());
+            let row = ExperimentRow::new(name, line.speed_up, ours, speed_up.and_then(|r| r.interval));
             let noted = measured.rows.iter_mut().filter(|r| r.label.ends_with(load));
             noted.for_each(|r| r.run.experiment = Some(row.clone()));
         }

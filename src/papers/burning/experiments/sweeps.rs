@@ -63,9 +63,7 @@ pub fn block_table(rows: &mut [Row]) -> ResultTable {
         let paper = BLOCK_RATES.iter().find(of).map(|(_, frames_per_s)| *frames_per_s);
         let run = &mut row.run;
         let ours = run.median_frame_ms().map(|ms| 1e3 / ms);
-        let ratio = ours.zip(paper).map(|(ours, paper)| ours / paper);
-        run.experiment =
-            Some(ExperimentRow { row: format!("{} blocks", row.label), paper, ours, interval: None, ratio });
+        run.experiment = Some(ExperimentRow::new(format!("{} blocks", row.label), paper, ours, None));
         table.push(vec![
             json!(row.label),
             json!(row.x as u64),

@@ -12,13 +12,7 @@ const THESIS_FRAMES_PER_S: f64 = 20.0;
 /// Notes the thesis's figure beside ours.
 pub fn beside_the_thesis(run: &mut Run) {
     let ours = run.median_frame_ms().map(|ms| 1e3 / ms);
-    run.experiment = Some(ExperimentRow {
-        row: "frames per second".to_owned(),
-        paper: Some(THESIS_FRAMES_PER_S),
-        ours,
-        interval: None,
-        ratio: ours.map(|ours| ours / THESIS_FRAMES_PER_S),
-    });
+    run.experiment = Some(ExperimentRow::new("frames per second".to_owned(), THESIS_FRAMES_PER_S, ours, None));
 }
 
 /// The table: passes with their times, their counted work, its floor and what their points alone take, then the frame rate

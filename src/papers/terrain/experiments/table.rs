@@ -154,13 +154,8 @@ impl Outcome {
             let paper_of = |x| paper_ms(variant, x).filter(|_| axis == Axis::Map);
             let paper = paper_of(row.x).zip(paper_of(*first_x)).map(|(ms, first)| ms / first);
             row.run.results.insert("growth".into(), json!({"ours": ours, "paper": paper}));
-            row.run.experiment = Some(ExperimentRow {
-                row: format!("{} {}: growth", row.label, axis.label()),
-                paper,
-                ours,
-                interval: None,
-                ratio: ours.zip(paper).map(|(ours, paper)| ours / paper),
-            });
+            let name = format!("{} {}: growth", row.label, axis.label());
+            row.run.experiment = Some(ExperimentRow::new(name, paper, ours, None));
         }
         let mut outcome = Outcome { axis, rows };
         for index in 0..outcome.rows.len() {
@@ -171,13 +166,7 @@ impl Outcome {
             let value = against.as_ref().map(|ratio| json!({"ratio": ratio.ratio, "interval": ratio.interval}));
             run.results.insert("over_cpu".into(), json!(value));
             if let Some(Ratio { ratio: ours, interval, .. }) = against {
-                run.experiment = Some(ExperimentRow {
-                    row: label,
-                    paper,
-                    ours: Some(ours),
-                    interval,
-                    ratio: paper.map(|paper| ours / paper),
-                });
+                run.experiment = Some(ExperimentRow::new(label, paper, Some(ours), interval));
             }
         }
         outcome

@@ -35,13 +35,8 @@ pub(super) fn load(path: &Path) -> Result<HeightMap, Error> {
 
 /// The file of the same name with one of some endings.
 fn beside(path: &Path, endings: &[&str], what: &str) -> Result<PathBuf, Error> {
-    for ending in endings {
-        if let Some(found) = file::beside(path, ending)? {
-            return Ok(found);
-        }
-    }
-    let name = path.with_extension("").file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Err(malformed(path, Fault::new(Place::Whole, format!("its {what} is missing; put it beside it as {name}"))))
+    let fault = |name: &str| format!("its {what} is missing; put it beside it as {name}");
+    file::first_beside(path, endings, |name| malformed(path, Fault::new(Place::Whole, fault(name))))
 }
 
 /// Reads the samples that a header describes.
