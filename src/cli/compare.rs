@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::failure::Failure;
-use super::options::{parse_share, split};
+use super::options::{parse_fraction, split};
 use super::outcome;
 use crate::file;
 use crate::measure::compare::{
@@ -37,10 +37,10 @@ pub struct VerdictArgs {
     #[arg(long, value_name = "2%", value_parser = parse_margin, default_value_t = SAME_MARGIN)]
     margin: f64,
     /// Exit with 4 when the frame or a pass of B is slower than A's by more than this, with certainty
-    #[arg(long, value_name = "5%", value_parser = parse_share)]
+    #[arg(long, value_name = "5%", value_parser = parse_fraction)]
     fail_above: Option<f64>,
     /// Passes below this share of the frame never fail
-    #[arg(long, value_name = "2%", value_parser = parse_share, default_value_t = MIN_SHARE)]
+    #[arg(long, value_name = "2%", value_parser = parse_fraction, default_value_t = MIN_SHARE)]
     min_share: f64,
     /// Exit with 4 as well when it is not certain that the frame and every pass that counts keep to --fail-above, or,
     /// without that, when one of their verdicts is UNCLEAR
@@ -82,7 +82,7 @@ pub fn parse_side(text: &OsStr) -> Result<Side, String> {
 }
 
 fn parse_margin(text: &str) -> Result<f64, String> {
-    parse_share(text).and_then(|margin| match margin {
+    parse_fraction(text).and_then(|margin| match margin {
         0.0..=1.0 => Ok(margin),
         _ => Err(format!("{text:?} is no margin: give 0 to 100%")),
     })

@@ -58,7 +58,7 @@ fn json_of(device: &PhysicalDevice) -> Value {
         .iter()
         .map(|(name, needs)| {
             let lacks = device.lacks(needs);
-            (name.to_string(), json!({"capable": lacks.is_empty(), "needs": words(needs), "lacks": lacks}))
+            (name.to_string(), json!({"capable": lacks.is_empty(), "needs": names(needs), "lacks": lacks}))
         })
         .collect();
     let limits = &device.limits;
@@ -78,7 +78,7 @@ fn json_of(device: &PhysicalDevice) -> Value {
     })
 }
 
-fn words(needs: &[Feature]) -> Vec<&'static str> {
+fn names(needs: &[Feature]) -> Vec<&'static str> {
     BASELINE.iter().chain(needs).map(|f| f.as_str()).collect()
 }
 
@@ -107,7 +107,7 @@ fn text_of(device: &PhysicalDevice) -> String {
         } else {
             style.red(&format!("lacks {}", missing.join(", ")))
         };
-        lines.push(format!("  {name:8} {verdict} (needs {})", words(needs).join(", ")));
+        lines.push(format!("  {name:8} {verdict} (needs {})", names(needs).join(", ")));
     }
     lines.join("\n") + "\n"
 }

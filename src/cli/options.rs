@@ -53,7 +53,7 @@ pub fn split(text: &OsStr, separator: u8) -> Vec<OsString> {
 }
 
 /// Parses `5%` or `0.05` as a fraction.
-pub fn parse_share(text: &str) -> Result<f64, String> {
+pub fn parse_fraction(text: &str) -> Result<f64, String> {
     let (number, scale) = match text.strip_suffix('%') {
         Some(number) => (number, 0.01),
         None => (text, 1.0),
@@ -65,7 +65,7 @@ pub fn parse_share(text: &str) -> Result<f64, String> {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CompilerWord {
+enum CompilerArg {
     Glslang,
     Naga,
 }
@@ -81,7 +81,7 @@ pub struct MachineArgs {
     validate: bool,
     /// Whose SPIR-V to run, wherever it has a binary
     #[arg(long, value_enum, default_value = "glslang")]
-    shader_compiler: CompilerWord,
+    shader_compiler: CompilerArg,
     /// Compile the shaders under DIR (laid out as shaders/) and use them instead of the built-in ones
     #[arg(long, value_name = "DIR")]
     shader_dir: Option<PathBuf>,
@@ -94,20 +94,20 @@ impl MachineArgs {
     }
 
     /// The option of the device as it would be typed.
-    pub fn device_words(&self) -> Vec<OsString> {
+    pub fn device_arguments(&self) -> Vec<OsString> {
         self.device.iter().flat_map(|device| ["--device".into(), device.into()]).collect()
     }
 
     /// As they would be typed.
-    pub fn words(&self) -> Vec<OsString> {
-        let compiler = if self.shader_compiler == CompilerWord::Naga { "naga" } else { "glslang" };
-        let mut words: Vec<OsString> = vec!["--shader-compiler".into(), compiler.into()];
-        words.extend(self.device_words());
+    pub fn arguments(&self) -> Vec<OsString> {
+        let compiler = if self.shader_compiler == CompilerArg::Naga { "naga" } else { "glslang" };
+        let mut arguments: Vec<OsString> = vec!["--shader-compiler".into(), compiler.into()];
+        arguments.extend(self.device_arguments());
         if let Some(folder) = &self.shader_dir {
-            words.extend(["--shader-dir".into(), folder.into()]);
+            arguments.extend(["--shader-dir".into(), folder.into()]);
         }
-        words.extend(self.validate.then(|| "--validate".into()));
-        words
+        arguments.extend(self.validate.then(|| "--validate".into()));
+        arguments
     }
 
     /// `process` is which of several fresh processes this is.
@@ -118,8 +118,8 @@ impl MachineArgs {
             device: self.device.clone(),
             validate: self.validate,
             compiler: match self.shader_compiler {
-                CompilerWord::Glslang => Compiler::Glslang,
-                CompilerWord::Naga => Compiler::Naga,
+                CompilerArg::Glslang => Compiler::Glslang,
+                CompilerArg::Naga => Compiler::Naga,
             },
             shader_dir: self.shader_dir.clone(),
         }

@@ -26,7 +26,7 @@ struct WindowArgs {
     fullscreen: bool,
     /// Way of presenting pictures; the display says which it offers
     #[arg(long, value_enum, default_value = "fifo")]
-    present_mode: PresentWord,
+    present_mode: PresentModeArg,
     /// Size of text and controls, 0.5 to 4, times the display's own scale
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = parse_scale)]
     scale: f32,
@@ -40,7 +40,7 @@ struct WindowArgs {
 
 /// [`PresentMode`] as it is typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum PresentWord {
+enum PresentModeArg {
     /// Every picture in turn, at the display's pace
     Fifo,
     /// As fifo, and at once where one comes late
@@ -51,13 +51,13 @@ enum PresentWord {
     Immediate,
 }
 
-impl PresentWord {
+impl PresentModeArg {
     fn mode(self) -> PresentMode {
         match self {
-            PresentWord::Fifo => PresentMode::Fifo,
-            PresentWord::FifoRelaxed => PresentMode::FifoRelaxed,
-            PresentWord::Mailbox => PresentMode::Mailbox,
-            PresentWord::Immediate => PresentMode::Immediate,
+            PresentModeArg::Fifo => PresentMode::Fifo,
+            PresentModeArg::FifoRelaxed => PresentMode::FifoRelaxed,
+            PresentModeArg::Mailbox => PresentMode::Mailbox,
+            PresentModeArg::Immediate => PresentMode::Immediate,
         }
     }
 }
@@ -109,26 +109,26 @@ pub fn run<S: Study>(matches: &ArgMatches) -> Result<(), Failure> {
 
 /// The options that were typed, of those that are wanted, as one would type them.
 fn typed(matches: &ArgMatches, is_wanted: impl Fn(&str) -> bool) -> Vec<OsString> {
-    let mut words = Vec::new();
+    let mut arguments = Vec::new();
     for id in matches.ids().map(clap::Id::as_str) {
         if matches.value_source(id) != Some(ValueSource::CommandLine) || !is_wanted(id) {
             continue;
         }
         let option = |value: Option<&std::ffi::OsStr>| {
-            let mut word = OsString::from(format!("--{}", id.replace('_', "-")));
+            let mut argument = OsString::from(format!("--{}", id.replace('_', "-")));
             if let Some(value) = value {
-                word.push("=");
-                word.push(value);
+                argument.push("=");
+                argument.push(value);
             }
-            word
+            argument
         };
         match matches.try_get_one::<bool>(id) {
-            Ok(Some(true)) => words.push(option(None)),
+            Ok(Some(true)) => arguments.push(option(None)),
             Ok(_) => {}
-            Err(_) => words.extend(matches.get_raw(id).into_iter().flatten().map(|value| option(Some(value)))),
+            Err(_) => arguments.extend(matches.get_raw(id).into_iter().flatten().map(|value| option(Some(value)))),
         }
     }
-    words
+    arguments
 }
 
 /// Names of the papers.
@@ -154,7 +154,7 @@ pub fn reordered(arguments: Vec<OsString>) -> Vec<OsString> {
     let program = rest.next().unwrap_or_default();
     let verb = rest.next().unwrap_or_default();
     let mut rest = rest.peekable();
-    let named = rest.next_if(|word| names.0.iter().any(|name| word == name));
+    let named = rest.next_if(|argument| names.0.iter().any(|name| argument == name));
     let first = names.0.first().copied().unwrap_or_default();
     let paper = named.unwrap_or_else(|| OsString::from(first));
     [program, paper, verb].into_iter().chain(rest).collect()
@@ -164,15 +164,15 @@ pub fn reordered(arguments: Vec<OsString>) -> Vec<OsString> {
 mod tests {
     use super::*;
 
-    fn words(text: &str) -> Vec<OsString> {
+    fn arguments(text: &str) -> Vec<OsString> {
         text.split(' ').map(OsString::from).collect()
     }
 
     #[test]
     fn the_paper_may_follow_the_verb_or_be_left_out() {
-        assert_eq!(reordered(words("fumarole view gas --frame 3")), words("fumarole gas view --frame 3"));
-        assert_eq!(reordered(words("fumarole view --frame 3")), words("fumarole lava view --frame 3"));
-        assert_eq!(reordered(words("fumarole gas view")), words("fumarole gas view"));
-        assert_eq!(reordered(words("fumarole")), words("fumarole"));
+        assert_eq!(reordered(arguments("fumarole view gas --frame 3")), arguments("fumarole gas view --frame 3"));
+        assert_eq!(reordered(arguments("fumarole view --frame 3")), arguments("fumarole lava view --frame 3"));
+        assert_eq!(reordered(arguments("fumarole gas view")), arguments("fumarole gas view"));
+        assert_eq!(reordered(arguments("fumarole")), arguments("fumarole"));
     }
 }

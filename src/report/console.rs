@@ -74,8 +74,8 @@ pub fn counted_warnings<'a>(of_runs: impl IntoIterator<Item = &'a [String]>) -> 
 fn limits_line(limits: &Limits) -> String {
     let text = |limit: Limit| {
         let spread = limit.mad.filter(|_| limit.value > 0.0).map(|mad| format!("± {:.0} %", 100.0 * mad / limit.value));
-        let words = [one_line(limit.what), significant(limit.value), limit.unit.to_owned(), spread.unwrap_or_default()];
-        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+        let parts = [one_line(limit.what), significant(limit.value), limit.unit.to_owned(), spread.unwrap_or_default()];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
     };
     let known: Vec<String> = limits.listed().map(text).collect();
     if known.is_empty() { String::new() } else { format!("\nlimits of the device: {}\n", known.join(", ")) }

@@ -21,7 +21,7 @@ pub fn profile(run: &Run, style: Style) -> String {
         if let Some(time) = &pass.gpu_ms {
             text.push_str(&drawn(time));
         }
-        push_lines(&mut text, facts(pass));
+        push_lines(&mut text, properties(pass));
     }
     text.push_str(&binaries(profile).render(style));
     for compiled in &profile.compilers {
@@ -44,7 +44,7 @@ fn push_lines(text: &mut String, lines: impl IntoIterator<Item = String>) {
 }
 
 /// Counters, bytes and floor of a pass, a line each.
-pub(super) fn facts(pass: &Pass) -> Vec<String> {
+pub(super) fn properties(pass: &Pass) -> Vec<String> {
     let counts = pass.statistics.clone().unwrap_or_default();
     let counters = [
         ("vertices", counts.vertices),

@@ -149,7 +149,7 @@ pub(super) fn keep(folder: &Path, key: &Key, mesh: &Mesh) {
         checksum: checksum.finalize(),
         one: 1,
     };
-    make_room(folder, MOST_BYTES - size_bytes);
+    evict(folder, MOST_BYTES - size_bytes);
     let _ = file::write_unsynced(&key.path(folder), |file| {
         file.write_all(bytes_of(&start))?;
         lists.iter().try_for_each(|list| file.write_all(list))
@@ -157,7 +157,7 @@ pub(super) fn keep(folder: &Path, key: &Key, mesh: &Mesh) {
 }
 
 /// Removes the entries that were not used for longest, until the others take at most so many bytes.
-fn make_room(folder: &Path, most_bytes: u64) {
+fn evict(folder: &Path, most_bytes: u64) {
     let mut entries: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -243,7 +243,7 @@ mod tests {
         assert!(find(folder, &key("a")).is_some(), "it is the newest now");
         let bytes = fs::metadata(key("a").path(folder)).unwrap().len();
         fs::write(folder.join("notes"), "no entry").unwrap();
-        make_room(folder, 2 * bytes);
+        evict(folder, 2 * bytes);
         let is_there = |name| key(name).path(folder).exists();
         assert_eq!((is_there("a"), is_there("b"), is_there("c")), (true, false, true));
         assert!(folder.join("notes").exists());

@@ -1,9 +1,9 @@
 //! `ab`: two sides measured in turn, in fresh processes, until the verdicts are certain.
 
+mod arguments;
 mod side;
-mod words;
 
-pub(super) use words::reordered;
+pub(super) use arguments::reordered;
 
 use std::ffi::OsString;
 use std::ops::Range;
@@ -23,16 +23,16 @@ use crate::measure::compare::{Comparison, Design, Input, LOOKS, compare};
 use crate::measure::shard::Shard;
 use crate::report::record::Share;
 use crate::report::{Record, environment};
-use side::{Side, Words, parse_binary, parse_variable, parse_words};
+use side::{Side, SideOptions, parse_binary, parse_side_options, parse_variable};
 
 #[derive(Debug, Clone, Args)]
 pub struct AbArgs {
     /// Options of side A alone, as one text: "--variant none --shader-dir changed"
-    #[arg(long, value_name = "OPTIONS", value_parser = parse_words, allow_hyphen_values = true, default_value = "")]
-    a: Words,
+    #[arg(long, value_name = "OPTIONS", value_parser = parse_side_options, allow_hyphen_values = true, default_value = "")]
+    a: SideOptions,
     /// Options of side B alone
-    #[arg(long, value_name = "OPTIONS", value_parser = parse_words, allow_hyphen_values = true, default_value = "")]
-    b: Words,
+    #[arg(long, value_name = "OPTIONS", value_parser = parse_side_options, allow_hyphen_values = true, default_value = "")]
+    b: SideOptions,
     /// Environment variable of one side; may be repeated
     #[arg(long, value_name = "A|B:NAME=VALUE", value_parser = parse_variable)]
     env: Vec<(Side, (String, String))>,
@@ -70,7 +70,7 @@ const LAST_LOOK: u32 = LOOKS[LOOKS.len() - 1] as u32;
 const BLOCK: [Side; 4] = [Side::A, Side::B, Side::B, Side::A];
 
 pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
-    arguments.check_words()?;
+    arguments.check_arguments()?;
     let files = [Side::A, Side::B].map(|side| arguments.record_file(side));
     let verdicts = arguments.out.join(VERDICTS_FILE);
     files.iter().chain([&verdicts]).try_for_each(|path| file::check_writable(path))?;

@@ -23,10 +23,10 @@ pub enum Side {
 
 /// Options as a shell would split them.
 #[derive(Debug, Clone)]
-pub struct Words(pub Vec<String>);
+pub struct SideOptions(pub Vec<String>);
 
-pub fn parse_words(text: &str) -> Result<Words, String> {
-    shlex::split(text).map(Words).ok_or_else(|| "a quotation mark is not closed".to_owned())
+pub fn parse_side_options(text: &str) -> Result<SideOptions, String> {
+    shlex::split(text).map(SideOptions).ok_or_else(|| "a quotation mark is not closed".to_owned())
 }
 
 fn parse_side(text: &str) -> Result<(Side, &str), String> {
@@ -57,8 +57,9 @@ pub fn parse_binary(text: &str) -> Result<(Side, PathBuf), String> {
 impl AbArgs {
     /// SHA-256 of what fixes the blocks of a side.
     pub fn identity(&self, side: Side) -> Result<String, Failure> {
-        let text =
-            |words: &[OsString]| words.iter().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>();
+        let text = |arguments: &[OsString]| {
+            arguments.iter().map(|argument| argument.to_string_lossy().into_owned()).collect::<Vec<_>>()
+        };
         let mut programs = Vec::new();
         for (of, path) in &self.binary {
             let failed = |e| Failure::Input(format!("side {of:?}: reading {}: {e}", path.display()));
@@ -95,15 +96,15 @@ impl AbArgs {
     }
 
     /// Arguments of a side's program, without those that say where its record goes.
-    pub fn words(&self, side: Side) -> Result<Vec<OsString>, Failure> {
+    pub fn arguments(&self, side: Side) -> Result<Vec<OsString>, Failure> {
         let own = if side == Side::A { &self.a.0 } else { &self.b.0 };
         let (paper, options) = match &self.common[..] {
             [paper, verb, rest @ ..] if verb == "bench" => (paper, rest),
             [paper, rest @ ..] => (paper, rest),
             [] => return Err(Failure::Input("ab: name a paper, as in: ab --b \"--seed 2\" gas".to_owned())),
         };
-        let words = [paper.clone(), "bench".into()].into_iter().chain(options.iter().cloned());
-        Ok(words.chain(own.iter().map(OsString::from)).collect())
+        let arguments = [paper.clone(), "bench".into()].into_iter().chain(options.iter().cloned());
+        Ok(arguments.chain(own.iter().map(OsString::from)).collect())
     }
 
     /// The command that measures a side once, as a shell takes it.
@@ -114,8 +115,8 @@ impl AbArgs {
         if !variables.is_empty() {
             variables.insert(0, "env".to_owned());
         }
-        let words = std::iter::once(program).chain(self.words(side)?);
-        Ok(variables.into_iter().chain(words.map(|word| word.to_string_lossy().into_owned())).collect())
+        let arguments = std::iter::once(program).chain(self.arguments(side)?);
+        Ok(variables.into_iter().chain(arguments.map(|argument| argument.to_string_lossy().into_owned())).collect())
     }
 
     /// Measures one side in a fresh process, its process of that number. The first of a side alone measures the device's
@@ -124,17 +125,17 @@ impl AbArgs {
         let failed = |e: std::io::Error| Failure::Running(format!("measuring side {side:?} in a fresh process: {e}"));
         let program = self.binary(side).map_or_else(std::env::current_exe, |path| Ok(path.clone())).map_err(failed)?;
         let file = crate::file::temporary().map_err(failed)?;
-        let mut words = self.words(side)?;
+        let mut arguments = self.arguments(side)?;
         let without_limits = "--no-limits";
         if !is_first {
-            words = without(&OF_THE_FIRST, words.into_iter());
-            if !words.iter().any(|word| word == without_limits) {
-                words.push(without_limits.into());
+            arguments = without(&OF_THE_FIRST, arguments.into_iter());
+            if !arguments.iter().any(|argument| argument == without_limits) {
+                arguments.push(without_limits.into());
             }
         }
         let mut command = Command::new(&program);
         command
-            .args(words)
+            .args(arguments)
             .args(["--process", &process.to_string(), "--quiet", "--out"])
             .arg(self.record_file(side).with_extension(""))
             .arg("--json")
@@ -164,7 +165,7 @@ mod tests {
         }
         assert_eq!(parse_binary("a:./old").unwrap(), (Side::A, PathBuf::from("./old")));
         parse_binary("A:").unwrap_err();
-        assert_eq!(parse_words("--variant none --shader-dir 'a b'").unwrap().0.len(), 4);
-        parse_words("'").unwrap_err();
+        assert_eq!(parse_side_options("--variant none --shader-dir 'a b'").unwrap().0.len(), 4);
+        parse_side_options("'").unwrap_err();
     }
 }

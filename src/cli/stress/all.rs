@@ -73,10 +73,10 @@ impl Visitor for Papers<'_> {
         }
         let StressAllArgs { limits, machine, output, .. } = self.arguments;
         let usual = Schedule { warmup: 1, frames: 1, repeat: 3, min_time_s: 0.0 };
-        let mut words: Vec<OsString> = vec![S::PAPER.into(), "stress".into()];
-        words.extend(machine.words());
+        let mut child_arguments: Vec<OsString> = vec![S::PAPER.into(), "stress".into()];
+        child_arguments.extend(machine.arguments());
         if let Some(until) = limits.until {
-            words.extend(["--until".into(), until.as_str().into()]);
+            child_arguments.extend(["--until".into(), until.as_str().into()]);
         }
         let ascent = Ascent::<S> {
             setup: S::default(),
@@ -91,7 +91,7 @@ impl Visitor for Papers<'_> {
             machine,
             json: None,
             csv: None,
-            words,
+            child_arguments,
             suffix: String::new(),
         };
         let left_s = limits.budget.unwrap_or(BUDGET_S) - self.started.elapsed().as_secs_f64();

@@ -25,7 +25,7 @@ const MAX_REPORT_BYTES: u64 = 1 << 30;
 /// Starts processes of this program.
 pub struct Children<'a> {
     program: PathBuf,
-    words: &'a [OsString],
+    arguments: &'a [OsString],
     is_quiet: bool,
 }
 
@@ -37,9 +37,9 @@ struct Returned {
 }
 
 impl<'a> Children<'a> {
-    pub fn new(words: &'a [OsString], is_quiet: bool) -> Result<Self, Failure> {
+    pub fn new(arguments: &'a [OsString], is_quiet: bool) -> Result<Self, Failure> {
         let program = std::env::current_exe().map_err(|e| failed(&e))?;
-        Ok(Children { program, words, is_quiet })
+        Ok(Children { program, arguments, is_quiet })
     }
 
     /// The machine that steps will be measured on.
@@ -56,7 +56,7 @@ impl<'a> Children<'a> {
         let started = Instant::now();
         let mut command = Command::new(&self.program);
         // Its standard input ends when this process does, and it with it.
-        command.args(self.words).arg("--step-report").arg(report.path()).args(step).stdin(Stdio::piped());
+        command.args(self.arguments).arg("--step-report").arg(report.path()).args(step).stdin(Stdio::piped());
         let ended = finish_within(&mut command, interrupted(), end).map_err(|e| failed(&e))?;
         let wall_s = started.elapsed().as_secs_f64();
         let text = file::read_text(report.path(), MAX_REPORT_BYTES).ok().filter(|_| ended.status.success());
@@ -120,18 +120,18 @@ impl Climber for MachineClimber<'_> {
     }
 
     fn take(&mut self, cell: &Cell, left_s: f64) -> Result<Outcome, Failure> {
-        let mut words: Vec<OsString> = vec![
+        let mut arguments: Vec<OsString> = vec![
             "--step-value".into(),
             cell.value.to_string().into(),
             "--step-variant".into(),
             cell.variant.clone().into(),
         ];
         if let Some(across) = cell.across {
-            words.extend(["--step-across".into(), across.to_string().into()]);
+            arguments.extend(["--step-across".into(), across.to_string().into()]);
         }
         let end = Instant::now() + Duration::from_secs_f64(left_s);
         let killed_before = host_memory::killed_for_memory();
-        let Returned { ended, report, wall_s } = self.children.run(&words, Some(end))?;
+        let Returned { ended, report, wall_s } = self.children.run(&arguments, Some(end))?;
         let outcome = match report {
             _ if self.is_interrupted() => Outcome::Stopped(StopKind::Interruption, "interrupted".to_owned()),
             Some(Report::Measured(measured)) => Outcome::Finished(Box::new(step(cell.value, *measured, wall_s))),

@@ -175,7 +175,7 @@ struct Ascent<'a, S: Study> {
     json: Option<PathBuf>,
     csv: Option<PathBuf>,
     /// Arguments of a step's process, without the step itself.
-    words: Vec<OsString>,
+    child_arguments: Vec<OsString>,
     /// Goes after the names of files.
     suffix: String,
 }
@@ -203,7 +203,7 @@ pub fn run<S: Study>(
         let until = arguments.limits.until;
         return step::run(&arguments.step, &arguments.machine, axes, setup, &variants, arguments.schedule(until));
     }
-    let words = without(&OURS, std::env::args_os().skip(1));
+    let child_arguments = without(&OURS, std::env::args_os().skip(1));
     let devices: Vec<Option<&String>> =
         if arguments.devices.is_empty() { vec![None] } else { arguments.devices.iter().map(Some).collect() };
     let started = Instant::now();
@@ -222,7 +222,7 @@ pub fn run<S: Study>(
             schedule: arguments.schedule(arguments.limits.until),
             limits: &arguments.limits,
             output: &arguments.output,
-            words: words.iter().cloned().chain(machine.device_words()).collect(),
+            child_arguments: child_arguments.iter().cloned().chain(machine.device_arguments()).collect(),
             machine: &machine,
             json: arguments.json.clone().filter(|_| devices.len() == 1),
             csv: arguments.csv.clone().filter(|_| devices.len() == 1),
@@ -336,7 +336,7 @@ impl<S: Study> Ascent<'_, S> {
         }
         self.axis.set(&mut setup, first)?;
         let started = Instant::now();
-        let children = Children::new(&self.words, self.output.quiet)?;
+        let children = Children::new(&self.child_arguments, self.output.quiet)?;
         let template = self.template(&children)?;
         let known = file.known(&template, self.limits.anew)?;
         let mut climber = climber::MachineClimber {

@@ -68,7 +68,7 @@ pub struct Climb {
 }
 
 /// Part of the free memory that a step may be foretold to take.
-const MEMORY_SHARE: f64 = 0.9;
+const MEMORY_FRACTION: f64 = 0.9;
 
 /// A series on its way.
 struct Track {
@@ -214,7 +214,7 @@ impl Climb {
         }
         if let (Some(needed), Some(free)) =
             (foretold(|step| step.peak_bytes.map(|b| b as f64)), climber.available_bytes())
-            && needed > MEMORY_SHARE * free as f64
+            && needed > MEMORY_FRACTION * free as f64
         {
             let [needed, free] = [needed, free as f64].map(|bytes| bytes / 1e6);
             return stop(

@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 
 use super::buffers::Buffers;
 use super::framing;
-use super::materials::Looks;
+use super::materials::Appearances;
 use super::model::Model;
 use super::parameters::{Material, Parameters, Shading, Variant};
 use super::texture::Surface;
@@ -55,7 +55,7 @@ impl Draw {
         label: &str,
         (variant, parameters): (Variant, &Parameters),
         buffers: &Buffers,
-        looks: Option<&Looks>,
+        appearances: Option<&Appearances>,
         model: &Model,
     ) -> Result<Self, Error> {
         let device = shaders.device();
@@ -92,8 +92,8 @@ impl Draw {
                 .with("TextureLevels", &surface.levels)
                 .with("texels", &surface.texels);
         }
-        if let (Some(looks), "draw-several") = (looks, fragment) {
-            pass = pass.with("Substances", &looks.substances).with("SubstanceOf", &looks.substance_of);
+        if let (Some(appearances), "draw-several") = (appearances, fragment) {
+            pass = pass.with("Substances", &appearances.substances).with("SubstanceOf", &appearances.substance_of);
         }
         if fragment != "draw-normals" {
             pass = pass.with("constants", &buffers.constants);

@@ -63,7 +63,7 @@ use self::falling::falling;
 use self::heat_boundary::heat_boundary;
 use self::internal_deformation::InternalDeformation;
 use self::loading::Loading;
-use self::materials::Looks;
+use self::materials::Appearances;
 use self::model::Model;
 use self::normals::Normals;
 use self::ping_pong::PingPong;
@@ -145,8 +145,8 @@ impl Burning {
         let is_refined = variant.refines() && model.levels > 0;
         let refinement =
             is_refined.then(|| Refinement::new(shaders, label, parameters, &mut buffers, &model)).transpose()?;
-        let looks = Looks::new(shaders, label, variant, parameters, &model)?;
-        let draw = Draw::new(shaders, label, (variant, parameters), &buffers, looks.as_ref(), &model)?;
+        let appearances = Appearances::new(shaders, label, variant, parameters, &model)?;
+        let draw = Draw::new(shaders, label, (variant, parameters), &buffers, appearances.as_ref(), &model)?;
         let has_wire = parameters.shading == Shading::Wire;
         let draw_wire = has_wire.then(|| DrawWire::new(shaders, &buffers, &draw, &model)).transpose()?;
         let has_parts = parameters.collapses(variant);
@@ -190,7 +190,7 @@ impl Burning {
             falling,
             puddle,
             refinement,
-            normals: Normals::new(shaders, &buffers, looks.as_ref(), &model)?,
+            normals: Normals::new(shaders, &buffers, appearances.as_ref(), &model)?,
             draw,
             draw_wire,
             draw_ground,

@@ -1,7 +1,7 @@
 //! `normals` (appendix B), with the colour of charring.
 
 use super::buffers::Buffers;
-use super::materials::Looks;
+use super::materials::Appearances;
 use super::model::Model;
 use crate::gpu::{Error, Frame, Pass, ShaderLibrary};
 
@@ -17,15 +17,15 @@ impl Normals {
     pub fn new(
         shaders: &ShaderLibrary,
         buffers: &Buffers,
-        looks: Option<&Looks>,
+        appearances: Option<&Appearances>,
         model: &Model,
     ) -> Result<Self, Error> {
         let pass = |shader: &str| Pass::compute("normals", "B", shader);
-        let pass = match looks {
+        let pass = match appearances {
             None => pass("burning/normals-one.comp"),
-            Some(looks) => pass("burning/normals-several.comp")
-                .with("Substances", &looks.substances)
-                .with("SubstanceOf", &looks.substance_of),
+            Some(appearances) => pass("burning/normals-several.comp")
+                .with("Substances", &appearances.substances)
+                .with("SubstanceOf", &appearances.substance_of),
         };
         let pass = pass
             .with("constants", &buffers.constants)

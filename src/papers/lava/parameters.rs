@@ -428,7 +428,7 @@ impl Parameters {
     /// the mean inside it, which is what a level surface has.
     pub fn rho(&self) -> f32 {
         self.rho.unwrap_or_else(|| {
-            let (filled_m, share) = match self.simulation {
+            let (filled_m, factor) = match self.simulation {
                 Simulation::Free => (self.space_m, 1.0),
                 Simulation::Sph => (self.flow.block_m, 0.5),
             };
@@ -436,7 +436,7 @@ impl Parameters {
             let h = f64::from(self.radius_m);
             // 405 / 187 times (1/3 - 22/45 + 17/63 - 4/81).
             let integral = 405.0 / 187.0 * (1.0 / 3.0 - 22.0 / 45.0 + 17.0 / 63.0 - 4.0 / 81.0);
-            (share * integral * f64::from(self.particles) * h * h / (x * y * z)) as f32
+            (factor * integral * f64::from(self.particles) * h * h / (x * y * z)) as f32
         })
     }
 

@@ -23,7 +23,7 @@ pub enum Place {
         /// Middle of its lower side, metres.
         base_m: Vec3,
         /// Turn about the vertical, degrees, from x towards -z.
-        turn_deg: f32,
+        yaw_deg: f32,
         /// Factor of its own size, above 0; without one the size of [`Place::Fitted`].
         scale: Option<f32>,
     },
@@ -48,15 +48,15 @@ impl Object {
         let bounds = mesh.bounds();
         let (low, size) = (bounds.min.as_dvec3(), bounds.max.as_dvec3() - bounds.min.as_dvec3());
         let foot = low + size * glam::DVec3::new(0.5, 0.0, 0.5);
-        let (base_m, turn_deg, scale) = match self.place {
+        let (base_m, yaw_deg, scale) = match self.place {
             Place::Own => return Ok(mesh),
             Place::Fitted => (0.5 * space_m, 0.0, None),
-            Place::At { base_m, turn_deg, scale } => (base_m, turn_deg, scale),
+            Place::At { base_m, yaw_deg, scale } => (base_m, yaw_deg, scale),
         };
         let fitted = f64::from(space_m.min_element()) / size.max_element();
         let scale = scale.unwrap_or(fitted as f32);
         let place = Mat4::from_translation(base_m)
-            * Mat4::from_rotation_y(turn_deg.to_radians())
+            * Mat4::from_rotation_y(yaw_deg.to_radians())
             * Mat4::from_scale(Vec3::splat(scale))
             * Mat4::from_translation(-foot.as_vec3());
         let placed = mesh.placed(&place);
@@ -193,9 +193,9 @@ impl Value for Object {
         match self.place {
             Place::Fitted => source,
             Place::Own => format!("{source}@own"),
-            Place::At { base_m, turn_deg, scale } => {
+            Place::At { base_m, yaw_deg, scale } => {
                 let scale = scale.map_or(String::new(), |scale| format!(",{scale}"));
-                format!("{source}@{},{},{},{turn_deg}{scale}", base_m.x, base_m.y, base_m.z)
+                format!("{source}@{},{},{},{yaw_deg}{scale}", base_m.x, base_m.y, base_m.z)
             }
         }
     }
@@ -211,10 +211,10 @@ impl Value for Object {
 
 /// `X,Y,Z[,DEGREES[,SCALE]]`.
 fn at(numbers: &[f32]) -> Result<Place, String> {
-    let (base, turn_deg, scale) = match *numbers {
+    let (base, yaw_deg, scale) = match *numbers {
         [x, y, z] => ([x, y, z], 0.0, None),
-        [x, y, z, turn_deg] => ([x, y, z], turn_deg, None),
-        [x, y, z, turn_deg, scale] => ([x, y, z], turn_deg, Some(scale)),
+        [x, y, z, yaw_deg] => ([x, y, z], yaw_deg, None),
+        [x, y, z, yaw_deg, scale] => ([x, y, z], yaw_deg, Some(scale)),
         _ => {
             return Err(format!(
                 "a place is X,Y,Z, X,Y,Z,DEGREES or X,Y,Z,DEGREES,SCALE; {} numbers are given",
@@ -224,7 +224,7 @@ fn at(numbers: &[f32]) -> Result<Place, String> {
     };
     match scale {
         Some(scale) if scale <= 0.0 => Err(format!("the scale {scale} of the place must be above 0")),
-        _ => Ok(Place::At { base_m: Vec3::from_array(base), turn_deg, scale }),
+        _ => Ok(Place::At { base_m: Vec3::from_array(base), yaw_deg, scale }),
     }
 }
 

@@ -63,7 +63,7 @@ fn meshes(setup: &Setup) -> Vec<MeshSource> {
 /// A mesh on the ground, its longest side so many metres.
 fn stand(mesh: &MeshSource, [east_m, south_m]: [f32; 2], longest_m: f32) -> Result<ObjectSource, Error> {
     let longest = mesh.load()?.bounds().diagonal().max_element();
-    let place = Stand { east_m, south_m, turn_deg: 0.0, scale: longest_m / longest };
+    let place = Stand { east_m, south_m, yaw_deg: 0.0, scale: longest_m / longest };
     Ok(ObjectSource { mesh: mesh.clone(), place: Some(place) })
 }
 

@@ -51,7 +51,7 @@ impl Drape {
     }
 
     /// No picture: what is drawn of the land itself. Numbers are finite and above 0.
-    pub fn of_land(draping: Draping) -> Self {
+    pub fn of_terrain(draping: Draping) -> Self {
         Drape { draping, ..Self::white() }
     }
 

@@ -100,7 +100,7 @@ impl DrapeSource {
             DrapeSource::Slope => Draping::Slope,
             DrapeSource::Hypsometric => Draping::Hypsometric { scale: exaggeration },
         };
-        Ok(Drape::of_land(draping))
+        Ok(Drape::of_terrain(draping))
     }
 }
 

@@ -133,10 +133,10 @@ impl Ground {
                 let scale = DVec3::new(1.0 / ground.spacing_m.x, 1.0 / unit_m, 1.0 / ground.spacing_m.y);
                 let model = DMat4::from_translation(DVec3::new(middle.x, ground.base, middle.y))
                     * DMat4::from_scale(scale)
-                    * DMat4::from_rotation_y(-placement.turn_rad)
+                    * DMat4::from_rotation_y(-placement.yaw_rad)
                     * DMat4::from_translation(-center);
                 ground.to_frame = T * model;
-                let turn = DMat3::from_rotation_y(placement.turn_rad);
+                let turn = DMat3::from_rotation_y(placement.yaw_rad);
                 ground.axes = ground.axes.map(|axis| turn * axis);
             }
             Base::Cylinder { radius_m } => {

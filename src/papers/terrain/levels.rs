@@ -62,11 +62,11 @@ impl Levels {
         let image = Image::new(device, desc)?;
         let stride = shape.width as usize;
         let data = image.layer(DATA)?;
-        upload_rows(device, &data, (shape.width, shape.height), |first_row, strip| {
+        upload_rows(device, &data, (shape.width, shape.height), |first_row, rows| {
             let first = first_row as usize * stride;
             match map.samples() {
-                Samples::Steps { values, .. } => copy_samples(&values[first..], strip),
-                Samples::Float(values) => copy_samples(&values[first..], strip),
+                Samples::Steps { values, .. } => copy_samples(&values[first..], rows),
+                Samples::Float(values) => copy_samples(&values[first..], rows),
             }
         })?;
         let levels = Levels { view: image.view()?, shape, is_float };
@@ -119,7 +119,7 @@ impl Levels {
     }
 }
 
-fn copy_samples<T: bytemuck::Pod>(samples: &[T], strip: &mut [u8]) {
+fn copy_samples<T: bytemuck::Pod>(samples: &[T], rows: &mut [u8]) {
     let bytes: &[u8] = bytemuck::cast_slice(samples);
-    strip.copy_from_slice(&bytes[..strip.len()]);
+    rows.copy_from_slice(&bytes[..rows.len()]);
 }

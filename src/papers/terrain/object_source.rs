@@ -29,7 +29,7 @@ pub struct Stand {
     /// Metres south of it.
     pub south_m: f32,
     /// About the vertical, counterclockwise seen from above, degrees.
-    pub turn_deg: f32,
+    pub yaw_deg: f32,
     /// Factor of its size, above 0.
     pub scale: f32,
 }
@@ -45,10 +45,10 @@ impl ObjectSource {
 impl Stand {
     /// The mesh on the ground of `collider`.
     pub fn place(&self, mesh: &Mesh, collider: &Collider) -> Mesh {
-        let Stand { east_m, south_m, turn_deg, scale } = *self;
+        let Stand { east_m, south_m, yaw_deg, scale } = *self;
         let ground_m = collider.ground_m(f64::from(east_m), f64::from(south_m)) as f32;
         let turned =
-            mesh.transformed(&(Mat4::from_rotation_y(turn_deg.to_radians()) * Mat4::from_scale(Vec3::splat(scale))));
+            mesh.transformed(&(Mat4::from_rotation_y(yaw_deg.to_radians()) * Mat4::from_scale(Vec3::splat(scale))));
         let lowest_m = turned.positions.iter().map(|position| position.y).fold(f32::INFINITY, f32::min);
         turned.placed(&Mat4::from_translation(Vec3::new(east_m, ground_m - lowest_m, south_m)))
     }
@@ -58,8 +58,8 @@ impl fmt::Display for ObjectSource {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place {
             None => self.mesh.fmt(formatter),
-            Some(Stand { east_m, south_m, turn_deg, scale }) => {
-                write!(formatter, "{}@{east_m},{south_m},{turn_deg},{scale}", self.mesh)
+            Some(Stand { east_m, south_m, yaw_deg, scale }) => {
+                write!(formatter, "{}@{east_m},{south_m},{yaw_deg},{scale}", self.mesh)
             }
         }
     }
@@ -71,7 +71,7 @@ impl Value for ObjectSource {
     fn parse(texts: &[&OsStr]) -> Result<Self, String> {
         let place = |text: &str| -> Result<Option<Stand>, String> {
             // A file's own name may have an @.
-            let Ok([east_m, south_m, turn_deg, scale]) = parse_numbers::<4>(text) else {
+            let Ok([east_m, south_m, yaw_deg, scale]) = parse_numbers::<4>(text) else {
                 let is_meant = text.split(',').all(|part| part.trim().parse::<f32>().is_ok());
                 return if is_meant { Err("give east, south, degrees and scale after @".to_owned()) } else { Ok(None) };
             };
@@ -79,7 +79,7 @@ impl Value for ObjectSource {
             if !is_size || east_m.abs().max(south_m.abs()) > 1e8 {
                 return Err("its scale must be above 0 to 1000000, its place within 100000 km".to_owned());
             }
-            Ok(Some(Stand { east_m, south_m, turn_deg, scale }))
+            Ok(Some(Stand { east_m, south_m, yaw_deg, scale }))
         };
         let Ok(whole) = one(texts) else { return Ok(ObjectSource { mesh: MeshSource::parse(texts)?, place: None }) };
         let (name, place) = match whole.rsplit_once('@') {

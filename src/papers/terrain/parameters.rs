@@ -396,11 +396,11 @@ impl Parameters {
     /// # Errors
     /// A place that is not finite or too far away, and a turn on a base that is not a plane.
     pub fn validate_placement(&self, placement: &Placement) -> Result<(), ParameterError> {
-        let Placement { center_m, turn_rad } = *placement;
-        let place = format!("{},{},{}", center_m.x, center_m.y, turn_rad.to_degrees());
-        let is_near = center_m.is_finite() && center_m.abs().max_element() <= 1.0e8 && turn_rad.is_finite();
+        let Placement { center_m, yaw_rad } = *placement;
+        let place = format!("{},{},{}", center_m.x, center_m.y, yaw_rad.to_degrees());
+        let is_near = center_m.is_finite() && center_m.abs().max_element() <= 1.0e8 && yaw_rad.is_finite();
         ParameterError::check(is_near, "place", &place, "must lie within 100000 km and be finite")?;
-        let is_turnable = self.base == Base::Plane || turn_rad == 0.0;
+        let is_turnable = self.base == Base::Plane || yaw_rad == 0.0;
         ParameterError::check(is_turnable, "place", &place, "only maps on a plane can be turned; give 0 degrees")
     }
 

@@ -20,7 +20,7 @@ pub struct Placement {
     /// an ellipsoid.
     pub center_m: DVec2,
     /// About the vertical, counterclockwise seen from above; on a plane alone.
-    pub turn_rad: f64,
+    pub yaw_rad: f64,
 }
 
 /// The rays of a picture: pixel (x, y) looks from `eye` along `corner` + x `across` + y `down`, which is 1 m long along the

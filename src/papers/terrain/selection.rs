@@ -134,14 +134,14 @@ impl<'a> Viewer<'a> {
     fn pixels(&self, volume: &Volume, error_m: f64) -> f64 {
         let depth_m = volume.along(self.forward).0 - self.forward.dot(self.eye);
         let tangent = self.corner_tangent;
-        let share = match self.ground.curve {
+        let factor = match self.ground.curve {
             None => {
                 let up = self.forward.z.abs();
                 (1.0 - up * up).max(0.0).sqrt() + tangent * up
             }
             Some(_) => tangent.hypot(1.0),
         };
-        let by_depth = if depth_m > 0.0 { share / depth_m } else { f64::INFINITY };
+        let by_depth = if depth_m > 0.0 { factor / depth_m } else { f64::INFINITY };
         // What the picture shows is at least the cosine of its corner as deep as it is far.
         let by_distance = (1.0 + tangent * tangent) / volume.distance(self.eye);
         if error_m > 0.0 { by_depth.min(by_distance) * error_m / self.pixel_m } else { 0.0 }

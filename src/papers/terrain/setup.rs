@@ -7,7 +7,7 @@ use glam::DVec2;
 use serde_json::{Map, Value as Json, json};
 
 use super::axes;
-use super::experiments::figures::shares;
+use super::experiments::figures::fractions;
 use super::experiments::{self, Options, figures};
 use crate::field;
 use crate::gpu::{self, Device, Feature, ShaderLibrary};
@@ -136,7 +136,7 @@ impl Setup {
     fn placements(&self) -> impl Iterator<Item = Placement> {
         let place = |[east, south, degrees]: [f32; 3]| Placement {
             center_m: DVec2::new(east.into(), south.into()),
-            turn_rad: f64::from(degrees).to_radians(),
+            yaw_rad: f64::from(degrees).to_radians(),
         };
         self.maps.iter().enumerate().map(move |(i, _)| place(self.places.get(i).copied().unwrap_or_default()))
     }
@@ -247,12 +247,12 @@ impl Study for Setup {
 
     fn config(&self, scene: &Scene, terrain: &Terrain) -> Map<String, Json> {
         let map = |(source, input): (&HeightMapSource, &MapInput)| {
-            let Placement { center_m, turn_rad } = input.placement;
+            let Placement { center_m, yaw_rad } = input.placement;
             json!({
                 "source": source.to_string(), "samples": [input.map.width(), input.map.height()],
-                "spacing": input.map.spacing_m().to_array(), "voids": input.map.voids(), "void_share": input.map.void_share(),
+                "spacing": input.map.spacing_m().to_array(), "voids": input.map.voids(), "void_share": input.map.void_fraction(),
                 "voids_filled": if self.voids == Voids::Fill { input.map.voids() } else { 0 },
-                "place": [center_m.x, center_m.y, turn_rad.to_degrees()],
+                "place": [center_m.x, center_m.y, yaw_rad.to_degrees()],
             })
         };
         let maps: Vec<Json> = self.maps.iter().zip(&scene.maps).map(map).collect();
@@ -282,7 +282,7 @@ impl Study for Setup {
         for (built, measurement) in measured {
             let frame_ms = median(&measurement.frame_ms).filter(|&ms| ms > 0.0);
             let census = figures::census(machine, &mut built.paper)?;
-            let levels = built.paper.patches().map_or_else(|| census.levels(), |patches| shares(&patches));
+            let levels = built.paper.patches().map_or_else(|| census.levels(), |patches| fractions(&patches));
             // Triangles have no steps.
             let steps = (!built.variant.is_rasterised()).then(|| census.steps_per_ray());
             let results = entries([

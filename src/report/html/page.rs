@@ -92,7 +92,7 @@ fn navigation(contents: &Contents) -> Markup {
 fn section(section: &Section) -> Markup {
     html! {
         h3 { (section.title) }
-        @for (label, words) in &section.commands { (command(label, words)) }
+        @for (label, arguments) in &section.commands { (command(label, arguments)) }
         @for line in &section.lines { p { (line) } }
         @if let Some(table) = &section.table {
             div.wide tabindex="0" role="region" aria-label=(section.title) { table.sortable {
@@ -139,16 +139,17 @@ fn runs(configuration: &Configuration) -> Markup {
 }
 
 /// The command as a shell takes it; a word that none can hold stands as it is.
-fn shell_words(command: &[String]) -> String {
-    let quoted = |word: &String| shlex::try_quote(word).map_or_else(|_| word.clone(), |quoted| quoted.into_owned());
+fn shell_command(command: &[String]) -> String {
+    let quoted =
+        |argument: &String| shlex::try_quote(argument).map_or_else(|_| argument.clone(), |quoted| quoted.into_owned());
     command.iter().map(quoted).collect::<Vec<_>>().join(" ")
 }
 
 /// A command to copy, if there is one, after what it did.
-pub(super) fn command(label: &str, words: &[String]) -> Markup {
+pub(super) fn command(label: &str, arguments: &[String]) -> Markup {
     html! {
-        @if !words.is_empty() {
-            p.command { @if !label.is_empty() { span { (label) } } code { (shell_words(words)) } button.copy type="button" { "Copy" } }
+        @if !arguments.is_empty() {
+            p.command { @if !label.is_empty() { span { (label) } } code { (shell_command(arguments)) } button.copy type="button" { "Copy" } }
         }
     }
 }

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::run::cell;
-use crate::report::profile::{bins, facts, left_out, readings, spread, told_of_counters, told_of_stages};
+use crate::report::profile::{bins, left_out, properties, readings, spread, told_of_counters, told_of_stages};
 use crate::report::record::{CounterReadings, Profile, Run, Summary};
 
 /// Width of the drawing in its own units; the page scales it.
@@ -21,7 +21,7 @@ pub(super) fn profile(run: &Run) -> Markup {
         h4 { "Pass " (profile.pass) " by both shader compilers" }
         @if let Some(pass) = run.passes.iter().find(|pass| pass.name == profile.pass) {
             @if let Some(time) = &pass.gpu_ms { (distribution(&pass.name, time)) }
-            @for fact in facts(pass) { p { (fact) } }
+            @for property in properties(pass) { p { (property) } }
         }
         div.wide tabindex="0" role="region" aria-label="binaries" { table.sortable {
             thead { tr {

@@ -113,7 +113,7 @@ impl HeightMap {
     }
 
     /// Fraction of the samples that the source left void.
-    pub fn void_share(&self) -> f64 {
+    pub fn void_fraction(&self) -> f64 {
         self.voids() as f64 / (f64::from(self.width) * f64::from(self.height))
     }
 
@@ -147,8 +147,8 @@ impl HeightMap {
     /// A line on the samples that the source left void; none where it has them all.
     pub fn void_note(&self) -> Option<String> {
         let voids = self.voids.as_ref()?;
-        let share = 100.0 * self.void_share();
-        Some(format!("{} samples, {share:.1} %, are void: {}", voids.count(), voids.note()))
+        let percent = 100.0 * self.void_fraction();
+        Some(format!("{} samples, {percent:.1} %, are void: {}", voids.count(), voids.note()))
     }
 
     /// The map with another distance between columns (x) and rows (y), metres. It keeps its place on the Earth.

@@ -177,7 +177,7 @@ mod tests {
         let steps = || map(Samples::Steps { values: vec![0, 7, 20, 30, 40, 7], origin_m: 100.0, step_m: 0.5 });
         let float = || map(Samples::Float(vec![100.0, 103.5, 110.0, 115.0, 120.0, 103.5]));
         for of in [&steps as &dyn Fn() -> HeightMap, &float] {
-            assert_eq!((of().voids(), of().void_share()), (2, 2.0 / 6.0));
+            assert_eq!((of().voids(), of().void_fraction()), (2, 2.0 / 6.0));
             assert_eq!(of().with_voids(Voids::Fill, 0.0).unwrap(), of());
             for level_m in [102.0, 80.25, 99.5, 200_000.0] {
                 let level = of().with_voids(Voids::Level(level_m), 0.0).unwrap();

@@ -82,7 +82,7 @@ impl Seen {
     fn body(&self, part: u32) -> Body {
         let part = &self.parts[part as usize];
         Body {
-            turn: DQuat::from_array(part.orientation.to_array().map(f64::from)).normalize(),
+            orientation: DQuat::from_array(part.orientation.to_array().map(f64::from)).normalize(),
             offset: part.offset.as_dvec3(),
             rests: part.rests != 0.0,
             velocity: part.velocity.as_dvec3(),

@@ -246,7 +246,7 @@ fn objects_stand_on_the_ground() {
     let [width, length] = [0, 2].map(|axis| mesh.bounds().diagonal()[axis]);
     for (column, row) in [(32, 32), (20, 40), (50, 11)] {
         let [east_m, south_m] = [column, row].map(|node: u32| ((f64::from(node) - 32.0) * spacing_m) as f32);
-        let placed = Stand { east_m, south_m, turn_deg: 90.0, scale: 25.0 }.place(&mesh, &collider);
+        let placed = Stand { east_m, south_m, yaw_deg: 90.0, scale: 25.0 }.place(&mesh, &collider);
         let bounds = placed.bounds();
         let ground_m = map.height_m(column, row) - map.range_m().0;
         assert!((bounds.min.y - ground_m).abs() < 1e-2, "{column}, {row}: {bounds:?} over {ground_m}");
@@ -256,7 +256,7 @@ fn objects_stand_on_the_ground() {
         assert!((across - 25.0 * length).abs() < 1e-2 && (along - 25.0 * width).abs() < 1e-2, "{bounds:?}");
     }
     // Beside the map there is the base.
-    let beside = Stand { east_m: 40_000.0, south_m: 0.0, turn_deg: 0.0, scale: 1.0 }.place(&mesh, &collider);
+    let beside = Stand { east_m: 40_000.0, south_m: 0.0, yaw_deg: 0.0, scale: 1.0 }.place(&mesh, &collider);
     assert!(beside.bounds().min.y.abs() < 1e-3, "{:?}", beside.bounds());
 }
 

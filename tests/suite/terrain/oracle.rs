@@ -305,7 +305,7 @@ fn a_turned_map() {
         let mut random = Random::new(12);
         let mut trials = Trials::new(device, (48, 36));
         let map = random_map(&mut random, Relief::Waves, (41, 24), 4.0);
-        let placement = Placement { turn_rad: 0.7, ..Placement::default() };
+        let placement = Placement { yaw_rad: 0.7, ..Placement::default() };
         let input = MapInput { map: Arc::new(map), placement };
         let world = World::new("turned", Base::Plane, Interpolation::Bilinear, None, vec![input]);
         trials.draw(&world, &[Stand::Above, Stand::Beside], &mut random);

@@ -59,7 +59,7 @@ fn extreme_cameras_see_what_is_there() {
 #[test]
 fn maps_are_united_and_turned() {
     gpu_test(|device| {
-        let place = |x: f64, z: f64, turn_rad: f64| Placement { center_m: DVec2::new(x, z), turn_rad };
+        let place = |x: f64, z: f64, yaw_rad: f64| Placement { center_m: DVec2::new(x, z), yaw_rad };
         let low = Arc::new(table(30.0));
         let high = Arc::new(table(80.0));
         let maps = [

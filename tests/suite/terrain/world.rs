@@ -17,7 +17,7 @@ pub struct World {
     pub base_level_m: Option<f32>,
     pub maps: Vec<MapInput>,
     /// Of the only map, about the world's origin.
-    turn_rad: f64,
+    yaw_rad: f64,
     /// The same for the oracle.
     pub terrain: reference::Terrain,
 }
@@ -30,8 +30,8 @@ impl World {
         base_level_m: Option<f32>,
         maps: Vec<MapInput>,
     ) -> Self {
-        let turn_rad = maps[0].placement.turn_rad;
-        assert!(turn_rad == 0.0 || (maps.len() == 1 && maps[0].placement.center_m == DVec2::ZERO));
+        let yaw_rad = maps[0].placement.yaw_rad;
+        assert!(yaw_rad == 0.0 || (maps.len() == 1 && maps[0].placement.center_m == DVec2::ZERO));
         let level_m = base_level_m.map(f64::from);
         let grids = maps.iter().map(|input| grid(base, input)).collect();
         let between = match interpolation {
@@ -39,7 +39,7 @@ impl World {
             Interpolation::Bicubic => reference::Interpolation::Bicubic,
         };
         let terrain = reference::Terrain::new(oracle_base(base), between, grids, level_m);
-        World { name: name.into(), base, interpolation, base_level_m, maps, turn_rad, terrain }
+        World { name: name.into(), base, interpolation, base_level_m, maps, yaw_rad, terrain }
     }
 
     /// One map in the middle of the world.
@@ -59,7 +59,7 @@ impl World {
     /// cylinder this is a reflection, which changes no distance.
     pub fn turned(&self, v: DVec3) -> DVec3 {
         match self.base {
-            Base::Plane => DQuat::from_rotation_y(-self.turn_rad) * v,
+            Base::Plane => DQuat::from_rotation_y(-self.yaw_rad) * v,
             Base::Cylinder { .. } => DVec3::new(v.y, v.z, -v.x),
             Base::Ellipsoid { .. } => DVec3::new(v.y, -v.z, -v.x),
         }
@@ -74,7 +74,7 @@ impl World {
     pub fn point(&self, fraction: DVec2, h: f64) -> DVec3 {
         let p = self.terrain.base.point(Place { uv: self.uv(fraction), h });
         let back = match self.base {
-            Base::Plane => DQuat::from_rotation_y(self.turn_rad) * p,
+            Base::Plane => DQuat::from_rotation_y(self.yaw_rad) * p,
             Base::Cylinder { .. } => DVec3::new(-p.z, p.x, p.y),
             Base::Ellipsoid { .. } => DVec3::new(-p.z, p.x, -p.y),
         };

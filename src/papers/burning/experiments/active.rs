@@ -11,7 +11,7 @@ use crate::papers::burning::{Parameters, TICKS_PER_S};
 use crate::report::record::Run;
 
 /// Shares of the vertices that are active.
-const SHARES: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7];
+const FRACTIONS: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7];
 /// Of the vertices, those of the deformed area: all points are of one tick, and differ by how long a vertex burns alone.
 const REACHED: f64 = 0.75;
 
@@ -24,19 +24,19 @@ pub fn setup() -> Setup {
 /// One point a share, of an object whose vertices the boundary reaches at the radii `reaches`.
 pub fn points(setup: &Setup, mut reaches: Vec<f64>) -> Vec<Point<Setup>> {
     reaches.sort_by(f64::total_cmp);
-    let reach_of = |share: f64| {
-        let place = (share * reaches.len() as f64) as usize;
+    let reach_of = |fraction: f64| {
+        let place = (fraction * reaches.len() as f64) as usize;
         reaches.get(place).or(reaches.last()).copied().unwrap_or(0.0)
     };
     let p = &setup.parameters;
     let ticks_to = |radius: f64| radius / f64::from(p.speed_per_s) * TICKS_PER_S;
     let tick = ticks_to(reach_of(REACHED) + 2.0 * f64::from(p.width_of_areas)).ceil() as u32;
-    let of = |share: f64| {
-        let burns = ticks_to(reach_of(REACHED) - reach_of(REACHED - share)).round().max(1.0) as u32;
+    let of = |fraction: f64| {
+        let burns = ticks_to(reach_of(REACHED) - reach_of(REACHED - fraction)).round().max(1.0) as u32;
         let study = at_tick(setup, tick, |p| p.flammability = burns);
-        point(format!("{} %", 100.0 * share), share, study)
+        point(format!("{} %", 100.0 * fraction), fraction, study)
     };
-    SHARES.map(of).into()
+    FRACTIONS.map(of).into()
 }
 
 /// Share of the vertices that were active.
@@ -53,7 +53,7 @@ pub fn table(rows: &[Row]) -> ResultTable {
         let run = &row.run;
         let of = |pass: &str| json!(gpu_ms(run, &[pass]));
         vec![
-            json!(active(run).map(|share| 100.0 * share)),
+            json!(active(run).map(|fraction| 100.0 * fraction)),
             of("heat-boundary"),
             of("internal-deformation"),
             of("block-weights"),
@@ -101,10 +101,10 @@ mod tests {
         let reaches: Vec<f64> = (0..10_000).rev().map(|i| f64::from(i) / 10_000.0).collect();
         let points = points(&setup(), reaches);
         let ticks_to = |radius: f64| radius / 0.2 * 60.0;
-        for (point, share) in points.iter().zip(SHARES) {
+        for (point, fraction) in points.iter().zip(FRACTIONS) {
             let p = &point.study.parameters;
             assert_eq!(f64::from(p.first_frame + 1), ticks_to(0.75 + 0.08).ceil());
-            assert!((f64::from(p.flammability) - ticks_to(share)).abs() <= 0.5, "{share}: {}", p.flammability);
+            assert!((f64::from(p.flammability) - ticks_to(fraction)).abs() <= 0.5, "{fraction}: {}", p.flammability);
         }
     }
 }

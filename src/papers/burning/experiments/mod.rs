@@ -138,7 +138,7 @@ pub fn all() -> Vec<Experiment<Setup>> {
                 ("flammability", "this experiment sweeps it"),
                 ("active-limit", "this experiment has its own boundary"),
             ],
-            run: active_share,
+            run: active_fractions,
         },
     ]
 }
@@ -316,7 +316,7 @@ fn scaling(context: &mut Context<'_>) -> Result<(), Error> {
     publish(context, &machine, swept, String::new(), &plot(svg), &[("rates", table)])
 }
 
-fn active_share(context: &mut Context<'_>) -> Result<(), Error> {
+fn active_fractions(context: &mut Context<'_>) -> Result<(), Error> {
     let setup = context.over(of_the_text(active::setup()))?;
     let mut machine = context.open()?;
     let reaches = reaches(&mut machine, &setup, Variant::Shell)?;

@@ -1,18 +1,18 @@
 //! Table 3.1's constants at their levels, of an object of several materials: wood beside metal.
 
+mod appearances;
 mod conduction;
 mod file;
 mod levels;
-mod looks;
 
 use glam::Vec3;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
+pub use self::appearances::{Appearance, Appearances};
 pub use self::conduction::conduct;
 pub use self::file::load;
 pub use self::levels::{BlockLevels, MaterialLevels};
-pub use self::looks::{Appearance, Looks};
 use super::parameters::{Material, Parameters, Variant};
 
 /// Materials whose constants are known.

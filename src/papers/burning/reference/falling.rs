@@ -50,7 +50,7 @@ pub fn components(count: usize, triangles: &[[usize; 3]], pairs: &[[usize; 2]]) 
 #[derive(Debug, Clone, Copy)]
 pub struct Body {
     /// Rotation since rest, of unit length.
-    pub turn: DQuat,
+    pub orientation: DQuat,
     /// Displacement after the rotation, in diagonals.
     pub offset: DVec3,
     /// It lies still, and takes part in no further tick.
@@ -76,11 +76,11 @@ pub fn moments(places: &[DVec3], weights: &[f64]) -> (DVec3, DMat3) {
 
 impl Body {
     pub fn world(&self, place: DVec3) -> DVec3 {
-        self.turn * place + self.offset
+        self.orientation * place + self.offset
     }
 
     fn inertia(&self, own: DMat3) -> DMat3 {
-        let axes = DMat3::from_quat(self.turn);
+        let axes = DMat3::from_quat(self.orientation);
         axes * own * axes.transpose()
     }
 
@@ -149,9 +149,9 @@ impl Body {
         if stands && next.velocity.length() + extent * next.spin.length() < STILL {
             return (Body { rests: true, velocity: DVec3::ZERO, spin: DVec3::ZERO, ..*self }, margin);
         }
-        next.turn = (DQuat::from_scaled_axis(next.spin * dt) * self.turn).normalize();
+        next.orientation = (DQuat::from_scaled_axis(next.spin * dt) * self.orientation).normalize();
         let at = at + next.velocity * dt;
-        next.offset = at - next.turn * center;
+        next.offset = at - next.orientation * center;
         // Angular momentum goes on.
         let momentum = self.inertia(own) * next.spin;
         let carried = next.inertia(own).inverse() * momentum;
@@ -194,10 +194,10 @@ mod tests {
         let (places, _) = boxed();
         let weights = vec![1.0; places.len()];
         let (center, own) = moments(&places, &weights);
-        let turn = DQuat::from_rotation_z(0.7) * DQuat::from_rotation_x(0.2);
-        let lowest = places.iter().map(|p| (turn * *p).y).fold(f64::INFINITY, f64::min);
+        let orientation = DQuat::from_rotation_z(0.7) * DQuat::from_rotation_x(0.2);
+        let lowest = places.iter().map(|p| (orientation * *p).y).fold(f64::INFINITY, f64::min);
         let offset = DVec3::Y * (0.1 - lowest);
-        let mut body = Body { turn, offset, rests: false, velocity: DVec3::ZERO, spin: DVec3::ZERO };
+        let mut body = Body { orientation, offset, rests: false, velocity: DVec3::ZERO, spin: DVec3::ZERO };
         let mut energy = body.energy(center, own, 0.0);
         for tick in 0..400 {
             body = body.step(&places, &weights, 0.0).0;
@@ -219,7 +219,7 @@ mod tests {
         let (center, own) = moments(&places, &weights);
         let start = DVec3::new(0.0, 50.0, 0.0);
         let spin = DVec3::new(1.0, 2.0, -0.5);
-        let mut body = Body { turn: DQuat::IDENTITY, offset: start, rests: false, velocity: DVec3::X, spin };
+        let mut body = Body { orientation: DQuat::IDENTITY, offset: start, rests: false, velocity: DVec3::X, spin };
         let momentum = body.inertia(own) * spin;
         let from = body.world(center);
         for _ in 0..60 {

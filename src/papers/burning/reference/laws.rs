@@ -98,10 +98,10 @@ fn wax_comes_to_rest_lower_and_above_the_floor() {
     let (mut edges, mut in_range) = (0, 0);
     for t in &scene.model.triangles {
         for (a, b) in refinement::edges(t.vertices) {
-            let way = end.positions[a] - end.positions[b];
-            let is_short = way.length() < 0.95 * longest / scene.constants.chi;
+            let edge = end.positions[a] - end.positions[b];
+            let is_short = edge.length() < 0.95 * longest / scene.constants.chi;
             edges += 1;
-            in_range += u32::from(way.with_y(0.0).length() <= 1.05 * longest && !is_short);
+            in_range += u32::from(edge.with_y(0.0).length() <= 1.05 * longest && !is_short);
         }
     }
     assert!(in_range * 100 >= edges * 95, "{in_range} of {edges}");

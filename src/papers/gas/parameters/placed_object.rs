@@ -30,7 +30,7 @@ pub struct Stand {
     /// Middle of its lower side, metres.
     pub base_m: Vec3,
     /// Turn about the vertical, degrees, from x towards -z.
-    pub turn_deg: f32,
+    pub yaw_deg: f32,
     /// Factor of its own size, above 0.
     pub scale: f32,
     /// Linear RGB, 0 to 1.
@@ -46,13 +46,13 @@ impl PlacedObject {
     /// Those of [`MeshSource::load`]; [`Error::Input`] for coordinates that leave the range of floats.
     pub fn load(&self, crease_deg: f32) -> Result<Object, Error> {
         let mesh = self.source.load_with(&MeshOptions::to_draw(crease_deg))?;
-        let Some(Stand { base_m, turn_deg, scale, color, opacity }) = self.stand else {
+        let Some(Stand { base_m, yaw_deg, scale, color, opacity }) = self.stand else {
             return Ok(Object::new(mesh, GREY));
         };
         let bounds = mesh.bounds();
         let foot = bounds.center().with_y(bounds.min.y);
         let place = Mat4::from_translation(base_m)
-            * Mat4::from_rotation_y(turn_deg.to_radians())
+            * Mat4::from_rotation_y(yaw_deg.to_radians())
             * Mat4::from_scale(Vec3::splat(scale))
             * Mat4::from_translation(-foot);
         let placed = mesh.placed(&place);
@@ -79,8 +79,8 @@ impl Value for PlacedObject {
 
     fn text(&self) -> String {
         let source = self.source.text();
-        self.stand.map_or(source.clone(), |Stand { base_m, turn_deg, scale, color, opacity }| {
-            format!("{source}@{},{turn_deg},{scale},{},{opacity}", components(base_m), components(color))
+        self.stand.map_or(source.clone(), |Stand { base_m, yaw_deg, scale, color, opacity }| {
+            format!("{source}@{},{yaw_deg},{scale},{},{opacity}", components(base_m), components(color))
         })
     }
 
@@ -97,12 +97,12 @@ impl Stand {
     fn of(numbers: &[f32]) -> Result<Self, String> {
         let (place, rest) = numbers.split_at(numbers.len().min(3));
         let &[x, y, z] = place else { return Err(form(numbers)) };
-        let (turn_deg, scale, color, opacity) = match *rest {
+        let (yaw_deg, scale, color, opacity) = match *rest {
             [] => (0.0, 1.0, GREY, 1.0),
-            [turn_deg] => (turn_deg, 1.0, GREY, 1.0),
-            [turn_deg, scale] => (turn_deg, scale, GREY, 1.0),
-            [turn_deg, scale, r, g, b] => (turn_deg, scale, Vec3::new(r, g, b), 1.0),
-            [turn_deg, scale, r, g, b, opacity] => (turn_deg, scale, Vec3::new(r, g, b), opacity),
+            [yaw_deg] => (yaw_deg, 1.0, GREY, 1.0),
+            [yaw_deg, scale] => (yaw_deg, scale, GREY, 1.0),
+            [yaw_deg, scale, r, g, b] => (yaw_deg, scale, Vec3::new(r, g, b), 1.0),
+            [yaw_deg, scale, r, g, b, opacity] => (yaw_deg, scale, Vec3::new(r, g, b), opacity),
             _ => return Err(form(numbers)),
         };
         if scale <= 0.0 {
@@ -111,7 +111,7 @@ impl Stand {
         if !color.to_array().iter().chain([&opacity]).all(|part| (0.0..=1.0).contains(part)) {
             return Err(format!("the colour {} and the opacity {opacity} must be 0 to 1", components(color)));
         }
-        Ok(Stand { base_m: Vec3::new(x, y, z), turn_deg, scale, color, opacity })
+        Ok(Stand { base_m: Vec3::new(x, y, z), yaw_deg, scale, color, opacity })
     }
 }
 

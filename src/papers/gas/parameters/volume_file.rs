@@ -28,7 +28,7 @@ pub struct Stand {
     /// Middle of its box's lower side, metres.
     pub base_m: Vec3,
     /// Turn about the vertical, degrees, from x towards -z.
-    pub turn_deg: f32,
+    pub yaw_deg: f32,
     /// Longest side of its box before it is turned, metres; without, such that it fits into the scene's first volume.
     pub longest_m: Option<f32>,
 }
@@ -104,7 +104,7 @@ impl VolumeFile {
         let room = first.half_extent_m.as_dvec3();
         let longest_m = self.stand.and_then(|stand| stand.longest_m);
         let scale = longest_m.map_or((room / half).min_element(), |side| f64::from(side) / (2.0 * half.max_element()));
-        let turn = DMat3::from_rotation_y(f64::from(self.stand.map_or(0.0, |stand| stand.turn_deg)).to_radians());
+        let turn = DMat3::from_rotation_y(f64::from(self.stand.map_or(0.0, |stand| stand.yaw_deg)).to_radians());
         let grid = Grid { steps_m: plain.steps_m.map(|step| turn * step * scale), ..plain };
         let base = self.stand.map_or(first.center - Vec3::Y * first.half_extent_m.y, |stand| stand.base_m);
         let center = base + Vec3::Y * grid.half_extent_m().y as f32;
@@ -168,9 +168,9 @@ impl Value for VolumeFile {
 
     fn text(&self) -> String {
         let path = self.path.display();
-        let Some(Stand { base_m, turn_deg, longest_m }) = self.stand else { return path.to_string() };
+        let Some(Stand { base_m, yaw_deg, longest_m }) = self.stand else { return path.to_string() };
         let longest = longest_m.map_or(String::new(), |side| format!(",{side}"));
-        format!("{path}@{},{turn_deg}{longest}", components(base_m))
+        format!("{path}@{},{yaw_deg}{longest}", components(base_m))
     }
 
     fn json(&self) -> Json {
@@ -184,15 +184,15 @@ impl Value for VolumeFile {
 
 impl Stand {
     fn of(numbers: &[f32]) -> Result<Self, String> {
-        let (turn_deg, longest_m) = match *numbers {
+        let (yaw_deg, longest_m) = match *numbers {
             [_, _, _] => (0.0, None),
-            [_, _, _, turn_deg] => (turn_deg, None),
-            [_, _, _, turn_deg, side] => (turn_deg, Some(side)),
+            [_, _, _, yaw_deg] => (yaw_deg, None),
+            [_, _, _, yaw_deg, side] => (yaw_deg, Some(side)),
             _ => return Err(format!("a place is X,Y,Z[,DEGREES[,SIDE]]; {} numbers are given", numbers.len())),
         };
         if longest_m.is_some_and(|side| side <= 0.0) {
             return Err("the longest side of the place must be above 0".to_owned());
         }
-        Ok(Stand { base_m: Vec3::new(numbers[0], numbers[1], numbers[2]), turn_deg, longest_m })
+        Ok(Stand { base_m: Vec3::new(numbers[0], numbers[1], numbers[2]), yaw_deg, longest_m })
     }
 }

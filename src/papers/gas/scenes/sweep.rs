@@ -24,17 +24,18 @@ pub fn swept(name: &str, outline: &[Vec2], half_m: f32, rounding_m: f32) -> Mesh
         .collect();
     // From the back to the front: how far each ring has turned from the plane of the outline.
     let quarter = (0..=PARTS).map(|part| part as f32 / PARTS as f32);
-    let turns: Vec<f32> = quarter.clone().map(|t| t - 1.0).chain(quarter).map(|t| t * FRAC_PI_2).collect();
-    for &turn_rad in &turns {
-        let (sin, cos) = turn_rad.sin_cos();
-        let side = if turn_rad > 0.0 || (turn_rad == 0.0 && mesh.positions.len() > PARTS * count) { 1.0 } else { -1.0 };
+    let angles: Vec<f32> = quarter.clone().map(|t| t - 1.0).chain(quarter).map(|t| t * FRAC_PI_2).collect();
+    for &angle_rad in &angles {
+        let (sin, cos) = angle_rad.sin_cos();
+        let side =
+            if angle_rad > 0.0 || (angle_rad == 0.0 && mesh.positions.len() > PARTS * count) { 1.0 } else { -1.0 };
         let z = side * (half_m - rounding_m) + sin * rounding_m;
         for (point, out) in outline.iter().zip(&outwards) {
             mesh.positions.push((*point - *out * (1.0 - cos) * rounding_m).extend(z));
             mesh.normals.push((*out * cos).extend(sin));
         }
     }
-    for ring in 0..turns.len() - 1 {
+    for ring in 0..angles.len() - 1 {
         for i in 0..count {
             let (a, b) = (ring * count + i, ring * count + (i + 1) % count);
             let corners = [a, b, b + count, a, b + count, a + count];
@@ -42,7 +43,7 @@ pub fn swept(name: &str, outline: &[Vec2], half_m: f32, rounding_m: f32) -> Mesh
         }
     }
     let mut flat = Vec::new();
-    let last = (turns.len() - 1) * count;
+    let last = (angles.len() - 1) * count;
     let corners = mesh.positions[last..].iter().map(|p| [f64::from(p.x), f64::from(p.y)]);
     Earcut::new().earcut(corners, &[], &mut flat);
     for triangle in flat.chunks_exact(3) {

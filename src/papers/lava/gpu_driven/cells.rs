@@ -22,9 +22,9 @@ impl Cells {
     /// Of sides no shorter than `least_m`, and at most so many, of a space in metres.
     pub fn of_side(space_m: Vec3, least_m: f64, most: u32, particles: u32) -> Self {
         /// Over the side, so that rounding adds no fourth cell to three.
-        const ROOM: f64 = 1.001;
+        const MARGIN: f64 = 1.001;
         let space = space_m.as_dvec3();
-        let mut side_m = ROOM * least_m;
+        let mut side_m = MARGIN * least_m;
         loop {
             let counts = (space / side_m).floor().max(DVec3::ONE);
             if counts.x * counts.y * counts.z <= f64::from(most) {

@@ -43,12 +43,12 @@ fn integral(low: f64, high: f64, of: impl Fn(f64) -> f64) -> f64 {
 
 impl Fluid {
     fn apart(&self, a: DVec3, b: DVec3) -> DVec3 {
-        let mut way = a - b;
+        let mut offset = a - b;
         if self.is_periodic {
-            way.x -= self.space.x * (way.x / self.space.x).round();
-            way.z -= self.space.z * (way.z / self.space.z).round();
+            offset.x -= self.space.x * (offset.x / self.space.x).round();
+            offset.z -= self.space.z * (offset.z / self.space.z).round();
         }
-        way
+        offset
     }
 
     /// Factors of a particle's volume with which a cubic lattice has the density 1 and the Laplacian of a parabola.
@@ -109,11 +109,11 @@ impl Fluid {
         let (volume, _) = self.volumes();
         let (mut density, mut own, mut others) = (0.0, DVec3::ZERO, 0.0);
         for (i, &other) in places.iter().enumerate() {
-            let way = self.apart(places[at], other);
-            let distance = way.length();
+            let offset = self.apart(places[at], other);
+            let distance = offset.length();
             density += volume * wendland(distance, self.support);
             if i != at && distance > 0.0 {
-                let gradient = volume * wendland_slope(distance, self.support) * way / distance;
+                let gradient = volume * wendland_slope(distance, self.support) * offset / distance;
                 own += gradient;
                 others += gradient.length_squared();
             }
@@ -131,10 +131,10 @@ impl Fluid {
         let (volume, _) = self.volumes();
         let mut push = DVec3::ZERO;
         for (i, &other) in places.iter().enumerate() {
-            let way = self.apart(places[at], other);
-            if i != at && way.length() > 0.0 {
-                let slope = wendland_slope(way.length(), self.support);
-                push += (factors[at] + factors[i]) * volume * slope * way.normalize();
+            let offset = self.apart(places[at], other);
+            if i != at && offset.length() > 0.0 {
+                let slope = wendland_slope(offset.length(), self.support);
+                push += (factors[at] + factors[i]) * volume * slope * offset.normalize();
             }
         }
         for (distance, normal) in self.walls(places[at]) {

@@ -256,12 +256,12 @@ pub fn estimate(parameters: &Parameters) -> Estimate {
     let cells = scale.cells(parameters, parameters.particles);
     let sides = parameters.space_m.as_dvec3() / DVec3::from(cells.counts.map(f64::from));
     let looked_at = (27.0 * (sides / scale.spacing_m).element_product()).min(particles);
-    let turns = chebyshev::needed(scale.stiffness) + 2.0 * f64::from(parameters.flow.corrections);
+    let iterations = chebyshev::needed(scale.stiffness) + 2.0 * f64::from(parameters.flow.corrections);
     Estimate {
         bytes: vec![("particles", 88.0 * particles + sort::bytes(&cells))],
         buffers: vec![("particles", 16.0 * particles)],
-        passes: Some(("corrections", turns as u64 + 24)),
-        invocations: vec![("particles", particles * looked_at * turns)],
+        passes: Some(("corrections", iterations as u64 + 24)),
+        invocations: vec![("particles", particles * looked_at * iterations)],
         ..Estimate::default()
     }
 }

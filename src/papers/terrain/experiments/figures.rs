@@ -24,7 +24,7 @@ pub fn draw(machine: &mut Machine, setup: &Setup, variant: Variant) -> Result<Rg
 }
 
 /// The share of each in their sum, up to the last that has any.
-pub fn shares(counts: &[u64]) -> Vec<f64> {
+pub fn fractions(counts: &[u64]) -> Vec<f64> {
     let sum = counts.iter().sum::<u64>() as f64;
     let used = counts.iter().rposition(|count| *count > 0).map_or(0, |last| last + 1);
     counts[..used].iter().map(|count| *count as f64 / sum).collect()
@@ -51,7 +51,7 @@ impl Census {
             counts.resize(counts.len().max(level + 1), 0);
             counts[level] += 1;
         }
-        shares(&counts)
+        fractions(&counts)
     }
 
     /// Mean number of segments that a ray of the picture tried; rays that met no map count none.

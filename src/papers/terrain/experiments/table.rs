@@ -43,15 +43,15 @@ fn growth(run: &Run, whose: &str) -> Option<f64> {
 }
 
 /// The share of each level in what a run read.
-fn shares_of(run: &Run) -> Option<Vec<f64>> {
+fn fractions_of(run: &Run) -> Option<Vec<f64>> {
     run.results.get("levels")?.as_array()?.iter().map(Value::as_f64).collect()
 }
 
 /// The levels that a run read, from the data, 0, on, with their shares; of patches their number.
 fn levels(run: &Run) -> String {
-    let shares = shares_of(run).unwrap_or_default();
-    let used = shares.iter().enumerate().filter(|(_, share)| **share > 0.0);
-    let used: Vec<String> = used.map(|(level, share)| format!("{level}: {:.0} %", 100.0 * share)).collect();
+    let fractions = fractions_of(run).unwrap_or_default();
+    let used = fractions.iter().enumerate().filter(|(_, fraction)| **fraction > 0.0);
+    let used: Vec<String> = used.map(|(level, fraction)| format!("{level}: {:.0} %", 100.0 * fraction)).collect();
     match run.results.get("patches").and_then(Value::as_u64) {
         Some(patches) => format!("{} of {patches} patches", used.join(", ")),
         None => used.join(", "),
@@ -227,7 +227,7 @@ impl Outcome {
                 number(paper, 3),
                 number(figure("mrays_per_s"), 2),
                 number(figure("steps_per_ray"), 1),
-                figure("hit_share").map_or(String::new(), |share| format!("{:.1} %", share * 100.0)),
+                figure("hit_share").map_or(String::new(), |fraction| format!("{:.1} %", fraction * 100.0)),
                 levels(run),
                 number(device_mib, 1),
                 if run.frame_ms.is_none() { run.warnings.last().cloned().unwrap_or_default() } else { String::new() },
@@ -269,7 +269,7 @@ impl Outcome {
                 }));
             }
         }
-        let is_finest = |row: &&Row| matches!(shares_of(&row.run).as_deref(), Some([_]));
+        let is_finest = |row: &&Row| matches!(fractions_of(&row.run).as_deref(), Some([_]));
         let finest = of(Variant::GpuCompute).filter(|row| self.axis == Axis::Map && is_finest(row));
         let finest = ResultTable {
             title: "Where rays read the data alone, so that the level of detail does nothing",

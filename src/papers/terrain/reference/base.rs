@@ -43,7 +43,7 @@ pub struct Frame {
 
 impl Base {
     /// True where u is an angle, equal to itself after a full turn.
-    pub fn turns(&self) -> bool {
+    pub fn is_periodic(&self) -> bool {
         !matches!(self, Base::Plane)
     }
 

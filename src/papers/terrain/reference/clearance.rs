@@ -90,7 +90,7 @@ impl Neighbour<'_> {
             if axis == 0 && self.map.closes {
                 return f64::NEG_INFINITY;
             }
-            if axis == 0 && terrain.base.turns() {
+            if axis == 0 && terrain.base.is_periodic() {
                 from_middle -= TAU * (from_middle / TAU).round();
                 if half * 2.0 > TAU * (1.0 - 1e-9) {
                     return f64::NEG_INFINITY;

@@ -134,7 +134,7 @@ mod tests {
         {
             let base = if number % 4 < 2 { Base::Plane } else { cylinder };
             let map = random_grid([6, 5], number as u64, 2.0);
-            let map = if base.turns() { Grid { spacing: [0.2, 1.0], ..map } } else { map };
+            let map = if base.is_periodic() { Grid { spacing: [0.2, 1.0], ..map } } else { map };
             let terrain = Terrain::new(base, interpolation, vec![map.clone()], Some(-1.0));
             let uv = [dice.between(0.5, 4.5) * map.spacing[0], dice.between(0.5, 3.5)];
             let center = base.point(Place { uv, h: dice.between(3.5, 4.5) });

@@ -54,7 +54,7 @@ impl Path<'_> {
         let local = [0, 1].map(|axis| {
             let corner = self.grid.origin[axis] + self.grid.spacing[axis] * cell[axis] as f64;
             let mut distance = place.uv[axis] - corner;
-            if axis == 0 && self.base.turns() {
+            if axis == 0 && self.base.is_periodic() {
                 let from_middle = distance - self.grid.spacing[0] / 2.0;
                 distance -= TAU * (from_middle / TAU).round();
             }
@@ -114,7 +114,7 @@ impl Path<'_> {
 /// The place of a point, its angle in the turn that starts at the map's first column.
 pub(super) fn place_over(base: Base, grid: &Grid, point: DVec3) -> Place {
     let mut place = base.place(point);
-    if base.turns() {
+    if base.is_periodic() {
         place.uv[0] = grid.origin[0] + (place.uv[0] - grid.origin[0]).rem_euclid(TAU);
     }
     place

@@ -203,7 +203,7 @@ impl Terrain {
         let axes = self.base.frame(place).axes;
         let side = |axis: usize, edge: f64, outward: f64| {
             let mut distance = place.uv[axis] - edge;
-            if axis == 0 && self.base.turns() {
+            if axis == 0 && self.base.is_periodic() {
                 distance -= TAU * (distance / TAU).round();
             }
             (distance.abs() / map.spacing[axis], axes[axis] * outward)

@@ -1,4 +1,4 @@
-//! The words of a command line of `ab`: which are its own, and which the sides may not have.
+//! The arguments of `ab`: its own, and those that the sides may not have.
 
 use std::ffi::{OsStr, OsString};
 
@@ -50,25 +50,25 @@ impl Own {
     }
 }
 
-/// Arguments of the program with `ab`'s own options before the paper, behind which every word is one of both sides. An
+/// Arguments of the program with `ab`'s own options before the paper, behind which every argument is one of both sides. An
 /// option behind a paper that has one of that name is the paper's.
 pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> Vec<OsString> {
     if arguments.get(1).is_none_or(|verb| verb != "ab") {
         return arguments;
     }
     let own = Own::all();
-    let mut words = arguments.into_iter();
-    let mut first: Vec<OsString> = words.by_ref().take(2).collect();
-    let mut words = words.peekable();
+    let mut rest = arguments.into_iter();
+    let mut first: Vec<OsString> = rest.by_ref().take(2).collect();
+    let mut rest = rest.peekable();
     let (mut common, mut of_paper) = (Vec::new(), None);
-    let is_paper = |word: &OsString| papers.iter().any(|paper| word == paper.name);
+    let is_paper = |argument: &OsString| papers.iter().any(|paper| argument == paper.name);
     let mut ends_without_value = false;
-    while let Some(word) = words.next() {
-        let text = word.to_string_lossy().into_owned();
+    while let Some(argument) = rest.next() {
+        let text = argument.to_string_lossy().into_owned();
         let name = option_name(&text);
         if name == "--" {
-            common.push(word);
-            common.extend(words.by_ref());
+            common.push(argument);
+            common.extend(rest.by_ref());
             break;
         }
         let is_paper_s = |name: &str| of_paper.iter().flatten().any(|known: &String| *known == name);
@@ -78,16 +78,16 @@ pub(in crate::cli) fn reordered(arguments: Vec<OsString>, papers: &[Paper]) -> V
                 let is_value = |next: &OsString| {
                     option.needs_value || next == "-" || !is_dashed(next) && (of_paper.is_some() || !is_paper(next))
                 };
-                let value = if option.takes_value && !has_value { words.next_if(is_value) } else { None };
+                let value = if option.takes_value && !has_value { rest.next_if(is_value) } else { None };
                 ends_without_value = option.takes_value && !has_value && value.is_none();
-                first.push(word);
+                first.push(argument);
                 first.extend(value);
             }
             None => {
-                if of_paper.is_none() && !is_dashed(&word) {
+                if of_paper.is_none() && !is_dashed(&argument) {
                     of_paper = Some(bench_options(papers, &text));
                 }
-                common.push(word);
+                common.push(argument);
             }
         }
     }
@@ -108,22 +108,22 @@ fn bench_options(papers: &[Paper], name: &str) -> Vec<String> {
     long.filter(|long| !OUTPUT.contains(long)).map(|long| format!("--{long}")).collect()
 }
 
-fn is_dashed(word: &OsStr) -> bool {
-    word.to_string_lossy().starts_with('-')
+fn is_dashed(argument: &OsStr) -> bool {
+    argument.to_string_lossy().starts_with('-')
 }
 
-/// A word without the value that it may hold.
-fn option_name(word: &str) -> &str {
-    word.split('=').next().unwrap_or_default()
+/// An argument without the value that it may hold.
+fn option_name(argument: &str) -> &str {
+    argument.split('=').next().unwrap_or_default()
 }
 
 impl AbArgs {
     /// Refuses options with which blocks would be none, a file would be written twice, or that would do nothing.
-    pub fn check_words(&self) -> Result<(), Failure> {
-        let common: Vec<String> = self.common.iter().map(|word| word.to_string_lossy().into_owned()).collect();
-        let has = |words: &[String], option: &str| words.iter().any(|word| option_name(word) == option);
+    pub fn check_arguments(&self) -> Result<(), Failure> {
+        let common: Vec<String> = self.common.iter().map(|argument| argument.to_string_lossy().into_owned()).collect();
+        let has = |arguments: &[String], option: &str| arguments.iter().any(|argument| option_name(argument) == option);
         let sides = [("--a", &self.a.0), ("--b", &self.b.0)];
-        let anywhere = |option: &str| has(&common, option) || sides.iter().any(|(_, words)| has(words, option));
+        let anywhere = |option: &str| has(&common, option) || sides.iter().any(|(_, own)| has(own, option));
         let refused = |message: String| Err(Failure::Input(format!("ab: {message}")));
         if let Some(option) = ["--processes", "--process"].into_iter().find(|option| anywhere(option)) {
             return refused(format!(
@@ -136,8 +136,8 @@ impl AbArgs {
                     .to_owned(),
             );
         }
-        for (side, words) in sides {
-            if let Some(option) = ["--json", "--out", "--quiet", "-q"].into_iter().find(|option| has(words, option)) {
+        for (side, own) in sides {
+            if let Some(option) = ["--json", "--out", "--quiet", "-q"].into_iter().find(|option| has(own, option)) {
                 return refused(format!("{option} in {side}: the output is ab's own; give {option} outside of {side}"));
             }
         }
@@ -184,9 +184,9 @@ mod tests {
         ];
         let papers = listed();
         for (typed, expected) in cases {
-            let words = reordered(typed.split(' ').map(OsString::from).collect(), &papers);
-            let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).collect();
-            assert_eq!(words.join(" "), expected, "{typed}");
+            let arguments = reordered(typed.split(' ').map(OsString::from).collect(), &papers);
+            let arguments: Vec<_> = arguments.iter().map(|argument| argument.to_string_lossy()).collect();
+            assert_eq!(arguments.join(" "), expected, "{typed}");
         }
     }
 }

@@ -43,14 +43,14 @@ impl Appearance {
 }
 
 /// The buffers of an object of several materials.
-pub struct Looks {
+pub struct Appearances {
     /// [`Appearance`] of each material.
     pub substances: Arc<Buffer>,
     /// uint\[C\] for C draw vertices: their materials.
     pub substance_of: Arc<Buffer>,
 }
 
-impl Looks {
+impl Appearances {
     /// Uploads them; none for an object of one material.
     ///
     /// # Errors
@@ -63,12 +63,12 @@ impl Looks {
         model: &Model,
     ) -> Result<Option<Self>, Error> {
         let Some(materials) = &parameters.materials else { return Ok(None) };
-        let looks: Vec<Appearance> = materials.all(variant, parameters).iter().map(Appearance::of).collect();
+        let appearances: Vec<Appearance> = materials.all(variant, parameters).iter().map(Appearance::of).collect();
         let list = |what: &str, bytes: &[u8]| {
             upload(shaders.device(), &format!("{label}/{what}"), vk::BufferUsageFlags::STORAGE_BUFFER, bytes)
         };
-        Ok(Some(Looks {
-            substances: list("substances", bytemuck::cast_slice(&looks))?,
+        Ok(Some(Appearances {
+            substances: list("substances", bytemuck::cast_slice(&appearances))?,
             substance_of: list("substance-of", bytemuck::cast_slice(&model.lattice.substances))?,
         }))
     }
