@@ -1,4 +1,4 @@
-//! How near passes that do one thing come to the device's limits: copies, fills, blends, multiply-adds, vertices, triangles
+//! Nearness to the device's limits of passes that do one thing: copies, fills, blends, multiply-adds, vertices, triangles
 //! and empty invocations, of other sizes than those that the limits were measured with. Each is to read 90 to 105 %, or the
 //! benchmark fails.
 //! A pass and the limits behind its floor are measured in turn, round after round; a share is the median of the rounds.

@@ -1,5 +1,6 @@
-//! How long the CPU takes for what the papers are given: loading the shipped meshes and height maps, tessellating,
-//! computing normals, ordering for the vertex cache (and what a device's vertex stage runs before and after), sampling the volcano, building a pyramid of maxima, clustering particles.
+//! CPU time of the papers' inputs: loading the shipped meshes and height maps, tessellating, computing normals, ordering
+//! for the vertex cache (and what a device's vertex stage runs before and after), sampling the volcano, building a pyramid
+//! of maxima, clustering particles.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use fumarole::gpu::Mode;

@@ -1,4 +1,4 @@
-//! What the CPU does for a frame of every paper and variant: recording the passes, submitting them, waiting. The scenes are
+//! CPU time of a frame of every paper and variant: recording the passes, submitting them, waiting. The scenes are
 //! so small that the device has next to nothing to do.
 
 use std::ffi::OsStr;

@@ -76,8 +76,8 @@ fn is_settled(wrong: u32, measured: u32, pairs: u32) -> bool {
     wrong > allowed(pairs) || wrong + (pairs - measured) <= allowed(pairs)
 }
 
-/// How many steps slow the pass down as much as is aimed at: its time grows linearly with them, so that many more, which
-/// stand out of any noise, tell what one takes.
+/// Number of steps that slow the pass down as much as is aimed at: its time grows linearly with them, so that many more,
+/// which stand out of any noise, tell what one takes.
 fn calibrate(folder: &Path, changed: &Path) -> Result<u32> {
     const MANY: u32 = 10_000;
     slow_down(changed, MANY)?;

@@ -1,4 +1,4 @@
-//! How often the verdicts of `compare` and `ab` are right: seeded trials of 12 quantities each, a frame and 11 passes,
+//! Rates of right verdicts of `compare` and `ab`: seeded trials of 12 quantities each, a frame and 11 passes,
 //! on frame times that are autocorrelated and heavy-tailed. Prints counts, and fails where a bound is missed; takes the
 //! number of trials as its argument.
 

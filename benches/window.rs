@@ -69,7 +69,7 @@ fn main() -> ExitCode {
     if missed.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// What is said of a bar that is missed.
+/// Message about a bar that is missed.
 fn held(is_held: bool, bar: String) -> Option<String> {
     (!is_held).then_some(bar)
 }
@@ -102,12 +102,12 @@ fn place(window: &Window<'_>, text: &str) -> Option<[i16; 4]> {
     })
 }
 
-/// What the window says of its own drawing, in milliseconds.
+/// Time of the window's own drawing by its own text, milliseconds.
 fn own_ms(window: &Window<'_>) -> Option<f64> {
     words(window).iter().find_map(|text| text.strip_prefix("window ")?.strip_suffix(" ms")?.parse().ok())
 }
 
-/// What it says of the last frame, as "frame 3 in 21.4 ms".
+/// The window's text on the last frame, as "frame 3 in 21.4 ms".
 fn frame(window: &Window<'_>) -> String {
     words(window).into_iter().find(|text| text.starts_with("frame ") && text.ends_with(" ms")).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! What a debugger would show: labels round the commands of passes, names of pipelines.
+//! Labels round the commands of passes, and names of pipelines, as a debugger would show them.
 
 use std::collections::BTreeMap;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -27,7 +27,7 @@ struct Seen {
 static SEEN: Mutex<Seen> =
     Mutex::new(Seen { labels: Vec::new(), pipelines: Vec::new(), open: BTreeMap::new(), is_unpaired: false });
 
-/// What stands for RenderDoc, where it was loaded before the program.
+/// The library that stands for RenderDoc, where it was loaded before the program.
 static RENDERDOC: LazyLock<Option<unsafe extern "C" fn(*const c_char)>> = LazyLock::new(|| {
     // SAFETY: the address of a function of that type, in a library that is never unloaded.
     unsafe { Library::this().get(b"test_renderdoc_label\0").ok().map(|found| *found) }

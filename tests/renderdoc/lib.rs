@@ -30,7 +30,7 @@ unsafe extern "C" fn start(_: RENDERDOC_DevicePointer, _: RENDERDOC_WindowHandle
     STATE.lock().unwrap().is_capturing = true;
 }
 
-/// What the tests' layer calls for each label.
+/// Called by the tests' layer for each label.
 ///
 /// # Safety
 /// `label` is a text that ends in a zero.

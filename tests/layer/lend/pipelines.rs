@@ -1,4 +1,4 @@
-//! What the driver's compiler made of pipelines (`VK_KHR_pipeline_executable_properties`): an executable a stage.
+//! Pipelines as a driver's compiler made them (`VK_KHR_pipeline_executable_properties`): an executable a stage.
 
 use ash::vk;
 

@@ -22,7 +22,7 @@ impl Before {
     }
 }
 
-/// Which elements were visited.
+/// True for each element that was visited.
 fn visited(fire: &Fire, chunks: &ChunkBuffers, count: usize) -> Vec<bool> {
     let (order, list): (Vec<u32>, Vec<u32>) = (fire.read(&chunks.order), fire.read(&chunks.changed.visited));
     let listed = &list[1..=list[0] as usize];

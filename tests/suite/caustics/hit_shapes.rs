@@ -172,8 +172,8 @@ fn thin_wall(thickness_m: f32) -> ReceiverInput {
     sunk(&mesh)
 }
 
-/// What is thin is not stepped over, however fine the map: behind the wall it is dark, but where a way passes the corner between two
-/// texels, and beside it as without it.
+/// A thin wall is not stepped over, however fine the map: behind it it is dark, but where a way passes the corner between
+/// two texels, and beside it as without it.
 #[test]
 fn a_wall_as_thin_as_texels_shades_a_large_map() {
     gpu_test(|device| {

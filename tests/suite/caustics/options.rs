@@ -1,4 +1,4 @@
-//! What departs from the thesis's reading by an option: several samples a texel and intensities of vertices against
+//! Departures from the thesis's reading by options: several samples a texel and intensities of vertices against
 //! photons, shadows against rays, Fresnel's loss against its equations.
 
 use std::path::Path;

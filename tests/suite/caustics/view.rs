@@ -133,7 +133,7 @@ fn an_outline_has_steps_between() {
     });
 }
 
-/// What stands in its own shadow has ambient light alone, but for what lies within a texel or two of light.
+/// Surfaces in their own shadow have ambient light alone, but for those within a texel or two of light.
 #[test]
 fn no_light_leaks_into_shadow() {
     gpu_test(|device| {

@@ -1,4 +1,5 @@
-//! What a configuration warns of: options that a variant does not heed, and light that point sampling does not show as it is.
+//! Warnings of a configuration: options that a variant does not heed, and light that point sampling does not show as it
+//! is.
 
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -21,7 +22,8 @@ fn warnings(device: &Arc<Device>, variant: Variant, parameters: &Parameters, rec
     Caustics::new(&shaders, "test", variant, parameters, from_ref(receiver)).unwrap().warnings()
 }
 
-/// Where photons show it on the pool's floor, and not for what the same water does not fold the light on its way to.
+/// Folded light is warned of where photons show it on the pool's floor, and not for objects on the way to which the same water
+/// does not fold it.
 #[test]
 fn folded_light_is_warned_of_where_points_are_sampled() {
     gpu_test(|device| {
@@ -83,7 +85,7 @@ fn options_that_a_variant_does_not_heed_are_named() {
     });
 }
 
-/// What the thesis measured has none of the options that depart from it.
+/// The thesis's own configurations have none of the options that depart from it.
 #[test]
 fn the_preset_of_table_5_1_is_the_thesiss() {
     let preset = Setup::presets().into_iter().find(|preset| preset.name == "5-1").unwrap();

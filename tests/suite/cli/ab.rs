@@ -120,7 +120,7 @@ fn a_side_may_have_another_program_and_changed_shaders() {
     assert!(whats.contains(&"build.executable_sha256"), "{whats:?}");
 }
 
-/// What a side sets takes the place of what both have.
+/// An option of one side takes the place of the common one.
 #[test]
 fn a_side_s_own_value_comes_after_the_common_one() {
     let out = folder();

@@ -1,4 +1,4 @@
-//! What a second program makes of the dumps of `burning` alone: volumes and topology.
+//! Dumps of `burning` as a second program reads them: volumes and topology.
 
 use std::collections::HashMap;
 use std::fs;

@@ -311,7 +311,7 @@ fn odd_records_are_compared_or_refused() {
     compare(&a, &b).run().refused(2, &["b.json", "no JSON"]);
 }
 
-/// What the first program of the schema did not write is absent, and no reason to refuse.
+/// Fields that the first program of the schema did not write are absent, and no reason to refuse.
 #[test]
 fn older_records_are_read() {
     let out = folder();

@@ -1,4 +1,4 @@
-//! What an experiment says beside its runs: its tables, on the page too, and every warning once.
+//! Output of an experiment beside its runs: its tables, on the page too, and every warning once.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a refusal may cost: a second and one more for each 100 MB of the file, 64 MiB and 16 times the file's size.
+//! Bounds of a refusal's cost: a second and one more for each 100 MB of the file, 64 MiB and 16 times the file's size.
 
 use std::fmt::Write;
 use std::fs;

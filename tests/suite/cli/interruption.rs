@@ -11,7 +11,7 @@ use super::program::{Ended, Program, Running, assert_schema, caustics, entries, 
 /// Far above what a frame of the tiny scene takes.
 const SOON: Duration = Duration::from_secs(30);
 
-/// Whether a process handles SIGINT by now; before that, the signal just ends it.
+/// True once a process handles SIGINT; before that, the signal just ends it.
 fn handles_interrupts(process: u32) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).map(str::trim);
@@ -42,7 +42,7 @@ fn wait_until(running: &mut Running, ready: impl Fn(u32) -> bool) {
     }
 }
 
-/// What ends a program: Ctrl-C, a batch system, a terminal that is closed.
+/// Signals that end a program: Ctrl-C, a batch system, a terminal that is closed.
 const SIGNALS: [&str; 3] = ["-INT", "-TERM", "-HUP"];
 
 /// Starts a program, presses Ctrl-C when it is `ready` and a while later, and returns how it ended. The while grows as

@@ -15,7 +15,7 @@ fn manifest() -> Value {
     serde_json::from_str(&source("dist/kubernetes/film.json")).unwrap()
 }
 
-/// What the schema says against a manifest.
+/// The schema's objections to a manifest.
 fn wrong(manifest: &Value) -> Vec<String> {
     let schema: Value = serde_json::from_str(&source("tests/data/kubernetes-job.json")).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();

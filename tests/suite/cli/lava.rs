@@ -72,7 +72,7 @@ fn a_density_that_accepts_nothing_is_a_warning_with_the_range() {
     assert!(warnings.contains("no grid point was accepted") && warnings.contains("densities are"), "{warnings}");
 }
 
-/// What a record has as a warning, a picture has on standard error.
+/// The warnings of a record stand on standard error of a picture.
 #[test]
 fn a_picture_of_nothing_is_a_warning_too() {
     let out = folder();

@@ -1,4 +1,4 @@
-//! Where results go: destinations are checked before the long work, and a failed run harms no older file.
+//! Destinations of results are checked before the long work, and a failed run harms no older file.
 
 use std::fs;
 use std::path::Path;

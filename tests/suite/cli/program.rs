@@ -1,4 +1,4 @@
-//! How the tests run the programs and look at what comes back.
+//! The programs as the tests run them, and their output.
 
 use std::env;
 use std::ffi::OsStr;
@@ -194,7 +194,7 @@ impl Running {
     }
 }
 
-/// How a program ended.
+/// End of a program.
 pub struct Ended {
     text: String,
     pub status: ExitStatus,

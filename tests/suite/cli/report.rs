@@ -59,7 +59,7 @@ fn a_folder_becomes_a_page_with_pictures_plots_and_numbers() {
     assert!(!fs::read_to_string(&page).unwrap().contains("data:image/png"));
 }
 
-/// What the console prints of an experiment without runs stands on the page, with the document's own digits.
+/// The console's tables of an experiment without runs stand on the page, with the document's own digits.
 #[test]
 fn tables_of_experiments_stand_on_the_page_as_they_are_printed() {
     let out = folder();
@@ -166,7 +166,7 @@ fn plots_and_kept_comparisons_have_their_commands() {
     assert!(verdicts.contains("compare gas.json gas-1.json --json kept.json</code>"), "{verdicts}");
 }
 
-/// What is ours and is not shown is named once; what is not ours is nobody's business.
+/// Documents of ours that are not shown are named once; others are nobody's business.
 #[test]
 fn nothing_of_ours_is_left_out_in_silence() {
     let out = folder();

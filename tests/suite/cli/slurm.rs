@@ -27,7 +27,7 @@ fn succeeded(output: Output) -> String {
     out
 }
 
-/// What runs a command as root: slurmd starts tasks of any user.
+/// Command that runs another as root: slurmd starts tasks of any user.
 fn as_root() -> Command {
     let is_root = fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0);
     let mut command = Command::new(if is_root { "env" } else { "sudo" });

@@ -10,7 +10,7 @@ fn bench(folder: &Path) -> Program {
     caustics("bench").inside(folder).tiny().args(ONCE)
 }
 
-/// What `command` shows on a terminal, and its exit code.
+/// Output of `command` on a terminal, and its exit code.
 fn on_terminal(command: &str, folder: &Path, variables: &[(&str, &str)]) -> (String, Option<i32>) {
     let mut script = Command::new("script");
     script.args(["--quiet", "--return", "--command", command, "/dev/null"]).current_dir(folder);

@@ -229,7 +229,7 @@ fn children(process: u32) -> Vec<u32> {
     listed.split_whitespace().map(|id| id.parse().unwrap()).collect()
 }
 
-/// Whether the process was there to be sent it.
+/// True when the process was there to be sent it.
 fn send(name: &str, process: u32) -> bool {
     Command::new("kill").args([name, &process.to_string()]).stderr(Stdio::null()).status().unwrap().success()
 }

@@ -1,4 +1,4 @@
-//! What lies over the land, through the binary.
+//! Drapes over the land, through the binary.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,4 +1,4 @@
-//! What the machine lacks: exit code 3; and the validation layer.
+//! Exit code 3 where the machine lacks something; and the validation layer.
 
 use super::program::{ONCE, Program, caustics, device, file, folder, fumarole};
 

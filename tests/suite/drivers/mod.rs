@@ -85,7 +85,7 @@ impl Paper {
 }
 
 /// # Panics
-/// Where the library is not installed: a test never passes for want of it.
+/// The library is not installed: a test never passes for want of it.
 pub fn library(name: &str) -> PathBuf {
     let folders = env::var(FOLDER_VARIABLE).into_iter().chain(FOLDERS.map(str::to_owned));
     let mut paths = folders.map(|folder| Path::new(&folder).join(name));

@@ -14,7 +14,7 @@ use crate::cli::program::{ONCE, assert_schema, entries, folder, read_json};
 
 const FILES: &str = "--quiet --json a.json --csv a.csv --trace a.trace --image a.png";
 
-/// What a bench of caustics leaves, a picture of each variant among it.
+/// Files of a bench of caustics, a picture of each variant among them.
 const WRITTEN: [&str; 8] =
     ["a-culled.png", "a-hit.png", "a-level-map-smart.png", "a-volumetric.png", "a.csv", "a.json", "a.png", "a.trace"];
 
@@ -76,7 +76,7 @@ struct Disk {
 }
 
 impl Disk {
-    /// What `mount` said, where it made none.
+    /// The message of `mount`, where it made none.
     fn mount(options: &str) -> Result<Self, String> {
         let folder = folder();
         let mut mount = Command::new("mount");

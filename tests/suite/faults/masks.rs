@@ -27,7 +27,7 @@ fn features() -> Vec<String> {
     listed[0]["features"].as_object().unwrap().keys().cloned().collect()
 }
 
-/// What a record must say, where a paper goes on without a feature.
+/// Warning that a record must have, where a paper goes on without a feature.
 fn said(paper: &str, feature: &str) -> Option<&'static str> {
     match (paper, feature) {
         ("lava" | "gas", "geometry-shader") => Some("no geometry stage"),

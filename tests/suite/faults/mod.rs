@@ -59,7 +59,7 @@ const VALIDATION: &str = "VK_LAYER_KHRONOS_validation";
 /// The library of `tests/layer`, which `cargo test` builds beside the programs.
 ///
 /// # Panics
-/// Where it is not built.
+/// It is not built.
 fn library() -> PathBuf {
     let programs = Path::new(env!("CARGO_BIN_EXE_fumarole")).parent().unwrap();
     let library = programs.join("examples/libtest_layer.so");
@@ -142,7 +142,7 @@ pub struct Report {
     pub failed: Option<String>,
     /// Kinds and numbers of objects.
     pub alive: Vec<String>,
-    /// What a played extension forbids.
+    /// A call that a played extension forbids.
     pub misuses: Vec<String>,
     /// Frames whose end was told by `VK_EXT_frame_boundary`.
     pub frames: u64,

@@ -1,4 +1,4 @@
-//! What is estimated of a configuration before anything is allocated, against what is allocated then.
+//! Estimates of a configuration before anything is allocated, against the bytes that are allocated then.
 
 use std::ffi::OsStr;
 

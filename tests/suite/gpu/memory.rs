@@ -104,7 +104,7 @@ fn is_flat<S: Study>(variant: &str, parameters: &str) {
     assert!(grown_kb < LIMIT_KB, "{name}: {grown_kb} kB in {FRAMES} frames");
 }
 
-/// What a process that runs [`frames_of_a_process`] says.
+/// Output of a process that runs [`frames_of_a_process`].
 fn growth_kb(name: &str) -> i64 {
     let test = ["--exact", "gpu::memory::frames_of_a_process", "--nocapture"];
     let program = env::current_exe().unwrap();

@@ -26,14 +26,14 @@ pub struct Browser {
     messages: Receiver<Value>,
     session: String,
     last_id: u64,
-    /// What the page said on its console, exceptions and refusals included.
+    /// The page's messages on its console, exceptions and refusals included.
     pub console: Vec<String>,
     _folder: TempDir,
 }
 
 impl Browser {
     /// # Panics
-    /// Where there is no Chromium, or it does not answer.
+    /// There is no Chromium, or it does not answer.
     pub fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let [inward, outward] = ["in", "out"].map(|name| folder.path().join(name));

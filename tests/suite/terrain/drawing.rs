@@ -19,7 +19,7 @@ pub struct Drawing {
     pub normals: Vec<[f32; 4]>,
     /// The maps' shadow, 1 in the sunlight; empty where the variant has no such target.
     pub sunlit: Vec<f32>,
-    /// What objects leave of it on the land, and on objects where `object_hits` has them; empty without.
+    /// Light that objects leave of it on the land, and on objects where `object_hits` has them; empty without.
     pub occlusion: Vec<f32>,
     pub object_hits: Vec<f32>,
     pub object_occlusion: Vec<f32>,

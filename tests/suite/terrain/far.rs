@@ -93,7 +93,7 @@ fn far_land_is_seen_in_its_order() {
     });
 }
 
-/// Whether a ray meets a box before a level 100 m high.
+/// True when a ray meets a box before a level 100 m high.
 fn is_seen(eye: DVec3, direction: DVec3, (middle, half): (DVec3, DVec3)) -> bool {
     let (a, b) = ((middle - half - eye) / direction, (middle + half - eye) / direction);
     let (near, far) = (a.min(b).max_element(), a.max(b).min_element());

@@ -22,7 +22,7 @@ const BASES: [Base; 3] =
     [Base::Plane, Base::Cylinder { radius_m: 900.0 }, Base::Ellipsoid { equatorial_m: 3000.0, polar_m: 2200.0 }];
 const SIZE: (u32, u32) = (48, 36);
 
-/// What single precision moves a ray by, cells.
+/// Distance by which single precision moves a ray, cells.
 const HAIR_CELLS: f64 = 2e-3;
 
 /// Rays to the sun start a texel away from what is seen. Lifted by a hair they must be free where the device sees the sun, and
@@ -209,7 +209,7 @@ fn objects_stand_in_the_terrain_s_shadow() {
     });
 }
 
-/// Whether a ray in double precision meets a triangle grown by `slack` of its size; brute force.
+/// True when a ray in double precision meets a triangle grown by `slack` of its size; brute force.
 fn is_hidden(triangles: &[[DVec3; 3]], origin: DVec3, direction: DVec3, slack: f64) -> bool {
     triangles.iter().any(|&[a, b, c]| {
         let (ab, ac) = (b - a, c - a);
@@ -223,8 +223,8 @@ fn is_hidden(triangles: &[[DVec3; 3]], origin: DVec3, direction: DVec3, slack: f
     })
 }
 
-/// Whether the sun stands behind a face at `place` that the eye sees, or nearly: a sheet without thickness is dark there, and no ray
-/// meets anything.
+/// True when the sun stands behind a face at `place` that the eye sees, or nearly: a sheet without thickness is dark
+/// there, and no ray meets anything.
 fn is_seen_from_behind(triangles: &[[DVec3; 3]], place: DVec3, towards: DVec3, to_sun: DVec3) -> bool {
     triangles.iter().any(|&[a, b, c]| {
         let face = (b - a).cross(c - a).normalize();

@@ -29,7 +29,7 @@ fn lens(world: &World, from: DVec2, above_m: f64, to: DVec2, fov_rad: f32) -> Ca
     }
 }
 
-/// Where a pixel is smaller than a cell, `lod` pixel meets what brute force meets.
+/// As long as a pixel is smaller than a cell, `lod` pixel meets what brute force meets.
 #[test]
 fn magnified_crests_stand_as_brute_force_has_them() {
     let jacksboro: HeightMap = HeightMapSource::Jacksboro.load().unwrap();
@@ -54,7 +54,7 @@ fn magnified_crests_stand_as_brute_force_has_them() {
     });
 }
 
-/// Where a pixel covers many cells, the land against the sky is at most a pixel off.
+/// When a pixel covers many cells, the land against the sky is at most a pixel off.
 #[test]
 fn far_silhouettes_are_within_a_pixel_of_brute_force() {
     gpu_test(|device| {

@@ -108,7 +108,7 @@ fn seen(world: &World, rays: &Rays, x: f64, y: f64) -> Option<Hit> {
     world.terrain.first_hit(&ray, [0.0, f64::INFINITY]).filter(|hit| hit.part == Part::Surface)
 }
 
-/// What the oracle sees at a pixel's middle, and how much the height changes to the next pixel; none where it bends there.
+/// The oracle's hit at a pixel's middle, and the change of height to the next pixel; none where it bends there.
 fn hit_and_rise_m(world: &World, rays: &Rays, x: f64, y: f64) -> Option<(Hit, f64)> {
     const STEP: f64 = 1e-3;
     let hit = seen(world, rays, x, y)?;

@@ -35,7 +35,7 @@ impl Drop for Session {
     }
 }
 
-/// What an object on a bus answers; `None` for an error.
+/// Answer of an object on a bus; `None` for an error.
 fn call(bus: &str, destination: &str, path: &str, method: &str, arguments: &[&str]) -> Option<String> {
     let mut command = Command::new("dbus-send");
     command.arg(format!("--bus={bus}")).args(["--print-reply", &format!("--dest={destination}"), path, method]);

@@ -41,7 +41,7 @@ fn distance(screen: &Rgba8, picture: &Rgba8, (left, top): (u32, u32)) -> u8 {
     largest
 }
 
-/// Whether the picture lies somewhere in the rectangle of the screen, to 1 of 255.
+/// True when the picture lies somewhere in the rectangle of the screen, to 1 of 255.
 pub fn shows(screen: &Rgba8, picture: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
     let clamp = |side: i16| u32::try_from(side).unwrap_or(0);
     let lefts = clamp(left)..=(clamp(right).min(screen.width()) - picture.width());
@@ -49,7 +49,7 @@ pub fn shows(screen: &Rgba8, picture: &Rgba8, [left, top, right, bottom]: [i16; 
     lefts.into_iter().any(|x| tops().any(|y| distance(screen, picture, (x, y)) <= 1))
 }
 
-/// Whether anything is drawn in the rectangle.
+/// True when anything is drawn in the rectangle.
 fn is_drawn(screen: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
     let corner = pixel(screen, left as u32, top as u32);
     (top..bottom).any(|y| (left..right).any(|x| pixel(screen, x as u32, y as u32) != corner))
@@ -331,7 +331,7 @@ fn text_is_as_large_as_the_display_says_and_the_picture_stays_texel_by_pixel() {
     });
 }
 
-/// What a record says of what was measured, and not of when.
+/// Configurations and passes of a record's runs, without times and dates.
 fn configuration(record: &serde_json::Value) -> Vec<serde_json::Value> {
     let parts = ["paper", "variant", "preset", "config", "width", "height", "seed", "warmup", "frames", "repeat"];
     let runs = record["runs"].as_array().unwrap();

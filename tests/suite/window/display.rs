@@ -66,7 +66,7 @@ pub struct Display {
 
 impl Display {
     /// # Panics
-    /// Where Xvfb is not installed: a test never passes for want of it.
+    /// Xvfb is not installed: a test never passes for want of it.
     pub fn start() -> Self {
         let mut command = Command::new("Xvfb");
         // It ends with its last client, so with this process, however that ends.
@@ -126,7 +126,7 @@ impl Display {
         changed.unwrap().check().unwrap();
     }
 
-    /// What is on the screen.
+    /// Picture of the screen.
     pub fn screenshot(&self) -> Rgba8 {
         let geometry = self.connection.get_geometry(self.root).unwrap().reply().unwrap();
         let (width, height) = (geometry.width, geometry.height);
@@ -300,7 +300,7 @@ impl<'a> Window<'a> {
         self.place(&self.find(label)?)
     }
 
-    /// Where the image of that name is shown now.
+    /// Place on the screen of the image of that name.
     pub fn try_image(&self, name: &str) -> Option<[i16; 4]> {
         let images = |control: &Value| control["role"] == "Image" && control["label"] == name;
         self.place(&self.controls().into_iter().find(images)?)

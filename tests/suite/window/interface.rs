@@ -151,7 +151,7 @@ fn harness() -> Harness<'static, Interface> {
     harness
 }
 
-/// What the interface asked for since.
+/// Requests of the interface since the last call.
 fn asked(harness: &mut Harness<'_, Interface>) -> Vec<Request> {
     harness.run();
     let wishes = harness.state_mut().wishes();
@@ -317,7 +317,7 @@ fn turn_wheel(harness: &mut Harness<'_, Interface>) {
     harness.run_steps(10);
 }
 
-/// Whether the distance is that of the camera of [`side_setup`] after a notch.
+/// True when the distance is that of the camera of [`side_setup`] after a notch.
 fn is_a_notch_nearer(distance: f64) -> bool {
     (distance / 26.0_f64.sqrt() - (-0.16_f64).exp()).abs() < 1e-4
 }

@@ -13,7 +13,7 @@ use crate::common::gpu_test;
 const EXTENT: (u32, u32) = (1000, 640);
 const FORMAT: vk::Format = vk::Format::B8G8R8A8_UNORM;
 
-/// What a user may do next: keys that open and close panels, lists and colours, and a pointer that goes everywhere.
+/// A user's next action: keys that open and close panels, lists and colours, and a pointer that goes everywhere.
 fn events(random: &mut impl FnMut(u32) -> u32) -> Vec<Event> {
     const KEYS: [Key; 14] = [
         Key::F1,

@@ -184,7 +184,7 @@ fn last_of_each(options: &str) -> Vec<OsString> {
     kept.into_iter().flat_map(|(_, words)| words).collect()
 }
 
-/// What `render` with these options draws.
+/// Picture of `render` with these options.
 pub fn rendered(paper: &str, options: &str) -> Rgba8 {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("picture.png");

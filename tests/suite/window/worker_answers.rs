@@ -1,4 +1,4 @@
-//! What the worker tells beside pictures: two sides, values, times, files, command lines.
+//! Events of the worker beside pictures: two sides, values, times, files, command lines.
 
 use std::fs;
 use std::path::Path;

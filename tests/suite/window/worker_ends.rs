@@ -1,4 +1,4 @@
-//! What cannot be, and how a worker ends: it says so in a line, and never stays behind.
+//! Impossible requests, and the end of a worker: it says so in a line, and never stays behind.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, Command, Stdio};
