@@ -10,6 +10,7 @@ mod drivers;
 mod faults;
 mod gas;
 mod gpu;
+mod house;
 mod lava;
 mod page;
 mod terrain;

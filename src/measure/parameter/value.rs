@@ -58,7 +58,9 @@ pub trait Value: Clone + 'static {
     fn text(&self) -> String;
 
     /// As the record has it.
-    fn json(&self) -> Json;
+    fn json(&self) -> Json {
+        json!(self.text())
+    }
 
     /// Files that it names.
     fn files(&self) -> Vec<PathBuf> {
@@ -407,10 +409,6 @@ macro_rules! source {
                 self.to_string()
             }
 
-            fn json(&self) -> Json {
-                json!(self.to_string())
-            }
-
             fn files(&self) -> Vec<PathBuf> {
                 self.path().map(Path::to_path_buf).into_iter().collect()
             }
@@ -432,10 +430,6 @@ impl Value for PathBuf {
 
     fn text(&self) -> String {
         self.display().to_string()
-    }
-
-    fn json(&self) -> Json {
-        json!(self.display().to_string())
     }
 
     fn files(&self) -> Vec<PathBuf> {
@@ -469,9 +463,5 @@ impl<T: Choice> Value for T {
 
     fn text(&self) -> String {
         self.name().to_owned()
-    }
-
-    fn json(&self) -> Json {
-        json!(self.name())
     }
 }

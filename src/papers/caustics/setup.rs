@@ -92,10 +92,6 @@ impl Value for View {
             View::At(place) => place.text(),
         }
     }
-
-    fn json(&self) -> Json {
-        json!(self.text())
-    }
 }
 
 impl Default for Setup {

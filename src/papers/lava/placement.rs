@@ -4,7 +4,6 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
-use serde_json::{Value as Json, json};
 
 use crate::measure::Error;
 use crate::measure::parameter::{Shape, Value, one, with_place};
@@ -198,10 +197,6 @@ impl Value for Object {
                 format!("{source}@{},{},{},{yaw_deg}{scale}", base_m.x, base_m.y, base_m.z)
             }
         }
-    }
-
-    fn json(&self) -> Json {
-        json!(self.text())
     }
 
     fn files(&self) -> Vec<PathBuf> {

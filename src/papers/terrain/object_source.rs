@@ -5,7 +5,6 @@ use std::fmt;
 use std::path::PathBuf;
 
 use glam::{Mat4, Vec3};
-use serde_json::{Value as Json, json};
 
 use super::collision::Collider;
 use crate::measure::Error;
@@ -95,10 +94,6 @@ impl Value for ObjectSource {
 
     fn text(&self) -> String {
         self.to_string()
-    }
-
-    fn json(&self) -> Json {
-        json!(self.to_string())
     }
 
     fn files(&self) -> Vec<PathBuf> {

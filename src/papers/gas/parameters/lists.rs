@@ -2,8 +2,6 @@
 
 use std::ffi::OsStr;
 
-use serde_json::Value as Json;
-
 use crate::measure::parameter::{Shape, Value, one};
 
 /// Most fragments of a pixel in a k-buffer: each new one goes past them, one after the other.
@@ -53,9 +51,5 @@ impl Value for Lists {
             Lists::Tiles => "tiles".to_owned(),
             Lists::Nearest(count) => format!("k:{count}"),
         }
-    }
-
-    fn json(&self) -> Json {
-        self.text().into()
     }
 }

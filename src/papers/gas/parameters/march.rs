@@ -2,8 +2,6 @@
 
 use std::ffi::OsStr;
 
-use serde_json::Value as Json;
-
 use crate::measure::parameter::{Shape, Value, one};
 
 /// The estimate of the light of a ray through the gas (section "Volume rendering").
@@ -32,9 +30,5 @@ impl Value for March {
             March::Steps => "steps".to_owned(),
             March::Delta => "delta".to_owned(),
         }
-    }
-
-    fn json(&self) -> Json {
-        self.text().into()
     }
 }

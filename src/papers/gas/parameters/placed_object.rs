@@ -4,7 +4,6 @@ use std::ffi::OsStr;
 use std::path::PathBuf;
 
 use glam::{Mat4, Vec3};
-use serde_json::Value as Json;
 
 use crate::measure::Error;
 use crate::measure::components;
@@ -82,10 +81,6 @@ impl Value for PlacedObject {
         self.stand.map_or(source.clone(), |Stand { base_m, yaw_deg, scale, color, opacity }| {
             format!("{source}@{},{yaw_deg},{scale},{},{opacity}", components(base_m), components(color))
         })
-    }
-
-    fn json(&self) -> Json {
-        self.text().into()
     }
 
     fn files(&self) -> Vec<PathBuf> {

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec3};
-use serde_json::Value as Json;
 
 use crate::measure::parameter::{Choice, Shape, Value, one, with_place};
 use crate::measure::{Error, components};
@@ -171,10 +170,6 @@ impl Value for VolumeFile {
         let Some(Stand { base_m, yaw_deg, longest_m }) = self.stand else { return path.to_string() };
         let longest = longest_m.map_or(String::new(), |side| format!(",{side}"));
         format!("{path}@{},{yaw_deg}{longest}", components(base_m))
-    }
-
-    fn json(&self) -> Json {
-        self.text().into()
     }
 
     fn files(&self) -> Vec<PathBuf> {

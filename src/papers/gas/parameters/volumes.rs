@@ -56,10 +56,6 @@ impl Value for Placement {
             Shape::Frustum { bottom, top } => format!("frustum,{numbers},{bottom},{top}"),
         }
     }
-
-    fn json(&self) -> Json {
-        self.text().into()
-    }
 }
 
 /// Each with the numbers of the figure that it comes from.

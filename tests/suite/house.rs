@@ -1,0 +1,91 @@
+//! Rules of the house that no compiler holds: files of at most 500 lines, doc comments that name what they document, and passes in
+//! files of their names.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::cli::program::fumarole;
+
+/// Options of each paper, in whose frames every pass of it occurs.
+const FRAMES: [(&str, &str); 14] = [
+    ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --splats 40x10 --variant all --object teapot"),
+    ("lava", "--size 64x48 --particles 400 --radius 0.3 --density 16x8x8 --simulation sph --variant gpu-driven"),
+    ("gas", "--size 45x31 --steps 8 --table 8 --variant all"),
+    ("gas", "--size 45x31 --steps 8 --table 8 --lists tiles --density-cache 8 --skip-empty 0"),
+    ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --planes 5 --variant all"),
+    (
+        "caustics",
+        "--size 96x64 --map-size 64 --water-triangles 500 --no-mrt --coverage 2 --shadows --variant level-map",
+    ),
+    ("caustics", "--size 96x64 --map-size 64 --water-triangles 500 --smart --variant culled"),
+    ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --variant all"),
+    ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --no-preload --variant shell"),
+    ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --variant melting"),
+    ("burning", "--size 48x32 --blocks 3x3x3 --mesh sphere --triangles 300 --levels 1 --shading wire --variant shell"),
+    ("terrain", "--size 48x32 --resolution 64 --variant all"),
+    ("terrain", "--size 48x32 --resolution 64 --shadows --object teapot --variant gpu-compute,cpu"),
+    ("terrain", "--size 48x32 --resolution 64 --shadows --variant mesh"),
+];
+
+/// Passes of `hit` whose kernels share one file: `hit_map.rs`.
+const TOGETHER: [&str; 4] = ["empty-sums", "intersect", "land", "straddle"];
+
+/// Every source file below a folder of the repository.
+fn sources(folder: &str) -> Vec<PathBuf> {
+    let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
+    let mut found = Vec::new();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    assert!(found.len() > 3, "{folder}");
+    found
+}
+
+#[test]
+fn no_file_has_more_than_500_lines() {
+    for path in ["src", "tests", "benches"].into_iter().flat_map(sources) {
+        let lines = fs::read_to_string(&path).unwrap().lines().count();
+        assert!(lines <= 500, "{}: {lines} lines", path.display());
+    }
+}
+
+#[test]
+fn doc_comments_name_what_they_document() {
+    for path in ["src", "tests", "benches"].into_iter().flat_map(sources) {
+        for (number, line) in (1..).zip(fs::read_to_string(&path).unwrap().lines()) {
+            let line = line.trim_start();
+            let Some(text) = line.strip_prefix("/// ").or_else(|| line.strip_prefix("//! ")) else { continue };
+            let first: String = text.chars().take_while(|c| c.is_alphabetic()).collect();
+            let is_question = ["What", "Whether", "Where", "How", "Which"].contains(&first.as_str());
+            assert!(!is_question, "{}:{number}: {line}", path.display());
+        }
+    }
+}
+
+#[test]
+fn passes_stand_in_files_of_their_names() {
+    for paper in ["lava", "gas", "caustics", "burning", "terrain"] {
+        let files = sources(&format!("src/papers/{paper}"));
+        let stems: BTreeSet<&str> = files.iter().filter_map(|path| path.file_stem()?.to_str()).collect();
+        let mut passes = BTreeSet::new();
+        for (_, options) in FRAMES.iter().filter(|(of, _)| *of == paper) {
+            let listed =
+                fumarole(&format!("{paper} passes --json {options}")).on_test_device().run().succeeded().json();
+            let variants = listed.as_array().unwrap().iter();
+            let of_variants = variants.flat_map(|variant| variant["passes"].as_array().unwrap());
+            passes.extend(of_variants.map(|pass| pass["name"].as_str().unwrap().to_owned()));
+        }
+        assert!(passes.len() > 10, "{paper}: {passes:?}");
+        for pass in passes.iter().filter(|pass| !TOGETHER.contains(&pass.as_str())) {
+            assert!(stems.contains(pass.replace('-', "_").as_str()), "{paper}: no file of the pass {pass}");
+        }
+    }
+}
