@@ -28,7 +28,9 @@ macro_rules! size_field {
     ($setup:ident) => {
         $crate::measure::parameter::Field {
             get: |setup: &$setup| $crate::measure::parameter::Size { width: setup.width, height: setup.height },
-            set: |setup: &mut $setup, size| (setup.width, setup.height) = (size.width, size.height),
+            set: |setup: &mut $setup, size: $crate::measure::parameter::Size| {
+                (setup.width, setup.height) = (size.width, size.height)
+            },
         }
     };
 }
