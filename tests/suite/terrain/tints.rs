@@ -148,7 +148,7 @@ fn lines_and_colours_are_the_oracle_s() {
                     Draping::Slope,
                     Draping::Hypsometric { scale: SCALE as f32 },
                 ] {
-                    let drawing = draw(Some(&Drape::of_land(draping)));
+                    let drawing = draw(Some(&Drape::of_terrain(draping)));
                     let pixels = drawing.picture.pixels().as_chunks::<4>().0;
                     let (mut judged, mut marked, mut off) = (0, 0, 0);
                     for (pixel, found) in pixels.iter().enumerate() {
@@ -216,7 +216,7 @@ fn lines_are_as_wide_from_everywhere() {
         let heights = (0..41 * 201).map(|i| 5.0 * (i % 201) as f32).collect();
         let maps = alone(map(201, 41, Samples::Float(heights), 5.0));
         // One line is a wide one, at 500 m.
-        let drape = Drape::of_land(Draping::Contours { interval_m: 100.0 });
+        let drape = Drape::of_terrain(Draping::Contours { interval_m: 100.0 });
         for above_m in [400.0, 900.0, 2500.0] {
             let camera = Camera {
                 eye: Vec3::new(0.0, 500.0 + above_m, 0.0),
@@ -288,7 +288,7 @@ fn level_land_is_no_line_and_every_map_is_coloured() {
         maps[1].placement.center_m.x = 300.0;
         for &variant in Variant::ALL {
             let draw = |draping: Option<Draping>| {
-                let drape = draping.map(Drape::of_land);
+                let drape = draping.map(Drape::of_terrain);
                 let inputs = Inputs { maps: &maps, drape: drape.as_ref(), ..Inputs::default() };
                 let parameters = Parameters {
                     view: View::Top,

@@ -117,7 +117,7 @@ impl<'a> Judge<'a> {
         // A camera below the base is in the ground, and the device calls that the base.
         let is_start = hit.depth_m == 0.0;
         // Where a whole turn meets itself at another height, device and oracle call the cliff between a surface.
-        let is_whole_turn = terrain.base.turns() && map.end()[0] - map.origin[0] > TAU * (1.0 - 1e-6);
+        let is_whole_turn = terrain.base.is_periodic() && map.end()[0] - map.origin[0] > TAU * (1.0 - 1e-6);
         let is_seam =
             is_whole_turn && !map.closes && around.beside_m[0].abs() <= self.tolerance_m && around.above_m < 0.0;
         let residual_m = match hit.surface {
@@ -250,7 +250,7 @@ impl Around {
         let place = terrain.base.place(point);
         let middle = [0, 1].map(|axis| (map.origin[axis] + map.end()[axis]) / 2.0);
         let mut uv = place.uv;
-        if terrain.base.turns() {
+        if terrain.base.is_periodic() {
             uv[0] -= TAU * ((uv[0] - toward) / TAU).round();
         }
         if map.closes {
