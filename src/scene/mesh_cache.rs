@@ -114,10 +114,8 @@ fn read(file: &mut File) -> Option<Mesh> {
 /// A list of so many values, which the file has room for.
 fn list<T: Pod>(file: &mut File, count: u64, checksum: &mut crc32fast::Hasher) -> Option<Vec<T>> {
     const BLOCK: usize = 1 << 18;
-    let count = usize::try_from(count).ok()?;
-    let mut values: Vec<T> = Vec::new();
-    values.try_reserve_exact(count).ok()?;
-    values.resize(count, T::zeroed());
+    // Memory that the system has zeroed is not touched before it is read into.
+    let mut values = bytemuck::allocation::try_zeroed_vec::<T>(usize::try_from(count).ok()?).ok()?;
     // Block by block: what was read is in the processor's cache when it is checked.
     for block in values.chunks_mut(BLOCK) {
         let bytes: &mut [u8] = cast_slice_mut(block);

@@ -5,7 +5,7 @@ use fumarole::measure::machine::{Machine, MachineOptions};
 use fumarole::measure::study::Study;
 use fumarole::papers::gas::Variant;
 use fumarole::papers::gas::setup::Setup;
-use fumarole::scene::loading::Conditions;
+use fumarole::scene::loading::{Conditions, LoadParts};
 use fumarole::scene::{Mesh, MeshOptions, MeshSource};
 use peak_alloc::PeakAlloc;
 
@@ -39,6 +39,28 @@ fn no_format_takes_more_than_three_times_what_goes_to_the_device() {
         }
     }
     assert!(beyond.is_empty(), "{beyond:?}");
+}
+
+/// A mesh from the cache is read to where it stays: nothing of it is in memory twice.
+#[test]
+fn a_mesh_from_the_cache_takes_its_own_size() {
+    let _alone = crate::alone();
+    let folder = tempfile::tempdir().unwrap();
+    let source = MeshSource::File(files::write(folder.path(), "binary.stl", &files::ball(700)));
+    let conditions = Conditions { cache: Some(folder.path().join("cache")), ..Conditions::plain() };
+    let load = || {
+        LoadParts::take();
+        let before = ALLOCATED.current_usage();
+        ALLOCATED.reset_peak_usage();
+        let mesh = source.load_under(&MeshOptions::to_draw(30.0), &conditions).unwrap();
+        let ratio = (ALLOCATED.peak_usage() - before) as f64 / device_bytes(&mesh) as f64;
+        (mesh, ratio, LoadParts::take().from_cache)
+    };
+    let (first, read, kept) = load();
+    let (second, found, from_cache) = load();
+    println!("{read:.2} times its size from the file, {found:.2} from the cache");
+    assert!(first == second && (kept, from_cache) == (0, 1));
+    assert!(found <= 1.05, "{found}");
 }
 
 /// From the file to the passes of `gas`; what the driver keeps is none of ours.
