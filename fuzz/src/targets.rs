@@ -64,7 +64,11 @@ fn is_one_line(error: &impl Display) {
 }
 
 fn mesh(files: &[(&str, &[u8])]) {
-    match MeshSource::File(written(files)).load() {
+    let source = MeshSource::File(written(files));
+    if let Err(error) = source.promised_triangles() {
+        is_one_line(&error);
+    }
+    match source.load() {
         Ok(mesh) => assert!(mesh.validate().is_ok()),
         Err(error) => is_one_line(&error),
     }

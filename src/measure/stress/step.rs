@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{Axis, host_memory};
 use crate::gpu;
 use crate::image::{Raster, Samples};
-use crate::measure::bench::{Bench, load};
+use crate::measure::bench::{Bench, load_for};
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::measure::{Schedule, Watch};
 use crate::measure::picture::read_target;
@@ -55,8 +55,7 @@ pub fn measure<S: Study>(
     schedule: Schedule,
     watch: &mut Watch<'_>,
 ) -> Result<Measured, Error> {
-    let loaded = load(study)?;
-    let mut machine = Machine::open(options, S::NEEDS)?;
+    let (loaded, mut machine) = load_for(study, &[variant], || Machine::open(options, S::NEEDS))?;
     let bench = Bench { study, loaded: &loaded, variants: &[variant], schedule, limits: None };
     let mut not_finite = BTreeMap::new();
     let mut runs = bench.measure_and(&mut machine, watch, |machine, paper| {

@@ -252,7 +252,8 @@ impl Study for Setup {
     }
 
     fn promised_triangles(&self) -> Result<u64, Error> {
-        Ok(promised_triangles(self.objects.iter().map(|object| &object.source))?)
+        let of_objects = promised_triangles(self.objects.iter().map(|object| &object.source))?;
+        Ok(of_objects.max(self.surface_triangles.unwrap_or(0)))
     }
 
     fn foresee(&self, triangles: u64, _: Variant) -> Estimate {

@@ -20,6 +20,10 @@ const MAX_CORNERS: usize = 1 << 28;
 const MAX_SHARED_CORNERS: usize = 1 << 24;
 /// Most primitives, each as often as nodes place it.
 const MAX_PARTS: usize = 1 << 20;
+/// Bytes before the document of a GLB file.
+const GLB_START: usize = 20;
+/// Longest document that is looked at before the file is read, bytes.
+const MOST_PROMISING: u64 = 16 << 20;
 /// Bytes that one object of the document can take in memory.
 const OBJECT_BYTES: usize = 512;
 
@@ -47,6 +51,52 @@ pub(super) fn read(stream: &mut Stream<'_>, directory: &Path) -> Result<Parts, S
     let bytes = stream.rest()?;
     let parts = parse(&bytes, directory, stream.keeps_tags)?;
     Ok(parts)
+}
+
+/// Triangles of the scene, where the document tells before the data: that of a GLB file, or one that is little itself. None where
+/// it is wrong or claims what is not there, which its reader says.
+pub(super) fn promised_triangles(stream: &mut Stream<'_>) -> Result<Option<u64>, Stop> {
+    let mut text = Vec::new();
+    stream.append(&mut text, GLB_START)?;
+    let length = match text.strip_prefix(b"glTF") {
+        Some(rest) => rest.get(8..12).and_then(|length| length.try_into().ok()).map_or(0, u32::from_le_bytes).into(),
+        None => stream.size_bytes(),
+    };
+    if length > MOST_PROMISING {
+        return Ok(None);
+    }
+    if text.starts_with(b"glTF") {
+        text.clear();
+    }
+    let left = (length as usize).saturating_sub(text.len());
+    stream.append(&mut text, left)?;
+    Ok(scene_triangles(&text, stream.size_bytes()).ok().flatten())
+}
+
+/// Triangles of a document's scene; none where a list of them is not in its buffer.
+fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
+    check_objects(text)?;
+    let (document, _) = read_document(text)?;
+    let is_there = |accessor: &::gltf::Accessor<'_>| {
+        accessor.view().is_some_and(|view| {
+            let is_elsewhere = matches!(view.buffer().source(), ::gltf::buffer::Source::Uri(_));
+            accessor.count().saturating_mul(accessor.size()) <= view.length()
+                && (is_elsewhere || view.buffer().length() as u64 <= file_bytes)
+        })
+    };
+    let mut triangles = 0_u64;
+    for part in placed_meshes(&document)?.iter().flat_map(|(mesh, _)| mesh.primitives()) {
+        let Some(list) = part.indices().or_else(|| part.get(&Semantic::Positions)).filter(is_there) else {
+            return Ok(None);
+        };
+        let corners = list.count() as u64;
+        triangles = triangles.saturating_add(match part.mode() {
+            Mode::Triangles => corners / 3,
+            Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
+            _ => 0,
+        });
+    }
+    Ok(Some(triangles))
 }
 
 fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Fault> {

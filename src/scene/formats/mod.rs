@@ -74,8 +74,8 @@ pub(super) fn load(path: &Path, options: &MeshOptions, conditions: &Conditions) 
     Ok(Mesh { name: name.into_owned(), ..mesh })
 }
 
-/// Triangles that the file says it has, where it says so before they come: binary STL and PLY; those of a PLY file may
-/// be polygons, and more triangles then.
+/// Triangles that the file says it has, where it says so before they come: binary STL, PLY, and glTF; those of a PLY file may be
+/// polygons, and more triangles then.
 ///
 /// # Errors
 /// As [`load`], of what stands before the triangles.
@@ -91,6 +91,7 @@ pub(super) fn promised_triangles(path: &Path) -> Result<Option<u64>, Error> {
             stream.append(&mut start, 84).map(|_| stl::triangles(&start, size_bytes))
         }
         Some("ply") => ply::Header::read(&mut stream).map(|header| Some(header.faces())),
+        Some("gltf" | "glb") => gltf::promised_triangles(&mut stream),
         _ => Ok(None),
     };
     promised.map_err(|stop| stopped(path, stop))

@@ -2,12 +2,16 @@
 
 use std::fs::{self, File};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
 use std::time::Instant;
 
 use fumarole::scene::random::Random;
+use tempfile::TempDir;
 
-use super::program::{ONCE, burning, caustics, entries, file, folder, gas, lava, terrain};
+use super::program::{Ended, ONCE, burning, caustics, entries, file, folder, gas, lava, terrain};
+use crate::common::beside_others;
 use crate::faults::Layer;
 
 fn refuse(path: &Path, parts: &[&str]) {
@@ -136,14 +140,41 @@ fn files_beyond_the_device_are_refused_unread() {
         let program = program.arg(option).arg(&ply).on_test_device();
         layer.least(program).run().refused(2, &[option, "2400000000", "limit of"]);
     }
+    // A GLB file's document tells before its data; what claims data that is not there is a fault of the file.
+    let glb = |triangles: u64, has_data: bool| {
+        let bytes = 12 * triangles;
+        let mut document = serde_json::json!({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "buffers": [{"byteLength": bytes + 36}],
+            "bufferViews": [{"buffer": 0, "byteLength": 36},
+                            {"buffer": 0, "byteOffset": 36, "byteLength": bytes}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                           "min": [0, 0, 0], "max": [1, 1, 1]},
+                          {"bufferView": 1, "componentType": 5125, "count": 3 * triangles, "type": "SCALAR"}],
+        })
+        .to_string();
+        document += &" ".repeat(document.len().next_multiple_of(4) - document.len());
+        let length = 28 + document.len() as u64 + if has_data { bytes + 36 } else { 0 };
+        let words = |words: &[u64]| words.iter().flat_map(|word| (*word as u32).to_le_bytes()).collect::<Vec<u8>>();
+        let start = [&b"glTF"[..], &words(&[2, length, document.len() as u64]), b"JSON", document.as_bytes()].concat();
+        let start = [&start[..], &words(&[length - 28 - document.len() as u64]), b"BIN\0"].concat();
+        let path = file(&out, &format!("{triangles}-{has_data}.glb"), start);
+        File::options().append(true).open(&path).unwrap().set_len(length).unwrap();
+        path
+    };
+    let program = burning("bench --variant shell --mesh").arg(glb(12_000_000, true)).on_test_device();
+    layer.least(program).run().refused(2, &["--triangles", "144000000", "limit of 134217728"]);
+    let program = gas("bench --object").arg(glb(85_000_000, true)).on_test_device();
+    layer.least(program).run().refused(2, &["--object", "2720000000", "limit of"]);
+    let program = gas("bench --object").arg(glb(85_000_000, false)).on_test_device();
+    layer.least(program).run().refused(2, &["buffer 0"]);
     // Reading them would take many times as long.
     assert!(started.elapsed().as_secs_f64() < 10.0, "{:?}", started.elapsed());
 }
 
-/// `--no-cache` leaves the folder alone; without it the second load is the first one's mesh, and the record says so.
-#[test]
-fn large_meshes_are_kept_for_the_next_run() {
-    let out = folder();
+/// A ball as a binary STL file of more than a MiB, which is kept in the cache of meshes.
+fn kept_ball(out: &TempDir) -> PathBuf {
     let mesh = fumarole::scene::shapes::sphere(120, 120);
     let mut bytes = vec![0; 80];
     bytes.extend((mesh.triangle_count() as u32).to_le_bytes());
@@ -152,7 +183,49 @@ fn large_meshes_are_kept_for_the_next_run() {
         bytes.extend([0.0; 3].into_iter().chain(corners).flat_map(f32::to_le_bytes));
         bytes.extend([0; 2]);
     }
-    let path = file(&out, "ball.stl", bytes);
+    file(out, "ball.stl", bytes)
+}
+
+/// Processes that load one mesh at once, and after one that was killed at any moment, leave one sound entry and nothing else.
+#[test]
+fn processes_share_the_cache_and_a_killed_one_leaves_no_rest() {
+    let out = folder();
+    let path = kept_ball(&out);
+    let load = |cache: &Path| {
+        let program = caustics("bench --quiet --json --variant level-map --mesh").arg(&path).tiny().args(ONCE);
+        program.env("XDG_CACHE_HOME", cache)
+    };
+    let from_cache = |ended: Ended| ended.succeeded().json()["runs"][0]["loading"]["from_cache"].as_u64().unwrap();
+    let assert_kept = |cache: &Path, when: &str| {
+        let kept = entries(&cache.join("fumarole/meshes"));
+        assert!(kept.len() == 1 && kept[0].ends_with(".mesh"), "{when}: {kept:?}");
+        assert_eq!(from_cache(load(cache).run()), 1, "{when}");
+    };
+    beside_others(|| {
+        let shared = out.path().join("shared");
+        let begun = Instant::now();
+        let together = [(); 3].map(|()| load(&shared).start());
+        together.into_iter().for_each(|running| drop(running.end().succeeded()));
+        let whole_run = begun.elapsed();
+        assert_kept(&shared, "three at once");
+        for part in 0..8 {
+            let cache = out.path().join(format!("killed-{part}"));
+            let running = load(&cache).start();
+            thread::sleep(whole_run * part / 16);
+            // It may have ended by itself.
+            let _ = Command::new("kill").args(["-KILL", &running.id().to_string()]).status().unwrap();
+            running.end();
+            load(&cache).run().succeeded();
+            assert_kept(&cache, &format!("killed after {:?}", whole_run * part / 16));
+        }
+    });
+}
+
+/// `--no-cache` leaves the folder alone; without it the second load is the first one's mesh, and the record says so.
+#[test]
+fn large_meshes_are_kept_for_the_next_run() {
+    let out = folder();
+    let path = kept_ball(&out);
     let loading = |options: &str| {
         let program =
             caustics("bench --quiet --json --variant level-map --mesh").arg(&path).tiny().args(ONCE).args(options);

@@ -39,6 +39,7 @@ mod shards;
 mod slurm;
 mod streams;
 mod stress;
+mod stress_ends;
 mod terrain;
 mod terrain_drapes;
 mod vulkan;

@@ -15,7 +15,7 @@ use crate::common::beside_others;
 /// Far above what a step of these scenes takes.
 const SOON: Duration = Duration::from_secs(60);
 
-fn assert_schema(record: &Value) {
+pub fn assert_schema(record: &Value) {
     let read = |text: &str| serde_json::from_str::<Value>(text).unwrap();
     let bench = read(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.bench-1.json")));
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/schema/fumarole.stress-1.json"));
@@ -31,7 +31,7 @@ fn assert_schema(record: &Value) {
     assert!(errors.is_empty(), "{errors:#?}");
 }
 
-fn steps(record: &Value) -> Vec<Value> {
+pub fn steps(record: &Value) -> Vec<Value> {
     record["series"].as_array().unwrap().iter().flat_map(|series| series["steps"].as_array().unwrap().clone()).collect()
 }
 
@@ -39,12 +39,12 @@ fn values(record: &Value) -> Vec<u64> {
     steps(record).iter().map(|step| step["value"].as_u64().unwrap()).collect()
 }
 
-fn kinds(record: &Value) -> Vec<&str> {
+pub fn kinds(record: &Value) -> Vec<&str> {
     record["series"].as_array().unwrap().iter().map(|series| series["stop"]["kind"].as_str().unwrap()).collect()
 }
 
 /// The record in a folder that holds one.
-fn record(folder: &Path) -> Value {
+pub fn record(folder: &Path) -> Value {
     let name = entries(folder).into_iter().find(|name| name.ends_with(".json")).expect("a record");
     let record = read_json(&folder.join(name));
     assert_schema(&record);
@@ -169,6 +169,32 @@ fn meshes_are_divided_and_objects_multiplied() {
     // Twelve more layers of every pixel, whose diagonals are in both of their triangles.
     let more = (found[1] - found[0]) / (12.0 * 45.0 * 31.0);
     assert!((1.0..1.2).contains(&more), "{found:?}");
+}
+
+/// The axes that no test above climbs: a step of each is what its value says.
+#[test]
+fn the_other_axes_set_what_they_name() {
+    for (program, axis, from, key, found) in [
+        (caustics("stress --size 32x24"), "water-triangles", 6_000, "water_triangles", json!(6_000)),
+        (caustics("stress --size 32x24"), "map", 1_600, "map_size", json!(40)),
+        (lava("stress --size 32x24"), "particles", 500, "particles", json!(500)),
+        (lava("stress --size 32x24 --particles 500"), "grid", 512, "density", json!(null)),
+        (gas("stress --size 45x31 --variant table"), "table", 1_000, "table", json!(10)),
+        (gas("stress --size 45x31"), "steps", 6, "steps", json!(6)),
+        (burning("stress --size 32x24"), "particles", 50, "fire", json!(50)),
+        (burning("stress --size 32x24"), "blocks", 64, "blocks", json!([3, 4, 5])),
+        (terrain("stress --resolution 64"), "screen", 1_200, "size", json!(null)),
+    ] {
+        let out = folder();
+        let program = program.args("--factor 100 --until device --quiet --budget 20 --axis").arg(axis);
+        let program = program.arg("--from").arg(from.to_string()).arg("--out").arg(out.path());
+        program.on_test_device().run().succeeded();
+        let step = &steps(&record(out.path()))[0];
+        let config = &step["run"]["config"];
+        assert!(found.is_null() || config[key] == found, "{axis}: {}", config[key]);
+        let amount = step["amount"].as_f64().unwrap();
+        assert!((0.7..1.4).contains(&(amount / f64::from(from))), "{axis}: {amount} for {from}");
+    }
 }
 
 #[test]

@@ -279,11 +279,9 @@ fn the_variants_that_walk_from_cell_to_cell_are_asked_for_by_name() {
     assert_eq!(benched["runs"].as_array().unwrap().len(), 5);
 }
 
-/// A canyon of 16,384 cells that ends at a wall, seen along it by bicubic rays: more iterations than lavapipe gives a shader. The
-/// processor has no such end.
-#[test]
-fn rays_whose_loops_the_driver_ends_are_no_picture() {
-    let out = folder();
+/// A canyon of 16,384 cells that ends at a wall, as an ESRI ASCII grid: bicubic rays along it take more iterations than lavapipe
+/// gives a shader.
+pub fn canyon() -> String {
     let side = 16_384;
     let mut random = Random::new(1);
     let mut row = |is_floor: bool| -> String {
@@ -294,8 +292,14 @@ fn rays_whose_loops_the_driver_ends_are_no_picture() {
         (0..side).map(height).collect::<String>() + "\n"
     };
     let rows: String = [false, false, true, false, false].map(&mut row).concat();
-    let head = format!("ncols {side}\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n");
-    file(&out, "canyon.asc", head + &rows);
+    format!("ncols {side}\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n{rows}")
+}
+
+/// The canyon, seen along it; the processor has no such end.
+#[test]
+fn rays_whose_loops_the_driver_ends_are_no_picture() {
+    let out = folder();
+    file(&out, "canyon.asc", canyon());
     let render = "render --quiet --map canyon.asc --lod exact --interpolation bicubic --size 33x25 --image x.png \
                   --camera=-81820,50,0,-81819,50,0 --variant";
     for variant in ["gpu-compute", "gpu-fragment", "dda-fragment"] {

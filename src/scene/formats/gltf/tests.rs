@@ -265,3 +265,23 @@ fn version_1_is_named() {
         assert!(parse(json.as_bytes(), Path::new("")).unwrap_err().to_string().contains("glTF 1.0"));
     }
 }
+
+#[test]
+fn the_document_promises_the_triangles_of_its_scene() {
+    let watch = crate::scene::loading::Watch::default();
+    let promised = |bytes: &[u8]| promised_triangles(&mut Stream::new(bytes, bytes.len() as u64, &watch)).unwrap();
+    let twice = r#"[{"mesh":0,"children":[1]},{"mesh":0}]"#;
+    for (nodes, primitive, triangles) in [(NODE, LIST, 2), (NODE, STRIP, 2), (NODE, FAN, 2), (twice, FAN, 4)] {
+        let uri = format!("data:application/octet-stream;base64,{}", base64(&square_bytes()));
+        assert_eq!(promised(document(nodes, primitive, Some(&uri)).as_bytes()), Some(triangles), "{primitive}");
+        assert_eq!(promised(&binary(&document(nodes, primitive, None), &square_bytes())), Some(triangles));
+    }
+    // What is not there is no promise, and what is no document either.
+    let whole = document(NODE, LIST, None);
+    for (from, to) in [(r#""count":6"#, r#""count":6000000000"#), (r#""byteLength":54"#, r#""byteLength":5400000"#)] {
+        assert_eq!(promised(&binary(&whole.replace(from, to), &square_bytes())), None, "{to}");
+    }
+    for bytes in [&b""[..], b"glTF", b"glTF\x02\0\0\0\xff\0\0\0\xff\xff\0\0JSON", b"{", b"[0]"] {
+        assert_eq!(promised(bytes), None, "{bytes:?}");
+    }
+}
