@@ -108,3 +108,37 @@ impl Parameters {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::super::setup::LEAST_BYTES;
+    use super::*;
+    use crate::scene::shapes;
+
+    fn bytes_of_a_triangle(variant: Variant, mesh: &Mesh) -> f64 {
+        let estimate = Parameters { levels: Some(0), ..Parameters::default() }.estimate(variant, mesh);
+        let of_triangles = estimate.bytes.iter().find(|(parameter, _)| *parameter == "triangles");
+        of_triangles.map_or(0.0, |(_, bytes)| bytes / mesh.triangle_count() as f64)
+    }
+
+    #[test]
+    fn triangles_that_share_no_vertex_take_more_than_three_times_as_much() {
+        let ball = shapes::sphere(200, 200);
+        let mut loose = Mesh::default();
+        for (number, corners) in (0..).zip(ball.indices.chunks_exact(3)) {
+            let aside = Vec3::X * (number as f32 / 1024.0);
+            for &corner in corners {
+                loose.indices.push(loose.positions.len() as u32);
+                loose.positions.push(ball.positions[corner as usize] + aside);
+                loose.normals.push(ball.normals[corner as usize]);
+            }
+        }
+        let [solid, shell] = [Variant::Solid, Variant::Shell].map(|variant| bytes_of_a_triangle(variant, &ball));
+        assert!((LEAST_BYTES..1.02 * LEAST_BYTES).contains(&solid), "{solid}");
+        assert!((188.0..195.0).contains(&shell), "{shell}");
+        let [solid, shell] = [Variant::Solid, Variant::Shell].map(|variant| bytes_of_a_triangle(variant, &loose));
+        assert!((625.0..640.0).contains(&solid) && (735.0..745.0).contains(&shell), "{solid} {shell}");
+    }
+}

@@ -10,6 +10,7 @@ mod materials;
 mod melting;
 mod meshes;
 mod oracle;
+mod order;
 mod pictures;
 mod puddle;
 mod refinement;
