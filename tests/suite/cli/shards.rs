@@ -1,8 +1,9 @@
 //! `stress`, `ab` and experiments in shards: together they are the whole, and `assemble`, `compare` and `report` take it.
 
+use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::program::{ONCE, Program, assert_schema, caustics, device, entries, folder, fumarole, read_json};
 
@@ -14,6 +15,52 @@ fn assemble(parts: &Path) -> Program {
 
 fn assert_missing(parts: &Path, count: &str, numbers: &str) {
     assert_eq!(assemble(parts).args("--missing").arg(count).run().succeeded().stdout, numbers);
+}
+
+/// Of the records `STEM-shard-I-of-N.json`, asserts that `assemble` refuses a gap, overlaps, and parts of another whole.
+/// `contents` points to what a part has measured, `settings` to a part of what fixes its work.
+fn assert_only_the_whole_is_assembled(parts: &Path, (stem, count): (&str, u32), contents: &str, settings: &str) {
+    let out = folder();
+    let name = |number: u32| format!("{stem}-shard-{number}-of-{count}.json");
+    let records: Vec<Value> = (0..count).map(|number| read_json(&parts.join(name(number)))).collect();
+    let second = &records[1];
+    // The others with this one, or none, in place of the second; and in another folder what is there twice.
+    let refused = |case: &str, second: Option<&Value>, again: Option<&Value>, said: &[&str]| {
+        let [place, other] = ["parts", "again"].map(|name| out.path().join(case).join(name));
+        [&place, &other].into_iter().for_each(|folder| fs::create_dir_all(folder).unwrap());
+        for (number, record) in (0..).zip(&records).filter(|(number, _)| *number != 1) {
+            fs::write(place.join(name(number)), record.to_string()).unwrap();
+        }
+        for (folder, record) in [(&place, second), (&other, again)] {
+            record.into_iter().for_each(|record| fs::write(folder.join(name(1)), record.to_string()).unwrap());
+        }
+        let joined = out.path().join("joined");
+        let program = fumarole("assemble --quiet").arg(&place).arg(&other).arg("--out").arg(&joined);
+        program.run().refused(2, said);
+        assert!(!joined.exists(), "{stem}: {case}");
+    };
+    let changed = |pointer: &str, value: Value| {
+        let mut record = second.clone();
+        *record.pointer_mut(pointer).unwrap_or_else(|| panic!("{stem} has no {pointer}")) = value;
+        record
+    };
+    let shard = if second["shard"].is_array() { "/shard" } else { "/share/shard" };
+    refused("gap", None, None, &[stem, &format!("of {count} shards are missing 1")]);
+    refused("twice", Some(second), Some(second), &["both are shard 1"]);
+    let of_more = changed(shard, json!([1, count + 1]));
+    refused("count", Some(&of_more), None, &[&format!("of {}", count + 1), &format!("of {count}")]);
+    let overlapping = changed(contents, records[0].pointer(contents).unwrap().clone());
+    refused("overlap", Some(&overlapping), None, &["assembling", "both have"]);
+    for (pointer, what) in [
+        ("/environment/device/name", "device.name"),
+        ("/environment/host/cpu", "host.cpu"),
+        ("/environment/build/executable_sha256", "build.executable_sha256"),
+    ] {
+        let foreign = changed(pointer, "another".into());
+        refused(what, Some(&foreign), None, &[what, "another", "two wholes"]);
+    }
+    let foreign = changed(settings, "another".into());
+    refused("settings", Some(&foreign), None, &["settings differ", "two wholes"]);
 }
 
 #[test]
@@ -32,6 +79,7 @@ fn a_climb_in_shards_is_one_record() {
     assemble(&place("parts")).args("--missing 3").run().refused(2, &["--missing 3", "of 2"]);
     climb("--shard 0/2", "parts");
     assert_missing(&place("parts"), "2", "");
+    assert_only_the_whole_is_assembled(&place("parts"), ("stress-caustics-planes", 2), "/series", "/axis/name");
     let ended = assemble(&place("parts")).arg("--out").arg(place("joined")).run().succeeded();
     assert!(ended.stdout.contains("exponent") && ended.stdout.contains("volumetric"), "{}", ended.stdout);
     assert_eq!(entries(&place("joined")), entries(&place("whole")));
@@ -63,6 +111,9 @@ fn blocks_of_shards_are_compared_together() {
     measure("0/3").refused(2, &["2 --blocks for 3 shards"]);
     measure("0/2").succeeded();
     measure("1/2").succeeded();
+    for stem in ["ab-a", "ab-b"] {
+        assert_only_the_whole_is_assembled(&place("parts"), (stem, 2), "/share/items", "/share/identity");
+    }
     assemble(&place("parts")).arg("--quiet").arg("--out").arg(place("joined")).run().succeeded();
     let [a, b] = ["a", "b"].map(|side| place("joined").join(format!("ab-{side}.json")));
     for record in [&a, &b].map(|path| read_json(path)) {
@@ -98,6 +149,7 @@ fn a_sweep_in_shards_is_the_experiment() {
     assert!(again.stderr.contains("this part is finished"), "{}", again.stderr);
     assert_eq!(read_json(&place("parts").join("caustics-5-1-shard-0-of-4.json")), before);
     experiment("parts").args("--shard 2/4").run().succeeded();
+    assert_only_the_whole_is_assembled(&place("parts"), ("caustics-5-1", 4), "/share/items", "/share/identity");
     assemble(&place("parts")).arg("--quiet").arg("--out").arg(place("joined")).run().succeeded();
     let joined = place("joined").join("caustics-5-1.json");
     let record = read_json(&joined);

@@ -14,8 +14,8 @@ use tempfile::TempDir;
 use super::program::{device, entries, file, folder, gas};
 use crate::common::beside_others;
 
-/// Of the whole film on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(150);
+/// From the start of the node to its end, on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(180);
 
 fn script(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("dist/slurm").join(name)
@@ -107,6 +107,7 @@ fn a_film_of_an_array_is_that_of_one_process_though_a_task_is_killed() {
     gas(FILM).arg("--out").arg(out.path().join("whole")).on_test_device().run().succeeded();
     let program = hanging(&out);
     beside_others(|| {
+        let begun = Instant::now();
         let node = Node::start();
         let film = out.path().join("film");
         let words: Vec<&str> = FILM.split(' ').collect();
@@ -117,7 +118,6 @@ fn a_film_of_an_array_is_that_of_one_process_though_a_task_is_killed() {
         };
         succeeded(submit(&[]));
         let job = fs::read_to_string(film.join("submitted")).unwrap().trim().to_owned();
-        let begun = Instant::now();
         let running = node.run(Command::new(script("collect")).arg(&film));
         assert_eq!(running.status.code(), Some(75), "{}", String::from_utf8_lossy(&running.stdout));
         while !out.path().join("hangs").exists() {
@@ -130,7 +130,6 @@ fn a_film_of_an_array_is_that_of_one_process_though_a_task_is_killed() {
         let [kept, lost] = [17, 18].map(drawn);
         succeeded(node.run(Command::new("scancel").args(["--signal=KILL", "--full"]).arg(format!("{job}_4"))));
         let collected = succeeded(node.run(Command::new(script("collect")).arg("--wait").arg(&film)));
-        assert!(begun.elapsed() < PATIENCE, "{:?}", begun.elapsed());
         assert!(collected.contains("tasks 4 left parts missing; submitting them again"), "{collected}");
         assert!(drawn(17) == kept && drawn(18) > lost);
 
@@ -148,6 +147,9 @@ fn a_film_of_an_array_is_that_of_one_process_though_a_task_is_killed() {
         let other = submit(&["--seed", "2"]);
         assert_eq!(other.status.code(), Some(2));
         assert!(String::from_utf8_lossy(&other.stderr).contains("other work"));
+        drop(node);
+        println!("the film took {:.0} s on the node", begun.elapsed().as_secs_f64());
+        assert!(begun.elapsed() < PATIENCE, "{:?}", begun.elapsed());
     });
 }
 
@@ -193,4 +195,29 @@ fn submissions_that_cannot_work_are_refused() {
     assert_eq!(entries(out.path()), [""; 0]);
     let collected = Command::new(script("collect")).arg(out.path()).output().unwrap();
     assert_eq!(collected.status.code(), Some(2));
+}
+
+/// A task tries three times, but not what another try would not mend, and gives the program its shard.
+#[test]
+fn a_task_that_fails_tries_again() {
+    for (ends, code, calls) in
+        [("1 139 0", 0, 3), ("1 1 1", 1, 3), ("0", 0, 1), ("2", 2, 1), ("3", 3, 1), ("1 2", 2, 2)]
+    {
+        let out = folder();
+        let text = "#!/usr/bin/env bash\nhere=$(dirname \"$0\")\necho \"$@\" >>\"$here/calls\"\n\
+                    ends=($ENDS)\nexit \"${ends[$(($(wc -l <\"$here/calls\") - 1))]}\"\n";
+        let program = file(&out, "flaky", text);
+        fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+        let job = format!(
+            "tasks=6\nfumarole={}\nsbatch_options=\narguments=(gas render --frame 0..24 )\n",
+            program.display()
+        );
+        file(&out, "job", job);
+        let mut task = Command::new(script("task"));
+        let ended = task.arg(out.path()).env("SLURM_ARRAY_TASK_ID", "4").env("ENDS", ends).output().unwrap();
+        assert_eq!(ended.status.code(), Some(code), "{ends}");
+        let called = fs::read_to_string(out.path().join("calls")).unwrap();
+        let words = format!("gas render --shard 4/6 --out {}/parts --frame 0..24", out.path().display());
+        assert_eq!(called.lines().collect::<Vec<_>>(), vec![words.as_str(); calls], "{ends}");
+    }
 }
