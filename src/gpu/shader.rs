@@ -101,40 +101,20 @@ impl ShaderLibrary {
             compiler,
             sha256,
             bytes: 4 * words.len() as u64,
-            instructions: instructions(&words),
+            instructions: shader_build::instruction_count(&words),
         }))
     }
 }
 
-/// Number of instructions, each of which begins with its length, after the header of five words.
-fn instructions(words: &[u32]) -> u64 {
-    let (mut rest, mut count) = (words.get(5..).unwrap_or_default(), 0);
-    while let Some(&first) = rest.first() {
-        count += 1;
-        rest = rest.get((first >> 16).max(1) as usize..).unwrap_or_default();
-    }
-    count
-}
-
 /// The first capability that a device is not opened with. The numbers are those of the SPIR-V specification.
 fn unknown_capability(words: &[u32], physical: &PhysicalDevice) -> Option<u32> {
-    const OP_CAPABILITY: u32 = 17;
     /// Matrix, Shader, Sampled1D, Image1D, StorageImageExtendedFormats, ImageQuery, DerivativeControl: every device's.
     const ALWAYS: [u32; 7] = [0, 1, 43, 44, 49, 50, 51];
     const GEOMETRY: u32 = 2;
-    let mut rest = words.get(5..)?;
-    while let Some(&first) = rest.first() {
-        let capability = (first & 0xffff == OP_CAPABILITY).then(|| rest.get(1)).flatten().copied();
-        match capability {
-            Some(GEOMETRY) if physical.has(Feature::GeometryShader) => {}
-            Some(capability) if !ALWAYS.contains(&capability) => return Some(capability),
-            Some(_) => {}
-            // Capabilities come first.
-            None => return None,
-        }
-        rest = rest.get((first >> 16).max(1) as usize..)?;
-    }
-    None
+    shader_build::capabilities(words).find(|capability| match *capability {
+        GEOMETRY => !physical.has(Feature::GeometryShader),
+        other => !ALWAYS.contains(&other),
+    })
 }
 
 /// Compiles a directory, of which at least one shader has a built-in one's name: else it would change nothing, in silence.

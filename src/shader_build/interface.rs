@@ -14,10 +14,20 @@ pub struct Interface {
     /// The shader numbers its threads by the workgroups in a row, as `common/elements.glsl` does: it declares
     /// `gl_NumWorkGroups`, and not `gl_GlobalInvocationID`, which knows no rows.
     pub lies_in_rows: bool,
+    /// Bytes that the threads of a workgroup share.
+    pub shared_bytes: u64,
     /// Vertices of a primitive that a geometry stage takes: 1 for points, 2 for lines, 3 for triangles.
     pub primitive_vertices: Option<u32>,
+    /// Vertices that an invocation of a geometry stage gives at most.
+    pub emitted_vertices: Option<u32>,
+    /// Invocations of a geometry stage for each primitive.
+    pub invocations: Option<u32>,
+    /// A vertex or geometry stage says how large its points are.
+    pub writes_point_size: bool,
     /// Every resource that the binary declares, by ascending set and binding.
     pub bindings: Vec<Binding>,
+    /// Textures that are read through samplers' filters.
+    pub filterings: Vec<Filtering>,
     /// Block of push constants, if there is one.
     pub push_constants: Option<Block>,
     /// Located inputs by ascending location; built-ins are not listed.
@@ -43,6 +53,18 @@ pub struct Binding {
     pub block: Option<Block>,
     /// Shape of a sampled or storage image.
     pub image: Option<ImageShape>,
+}
+
+/// A texture read through a sampler's filter: their bindings in set 0, or `None` for a function's argument, which may be
+/// any of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Filtering {
+    /// Binding of the texture.
+    pub texture: Option<u32>,
+    /// Binding of the sampler.
+    pub sampler: Option<u32>,
+    /// What is read is the outcome of a comparison with texels.
+    pub compares: bool,
 }
 
 /// Shape of an image as a shader declares it.

@@ -61,6 +61,7 @@ mod interface;
 mod layout;
 mod naga;
 mod reflection;
+mod spirv;
 #[cfg(test)]
 mod tests;
 mod variants;
@@ -76,9 +77,10 @@ pub use error::{DirectiveProblem, Error, InterfaceMismatch, ReflectError};
 pub use exceptions::{NAGA_EXCEPTIONS, check_exceptions};
 pub use include::Source;
 pub use interface::{
-    Binding, BindingKind, Block, Format, ImageFormat, ImageShape, Interface, Location, Member, Scalar,
+    Binding, BindingKind, Block, Filtering, Format, ImageFormat, ImageShape, Interface, Location, Member, Scalar,
 };
 pub use layout::{HostBlock, LayoutMismatch};
+pub use spirv::{capabilities, instruction_count};
 
 /// The stage of a shader, told by the ending of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -3,17 +3,16 @@
 use spirq::ReflectConfig;
 use spirq::constant::ConstantValue;
 use spirq::entry_point::EntryPoint;
-use spirq::spirv::{BuiltIn, Decoration, Dim, ExecutionMode, ExecutionModel, Op};
+use spirq::spirv::{BuiltIn, Dim, ExecutionMode, ExecutionModel};
 use spirq::ty::{AccessType, DescriptorType, ScalarType, StructType, Type};
 use spirq::var::Variable;
 
 use super::interface::{Binding, BindingKind, Block, Format, ImageShape, Interface, Location, Member, Scalar};
+use super::spirv::{self, HEADER_WORDS};
 use super::{ReflectError, Stage};
 
 /// First word of every binary.
 pub(super) const SPIRV_MAGIC: u32 = 0x0723_0203;
-
-const HEADER_WORDS: usize = 5;
 
 impl Interface {
     /// Reflects a binary with one entry point.
@@ -28,7 +27,13 @@ impl Interface {
         let entry_points =
             ReflectConfig::new().spv(words).ref_all_rscs(true).reflect().map_err(|error| refuse(&error.to_string()))?;
         match entry_points.as_slice() {
-            [entry_point] => Ok(Interface { lies_in_rows: lies_in_rows(words), ..read_entry_point(entry_point)? }),
+            [entry_point] => Ok(Interface {
+                lies_in_rows: lies_in_rows(words),
+                shared_bytes: spirv::shared_bytes(words),
+                writes_point_size: spirv::writes_point_size(words),
+                filterings: spirv::filterings(words),
+                ..read_entry_point(entry_point)?
+            }),
             other => Err(refuse(&format!("it has {} entry points; compile one stage a binary", other.len()))),
         }
     }
@@ -48,10 +53,15 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
     };
     let mut interface = Interface {
         stage,
-        local_size: read_local_size(entry_point),
+        local_size: read_operands(entry_point, ExecutionMode::LocalSize),
         lies_in_rows: false,
+        shared_bytes: 0,
         primitive_vertices: read_primitive(entry_point),
+        emitted_vertices: read_operands(entry_point, ExecutionMode::OutputVertices).map(|[vertices]| vertices),
+        invocations: read_operands(entry_point, ExecutionMode::Invocations).map(|[invocations]| invocations),
+        writes_point_size: false,
         bindings: Vec::new(),
+        filterings: Vec::new(),
         push_constants: None,
         inputs: Vec::new(),
         outputs: Vec::new(),
@@ -59,6 +69,10 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
     for variable in &entry_point.vars {
         let name = variable.name().unwrap_or_default();
         match variable {
+            // Two in one location are told apart by nothing that the layer compares.
+            Variable::Input { location, .. } | Variable::Output { location, .. } if location.comp() != 0 => {
+                return Err(refuse(&format!("`{name}` takes a component; give it a location of its own")));
+            }
             Variable::Input { location, ty, .. } => {
                 // A geometry stage sees one element for each vertex of its primitive.
                 let ty = match ty {
@@ -87,30 +101,19 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
 
 /// Built-ins are no resources: their decorations tell.
 fn lies_in_rows(words: &[u32]) -> bool {
-    let mut declared = Vec::new();
-    let mut rest = &words[HEADER_WORDS..];
-    while let Some(&first) = rest.first() {
-        let instruction = &rest[..((first >> 16) as usize).clamp(1, rest.len())];
-        if first & 0xffff == Op::Decorate as u32
-            && let [_, _, decoration, built_in] = *instruction
-            && decoration == Decoration::BuiltIn as u32
-        {
-            declared.push(built_in);
-        }
-        rest = &rest[instruction.len()..];
-    }
+    let declared = spirv::declared_built_ins(words);
     let declares = |built_in: BuiltIn| declared.contains(&(built_in as u32));
     declares(BuiltIn::NumWorkgroups) && !declares(BuiltIn::GlobalInvocationId)
 }
 
-fn read_local_size(entry_point: &EntryPoint) -> Option<[u32; 3]> {
-    let modes = &entry_point.exec_modes;
-    let mode = modes.iter().find(|mode| mode.exec_mode == ExecutionMode::LocalSize)?;
-    let size = |axis: usize| match mode.operands.get(axis)?.value {
-        ConstantValue::U32(threads) => Some(threads),
+/// The numbers of an execution mode.
+fn read_operands<const N: usize>(entry_point: &EntryPoint, wanted: ExecutionMode) -> Option<[u32; N]> {
+    let mode = entry_point.exec_modes.iter().find(|mode| mode.exec_mode == wanted)?;
+    let numbers = mode.operands.iter().map_while(|operand| match operand.value {
+        ConstantValue::U32(number) => Some(number),
         _ => None,
-    };
-    Some([size(0)?, size(1)?, size(2)?])
+    });
+    numbers.collect::<Vec<_>>().try_into().ok()
 }
 
 fn read_primitive(entry_point: &EntryPoint) -> Option<u32> {

@@ -327,3 +327,35 @@ fn a_missing_folder_is_named() {
     let error = compile_dir(Path::new("no/such/folder")).unwrap_err();
     assert!(error.to_string().starts_with("reading no/such/folder: "), "{error}");
 }
+
+#[test]
+fn what_a_workgroup_shares_is_counted_as_std430_lays_it_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "#version 450\nlayout(local_size_x = 1) in;\n\
+                struct Pair { vec2 place; bool is_set; };\nconst int COUNT = 3;\n\
+                shared float a;\nshared vec3 b;\nshared Pair c[COUNT];\nshared mat3 d;\n\
+                layout(set = 0, binding = 0) buffer Values { float values[]; };\n\
+                void main() { a = values[0]; b = vec3(a); c[1].place = b.xy; d = mat3(a);\n\
+                values[1] = d[0].x + b.x + c[2].place.x; }\n";
+    fs::write(folder.path().join("a.comp"), text).unwrap();
+    let shader = compile_dir(folder.path()).unwrap().remove(0);
+    // b at 0, d's columns at 16, 32 and 48, pairs of 16 bytes from 64 on, a at 112.
+    assert_eq!(Interface::reflect(&shader.glslang).unwrap().shared_bytes, 116);
+    assert_eq!(reflect_embedded("test/sum.comp").shared_bytes, 4 * 64);
+    assert_eq!(reflect_embedded("test/sprites.vert").shared_bytes, 0);
+}
+
+#[test]
+fn filters_and_sizes_of_points_are_told_from_fetches_and_declarations() {
+    let between = |texture, sampler| Filtering { texture: Some(texture), sampler: Some(sampler), compares: false };
+    // Both fetches and filters; fetches alone; neither.
+    assert_eq!(reflect_embedded("test/filter.comp").filterings, [between(0, 1)]);
+    assert_eq!(reflect_embedded("caustics/coverage.frag").filterings, []);
+    assert_eq!(reflect_embedded("test/sum.comp").filterings, []);
+    for (name, writes) in [("test/splat-point.vert", true), ("test/asymmetric.vert", false), ("test/strip.geom", false)]
+    {
+        assert_eq!(reflect_embedded(name).writes_point_size, writes, "{name}");
+    }
+    let strip = reflect_embedded("test/strip.geom");
+    assert_eq!((strip.primitive_vertices, strip.emitted_vertices), (Some(1), Some(4)));
+}
