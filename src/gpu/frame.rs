@@ -70,9 +70,14 @@ impl Frame<'_> {
         Ok(())
     }
 
-    /// Submits and waits; `pass` is the one whose results the host waits for.
-    pub(super) fn finish(&mut self, pass: Option<usize>) -> Result<(), Error> {
+    /// Submits the last of the frame and waits.
+    pub(super) fn finish(&mut self) -> Result<(), Error> {
         self.check_open()?;
+        self.submit(None)
+    }
+
+    /// Submits and waits; `pass` is the one whose results the host waits for.
+    fn submit(&mut self, pass: Option<usize>) -> Result<(), Error> {
         let r = &mut *self.recorder;
         if self.mode == Mode::Bracketed
             && let Some(query) = r.timestamps.as_mut().and_then(QueryPool::take)
@@ -109,12 +114,13 @@ impl Frame<'_> {
     /// # Errors
     /// Any error of Vulkan; [`Error::Interrupted`] of a frame that [`Recorder::run_unless`] gives up.
     pub fn wait_for(&mut self, pass: &Pass) -> Result<(), Error> {
+        self.check_open()?;
         self.admit(pass.info())?;
         let at = self.sample_of(pass.info());
         let waiting = Instant::now();
-        self.finish(Some(at))?;
         // Until the rest of the frame has begun, nothing may be recorded.
         self.failed = Some(pass.info().name);
+        self.submit(Some(at))?;
         let wait_ms = waiting.elapsed().as_secs_f64() * 1e3;
         *self.recorder.sample.passes[at].wait_ms.get_or_insert(0.0) += wait_ms;
         if self.interrupted.is_some_and(|interrupted| interrupted.load(Ordering::Relaxed)) {
@@ -237,8 +243,9 @@ impl Frame<'_> {
         })?;
         if to.is_readback() {
             let r = &mut *self.recorder;
-            let uses = [Use { resource: to.into(), access: Access::HostRead, discard: false }];
-            r.commands.synchronise(pass.info().name, &uses)?;
+            // What the copy has written, and no more: nothing else may be there to be read.
+            let [_, written] = transfer::copy_uses(from, to);
+            r.commands.synchronise(pass.info().name, &[Use { access: Access::HostRead, ..written }])?;
         }
         Ok(())
     }

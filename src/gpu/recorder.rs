@@ -160,7 +160,7 @@ impl Recorder {
             Err(_) if frame.end == End::Reached && frame.failed.is_none() => {}
             other => other?,
         }
-        frame.finish(None)?;
+        frame.finish()?;
         drop(frame);
         for &pass in &self.overrun {
             let sample = &mut self.sample.passes[pass];

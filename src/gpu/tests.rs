@@ -89,9 +89,9 @@ fn fail(waits: u32, idles: u32) {
     });
 }
 
-/// A device whose waits fail when [`fail`] says so, as they may when memory runs out.
-fn open_failing_device() -> Arc<Device> {
-    let mut device = Arc::into_inner(open_device()).unwrap();
+/// The device, which nobody else has, with waits that fail when [`fail`] says so, as they may when memory runs out.
+fn failing(device: Arc<Device>) -> Arc<Device> {
+    let mut device = Arc::into_inner(device).unwrap();
     let raw = &device.raw;
     let mut first = raw.fp_v1_0().clone();
     let hooks = Hooks { wait: first.wait_for_fences, idle: first.device_wait_idle, failing_waits: 0, failing_idles: 0 };
@@ -111,7 +111,7 @@ fn open_failing_device() -> Arc<Device> {
 #[test]
 fn after_a_failed_wait_nothing_is_dropped_that_the_device_may_read() {
     let _alone = alone();
-    let device = open_failing_device();
+    let device = failing(open_device());
     let live = device.live().clone();
     let count = |kind| live.alive().iter().find(|(k, _)| *k == kind).map_or(0, |(_, n)| *n);
     let shaders = ShaderLibrary::new(&device, Compiler::Glslang, None).unwrap();
@@ -160,6 +160,32 @@ fn after_a_failed_wait_nothing_is_dropped_that_the_device_may_read() {
     let leaked = [Kind::Image, Kind::Framebuffer, Kind::Pipeline, Kind::CommandPool, Kind::Fence, Kind::Device];
     assert_eq!(leaked.map(count), [1; 6]);
     assert!(count(Kind::QueryPool) > 0);
+    let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
+    assert!(messages.is_empty(), "{messages:#?}");
+}
+
+#[test]
+fn a_failed_wait_within_a_frame_ends_it() {
+    let _alone = alone();
+    let device = failing(open_device());
+    let shaders = ShaderLibrary::new(&device, Compiler::Glslang, None).unwrap();
+    let target = color_target(&device, "target", vk::Format::R8G8B8A8_UNORM);
+    let clear = Pass::graphics("clear", "", "test/asymmetric.vert", "test/asymmetric.frag")
+        .color(&target, Load::Clear([1.0; 4]), Blend::Replace)
+        .build(&shaders)
+        .unwrap();
+    let mut recorder = Recorder::new(&device).unwrap();
+    let outcome = recorder.run(Mode::Plain, |frame| {
+        frame.graphics(&clear, |_| {})?;
+        fail(1, 0);
+        assert!(frame.wait_for(&clear).is_err());
+        // Its command buffer is not recorded into any more.
+        let refused = frame.graphics(&clear, |_| {}).unwrap_err().to_string();
+        assert!(refused.contains("goes no further"), "{refused}");
+        Ok::<(), Error>(())
+    });
+    assert!(outcome.is_err_and(|error| error.to_string().contains("goes no further")));
+    recorder.run(Mode::Plain, |frame| frame.graphics(&clear, |_| {})).unwrap();
     let messages: Vec<String> = device.instance().take_messages().iter().map(ToString::to_string).collect();
     assert!(messages.is_empty(), "{messages:#?}");
 }

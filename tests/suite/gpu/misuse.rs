@@ -212,6 +212,41 @@ fn mapped_memory_is_lent_to_readers_alone_and_only_what_was_written_for_them() {
 }
 
 #[test]
+fn a_copy_into_a_longer_buffer_is_read_as_far_as_it_reaches() {
+    gpu_test(|device| {
+        let readback = Buffer::new(device, BufferDesc::new("copy", 64).location(Location::Readback)).unwrap();
+        let numbers = storage_buffer(device, "numbers", &[7.0; 4]);
+        let copy = Pass::copy("copy-out", "", &numbers, &readback);
+        run(device, Mode::Plain, |frame| frame.copy(&copy)).unwrap();
+        assert_eq!(readback.read(16, <[u8]>::to_vec).unwrap(), [7.0f32.to_le_bytes(); 4].concat());
+        assert!(message(readback.read(17, |_| ())).contains("nothing was written there"));
+    });
+}
+
+#[test]
+fn passes_are_bound_anew_while_they_are_recorded() {
+    gpu_test(|device| {
+        let library = shaders(device);
+        let [numbers, others] = ["numbers", "others"].map(|name| storage_buffer(device, name, &[0.0; 64]));
+        let pass = advance_pass(device, &numbers);
+        thread::scope(|scope| {
+            scope.spawn(|| {
+                let mut recorder = Recorder::new(device).unwrap();
+                for _ in 0..100 {
+                    recorder.run(Mode::Plain, |frame| advance(frame, &pass)).unwrap();
+                }
+            });
+            scope.spawn(|| {
+                for _ in 0..200 {
+                    pass.rebind().with("Values", &others).build(&library).unwrap();
+                }
+            });
+        });
+        assert_eq!(values(device, &numbers), [100.0; 64]);
+    });
+}
+
+#[test]
 fn objects_of_another_device_are_refused() {
     gpu_test_alone(|device| {
         let other = other_device(device);
