@@ -21,6 +21,9 @@ impl Stages {
     /// The compute stage.
     pub const COMPUTE: Stages = Stages(8);
 
+    /// Every stage.
+    pub(crate) const EACH: [Stages; 4] = [Stages::VERTEX, Stages::GEOMETRY, Stages::FRAGMENT, Stages::COMPUTE];
+
     /// True when all of `other` is among them.
     pub fn contains(self, other: Stages) -> bool {
         self.0 & other.0 == other.0

@@ -128,6 +128,7 @@ impl Bindings {
             }
             chosen.push(resource);
         }
+        join_stages(&mut uses);
 
         let sizes: Vec<_> = program
             .slots
@@ -194,6 +195,22 @@ impl Drop for Bindings {
         // SAFETY: a frame keeps the pass, and with it these bindings, until its fence.
         unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
         self.device.live().remove(Kind::DescriptorPool);
+    }
+}
+
+/// Makes every sampled use of an image one by all stages that sample it. Barriers that are recorded together do not wait for
+/// each other: were the stages apart, the first use would move the image to its layout for its own stages alone.
+fn join_stages(uses: &mut [Use]) {
+    let sampled = |one: &Use| match (&one.resource, one.access) {
+        (Resource::Image(view), Access::SampledRead(stages)) => Some((Arc::as_ptr(&view.image), stages)),
+        _ => None,
+    };
+    let all: Vec<_> = uses.iter().filter_map(sampled).collect();
+    for one in uses {
+        if let Some((image, stages)) = sampled(one) {
+            let of_image = all.iter().filter(|(other, _)| *other == image);
+            one.access = Access::SampledRead(of_image.fold(stages, |sum, (_, stages)| sum | *stages));
+        }
     }
 }
 

@@ -5,13 +5,13 @@ use std::ptr::NonNull;
 use std::sync::Arc;
 
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::Allocation;
 
 use super::access::State;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
+use super::memory::allocate;
 use super::tracked::{InUse, SubmissionId, Tracked};
 
 /// The memory that a buffer lies in.
@@ -306,45 +306,4 @@ fn check_usage(device: &Device, desc: &BufferDesc, size_bytes: u64) -> Result<()
         return Err(Error::Limit { object: desc.name.clone(), what, wanted: size_bytes, limit });
     }
     Ok(())
-}
-
-/// Allocates memory for a buffer (`linear`) or an image.
-pub(crate) fn allocate(
-    device: &Arc<Device>,
-    name: &str,
-    requirements: vk::MemoryRequirements,
-    location: Location,
-    linear: bool,
-) -> Result<Allocation, Error> {
-    let out_of_memory = || Error::OutOfMemory { object: name.to_owned(), bytes: requirements.size };
-    let memory = &device.physical().memory;
-    let heaps = memory.memory_heaps[..memory.memory_heap_count as usize].iter().map(|heap| heap.size);
-    let (largest, all) = (heaps.clone().max().unwrap_or(0), heaps.sum());
-    // Some drivers promise more than there is, and fail where it is written to.
-    let total = device.live().total_bytes().saturating_add(requirements.size);
-    let (what, wanted, limit) = if requirements.size > largest {
-        ("size in bytes", requirements.size, largest)
-    } else {
-        ("size in bytes, together with all that is allocated already,", total, all)
-    };
-    if wanted > limit {
-        return Err(Error::Limit { object: name.to_owned(), what, wanted, limit });
-    }
-    device
-        .allocator()
-        .allocate(&AllocationCreateDesc {
-            name,
-            requirements,
-            location: match location {
-                Location::Device => MemoryLocation::GpuOnly,
-                Location::Upload => MemoryLocation::CpuToGpu,
-                Location::Readback => MemoryLocation::GpuToCpu,
-            },
-            linear,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-        })
-        .map_err(|error| match error {
-            gpu_allocator::AllocationError::OutOfMemory => out_of_memory(),
-            other => Error::Allocation { object: name.to_owned(), reason: other.to_string() },
-        })
 }

@@ -2,6 +2,7 @@
 
 use std::ffi::CString;
 use std::mem::ManuallyDrop;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use ash::{ext, vk};
@@ -26,8 +27,10 @@ pub struct Device {
     pub(super) presenting: Option<super::surface::Presenting>,
     /// Every extension that was asked for.
     extensions: Vec<String>,
-    physical: PhysicalDevice,
+    pub(super) physical: PhysicalDevice,
     instance: Arc<Instance>,
+    /// Set while its profiling lock is held, which it has once.
+    pub(super) is_profiling: AtomicBool,
 }
 
 impl Device {
@@ -43,7 +46,8 @@ impl Device {
     /// As [`Device::open`], for swapchains.
     ///
     /// # Errors
-    /// Those of [`Device::open`].
+    /// Those of [`Device::open`]; [`Error::Unsupported`] where the instance was not made for a display, or the device has no
+    /// swapchains.
     #[cfg(feature = "window")]
     pub fn open_presenting(instance: &Arc<Instance>, physical: PhysicalDevice) -> Result<Arc<Self>, Error> {
         Self::open_for(instance, physical, true)
@@ -55,6 +59,9 @@ impl Device {
         let (Some((queue_family, _)), true) = (physical.queue, missing.is_empty()) else {
             return Err(Error::MissingFeature { device: physical.name, missing: missing.join(", ") });
         };
+        if presents {
+            check_presenting(instance, &physical)?;
+        }
         let on = |feature: Feature| physical.has(feature);
         let core = vk::PhysicalDeviceFeatures::default()
             .independent_blend(on(Feature::IndependentBlend))
@@ -144,6 +151,7 @@ impl Device {
             extensions: enabled.iter().map(|name| name.to_string_lossy().into_owned()).collect(),
             physical,
             instance: instance.clone(),
+            is_profiling: AtomicBool::new(false),
         }))
     }
 
@@ -215,6 +223,20 @@ impl Device {
             let _ = unsafe { debug.set_debug_utils_object_name(&info) };
         }
     }
+}
+
+/// # Errors
+/// [`Error::Unsupported`] where the instance was made without surfaces, or the device has no swapchains.
+fn check_presenting(instance: &Instance, physical: &PhysicalDevice) -> Result<(), Error> {
+    let surface = ash::khr::surface::NAME.to_string_lossy();
+    let problem = if !instance.extensions().iter().any(|enabled| *enabled == surface) {
+        "presenting: its instance was not made for a display"
+    } else if !physical.offers(instance, ash::khr::swapchain::NAME) {
+        "swapchains"
+    } else {
+        return Ok(());
+    };
+    Err(Error::Unsupported { object: physical.name.clone(), problem: problem.to_owned() })
 }
 
 /// The text as Vulkan takes it, without the zeros that would end it.

@@ -7,11 +7,12 @@ use ash::vk;
 use gpu_allocator::vulkan::Allocation;
 
 use super::access::State;
-use super::buffer::{Location, allocate};
+use super::buffer::Location;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::format::format_info;
 use super::live::Kind;
+use super::memory::allocate;
 use super::tracked::{InUse, SubmissionId, Tracked};
 
 /// The description of an image; [`Image::new`] makes it.
@@ -61,10 +62,16 @@ impl ImageDesc {
     }
 
     fn check_limits(&self, device: &Device) -> Result<(), Error> {
+        use vk::ImageUsageFlags as U;
         let limits = &device.physical().limits;
+        let (mut widest, mut highest) = (limits.max_image_dimension2_d, limits.max_image_dimension2_d);
+        if self.usage.intersects(U::COLOR_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT) {
+            widest = widest.min(limits.max_framebuffer_width);
+            highest = highest.min(limits.max_framebuffer_height);
+        }
         let checks = [
-            ("width in texels", self.width, limits.max_image_dimension2_d),
-            ("height in texels", self.height, limits.max_image_dimension2_d),
+            ("width in texels", self.width, widest),
+            ("height in texels", self.height, highest),
             ("layer count", self.layers, limits.max_image_array_layers),
         ];
         for (what, wanted, limit) in checks {
@@ -336,13 +343,19 @@ pub(crate) fn subresource_range(aspect: vk::ImageAspectFlags, layers: &Range<u32
 /// A sampler; edges are clamped.
 pub struct Sampler {
     pub(crate) raw: vk::Sampler,
+    /// Reads between texels, which not every format allows.
+    pub(super) is_linear: bool,
     pub(super) device: Arc<Device>,
 }
 
 impl Sampler {
     /// # Errors
-    /// [`Error::Vulkan`] when the device refuses.
+    /// [`Error::Unsupported`] for a filter other than the nearest texel's or a linear one; [`Error::Limit`] for more samplers
+    /// than the device has; any error of Vulkan.
     pub fn new(device: &Arc<Device>, name: &str, filter: vk::Filter) -> Result<Arc<Self>, Error> {
+        if ![vk::Filter::NEAREST, vk::Filter::LINEAR].contains(&filter) {
+            return Err(Error::Unsupported { object: name.to_owned(), problem: format!("the filter {filter:?}") });
+        }
         let info = vk::SamplerCreateInfo::default()
             .mag_filter(filter)
             .min_filter(filter)
@@ -359,7 +372,7 @@ impl Sampler {
         let raw = unsafe { device.raw.create_sampler(&info, None) }.context("creating sampler", name)?;
         device.live().add(Kind::Sampler);
         device.name(raw, name);
-        Ok(Arc::new(Sampler { raw, device: device.clone() }))
+        Ok(Arc::new(Sampler { raw, is_linear: filter == vk::Filter::LINEAR, device: device.clone() }))
     }
 }
 

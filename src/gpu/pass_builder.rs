@@ -1,6 +1,7 @@
 //! The description of a pass, and its building.
 
 use std::any::TypeId;
+use std::iter;
 use std::sync::Arc;
 
 use ash::vk;
@@ -14,7 +15,7 @@ use super::image::ImageView;
 use super::indirect::Clamp;
 use super::pass::{Body, DrawBounds, Inner, Pass};
 use super::pass_check;
-use super::pass_info::{PassInfo, PassKind};
+use super::pass_info::{PassInfo, PassKind, label};
 use super::physical::Feature;
 use super::pipeline::{Pipeline, Topology, VertexLayout, check_constants};
 use super::program::Program;
@@ -284,8 +285,11 @@ impl PassBuilder {
             }
             None => {}
         }
+        // Named while nobody else has it: passes that are rebound share it, and may be at work on another thread.
+        let name_pipeline = |pipeline: &Pipeline| device.name(pipeline.raw, &label(name, desc.section));
         if desc.kind == PassKind::Compute {
             let pipeline = Pipeline::compute(device, name, &program)?;
+            name_pipeline(&pipeline);
             return finish(
                 shaders,
                 desc,
@@ -293,7 +297,7 @@ impl PassBuilder {
                 None,
             );
         }
-        pass_check::targets(device, &desc, &program.modules)?;
+        pass_check::targets(device, &desc, &program)?;
         let mut layout = vertex_layout.unwrap_or(VertexLayout::none)(name, &program)?;
         layout.rate = desc.vertex_rate;
         layout.check_limits(device, name)?;
@@ -302,6 +306,7 @@ impl PassBuilder {
         let modules = &program.modules;
         let topology = desc.topology;
         let own = Pipeline::graphics(device, name, &program, modules, &render_pass, targets, &layout, topology)?;
+        name_pipeline(&own);
         let counting = match &desc.counting {
             None => None,
             Some((fragment, test)) => {
@@ -348,14 +353,17 @@ pub(super) fn finish(
         return Err(desc.problem(format!("it declares {name} whole, which its shaders do not name")));
     }
     let declared = Declared::new(&desc, &pipeline.program.slots, element_bytes);
-    let bindings = Bindings::new(shaders.device(), desc.name, &pipeline.program, &desc.resources)?;
     let device = shaders.device();
+    let bindings = Bindings::new(device, desc.name, &pipeline.program, &desc.resources)?;
+    for pipeline in iter::once(&pipeline).chain(&counting) {
+        pass_check::filters(device, &desc, pipeline)?;
+    }
     let mut uses = bindings.as_ref().map(|b| b.uses.clone()).unwrap_or_default();
     uses.extend(desc.fixed_function_uses());
     pass_check::uses(device, desc.name, &uses)?;
     let body = match render_pass {
         None => {
-            let workgroup = pass_check::workgroup(device, &desc, &pipeline.program)?;
+            let workgroup = pass_check::workgroup(&desc, &pipeline.program)?;
             pass_check::parameters(&desc, size_of::<vk::DispatchIndirectCommand>())?;
             Body::Compute { workgroup, indirect: Clamp::of_dispatch(shaders, &desc)?.map(Box::new) }
         }
@@ -381,7 +389,6 @@ pub(super) fn finish(
     }
     let mut info = desc.describe(&pipeline.program, &uses);
     info.executables = executables(device, desc.name, &pipeline)?;
-    device.name(pipeline.raw, &info.label());
     let info = Arc::new(info);
     let device = device.clone();
     let inner = Inner {

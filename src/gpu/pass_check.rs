@@ -16,11 +16,12 @@ use super::pass::Workgroup;
 use super::pass_builder::PassDesc;
 use super::pass_info::PassKind;
 use super::physical::Feature;
-use super::pipeline::Topology;
-use super::program::Program;
+use super::pipeline::{Pipeline, Topology};
+use super::program::{Program, Slot};
 use super::render_pass::{Blend, Load, Targets};
 use super::shader::ShaderModule;
-use crate::shader_build::{Location, Scalar};
+use super::stage_limits;
+use crate::shader_build::{BindingKind, Location, Scalar};
 
 /// The stages are those of the pass's kind, and each takes what the one before it gives.
 pub(super) fn stages(device: &Device, desc: &PassDesc, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
@@ -50,6 +51,14 @@ pub(super) fn stages(device: &Device, desc: &PassDesc, modules: &[Arc<ShaderModu
         Topology::Lines => 2,
         Topology::Triangles | Topology::TriangleStrip => 3,
     };
+    // A geometry stage gives points of one pixel: no device is opened with the feature that lets it say more.
+    let before_raster = modules.iter().rfind(|m| m.stage() != Stages::FRAGMENT);
+    if let (Some(module), Topology::Points) = (before_raster, desc.topology)
+        && module.stage() == Stages::VERTEX
+        && !module.interface.writes_point_size
+    {
+        return Err(desc.problem(format!("draws points, and shader {} writes no gl_PointSize", module.name)));
+    }
     for module in modules.iter().filter(|m| m.stage() == Stages::GEOMETRY) {
         if module.interface.primitive_vertices != Some(topology_vertices) {
             let topology = desc.topology;
@@ -86,14 +95,11 @@ fn takes(place: &Location, at: u32) -> bool {
 }
 
 /// The attachments suit the device, and the fragment stage writes each with values of its type.
-pub(super) fn targets(device: &Arc<Device>, desc: &PassDesc, modules: &[Arc<ShaderModule>]) -> Result<(), Error> {
+pub(super) fn targets(device: &Arc<Device>, desc: &PassDesc, program: &Program) -> Result<(), Error> {
     attachments(device, desc)?;
-    outputs(desc, modules, &desc.targets)
-}
-
-fn outputs(desc: &PassDesc, modules: &[Arc<ShaderModule>], targets: &Targets) -> Result<(), Error> {
-    let Some(fragment) = modules.last() else { return Ok(()) };
-    for (at, (target, blend)) in (0..).zip(&targets.colors) {
+    let Some(fragment) = program.modules.last() else { return Ok(()) };
+    stage_limits::attachments(device, desc.name, &program.slots, fragment, desc.targets.colors.len())?;
+    for (at, (target, blend)) in (0..).zip(&desc.targets.colors) {
         if *blend == Blend::Masked {
             continue;
         }
@@ -170,22 +176,54 @@ pub(super) fn counting(
     }
     attachments(device, &alone)?;
     let Some(fragment) = modules.last() else { return Ok(()) };
+    stage_limits::stage(device, desc.name, fragment)?;
+    stage_limits::attachments(device, desc.name, &program.slots, fragment, targets.colors.len())?;
     for binding in &fragment.interface.bindings {
-        let known = |slot: &&super::program::Slot| {
+        let block_bytes = binding.block.as_ref().map(|block| block.size_bytes);
+        let known = |slot: &Slot| {
             slot.binding == binding.binding
-                && slot.kind == binding.kind
-                && slot.name == binding.name
+                && (&slot.name, slot.kind, slot.image) == (&binding.name, binding.kind, binding.image)
+                && slot.block_bytes >= block_bytes
                 && slot.stages.contains(Stages::FRAGMENT)
         };
-        if binding.set != 0 || !program.slots.iter().any(|slot| known(&slot)) {
+        if binding.set != 0 || binding.count != 1 || !program.slots.iter().any(known) {
             let (name, shader) = (&binding.name, &fragment.name);
-            return Err(desc.problem(format!("shader {shader} reads {name}, which the pass's own does not")));
+            return Err(desc.problem(format!("shader {shader} reads {name}, which the pass's own does not read so")));
         }
     }
     if let Some(block) = &fragment.interface.push_constants
         && (block.size_bytes > program.push_bytes || !program.push_stages.contains(vk::ShaderStageFlags::FRAGMENT))
     {
         return Err(desc.problem(format!("shader {} takes push constants that the pass's own does not", fragment.name)));
+    }
+    Ok(())
+}
+
+/// What is read through a linear sampler is of a format that the device filters, and no sampler is taken for one that
+/// compares.
+pub(super) fn filters(device: &Device, desc: &PassDesc, pipeline: &Pipeline) -> Result<(), Error> {
+    let bound = |kind: BindingKind, binding: Option<u32>| {
+        let slots = pipeline.program.slots.iter();
+        let slots = slots.filter(move |slot| slot.kind == kind && binding.is_none_or(|at| slot.binding == at));
+        slots.filter_map(|slot| desc.resources.iter().find(|(name, _)| *name == slot.name))
+    };
+    for filtering in &pipeline.filterings {
+        for (filter, sampler) in bound(BindingKind::Sampler, filtering.sampler) {
+            if filtering.compares {
+                return Err(desc.problem(format!("compares with texels through {filter}, which no sampler does")));
+            }
+            if !matches!(sampler, Resource::Sampler(sampler) if sampler.is_linear) {
+                continue;
+            }
+            for (name, texture) in bound(BindingKind::SampledImage, filtering.texture) {
+                let Resource::Image(view) = texture else { continue };
+                let format = view.image().desc().format;
+                if !device.format_features(format).contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR) {
+                    let problem = format!("reads {name} through {filter}, and this device does not filter {format:?}");
+                    return Err(desc.problem(problem));
+                }
+            }
+        }
     }
     Ok(())
 }
@@ -222,17 +260,11 @@ pub(super) fn uses(device: &Arc<Device>, pass: &str, uses: &[Use]) -> Result<(),
 }
 
 /// The workgroups of the compute stage.
-pub(super) fn workgroup(device: &Device, desc: &PassDesc, program: &Program) -> Result<Workgroup, Error> {
+pub(super) fn workgroup(desc: &PassDesc, program: &Program) -> Result<Workgroup, Error> {
     let interface = program.modules.first().map(|module| &module.interface);
     let Some((interface, size)) = interface.and_then(|i| i.local_size.map(|size| (i, size))) else {
         return Err(desc.problem("its shader does not say how large a workgroup is"));
     };
-    let limits = &device.physical().limits;
-    for (threads, limit) in size.into_iter().zip(limits.max_compute_work_group_size) {
-        check_limit(desc, "threads of a workgroup along one axis", threads.into(), limit)?;
-    }
-    let threads = size.into_iter().map(u64::from).product();
-    check_limit(desc, "threads of a workgroup", threads, limits.max_compute_work_group_invocations)?;
     if size.contains(&0) {
         return Err(desc.problem("its workgroup has no threads"));
     }
@@ -242,9 +274,7 @@ pub(super) fn workgroup(device: &Device, desc: &PassDesc, program: &Program) -> 
 /// The extent that the pass draws over.
 pub(super) fn extent(device: &Device, desc: &PassDesc) -> Result<vk::Extent2D, Error> {
     let extent = desc.targets.extent().ok_or_else(|| desc.problem("it has neither attachments nor an extent"))?;
-    let limits = &device.physical().limits;
-    check_limit(desc, "width in pixels", extent.width.into(), limits.max_framebuffer_width)?;
-    check_limit(desc, "height in pixels", extent.height.into(), limits.max_framebuffer_height)?;
+    stage_limits::extent(device, desc.name, extent)?;
     if extent.width == 0 || extent.height == 0 { Err(desc.problem("its extent is empty")) } else { Ok(extent) }
 }
 

@@ -15,6 +15,7 @@ use super::extensions::Extension;
 use super::frame::Frame;
 use super::instance::Instance;
 use super::live::Kind;
+use super::profiling_lock::ProfilingLock;
 use super::recorder::Recorder;
 use super::sample::Mode;
 
@@ -22,8 +23,6 @@ use super::sample::Mode;
 const MOST_REPLAYS: u32 = 64;
 /// Recordings of a pass in a frame that get a query each.
 const MOST_QUERIES: u32 = 4096;
-/// Wait for the profiling lock, which another process may hold, in nanoseconds.
-const LOCK_TIMEOUT_NS: u64 = 1_000_000_000;
 
 /// One of the device's counters.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -168,37 +167,6 @@ pub(super) fn counters(
 fn text(bytes: &[std::ffi::c_char]) -> String {
     let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
     String::from_utf8_lossy(&bytes).into_owned()
-}
-
-/// The device's profiling lock, held until this is dropped.
-struct ProfilingLock {
-    calls: khr::performance_query::Device,
-    /// Keeps the device alive.
-    _device: Arc<Device>,
-}
-
-impl ProfilingLock {
-    fn take(device: &Arc<Device>) -> Result<Self, Error> {
-        let calls = khr::performance_query::Device::new(&device.instance().raw, &device.raw);
-        let info = vk::AcquireProfilingLockInfoKHR::default().timeout(LOCK_TIMEOUT_NS);
-        // SAFETY: the caller has asked whether the device was opened with the extension.
-        match unsafe { calls.acquire_profiling_lock(&info) } {
-            Ok(()) => Ok(ProfilingLock { calls, _device: device.clone() }),
-            Err(vk::Result::TIMEOUT) => Err(Error::Unsupported {
-                object: "performance counters".to_owned(),
-                problem: "the profiling lock, which another process holds or is not to be had without rights"
-                    .to_owned(),
-            }),
-            Err(other) => Err(Error::vulkan("taking", "the profiling lock", other)),
-        }
-    }
-}
-
-impl Drop for ProfilingLock {
-    fn drop(&mut self) {
-        // SAFETY: it is held, by its taking; `Counting` drops it when nothing is in flight that was recorded under it.
-        unsafe { self.calls.release_profiling_lock() };
-    }
 }
 
 /// A pool of queries that count, reset once: each replay adds what it counts to the same queries.

@@ -188,22 +188,31 @@ impl PhysicalDevice {
         let mut id = vk::PhysicalDeviceIDProperties::default();
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut v13 = vk::PhysicalDeviceVulkan13Properties::default();
-        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut id).push_next(&mut driver);
         // SAFETY: `raw` comes from this instance.
-        let basic = unsafe { instance.raw.get_physical_device_properties(raw) };
-        if basic.api_version >= vk::API_VERSION_1_3 {
-            properties = properties.push_next(&mut v13);
-        }
-        // SAFETY: `raw` comes from this instance, and the chained structures outlive the calls.
-        let (memory, queues, core) = unsafe {
-            instance.raw.get_physical_device_properties2(raw, &mut properties);
+        let (properties, memory, queues, core) = unsafe {
             (
+                instance.raw.get_physical_device_properties(raw),
                 instance.raw.get_physical_device_memory_properties(raw),
                 instance.raw.get_physical_device_queue_family_properties(raw),
                 instance.raw.get_physical_device_features(raw),
             )
         };
-        let properties = properties.properties;
+        // A device of an older Vulkan, which is listed and never opened, is asked for what its version has.
+        let has = |version| properties.api_version >= version;
+        let mut more = vk::PhysicalDeviceProperties2::default().push_next(&mut id);
+        if has(vk::API_VERSION_1_2) {
+            more = more.push_next(&mut driver);
+        }
+        if has(vk::API_VERSION_1_3) {
+            more = more.push_next(&mut v13);
+        }
+        let (mut extensions, mut portability_lacks) = (Vec::new(), None);
+        if has(vk::API_VERSION_1_1) {
+            // SAFETY: `raw` comes from this instance, and the chained structures, which its version has, outlive the call.
+            unsafe { instance.raw.get_physical_device_properties2(raw, &mut more) };
+            extensions = extensions::supported(instance, raw)?;
+            portability_lacks = portability::lacks(instance, raw)?;
+        }
         let needed = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         let queue = queues
             .iter()
@@ -213,7 +222,6 @@ impl PhysicalDevice {
             let bytes: Vec<u8> = bytes.iter().take_while(|&&c| c != 0).map(|&c| c as u8).collect();
             String::from_utf8_lossy(&bytes).into_owned()
         };
-        let extensions = extensions::supported(instance, raw)?;
         Ok(PhysicalDevice {
             raw,
             index,
@@ -232,7 +240,7 @@ impl PhysicalDevice {
             limits: properties.limits,
             memory,
             queue,
-            portability_lacks: portability::lacks(instance, raw)?,
+            portability_lacks,
             performance_counters: performance::counters(instance, raw, &extensions, queue)?,
             extensions,
             is_profiled: false,

@@ -12,7 +12,7 @@ use super::program::{Program, stage_infos};
 use super::render_pass::{RenderPass, Targets};
 use super::shader::ShaderModule;
 use crate::shader_build::HostBlock;
-use crate::shader_build::{Format, Scalar};
+use crate::shader_build::{Filtering, Format, Scalar};
 
 /// One attribute of a vertex: location, format, byte offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,6 +141,8 @@ pub struct Pipeline {
     device: Arc<Device>,
     /// Stages, descriptor layout and push constants.
     pub program: Arc<Program>,
+    /// Textures that its stages read through samplers' filters.
+    pub(crate) filterings: Vec<Filtering>,
 }
 
 impl Pipeline {
@@ -211,7 +213,7 @@ impl Pipeline {
             .render_pass(render_pass.raw);
         // SAFETY: every state lives until the call returns; modules, layout and render pass are alive.
         let made = unsafe { device.raw.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
-        Self::guard(device, pass, program, made)
+        Self::guard(device, pass, program, modules, made)
     }
 
     pub(crate) fn compute(device: &Arc<Device>, pass: &str, program: &Arc<Program>) -> Result<Arc<Self>, Error> {
@@ -222,20 +224,22 @@ impl Pipeline {
         let info = vk::ComputePipelineCreateInfo::default().flags(flags(device)).stage(stage).layout(program.layout);
         // SAFETY: the module and the layout are alive.
         let made = unsafe { device.raw.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
-        Self::guard(device, pass, program, made)
+        Self::guard(device, pass, program, &program.modules, made)
     }
 
     fn guard(
         device: &Arc<Device>,
         pass: &str,
         program: &Arc<Program>,
+        modules: &[Arc<ShaderModule>],
         made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
     ) -> Result<Arc<Self>, Error> {
         // A failed creation of one pipeline leaves a null handle, which needs no freeing.
         let raw = made.map_err(|(_, result)| result).context("creating the pipeline of pass", pass)?[0];
         device.live().add(Kind::Pipeline);
         device.name(raw, pass);
-        Ok(Arc::new(Pipeline { raw, device: device.clone(), program: program.clone() }))
+        let filterings = modules.iter().flat_map(|module| module.interface.filterings.iter().copied()).collect();
+        Ok(Arc::new(Pipeline { raw, device: device.clone(), program: program.clone(), filterings }))
     }
 }
 

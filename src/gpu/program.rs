@@ -9,8 +9,8 @@ use super::access::Stages;
 use super::device::Device;
 use super::error::{Context, Error};
 use super::live::Kind;
-use super::physical::Feature;
 use super::shader::{Compiler, ShaderModule};
+use super::stage_limits;
 use crate::shader_build::{BindingKind, ImageShape};
 
 /// One descriptor of a program's set 0.
@@ -41,6 +41,13 @@ impl Slot {
             BindingKind::CombinedImageSampler => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         }
     }
+
+    /// True where the stages may write it: no declaration says that an image is only read.
+    pub(super) fn is_written_by(&self, stages: Stages) -> bool {
+        let kind = self.kind;
+        self.stages.contains(stages)
+            && matches!(kind, BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { .. })
+    }
 }
 
 /// The stages of a pass with their layouts. All descriptors live in set 0.
@@ -60,11 +67,14 @@ impl Program {
     /// Merges the interfaces of `modules` and makes the layouts.
     ///
     /// # Errors
-    /// [`Error::Pass`] when two stages disagree about a binding or use a set other than 0; [`Error::Limit`] when the
-    /// push constants are larger than the device allows.
+    /// [`Error::Pass`] when two stages disagree about a binding or use a set other than 0; [`Error::Limit`] when stages,
+    /// descriptors or push constants are beyond what the device allows.
     pub fn new(device: &Arc<Device>, pass: &str, modules: Vec<Arc<ShaderModule>>) -> Result<Arc<Self>, Error> {
         let slots = merge(pass, &modules)?;
-        check_slots(device, pass, &slots)?;
+        stage_limits::descriptors(device, pass, &slots)?;
+        for module in &modules {
+            stage_limits::stage(device, pass, module)?;
+        }
         let mut push_stages = Stages::NONE;
         let mut push_bytes = 0;
         for module in &modules {
@@ -178,66 +188,6 @@ fn merge(pass: &str, modules: &[Arc<ShaderModule>]) -> Result<Vec<Slot>, Error> 
     }
     slots.sort_by_key(|s| s.binding);
     Ok(slots)
-}
-
-/// Descriptors within the device's limits, and written by no stage that may not write.
-fn check_slots(device: &Device, pass: &str, slots: &[Slot]) -> Result<(), Error> {
-    let limits = &device.physical().limits;
-    for stage in [Stages::VERTEX, Stages::GEOMETRY, Stages::FRAGMENT, Stages::COMPUTE] {
-        let of_stage = || slots.iter().filter(|slot| slot.stages.contains(stage));
-        let count = |of_kind: fn(&BindingKind) -> bool| of_stage().filter(|slot| of_kind(&slot.kind)).count() as u32;
-        let checks = [
-            ("all", of_stage().count() as u32, limits.max_per_stage_resources),
-            (
-                "uniform buffers",
-                count(|k| matches!(k, BindingKind::UniformBuffer)),
-                limits.max_per_stage_descriptor_uniform_buffers,
-            ),
-            (
-                "storage buffers",
-                count(|k| matches!(k, BindingKind::StorageBuffer { .. })),
-                limits.max_per_stage_descriptor_storage_buffers,
-            ),
-            (
-                "sampled images",
-                count(|k| matches!(k, BindingKind::SampledImage | BindingKind::CombinedImageSampler)),
-                limits.max_per_stage_descriptor_sampled_images,
-            ),
-            (
-                "storage images",
-                count(|k| matches!(k, BindingKind::StorageImage { .. })),
-                limits.max_per_stage_descriptor_storage_images,
-            ),
-            (
-                "samplers",
-                count(|k| matches!(k, BindingKind::Sampler | BindingKind::CombinedImageSampler)),
-                limits.max_per_stage_descriptor_samplers,
-            ),
-        ];
-        if let Some((kind, wanted, limit)) = checks.into_iter().find(|&(_, wanted, limit)| wanted > limit) {
-            return Err(Error::Limit {
-                object: format!("pass {pass} ({kind})"),
-                what: "count of descriptors of one stage",
-                wanted: wanted.into(),
-                limit: limit.into(),
-            });
-        }
-        let may_write = match stage {
-            Stages::COMPUTE => true,
-            Stages::FRAGMENT => device.physical().has(Feature::FragmentStores),
-            _ => false,
-        };
-        let writes = |slot: &&Slot| {
-            let kind = slot.kind;
-            matches!(kind, BindingKind::StorageBuffer { readonly: false } | BindingKind::StorageImage { .. })
-        };
-        if let (false, Some(slot)) = (may_write, of_stage().find(writes)) {
-            let problem =
-                format!("its stage {stage:?} declares {} without readonly, which the device does not take", slot.name);
-            return Err(Error::Pass { pass: pass.to_owned(), problem });
-        }
-    }
-    Ok(())
 }
 
 impl Drop for Program {

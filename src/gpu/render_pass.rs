@@ -8,13 +8,15 @@ use ash::vk;
 use super::access::Access;
 use super::device::Device;
 use super::error::{Context, Error};
+use super::format::format_info;
 use super::image::ImageView;
 use super::live::Kind;
+use crate::shader_build::Scalar;
 
 /// Contents of an attachment when a pass begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Load {
-    /// A clear value: four colour components, or depth, from 0 to 1, in the first.
+    /// A clear value: four colour components, integers where the format has them, or depth, from 0 to 1, in the first.
     Clear([f32; 4]),
     /// The contents that the passes before left.
     Keep,
@@ -195,10 +197,18 @@ impl Targets {
         }
     }
 
-    /// One extent for all, depth cleared to what it can hold, and nothing cleared or discarded that is not written: both
+    /// One extent for all, each cleared to what it can hold, and nothing cleared or discarded that is not written: both
     /// write, which no barrier of a reader waits for.
     pub(super) fn check(&self, pass: &str) -> Result<(), Error> {
         let problem = |problem: String| Err(Error::Pass { pass: pass.to_owned(), problem });
+        for (target, _) in &self.colors {
+            let (image, format) = (target.view.image(), target.view.image().desc().format);
+            if let Load::Clear(color) = target.load
+                && !is_held(format, color)
+            {
+                return problem(format!("clears {} to {color:?}, which {format:?} does not hold", image.name()));
+            }
+        }
         if let Some((target, test)) = &self.depth {
             let name = target.view.image().name();
             let writes = match target.load {
@@ -249,10 +259,31 @@ impl Targets {
                 if target.view.image().aspect().contains(vk::ImageAspectFlags::DEPTH) {
                     vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: value[0], stencil: 0 } }
                 } else {
-                    vk::ClearValue { color: vk::ClearColorValue { float32: value } }
+                    vk::ClearValue { color: clear_color(target.view.image().desc().format, value) }
                 }
             })
             .collect()
+    }
+}
+
+/// True for a colour that a texel of the format holds: integers take integers of their range.
+fn is_held(format: vk::Format, color: [f32; 4]) -> bool {
+    let Some(info) = format_info(format) else { return false };
+    let bits = if info.texel_bytes == 2 { 16 } else { 32 };
+    let range = match info.scalar {
+        Scalar::Float => return true,
+        Scalar::Uint => 0.0..f32::powi(2.0, bits),
+        Scalar::Int => -f32::powi(2.0, bits - 1)..f32::powi(2.0, bits - 1),
+    };
+    color.iter().all(|value| value.fract() == 0.0 && range.contains(value))
+}
+
+/// The colour in the type of the format's values.
+fn clear_color(format: vk::Format, color: [f32; 4]) -> vk::ClearColorValue {
+    match format_info(format).map(|info| info.scalar) {
+        Some(Scalar::Uint) => vk::ClearColorValue { uint32: color.map(|value| value as u32) },
+        Some(Scalar::Int) => vk::ClearColorValue { int32: color.map(|value| value as i32) },
+        Some(Scalar::Float) | None => vk::ClearColorValue { float32: color },
     }
 }
 

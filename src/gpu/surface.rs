@@ -4,7 +4,7 @@
 use std::ffi::{CStr, c_void};
 use std::num::NonZeroU32;
 use std::ptr::NonNull;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use ash::{ext, khr, vk};
 use raw_window_handle::{
@@ -95,6 +95,9 @@ pub struct Surface {
     pub(super) raw: vk::SurfaceKHR,
     pub(super) calls: khr::surface::Instance,
     instance: Arc<Instance>,
+    /// The swapchain that has it, null without one. Held for the calls that make and destroy swapchains, which want the
+    /// surface for themselves.
+    pub(super) swapchain: Mutex<vk::SwapchainKHR>,
     // The window outlives its surface.
     _window: Arc<dyn Send + Sync>,
 }
@@ -122,7 +125,8 @@ impl Surface {
             .context("creating the surface of", "the window")?;
         instance.live().add(Kind::Surface);
         let calls = khr::surface::Instance::new(&instance.entry, &instance.raw);
-        Ok(Arc::new(Surface { raw, calls, instance: instance.clone(), _window: window.clone() }))
+        let swapchain = Mutex::new(vk::SwapchainKHR::null());
+        Ok(Arc::new(Surface { raw, calls, instance: instance.clone(), swapchain, _window: window.clone() }))
     }
 
     /// The instance that it is a part of.

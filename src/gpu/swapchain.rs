@@ -4,7 +4,8 @@
 mod plan;
 mod sync;
 
-use std::sync::Arc;
+use std::mem;
+use std::sync::{Arc, MutexGuard};
 
 use ash::vk;
 
@@ -49,6 +50,16 @@ struct Slot {
     is_pending: bool,
 }
 
+impl Slot {
+    /// Keeps its semaphore and its fence from being destroyed.
+    fn leak(&mut self) {
+        self.copied.leak();
+        if let Some(fence) = &mut self.released {
+            fence.leak();
+        }
+    }
+}
+
 /// The images of a window.
 pub struct Swapchain {
     raw: vk::SwapchainKHR,
@@ -69,7 +80,7 @@ impl Swapchain {
     ///
     /// # Errors
     /// [`Error::Unsupported`] where the surface has no image that a picture can be copied into, or not this way of
-    /// presenting; any error of Vulkan.
+    /// presenting, or another swapchain than `old`; any error of Vulkan.
     pub fn new(
         device: &Arc<Device>,
         surface: &Arc<Surface>,
@@ -110,6 +121,14 @@ impl Swapchain {
                 .context(asking, "the window")?;
         }
         let Some(plan) = plan(&capabilities, &formats, &modes, mode, window)? else { return Ok(None) };
+        // What may fail comes before there is a swapchain, which would be nobody's then.
+        let (acquired, commands) = (Semaphore::new(device, "acquired")?, Commands::new(device, "present")?);
+        let old_raw = old.as_ref().map_or_else(vk::SwapchainKHR::null, |old| old.raw);
+        let mut current = owner(surface);
+        if *current != old_raw {
+            let problem = "a second swapchain at a time: give the first as the old one, or drop it".into();
+            return Err(Error::Unsupported { object: "the window".into(), problem });
+        }
         let info = vk::SwapchainCreateInfoKHR::default()
             .surface(surface.raw)
             .min_image_count(plan.image_count)
@@ -123,19 +142,21 @@ impl Swapchain {
             .composite_alpha(plan.alpha)
             .present_mode(plan.mode.vulkan())
             .clipped(true)
-            .old_swapchain(old.as_ref().map_or_else(vk::SwapchainKHR::null, |old| old.raw));
-        // SAFETY: the plan is made of what the surface offers; the surface is held below; `old`, if any, is of the same
-        // device and surface, not retired before, and not used again.
+            .old_swapchain(old_raw);
+        // SAFETY: the plan is made of what the surface offers; the surface is held below, and locked for the call; `old`, if
+        // any, is of the same device and surface, not retired before, and not used again; no other swapchain has the surface.
         let raw = unsafe { presenting.swapchains.create_swapchain(&info, None) }
             .context("creating the swapchain of", "the window")?;
         device.live().add(Kind::Swapchain);
+        *current = raw;
+        drop(current);
         drop(old);
         let mut swapchain = Swapchain {
             raw,
             slots: Vec::new(),
-            acquired: Semaphore::new(device, "acquired")?,
+            acquired,
             is_broken: false,
-            commands: Commands::new(device, "present")?,
+            commands,
             plan,
             device: device.clone(),
             surface: surface.clone(),
@@ -301,6 +322,11 @@ unsafe fn barrier(
     unsafe { raw.cmd_pipeline_barrier2(commands, &info) };
 }
 
+/// The swapchain that has the surface.
+fn owner(surface: &Surface) -> MutexGuard<'_, vk::SwapchainKHR> {
+    surface.swapchain.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
 /// The calls of swapchains of a device that was opened for them.
 fn presenting(device: &Device) -> Result<&Presenting, Error> {
     device.presenting.as_ref().ok_or_else(|| Error::Unsupported {
@@ -311,23 +337,29 @@ fn presenting(device: &Device) -> Result<&Presenting, Error> {
 
 impl Drop for Swapchain {
     fn drop(&mut self) {
+        if !self.commands.is_idle() {
+            // A copy may still write an image. Leaked on purpose, and the surface with it.
+            self.acquired.leak();
+            self.slots.iter_mut().for_each(Slot::leak);
+            mem::forget(self.surface.clone());
+            return;
+        }
         // A lost device has nothing to wait for, and no other error leaves work behind that was not waited for.
         let _ = self.device.raw_wait_idle();
         for slot in &mut self.slots {
-            if slot.is_pending
-                && let Some(fence) = &slot.released
-                && fence.wait_and_reset().is_err()
-            {
-                // The present may still use both: leaked on purpose.
-                slot.copied.leak();
-                if let Some(fence) = &mut slot.released {
-                    fence.leak();
-                }
+            if slot.is_pending && slot.released.as_ref().is_some_and(|fence| fence.wait_and_reset().is_err()) {
+                // The present may still use both.
+                slot.leak();
             }
         }
+        let mut current = owner(&self.surface);
         if let Some(presenting) = &self.device.presenting {
             // SAFETY: the device is idle or lost, and nothing else has the swapchain.
             unsafe { presenting.swapchains.destroy_swapchain(self.raw, None) };
+        }
+        // One that took over from this one has the surface already.
+        if *current == self.raw {
+            *current = vk::SwapchainKHR::null();
         }
         self.device.live().remove(Kind::Swapchain);
     }

@@ -1,5 +1,7 @@
 //! Tests that need the layer's inside: a barrier left out is reported, and every shader makes a pipeline.
 
+mod limits;
+
 use std::cell::RefCell;
 use std::env;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -8,14 +8,15 @@ use fumarole::gpu::bindings::Resource;
 use fumarole::gpu::pass::PassBuilder;
 use fumarole::gpu::physical::choose;
 use fumarole::gpu::{
-    Blend, Buffer, BufferDesc, BufferView, Compiler, DepthTest, Device, Draw, Error, Feature, Image, ImageDesc,
-    ImageView, Load, Location, Mode, Pass, PhysicalDevice, Sampler, ShaderLibrary, transfer,
+    Blend, Buffer, BufferDesc, BufferView, DepthTest, Device, Draw, Error, Feature, Image, ImageDesc, ImageView, Load,
+    Location, Mode, Pass, PhysicalDevice, Sampler, transfer,
 };
 
 use super::fixtures::{
     Advance, BLACK, Range, Vertex, color_target, paint_pass, run, shaders, storage_buffer, texels, values,
 };
 use super::misuse::{advance_pass, message};
+use super::misuse_shaders::replaced;
 use crate::common::{gpu_test, gpu_test_alone};
 
 fn vertices(device: &Arc<Device>, count: usize) -> Arc<Buffer> {
@@ -398,17 +399,13 @@ fn what_a_device_was_not_opened_with_is_refused() {
         assert!(matches!(strip.build(&library), Err(Error::MissingFeature { .. })));
 
         // A shader of the user's own that computes with 64 bits.
-        let folder = std::env::temp_dir().join(format!("fumarole-doubles-{}", std::process::id()));
-        std::fs::create_dir_all(folder.join("test")).unwrap();
-        let text = "#version 450\nlayout(local_size_x = 1) in;\n\
+        let text = "layout(local_size_x = 1) in;\n\
                     layout(set = 0, binding = 0, std430) buffer Values { double values[]; };\n\
                     void main() { values[0] *= 2.0LF; }\n";
-        std::fs::write(folder.join("test/advance.comp"), text).unwrap();
-        let library = ShaderLibrary::new(device, Compiler::Glslang, Some(&folder));
-        std::fs::remove_dir_all(&folder).unwrap();
+        let library = replaced(device, &[("test/advance.comp", text)]).unwrap();
         let numbers = storage_buffer(device, "numbers", &[0.0; 4]);
         let doubles = Pass::compute("doubles", "", "test/advance.comp").with("Values", &numbers);
-        let text = message(doubles.build(&library.unwrap()));
+        let text = message(doubles.build(&library));
         assert!(text.contains("test/advance.comp: it wants SPIR-V capability 10"), "{text}");
     });
 }

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use ash::vk;
-use fumarole::gpu::{Blend, DepthTest, Device, Image, ImageDesc, ImageView, Load, Mode, Pass, transfer};
+use fumarole::gpu::{Blend, DepthTest, Device, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, transfer};
 
-use super::fixtures::{BLACK, color_target, run, shaders};
+use super::fixtures::{BLACK, color_target, run, shaders, texels};
 use super::misuse::message;
 use crate::common::gpu_test;
 
@@ -44,6 +44,37 @@ fn depth_is_cleared_to_what_it_can_hold() {
         for value in [0.0, 1.0] {
             let pass = draw(value).unwrap();
             run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.vertices(3))).unwrap();
+        }
+    });
+}
+
+#[test]
+fn integers_are_cleared_to_integers() {
+    gpu_test(|device| {
+        let library = shaders(device);
+        let clear = |format, color| -> Result<Arc<ImageView>, Error> {
+            let target = color_target(device, "target", format, 2, 1);
+            let pass = Pass::graphics("clear", "", "common/fullscreen.vert", "test/texels.frag");
+            let pass = pass.color(&target, Load::Clear(color), Blend::Masked).build(&library)?;
+            run(device, Mode::Plain, |frame| frame.graphics(&pass, |_| {}))?;
+            Ok(target)
+        };
+        let counted = clear(vk::Format::R32_UINT, [7.0, 0.0, 0.0, 1.0]).unwrap();
+        assert_eq!(texels::<u32>(device, &counted), [7; 2]);
+        let short = clear(vk::Format::R16_UINT, [65535.0, 0.0, 0.0, 0.0]).unwrap();
+        assert_eq!(texels::<u16>(device, &short), [u16::MAX; 2]);
+        for (format, value) in [
+            (vk::Format::R32_UINT, -1.0),
+            (vk::Format::R32_UINT, 0.5),
+            (vk::Format::R32_UINT, f32::powi(2.0, 32)),
+            (vk::Format::R32_UINT, f32::NAN),
+            (vk::Format::R16_UINT, 65536.0),
+            (vk::Format::R32G32B32A32_SINT, f32::powi(2.0, 31)),
+            (vk::Format::R32G32B32A32_SINT, f32::NEG_INFINITY),
+        ] {
+            let expected =
+                format!("pass clear: clears target to [{value:?}, 0.0, 0.0, 0.0], which {format:?} does not hold");
+            assert_eq!(message(clear(format, [value, 0.0, 0.0, 0.0])), expected);
         }
     });
 }

@@ -13,6 +13,7 @@ mod memory;
 mod memory_model;
 mod misuse;
 mod misuse_passes;
+mod misuse_shaders;
 mod misuse_targets;
 mod pass_desc;
 mod pictures;

@@ -26,6 +26,21 @@ fn no_extension_of_windows_is_asked_for_without_one() {
 }
 
 #[test]
+fn a_device_presents_by_an_instance_that_was_made_for_a_display() {
+    gpu_test_alone(|_| {
+        let instance = Instance::new(true).unwrap();
+        for physical in PhysicalDevice::enumerate(&instance).unwrap() {
+            if physical.lacks(&[]).is_empty() {
+                let refused = Device::open_presenting(&instance, physical).map(|_| ()).unwrap_err().to_string();
+                assert!(refused.ends_with("presenting: its instance was not made for a display"), "{refused}");
+            }
+        }
+        let messages = instance.take_messages();
+        assert!(messages.is_empty(), "{messages:?}");
+    });
+}
+
+#[test]
 fn without_a_display_there_is_one_line_and_exit_code_3() {
     let view = fumarole("view caustics").without("DISPLAY").without("WAYLAND_DISPLAY").without("WAYLAND_SOCKET");
     view.run().refused(3, &["opening a window", "render"]);
