@@ -10,6 +10,8 @@ layout(push_constant, std430) uniform Band {
     uint first_triangle; // of those that are drawn, among all
     uint triangle_count; // of those that are drawn
     uint picture_row; // the first row of the first band
+    uint end_list_row; // the row after the last one of the band
+    uint rest; // 1 for pixels that are not of the lattice, see lattice.glsl
 } band;
 
 // The list of a pixel.

@@ -13,4 +13,11 @@ layout(set = 0, binding = 18, std430) readonly buffer Counts {
     uint chunks; // of the triangles of tiles that there is room for
     uint cache; // entries of the tables of densities along each axis
     uint bricks; // along each axis of a volume's box
+    uint froxel_columns;
+    uint froxel_rows;
+    uint froxel_slices;
+    float froxels_first_m; // depth at which they begin, see froxels.glsl
+    float froxels_last_m; // and end
+    uint glow; // 1 where files have temperatures
+    uint volume_scale; // of every so many columns and rows a pixel's gas is marched before the others' is
 } counts;

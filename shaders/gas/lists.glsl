@@ -32,7 +32,7 @@ struct Section {
 // What `sort` finds of a pixel, and what `volume` counts.
 struct Pixel {
     uint first_section; // slots that are reserved for its sections
-    uint section_count;
+    uint section_count; // those that `volume` has made, once it is done with the pixel
     float end_m; // depth at which its tracing ends
     uint evaluations; // of the density
 };

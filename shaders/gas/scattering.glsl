@@ -1,5 +1,8 @@
 // The light that an element of gas sends to the eye (section "Illumination of gaseous phenomena").
 
+#include "gas/gas.glsl"
+#include "gas/glow-{DENSITY}.glsl"
+
 const float PI = 3.14159265;
 
 // Henyey and Greenstein; the angle is between the light's direction and that to the eye, so that g > 0 scatters
@@ -54,18 +57,11 @@ vec3 emission_at(vec3 point, Frames frames, float densest, float since_m, float 
     is_cut = is_cut || l < counts.lights;
     for (v = 0u; v < counts.volumes; v++) {
         emission += volumes[v].tau_per_m * densities[v] * volumes[v].albedo * frame.ambient;
+        // Hot gas sends out by the fraction that it absorbs (Kirchhoff).
+        if (densities[v] > 0.0) {
+            emission += volumes[v].tau_per_m * densities[v] * (1.0 - volumes[v].albedo) * glow_at(v, point);
+        }
     }
     is_cut = is_cut || v < counts.volumes;
     return emission;
 }
-
-// What the march of a section finds.
-struct Gas {
-    vec3 color; // premultiplied
-    float transparency;
-    uint increments;
-    uint evaluations; // of the density, in this dispatch
-    bool is_done;
-};
-
-const Gas NOTHING = Gas(vec3(0.0), 1.0, 0u, 0u, false);

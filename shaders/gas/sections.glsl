@@ -20,6 +20,8 @@ layout(set = 0, binding = 13, std430) buffer Sections {
     Section sections[];
 };
 
+#include "gas/lattice.glsl"
+
 void set_next(uint list, uint node, uint next) {
     if (node == NONE) {
         heads[list] = next;
@@ -38,9 +40,10 @@ void main() {
     uint pixel_index = pixel.y * frame.size.x + pixel.x;
     uint list = list_of(pixel);
     Pixel reserved = pixels[list];
-    if (reserved.section_count == 0u || !is_due(VOLUME, list)) {
+    if (reserved.section_count == 0u || !is_turn_of(pixel) || !is_due(VOLUME, list)) {
         return;
     }
+    bool is_lent = !is_on_lattice(pixel);
     vec3 ray = ray_direction(vec2(pixel) + 0.5);
     float end = reserved.end_m;
     vec2 segments[MAX_VOLUMES];
@@ -108,7 +111,13 @@ void main() {
         is_done = !is_stopped && (!has_more || next <= depth);
         if (!is_stopped && !is_done) {
             if (has_gas) {
-                Gas gas = march(pixel_index, ray, segments, vec2(depth, next), transparency, number, begun);
+                Gas gas = begun;
+                if (is_lent && begun.increments == 0u) {
+                    gas = taken(pixel, used, vec2(depth, next));
+                }
+                if (!gas.is_done) {
+                    gas = march(pixel_index, ray, segments, vec2(depth, next), transparency, number, begun);
+                }
                 evaluations += gas.evaluations;
                 uint slot = reserved.first_section + used;
                 sections[slot] = Section(depth, next, float(gas.increments), fragment, gas.color, gas.transparency);
@@ -132,6 +141,9 @@ void main() {
         }
     }
     pixels[list].evaluations = evaluations;
+    if (is_done) {
+        pixels[list].section_count = used;
+    }
     uvec4 place = uvec4(floatBitsToUint(depth), fragment, previous, used);
     State state = State(place, uvec4(number, floatBitsToUint(transparency), begun.increments, 0u), uvec3(0u));
     leave(VOLUME, list, is_done, before, state);

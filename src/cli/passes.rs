@@ -99,8 +99,11 @@ fn text_of(listed: &Listed) -> String {
 fn shape(target: &Target) -> String {
     match &target.resource {
         Resource::Image(view) => {
-            let layers = view.layer_count();
-            let layers = if layers > 1 { format!(" x {layers} layers") } else { String::new() };
+            let layers = match (view.layer_count(), view.depth()) {
+                (1, 1) => String::new(),
+                (1, slices) => format!(" x {slices}"),
+                (layers, _) => format!(" x {layers} layers"),
+            };
             format!("{} x {}{layers} {:?}", view.width(), view.height(), view.image().desc().format)
         }
         Resource::Buffer(view) => {

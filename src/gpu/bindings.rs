@@ -285,7 +285,9 @@ fn check_resource(device: &Device, slot: &Slot, resource: &Resource) -> Result<(
             if !view.image.desc().usage.contains(usage) {
                 return not_made(kind);
             }
-            if !fits || !shape.is_plain_2d || shape.is_array != view.is_array {
+            let is_shape =
+                if view.is_3d() { shape.is_3d } else { shape.is_plain_2d && shape.is_array == view.is_array };
+            if !fits || !is_shape {
                 return Err(format!("{} has another format, aspect or shape than {name}", slot.name));
             }
         }

@@ -26,12 +26,15 @@ pub struct ImageDesc {
     pub width: u32,
     /// Height in texels.
     pub height: u32,
+    /// Depth in texels of a three-dimensional image, at least 1.
+    pub depth: u32,
     /// Array layers, at least 1.
     pub layers: u32,
     /// Every use that Vulkan is to allow of it.
     pub usage: vk::ImageUsageFlags,
     /// Set for an image whose whole view is an array view.
     array: bool,
+    kind: vk::ImageType,
 }
 
 impl ImageDesc {
@@ -42,10 +45,26 @@ impl ImageDesc {
             format,
             width,
             height,
+            depth: 1,
             layers: 1,
             usage: vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
             array: false,
+            kind: vk::ImageType::TYPE_2D,
         }
+    }
+
+    /// A three-dimensional image of one mip level, which copies may read; nothing draws into it.
+    pub fn new_3d(name: impl Into<String>, format: vk::Format, [width, height, depth]: [u32; 3]) -> Self {
+        ImageDesc {
+            depth,
+            usage: vk::ImageUsageFlags::TRANSFER_SRC,
+            kind: vk::ImageType::TYPE_3D,
+            ..Self::new_2d(name, format, width, height)
+        }
+    }
+
+    fn is_3d(&self) -> bool {
+        self.kind == vk::ImageType::TYPE_3D
     }
 
     /// Makes it an array; its whole view is an array view even for one layer.
@@ -64,7 +83,12 @@ impl ImageDesc {
     fn check_limits(&self, device: &Device) -> Result<(), Error> {
         use vk::ImageUsageFlags as U;
         let limits = &device.physical().limits;
-        let (mut widest, mut highest) = (limits.max_image_dimension2_d, limits.max_image_dimension2_d);
+        let (side, layers) = if self.is_3d() {
+            (limits.max_image_dimension3_d, 1)
+        } else {
+            (limits.max_image_dimension2_d, limits.max_image_array_layers)
+        };
+        let (mut widest, mut highest) = (side, side);
         if self.usage.intersects(U::COLOR_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT) {
             widest = widest.min(limits.max_framebuffer_width);
             highest = highest.min(limits.max_framebuffer_height);
@@ -72,7 +96,8 @@ impl ImageDesc {
         let checks = [
             ("width in texels", self.width, widest),
             ("height in texels", self.height, highest),
-            ("layer count", self.layers, limits.max_image_array_layers),
+            ("depth in texels", self.depth, if self.is_3d() { side } else { 1 }),
+            ("layer count", self.layers, layers),
         ];
         for (what, wanted, limit) in checks {
             if wanted == 0 || wanted > limit {
@@ -95,13 +120,18 @@ impl ImageDesc {
             | U::STORAGE
             | U::COLOR_ATTACHMENT
             | U::DEPTH_STENCIL_ATTACHMENT;
-        let is_known = format_info(self.format).is_some() && !self.usage.is_empty() && known.contains(self.usage);
+        // What draws into a target, or fills it from the host, knows two dimensions.
+        let flat = U::TRANSFER_DST | U::COLOR_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT;
+        let is_known = format_info(self.format).is_some()
+            && !self.usage.is_empty()
+            && known.contains(self.usage)
+            && !(self.is_3d() && self.usage.intersects(flat));
         // SAFETY: the physical device is the device's own; the usage is not empty.
         let supported = is_known.then(|| unsafe {
             device.instance().raw.get_physical_device_image_format_properties(
                 device.physical().raw,
                 self.format,
-                vk::ImageType::TYPE_2D,
+                self.kind,
                 vk::ImageTiling::OPTIMAL,
                 self.usage,
                 vk::ImageCreateFlags::empty(),
@@ -109,7 +139,10 @@ impl ImageDesc {
         });
         let fits = supported.and_then(Result::ok).is_some_and(|most| {
             let extent = most.max_extent;
-            self.width <= extent.width && self.height <= extent.height && self.layers <= most.max_array_layers
+            self.width <= extent.width
+                && self.height <= extent.height
+                && self.depth <= extent.depth
+                && self.layers <= most.max_array_layers
         });
         if fits {
             return Ok(());
@@ -139,9 +172,9 @@ impl Image {
         desc.check_limits(device)?;
         desc.check_support(device)?;
         let info = vk::ImageCreateInfo::default()
-            .image_type(vk::ImageType::TYPE_2D)
+            .image_type(desc.kind)
             .format(desc.format)
-            .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: 1 })
+            .extent(vk::Extent3D { width: desc.width, height: desc.height, depth: desc.depth })
             .mip_levels(1)
             .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::TYPE_1)
@@ -197,7 +230,11 @@ impl Image {
     pub fn view(self: &Arc<Self>) -> Result<Arc<ImageView>, Error> {
         // A view that is no array has one layer.
         let is_array = self.desc.array || self.desc.layers > 1;
-        let kind = if is_array { vk::ImageViewType::TYPE_2D_ARRAY } else { vk::ImageViewType::TYPE_2D };
+        let kind = match is_array {
+            _ if self.desc.is_3d() => vk::ImageViewType::TYPE_3D,
+            true => vk::ImageViewType::TYPE_2D_ARRAY,
+            false => vk::ImageViewType::TYPE_2D,
+        };
         ImageView::new(self, kind, self.aspect(), 0..self.desc.layers)
     }
 
@@ -284,7 +321,8 @@ impl ImageView {
     ) -> Result<Arc<Self>, Error> {
         use vk::ImageUsageFlags as U;
         let viewed = U::SAMPLED | U::STORAGE | U::COLOR_ATTACHMENT | U::DEPTH_STENCIL_ATTACHMENT;
-        if !image.aspect().contains(aspect) || !image.desc.usage.intersects(viewed) {
+        let is_3d = kind == vk::ImageViewType::TYPE_3D;
+        if !image.aspect().contains(aspect) || !image.desc.usage.intersects(viewed) || is_3d != image.desc.is_3d() {
             let problem = format!("a view of its {aspect:?}: it is made for {:?}", image.desc.usage);
             return Err(Error::Unsupported { object: image.desc.name.clone(), problem });
         }
@@ -321,6 +359,21 @@ impl ImageView {
     /// Height in texels.
     pub fn height(&self) -> u32 {
         self.image.desc.height
+    }
+
+    /// Depth in texels, 1 but for a three-dimensional image.
+    pub fn depth(&self) -> u32 {
+        self.image.desc.depth
+    }
+
+    /// A view of a three-dimensional image, of which a shader declares one.
+    pub(crate) fn is_3d(&self) -> bool {
+        self.image.desc.is_3d()
+    }
+
+    /// Texels of all rows, layers and slices.
+    pub(crate) fn texel_count(&self) -> u64 {
+        [self.width(), self.height(), self.depth(), self.layer_count()].into_iter().map(u64::from).product()
     }
 }
 

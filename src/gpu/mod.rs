@@ -30,6 +30,7 @@
 //! | filter a texture whose format the device does not filter, by a comparison, or with a filter that it lacks | the pairs of textures and samplers in the binaries are compared with formats and filters | `pass_check`, [`Sampler::new`] |
 //! | sample one image by several stages, some of which do not wait for it | the image's first barrier is one for all of them | `bindings` |
 //! | let counting draws read what the pass does not bind | their binary is compared with the pass's own descriptors | `pass_check` |
+//! | draw into an image of three dimensions, fill it from the host, or bind it as one of two | its uses are refused, shapes are compared | [`Image::new`], `bindings` |
 //! | want what a device was not opened with: stages, stores, capabilities, blending, formats | the features are asked for each | `pass_check`, `program`, `shader`, [`Image::new`] |
 //! | touch what a pass writes a second time in that pass | uses are compared with each other | `pass_check` |
 //! | write depth that a pass only tests, or fill it with what lies outside 0 to 1 | loads, clear values and the tests of counting draws are compared; hosts upload none | `render_pass`, `pass_check`, [`transfer`] |

@@ -269,10 +269,7 @@ pub(crate) fn copy_uses(from: &Resource, to: &Arc<Buffer>) -> [Use; 2] {
 pub(crate) fn copied_bytes(from: &Resource) -> u64 {
     match from {
         Resource::Buffer(view) => view.len_bytes(),
-        Resource::Image(view) => {
-            let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(view.layer_count());
-            texels * texel_bytes(view.image())
-        }
+        Resource::Image(view) => view.texel_count() * texel_bytes(view.image()),
         Resource::Sampler(_) => 0,
     }
 }
@@ -324,14 +321,12 @@ pub fn read_buffer(device: &Arc<Device>, buffer: &Arc<Buffer>) -> Result<Vec<u8>
     read(device, buffer.into(), buffer.size_bytes())
 }
 
-/// Reads the texels of a view back: layers, then rows, then columns, tightly packed.
+/// Reads the texels of a view back: layers or slices, then rows, then columns, tightly packed.
 ///
 /// # Errors
 /// [`Error::ReadBeforeWrite`] when no pass has written it; any error of Vulkan.
 pub fn read_image(device: &Arc<Device>, view: &Arc<ImageView>) -> Result<Vec<u8>, Error> {
-    let layer_count = view.layers.end - view.layers.start;
-    let texels = u64::from(view.width()) * u64::from(view.height()) * u64::from(layer_count);
-    read(device, view.into(), texels * texel_bytes(view.image()))
+    read(device, view.into(), view.texel_count() * texel_bytes(view.image()))
 }
 
 fn read(device: &Arc<Device>, from: Resource, size_bytes: u64) -> Result<Vec<u8>, Error> {
@@ -354,7 +349,7 @@ pub(crate) fn record_copy(raw: &ash::Device, commands: vk::CommandBuffer, from: 
         Resource::Image(view) => {
             let region = vk::BufferImageCopy::default()
                 .image_subresource(subresource(view))
-                .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: 1 });
+                .image_extent(vk::Extent3D { width: view.width(), height: view.height(), depth: view.depth() });
             let layout = Access::CopySource.info().layout;
             // SAFETY: recording; the image is in that layout by its barrier, and `to` holds the view's texels by
             // `check_copy`; the submission keeps both.

@@ -91,7 +91,7 @@ pub fn read_target(device: &Arc<Device>, target: &Target) -> Result<Raster, Erro
         }
         Resource::Image(view) => {
             let bytes = transfer::read_image(device, view)?;
-            let (width, height, layers) = (view.width(), view.height(), view.layer_count());
+            let (width, height, layers) = (view.width(), view.height(), view.layer_count() * view.depth());
             let floats = || bytemuck::pod_collect_to_vec::<u8, f32>(&bytes);
             let raster = match view.image().desc().format {
                 vk::Format::R32_SFLOAT | vk::Format::D32_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT => {

@@ -72,6 +72,8 @@ pub struct Filtering {
 pub struct ImageShape {
     /// Two-dimensional, with one sample a texel.
     pub is_plain_2d: bool,
+    /// Three-dimensional.
+    pub is_3d: bool,
     /// An array of layers.
     pub is_array: bool,
     /// Type of a texel of a sampled image; a storage image has a format.

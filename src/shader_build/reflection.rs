@@ -129,11 +129,13 @@ fn read_image(ty: &Type) -> Option<ImageShape> {
     match ty {
         Type::SampledImage(image) => Some(ImageShape {
             is_plain_2d: image.dim == Dim::Dim2D && !image.is_multisampled,
+            is_3d: image.dim == Dim::Dim3D,
             is_array: image.is_array,
             scalar: read_scalar(&image.scalar_ty, 1).map(|format| format.scalar),
         }),
         Type::StorageImage(image) => Some(ImageShape {
             is_plain_2d: image.dim == Dim::Dim2D && !image.is_multisampled,
+            is_3d: image.dim == Dim::Dim3D,
             is_array: image.is_array,
             scalar: None,
         }),

@@ -21,6 +21,8 @@ host_block! {
         first_triangle: u32,
         triangle_count: u32,
         picture_row: u32,
+        end_list_row: u32,
+        rest: u32,
     }
 }
 
@@ -52,8 +54,9 @@ impl Band {
 
     pub fn constants(self) -> BandConstants {
         let Band { first_row, end_row, picture_row, .. } = self;
-        let list_row = first_row;
-        BandConstants { list_row, first_row, end_row, picture_row, call: 0, calls: 1, ..BandConstants::zeroed() }
+        let (list_row, end_list_row) = (first_row, end_row);
+        let band = BandConstants { list_row, first_row, end_row, picture_row, end_list_row, ..BandConstants::zeroed() };
+        BandConstants { calls: 1, ..band }
     }
 
     /// For so many triangles of a piece, before which come others.
@@ -100,7 +103,7 @@ impl Band {
     /// # Errors
     /// Those of Vulkan.
     pub fn dispatch_times(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
-        self.dispatch_rows(self.end_row - self.first_row, calls, frame, pass)
+        self.dispatch_rows(self.constants(), self.end_row - self.first_row, calls, frame, pass)
     }
 
     /// As [`Band::dispatch_times`], in dispatches that take a short time each.
@@ -108,14 +111,30 @@ impl Band {
     /// # Errors
     /// Those of Vulkan.
     pub fn dispatch_in_parts(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
-        self.dispatch_rows(DISPATCH_ROWS, calls, frame, pass)
+        self.dispatch_rows(self.constants(), DISPATCH_ROWS, calls, frame, pass)
     }
 
-    fn dispatch_rows(self, rows: u32, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+    /// The same for the pixels that are not of the lattice whose gas is marched first.
+    ///
+    /// # Errors
+    /// Those of Vulkan.
+    pub fn dispatch_rest_in_parts(self, calls: u32, frame: &mut Frame<'_>, pass: &Pass) -> Result<(), Error> {
+        let rest = BandConstants { rest: 1, ..self.constants() };
+        self.dispatch_rows(rest, DISPATCH_ROWS, calls, frame, pass)
+    }
+
+    fn dispatch_rows(
+        self,
+        band: BandConstants,
+        rows: u32,
+        calls: u32,
+        frame: &mut Frame<'_>,
+        pass: &Pass,
+    ) -> Result<(), Error> {
         (0..calls).try_for_each(|call| {
             frame.compute(pass, |dispatch| {
                 for (first_row, end_row) in ranges(self.first_row, self.end_row, rows) {
-                    let constants = BandConstants { first_row, end_row, call, calls, ..self.constants() };
+                    let constants = BandConstants { first_row, end_row, call, calls, ..band };
                     dispatch.constants(&constants).threads(self.width, end_row - first_row, 1);
                 }
             })

@@ -47,6 +47,13 @@ host_block! {
         chunks: u32,
         cache: u32,
         bricks: u32,
+        froxel_columns: u32,
+        froxel_rows: u32,
+        froxel_slices: u32,
+        froxels_first_m: f32,
+        froxels_last_m: f32,
+        glow: u32,
+        volume_scale: u32,
     }
 }
 
@@ -280,6 +287,8 @@ impl FrameBlock {
 impl CountsBlock {
     /// Of a variant that makes that use of the scene's volumes.
     pub fn new(parameters: &Parameters, gas: GasUse, capacity: Capacity) -> Self {
+        let [froxel_columns, froxel_rows, froxel_slices] = parameters.froxels;
+        let [froxels_first_m, froxels_last_m] = parameters.gas_depths();
         CountsBlock {
             volumes: gas.volume_count as u32,
             lights: parameters.lights.len() as u32,
@@ -291,6 +300,13 @@ impl CountsBlock {
             chunks: capacity.chunks,
             cache: parameters.density_cache.unwrap_or(0),
             bricks: parameters.bricks,
+            froxel_columns,
+            froxel_rows,
+            froxel_slices,
+            froxels_first_m,
+            froxels_last_m,
+            glow: parameters.glows().into(),
+            volume_scale: parameters.volume_scale,
         }
     }
 }

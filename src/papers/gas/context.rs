@@ -50,4 +50,15 @@ impl Context<'_> {
         let desc = ImageDesc::new_2d(self.name(name), format, self.parameters.width, self.parameters.height);
         Image::new(self.shaders.device(), desc.usage(usage)).map_err(|error| error.set_by("size"))?.view()
     }
+
+    /// A three-dimensional image of the parameters' froxels, four floats each.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for more froxels than the device holds.
+    pub fn froxels(&self, name: &str) -> Result<Arc<ImageView>, Error> {
+        let format = vk::Format::R32G32B32A32_SFLOAT;
+        let desc = ImageDesc::new_3d(self.name(name), format, self.parameters.froxels);
+        let usage = vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED;
+        Image::new(self.shaders.device(), desc.usage(usage)).map_err(|error| error.set_by("froxels"))?.view()
+    }
 }

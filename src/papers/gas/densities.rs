@@ -4,6 +4,7 @@
 use super::bricks::Bricks;
 use super::context::Context;
 use super::density_cache::DensityCache;
+use super::parameters::Variant;
 use super::scene_buffers::SceneBuffers;
 use crate::gpu::pass::PassBuilder;
 use crate::gpu::{Error, Frame};
@@ -19,10 +20,10 @@ pub struct Densities {
 impl Densities {
     /// # Errors
     /// [`Error::Limit`] for tables beyond what the device binds.
-    pub fn new(context: &Context<'_>, scene: &SceneBuffers) -> Result<Self, Error> {
+    pub fn new(context: &Context<'_>, scene: &SceneBuffers, variant: Variant) -> Result<Self, Error> {
         let cached = context.parameters.density_cache;
         let cache = cached.map(|size| DensityCache::new(context, scene, size)).transpose()?;
-        let lost = context.parameters.brick_depth();
+        let lost = context.parameters.brick_depth(variant);
         let bricks = lost.map(|depth| Bricks::new(context, scene, cache.as_ref(), depth)).transpose()?;
         Ok(Densities { cache, bricks })
     }

@@ -16,7 +16,7 @@ const NUMBER: f64 = 4.0;
 /// Bytes of a pixel of the radiance.
 const RADIANCE: f64 = 16.0;
 /// Passes of a band, those of the tables and of the picture.
-const PASSES: u64 = 10;
+const PASSES: u64 = 12;
 /// Loads of the table of densities for a value.
 const CACHED: f64 = 8.0;
 /// Particles that a way of delta tracking meets, roughly: bounds are a few times the density.
@@ -39,7 +39,7 @@ impl Parameters {
         let (lights, volumes) = (self.lights.len() as f64, self.volumes.len() as f64);
         let has_volume = variant != Variant::NoVolume && volumes > 0.0;
         let shadows = has_volume && variant != Variant::None;
-        let table = if has_volume && variant == Variant::Table { f64::from(self.table_size).powi(3) } else { 0.0 };
+        let table = if has_volume && variant.has_table() { f64::from(self.table_size).powi(3) } else { 0.0 };
         let vertices: usize = objects.iter().map(|o| o.mesh.positions.len()).sum();
         let (vertices, triangles) = (vertices as f64, triangles as f64);
         let of_fragment = bytes_of::<LinkBlock>() + bytes_of::<SurfaceBlock>() + bytes_of::<ColorBlock>();
@@ -56,18 +56,23 @@ impl Parameters {
         let octaves = if self.density_cache.is_some() { CACHED } else { values };
         let cube = |entries: u32| f64::from(entries).powi(3) * volumes;
         let cached = optional(has_volume, self.density_cache.map_or(0.0, cube));
-        let bricks = optional(has_volume, self.brick_depth().map_or(0.0, |_| cube(self.bricks)));
+        let bricks = optional(has_volume, self.brick_depth(variant).map_or(0.0, |_| cube(self.bricks)));
         let (points, ways) = match self.march {
             March::Steps => (f64::from(self.steps), 1.0),
             March::Delta => (PARTICLES, f64::from(self.samples)),
         };
-        let steps = pixels * points * ways * volumes;
+        let marched = pixels / f64::from(self.volume_scale).powi(2);
+        let steps = marched * points * ways * volumes;
         // A traced shadow takes up to half of the steps through a volume, and at least those of the sections' ends.
         let shadow_steps = match variant {
             Variant::Traced => lights * (0.5 * points) * octaves,
             _ => lights,
         };
-        let march = if has_volume { steps * (octaves + shadow_steps) } else { 0.0 };
+        let is_marched = has_volume && variant != Variant::Froxel;
+        let march = optional(is_marched, steps * (octaves + shadow_steps));
+        let froxels: f64 = self.froxels.into_iter().map(f64::from).product();
+        let froxels = optional(has_volume && variant == Variant::Froxel, froxels);
+        let in_froxels = froxels * f64::from(self.samples) * volumes * (octaves + lights);
         let waves = 3 * u64::from(self.table_size);
         let bands = u64::from(self.height.div_ceil(capacity.rows.max(1)));
         let tables = u64::from(table > 0.0) * (1 + waves);
@@ -79,8 +84,10 @@ impl Parameters {
                 ("size", optional(has_volume, bytes_of::<SectionBlock>() * sections)),
                 ("light", optional(shadows, NUMBER * fragments * lights)),
                 ("volume-file", NUMBER * samples as f64),
+                ("volume-temperature", optional(self.glows(), RADIANCE * samples as f64)),
                 ("density-cache", NUMBER * cached),
                 ("bricks", NUMBER * bricks),
+                ("froxels", 2.0 * RADIANCE * froxels),
                 ("table", NUMBER * table * volumes * (1.0 + lights)),
                 ("object", bytes_of::<VertexBlock>() * vertices + bytes_of::<TriangleBlock>() * triangles),
                 ("object", bytes_of::<ObjectBlock>() * objects.len() as f64),
@@ -92,6 +99,7 @@ impl Parameters {
             draws: None,
             invocations: vec![
                 ("steps", march),
+                ("froxels", in_froxels),
                 ("density-cache", cached * values),
                 ("bricks", optional(bricks > 0.0, bricks + cached + samples as f64)),
                 ("table", table * volumes * (octaves + 8.0 * lights)),

@@ -13,6 +13,8 @@ pub struct Grid {
     pub steps_m: [DVec3; 3],
     /// 0 where the density is 0, 1 where it is 1; beyond these it is cut off once it is interpolated.
     pub samples: Vec<f32>,
+    /// Light of a black body of each sample's temperature, linear RGB; none without temperatures.
+    pub glow: Vec<[f32; 3]>,
 }
 
 /// Interpolation between the samples of a grid.
@@ -35,7 +37,7 @@ impl Choice for Filter {
 impl Grid {
     /// Of a volume whose own grid is not there: nothing.
     pub fn empty() -> Self {
-        Grid { size: [1; 3], steps_m: [DVec3::X, DVec3::Y, DVec3::Z], samples: vec![0.0] }
+        Grid { size: [1; 3], steps_m: [DVec3::X, DVec3::Y, DVec3::Z], samples: vec![0.0], glow: Vec::new() }
     }
 
     /// Samples along each axis for each metre in the world.

@@ -16,6 +16,8 @@ pub struct GridBuffers {
     pub grids: Arc<Buffer>,
     /// Samples of all grids, floats.
     pub samples: Arc<Buffer>,
+    /// Light of their temperatures, four floats each; one that nothing reads where there are none.
+    pub glow: Arc<Buffer>,
 }
 
 impl GridBuffers {
@@ -36,10 +38,18 @@ impl GridBuffers {
             grids[number].samples[at - firsts[number]]
         };
         let count = firsts[grids.len()];
+        let glow_of = |at: usize| {
+            let number = firsts.partition_point(|&first| first <= at) - 1;
+            let [r, g, b] = grids[number].glow.get(at - firsts[number]).copied().unwrap_or_default();
+            [r, g, b, 0.0]
+        };
+        let glow_count = if context.parameters.glows() { count } else { 1 };
+        let glow = upload_each(device, &context.name("grid-glow"), STORAGE, glow_count, glow_of);
         let samples = upload_each(device, &context.name("grid-samples"), STORAGE, count, sample);
         Ok(GridBuffers {
             grids: upload(device, &context.name("grids"), STORAGE, bytemuck::cast_slice(&blocks))?,
             samples: samples.map_err(|error| error.set_by("volume-file"))?,
+            glow: glow.map_err(|error| error.set_by("volume-temperature"))?,
         })
     }
 }

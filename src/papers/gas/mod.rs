@@ -4,6 +4,7 @@
 //! fragments ─► sort ─┬──────────────────────────────► volume ─► light-attenuation ─► resolve (─► view)
 //!                    │                                  ▲               ▲
 //!                    └─ (table) density-table ─► shadow-table ──────────┘
+//!                                                      └─ (froxel) froxel-inject ─► froxel-integrate ─► volume
 //! ```
 //!
 //! A picture whose lists no buffer of the device holds is done in bands of rows, one after the other.
@@ -23,6 +24,8 @@ mod empty_lists;
 mod estimate;
 pub mod experiments;
 mod fragments;
+mod froxel_inject;
+mod froxel_integrate;
 pub mod grid;
 mod grid_buffers;
 #[cfg(test)]
@@ -56,6 +59,8 @@ use self::densities::Densities;
 use self::density_table::DensityTable;
 use self::empty_lists::EmptyLists;
 use self::fragments::Fragments;
+use self::froxel_inject::FroxelInject;
+use self::froxel_integrate::FroxelIntegrate;
 use self::light_attenuation::LightAttenuation;
 use self::model::Object;
 use self::progress::{Calls, Carried};
@@ -108,6 +113,7 @@ struct Passes {
     densities: Option<Densities>,
     density_table: Option<DensityTable>,
     shadow_table: Option<ShadowTable>,
+    froxels: Option<(FroxelInject, FroxelIntegrate)>,
     volume: Option<VolumeMarch>,
     light_attenuation: Option<LightAttenuation>,
     resolve: Resolve,
@@ -123,7 +129,7 @@ enum Surfaces {
 impl Passes {
     fn new(context: &Context<'_>, scene: &SceneBuffers, variant: Variant, capacity: Capacity) -> Result<Self, Error> {
         let has_volume = variant != Variant::NoVolume && !context.parameters.volumes.is_empty();
-        let has_tables = has_volume && variant == Variant::Table;
+        let has_tables = has_volume && variant.has_table();
         let shadows_surfaces = has_volume && variant != Variant::None;
 
         let lists = ABuffer::new(context, capacity)?;
@@ -133,7 +139,7 @@ impl Passes {
             Lists::Tiles | Lists::Nearest(_) => Surfaces::Tiles(Tiles::new(context, scene, &lists)?),
         };
         let sort = Sort::new(context, scene, &lists)?;
-        let densities = has_volume.then(|| Densities::new(context, scene)).transpose()?;
+        let densities = has_volume.then(|| Densities::new(context, scene, variant)).transpose()?;
         let density_table = densities
             .as_ref()
             .filter(|_| has_tables)
@@ -142,10 +148,21 @@ impl Passes {
         let table = density_table.as_ref().map(|table| &table.densities);
         let shadow_table = table.map(|table| ShadowTable::new(context, scene, table)).transpose()?;
         let shadow_sums = shadow_table.as_ref().map(|table| &table.sums);
-        let volume = densities
+        let froxels = densities
             .as_ref()
-            .map(|densities| VolumeMarch::new(context, scene, &lists, variant, densities, shadow_sums))
+            .zip(shadow_sums)
+            .filter(|_| variant == Variant::Froxel)
+            .map(|(densities, sums)| {
+                let inject = FroxelInject::new(context, scene, &lists, densities, sums)?;
+                let integrate = FroxelIntegrate::new(context, scene, &inject.light)?;
+                Ok::<_, Error>((inject, integrate))
+            })
             .transpose()?;
+        let volume = match (&froxels, &densities) {
+            (Some((_, integrate)), _) => Some(VolumeMarch::of_froxels(context, scene, &lists, &integrate.sums)?),
+            (None, Some(densities)) => Some(VolumeMarch::new(context, scene, &lists, variant, densities, shadow_sums)?),
+            (None, None) => None,
+        };
         let sections = volume.as_ref().map(|volume| &volume.sections);
         let light_attenuation = densities
             .as_ref()
@@ -166,6 +183,7 @@ impl Passes {
             densities,
             density_table,
             shadow_table,
+            froxels,
             volume,
             light_attenuation,
             resolve,
@@ -304,6 +322,10 @@ impl Paper for Gas {
                 densities.record(frame)?;
                 shadows.record(frame)?;
             }
+            if let (Some((inject, integrate)), true) = (&passes.froxels, band.is_first()) {
+                inject.record(frame)?;
+                integrate.record(frame)?;
+            }
             if let Some(volume) = &passes.volume {
                 volume.record(frame, band, self.calls.of(Carried::Volume))?;
             }
@@ -371,8 +393,9 @@ impl Paper for Gas {
     }
 
     fn targets(&self) -> Vec<Target> {
-        let Passes { densities, density_table, shadow_table, volume, light_attenuation, resolve, view, .. } =
-            &self.passes;
+        let Passes {
+            densities, density_table, shadow_table, froxels, volume, light_attenuation, resolve, view, ..
+        } = &self.passes;
         let cache = densities.as_ref().and_then(|densities| densities.cache.as_ref());
         let bricks = densities.as_ref().and_then(|densities| densities.bricks.as_ref());
         let row = self.parameters.table_size;
@@ -386,11 +409,19 @@ impl Paper for Gas {
                 .of("a section: near and far in metres, increments, the next one, light in red, green, blue, transparency")),
             light_attenuation.as_ref().map(|pass| Target::table("light-attenuations", &pass.attenuations, lights).of("share of each light that the gas takes, 0 to 1")),
         ];
+        let of_froxels = froxels.iter().flat_map(|(inject, integrate)| {
+            [
+                Target::image("froxel-light", &inject.light)
+                    .of("light that a froxel's gas sends to the eye a metre, red, green, blue, linear, and its extinction a metre"),
+                Target::image("froxel-sums", &integrate.sums)
+                    .of("light of all gas before a froxel's far border, red, green, blue, linear, and its transparency"),
+            ]
+        });
         let images = [
             Target::image("radiance", &resolve.radiance)
                 .of("light in red, green, blue, linear, and the opacity, 0 to 1"),
             Target::image("picture", &view.picture).of("red, green, blue, alpha as sRGB encodes them, 0 to 255"),
         ];
-        buffers.into_iter().flatten().chain(images).collect()
+        buffers.into_iter().flatten().chain(of_froxels).chain(images).collect()
     }
 }

@@ -91,6 +91,14 @@ impl SceneBuffers {
         }
     }
 
+    /// A pass with the light of a file's temperatures, where its densities are taken from files themselves.
+    pub fn glow(&self, parameters: &Parameters, pass: PassBuilder) -> PassBuilder {
+        match &self.grids {
+            Some(grids) if parameters.density_cache.is_none() => pass.with("Glow", &grids.glow),
+            _ => pass,
+        }
+    }
+
     /// A pass with what its shader takes densities from.
     pub fn densities(&self, pass: PassBuilder) -> PassBuilder {
         match &self.grids {

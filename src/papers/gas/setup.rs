@@ -9,8 +9,9 @@ use serde_json::{Map, Value, json};
 use super::axes;
 use super::capacity::BufferLimit;
 use super::experiments::{self, Options};
+use super::parameters::gas_number::GasNumber;
 use super::parameters::placed_object::PlacedObject;
-use super::parameters::volume_file::{Placed, Reading, Unfit, Upright, VolumeFile};
+use super::parameters::volume_file::{Placed, Reading, VolumeFile};
 use super::parameters::volumes::{self, Placement};
 use super::parameters::{default_volume, validate_object};
 use crate::field;
@@ -65,6 +66,8 @@ pub struct Setup {
     first_volume: model::Volume,
     /// The numbers for all volumes, in the [templates](volumes::templates).
     gases: Vec<model::Volume>,
+    /// Numbers of single gases, after those for all.
+    gas_numbers: Vec<GasNumber>,
     /// Directions of parallel light and positions of point lights; the scene's where there are neither.
     parallel_lights: Vec<Vec3>,
     point_lights: Vec<Vec3>,
@@ -90,9 +93,10 @@ impl Setup {
             preset: Some(scene.as_str().to_owned()),
             placements: Vec::new(),
             volume_files: Vec::new(),
-            reading: Reading { component: 0, range: None, unfit: Unfit::Refuse, upright: Upright::Z },
+            reading: Reading::default(),
             first_volume: default_volume(),
             gases: volumes::templates(),
+            gas_numbers: Vec::new(),
             parallel_lights: Vec::new(),
             point_lights: Vec::new(),
             given: Given::default(),
@@ -108,10 +112,10 @@ impl Setup {
             let mut setup = Setup::of(scene);
             let given = Self::parameters().into_iter().filter(|p| self.given.has(p.name));
             given.for_each(|parameter| parameter.copy(self, &mut setup));
-            setup.apply(&self.given);
-            setup
+            setup.apply(&self.given)?;
+            Ok(setup)
         };
-        let setups: Vec<Setup> = scenes.iter().map(in_scene).collect();
+        let setups = scenes.iter().map(in_scene).collect::<Result<Vec<Setup>, Error>>()?;
         volumes::check_used(&self.given, &setups.iter().flat_map(|s| s.parameters.volumes.clone()).collect())?;
         Ok(setups)
     }
@@ -131,7 +135,7 @@ impl Setup {
     }
 
     /// Adds the volumes and sets their numbers and the lights.
-    fn apply(&mut self, given: &Given) {
+    fn apply(&mut self, given: &Given) -> Result<(), Error> {
         self.ways.apply(&mut self.parameters);
         let all = &mut self.parameters.volumes;
         let first = all.first().copied().unwrap_or_else(default_volume);
@@ -157,6 +161,7 @@ impl Setup {
             *all = (0..self.volume_files.len()).map(of_file).collect();
         }
         volumes::declared().iter().filter(|p| given.has(p.name)).for_each(|p| p.copy(&self.gases, all));
+        self.gas_numbers.iter().try_for_each(|number| number.set_in(all))?;
         // As bright at the origin as the scenes' own light, wherever it stands.
         let parallel =
             self.parallel_lights.iter().map(|&direction| Light::Parallel { direction, intensity: Vec3::ONE });
@@ -168,12 +173,13 @@ impl Setup {
         if !lights.is_empty() {
             self.parameters.lights = lights;
         }
+        Ok(())
     }
 }
 
 impl Setup {
     /// The numbers with the volumes of files where they stand.
-    fn parameters_in(&self, scene: &Scene) -> Cow<'_, Parameters> {
+    pub(super) fn parameters_in(&self, scene: &Scene) -> Cow<'_, Parameters> {
         if scene.files.is_empty() {
             return Cow::Borrowed(&self.parameters);
         }
@@ -218,11 +224,17 @@ impl Study for Setup {
     fn load(&self) -> Result<Scene, Error> {
         volumes::check_used(&self.given, &self.parameters.volumes)?;
         self.ways.check_used(&self.given, &self.parameters.volumes)?;
+        parameter::check(&Reading::declared(), &self.reading)?;
+        if self.given.has("white-temperature") && self.reading.temperature.is_none() {
+            let message = "`white-temperature`: no file has temperatures: give `volume-temperature`";
+            return Err(Error::Input(message.to_owned()));
+        }
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {
             objects.push(source.load(self.crease_deg)?);
         }
+        self.gas_numbers.iter().try_for_each(|number| number.set_on(&mut objects))?;
         self.divide_surfaces(&mut objects);
         objects.extend(self.layers());
         objects.iter().try_for_each(validate_object)?;
@@ -272,19 +284,7 @@ impl Study for Setup {
     fn config(&self, scene: &Scene, _: &Gas) -> Map<String, Value> {
         let p = &self.parameters_in(scene);
         let triangles: usize = scene.objects.iter().map(|o| o.mesh.triangle_count()).sum();
-        let volumes: Vec<Value> = p
-            .volumes
-            .iter()
-            .map(|v| {
-                json!({
-                    "shape": format!("{:?}", v.shape), "center": v.center.to_array(),
-                    "half_extent": v.half_extent_m.to_array(), "falloff": v.falloff, "solid": v.is_solid,
-                    "density": format!("{:?}", v.texture.function), "opaque": v.texture.opaque,
-                    "power": v.texture.power, "texture_scale": v.texture.scale_per_m,
-                    "tau": v.tau_per_m, "albedo": v.albedo.to_array(), "phase": v.phase.map(|f| [f.weight, f.g]),
-                })
-            })
-            .collect();
+        let volumes: Vec<Value> = p.volumes.iter().map(volumes::recorded).collect();
         let mut config = parameter::config(&Self::parameters(), self);
         config.extend(entries([
             ("scene", json!(self.scene.as_str())),
@@ -377,30 +377,9 @@ impl Study for Setup {
                 .cost(Cost::Buffers)
                 .everyday()
                 .excludes(&["volume", "density", "texture-scale"]),
-            Parameter::new("volume-range", field!(Setup.reading.range))
-                .placeholder("A,B")
-                .help(
-                    "Of files: values of density 0 and of density 1, between which it is linear and beyond which it is cut \
-                     off; `opaque` and `power` go on from there",
-                )
-                .default_text("0 and the file's largest value")
-                .cost(Cost::Buffers)
-                .everyday()
-                .requires("volume-file"),
-            Parameter::new("volume-unfit", field!(Setup.reading.unfit))
-                .help("Of files: what a value does that is no density, which NaN is, infinity, and without a range what is negative")
-                .cost(Cost::Buffers)
-                .requires("volume-file"),
-            Parameter::new("volume-component", field!(Setup.reading.component))
-                .help("Of files with several values a sample, or several grids: which of them is the density, from 0")
-                .cost(Cost::Buffers)
-                .requires("volume-file"),
-            Parameter::new("volume-up", field!(Setup.reading.upright))
-                .help("Of files: their upright axis")
-                .cost(Cost::Buffers)
-                .requires("volume-file"),
         ];
-        let files = files.into_iter().map(|p| p.group("Gases"));
+        let reading = Reading::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.reading, |s| &mut s.reading));
+        let files = files.into_iter().chain(reading).map(|p| p.group("Gases"));
         let lights = [
             Parameter::new("light", field!(Setup.parallel_lights))
                 .help("Direction of light from infinity; takes the place of the scene's lights")
@@ -413,11 +392,27 @@ impl Study for Setup {
                 .cost(Cost::Buffers)
                 .unrecorded(),
         ];
+        let of_gases = Parameter::new("gas-number", field!(Setup.gas_numbers))
+            .group("Gases")
+            .help(
+                "One number of one gas alone, after those of all volumes: a volume by its place from 1, the scene's and then \
+                 the user's, or surfaces for the surface-defined gases; an option of the gases without its dashes, and its value, \
+                 as 2:tau=0.5",
+            )
+            .cost(Cost::Buffers);
         let gases = volumes::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.gases, |s| &mut s.gases));
         let numbers =
             Parameters::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.parameters, |s| &mut s.parameters));
         let ways = Ways::declared().into_iter().map(|p| p.inside(|s: &Setup| &s.ways, |s| &mut s.ways));
-        objects.into_iter().chain(ways).chain(files).chain(gases).chain(numbers).chain(lights).collect()
+        objects
+            .into_iter()
+            .chain(ways)
+            .chain(files)
+            .chain(gases)
+            .chain([of_gases])
+            .chain(numbers)
+            .chain(lights)
+            .collect()
     }
 
     fn options() -> Vec<Parameter<Options>> {
@@ -461,8 +456,7 @@ impl Study for Setup {
     fn resolve(&mut self, given: &Given) -> Result<(), Error> {
         self.ways.check_distinct()?;
         self.given = given.clone();
-        self.apply(given);
-        Ok(())
+        self.apply(given)
     }
 
     fn alternatives(&self) -> Vec<Self> {

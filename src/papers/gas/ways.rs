@@ -21,6 +21,8 @@ pub struct Ways {
     pub density_caches: Vec<OrOff<u32>>,
     /// The optical depths that skipped bricks may have.
     pub skips: Vec<OrOff<f32>>,
+    /// Columns and rows from one pixel whose gas is marched to the next.
+    pub scales: Vec<u32>,
 }
 
 /// The paper's.
@@ -31,6 +33,7 @@ impl Default for Ways {
             marches: vec![March::Steps],
             density_caches: vec![OrOff(None)],
             skips: vec![OrOff(None)],
+            scales: vec![1],
         }
     }
 }
@@ -82,6 +85,17 @@ impl Ways {
                 .cost(Cost::Pipelines)
                 .everyday()
                 .unrecorded(),
+            Parameter::new("volume-scale", field!(Ways.scales))
+                .range(Range::from(1.0).to(16.0))
+                .help(
+                    "Gas is marched in the pixels of every so many columns and rows; the others take it from those around \
+                     them that see it between the same surfaces, and march it where none does. bench takes several, \
+                     comma-separated, and measures them in turn",
+                )
+                .section("Volume rendering")
+                .cost(Cost::Buffers)
+                .everyday()
+                .unrecorded(),
         ]
     }
 
@@ -93,7 +107,8 @@ impl Ways {
         check_once("lists", &self.lists)?;
         check_once("march", &self.marches)?;
         check_once("density-cache", &self.density_caches)?;
-        check_once("skip-empty", &self.skips)
+        check_once("skip-empty", &self.skips)?;
+        check_once("volume-scale", &self.scales)
     }
 
     /// Checks every range, and refuses what makes no difference to any way.
@@ -102,7 +117,8 @@ impl Ways {
     /// [`Error::Parameter`] for one outside of its range, [`Error::Input`] with one that was given in vain.
     pub fn check_used(&self, given: &Given, volumes: &[Volume]) -> Result<(), Error> {
         parameter::check(&Self::declared(), self)?;
-        let first = ["march", "density-cache", "skip-empty", "bricks"].into_iter().find(|name| given.has(name));
+        let first =
+            ["march", "density-cache", "skip-empty", "volume-scale", "bricks"].into_iter().find(|name| given.has(name));
         if let Some(name) = first.filter(|_| volumes.is_empty()) {
             return Err(Error::Input(format!("`{name}`: the scene has no volume: give `volume`")));
         }
@@ -125,13 +141,16 @@ impl Ways {
         for &lists in &self.lists {
             for &march in &self.marches {
                 for &cache in &self.density_caches {
-                    let of = |&skip| Ways {
-                        lists: vec![lists],
-                        marches: vec![march],
-                        density_caches: vec![cache],
-                        skips: vec![skip],
-                    };
-                    all.extend(self.skips.iter().map(of));
+                    for &skip in &self.skips {
+                        let of = |&scale| Ways {
+                            lists: vec![lists],
+                            marches: vec![march],
+                            density_caches: vec![cache],
+                            skips: vec![skip],
+                            scales: vec![scale],
+                        };
+                        all.extend(self.scales.iter().map(of));
+                    }
                 }
             }
         }
@@ -144,6 +163,7 @@ impl Ways {
         parameters.march = self.marches.first().copied().unwrap_or(March::Steps);
         parameters.density_cache = OrOff::first(&self.density_caches);
         parameters.skip_empty = OrOff::first(&self.skips);
+        parameters.volume_scale = self.scales.first().copied().unwrap_or(1);
     }
 }
 
@@ -155,6 +175,7 @@ impl Parameters {
             ("march", self.march.json()),
             ("density_cache", json!(self.density_cache)),
             ("skip_empty", json!(self.skip_empty)),
+            ("volume_scale", json!(self.volume_scale)),
         ])
     }
 
@@ -169,6 +190,9 @@ impl Parameters {
         }
         if let Some(depth) = self.skip_empty {
             text += &format!(", bricks up to {depth} skipped");
+        }
+        if self.volume_scale > 1 {
+            text += &format!(", gas of every {}th column and row", self.volume_scale);
         }
         text
     }

@@ -108,8 +108,8 @@ pub fn target(target: &Target, prefix: &str) -> Option<TargetInfo> {
         Resource::Image(view) => {
             let format = view.image().desc().format;
             let (kind, channels) = texel(format);
-            let shape =
-                TargetShape::Image { width: view.width(), height: view.height(), channels, layers: view.layer_count() };
+            let layers = view.layer_count() * view.depth();
+            let shape = TargetShape::Image { width: view.width(), height: view.height(), channels, layers };
             TargetInfo {
                 name: target.name.clone(),
                 resource: name(view.image().name()),

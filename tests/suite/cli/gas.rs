@@ -22,6 +22,8 @@ fn the_passes_follow_the_shadowing() {
     assert_eq!(names("surfaces"), joined(&["volume", "light-attenuation"]));
     assert_eq!(names("traced"), joined(&["volume", "light-attenuation"]));
     assert_eq!(names("table"), joined(&["density-table", "shadow-table", "volume", "light-attenuation"]));
+    let froxels = ["density-table", "shadow-table", "froxel-inject", "froxel-integrate", "volume", "light-attenuation"];
+    assert_eq!(names("froxel"), joined(&froxels));
 }
 
 #[test]
@@ -97,6 +99,88 @@ fn sweeps_and_the_share_of_turbulence_are_written() {
     let [turbulent, constant, share] = ["turbulent ms", "constant ms", "share"].map(|name| row[name].as_f64().unwrap());
     assert!(turbulent > 0.0 && constant > 0.0, "{row}");
     assert!((share - (turbulent - constant) / turbulent).abs() < 1e-9, "{row}");
+}
+
+/// Every variant stands beside the paths, which have two pictures of their own and more light than what is scattered once.
+#[test]
+fn the_reference_is_set_beside_every_variant() {
+    let out = folder();
+    let small = "--size 30x20 --steps 12 --table 10 --froxels 12x8x10 --paths 6 --albedo 0.9 --quiet --out .";
+    gas("experiment reference").args(small).on_test_device().inside(out.path()).run().succeeded();
+    let variants = ["froxel", "none", "surfaces", "table", "traced"];
+    let mut files: Vec<String> = variants.map(|variant| format!("gas-reference-{variant}-difference.png")).to_vec();
+    files.extend(["-all.png", "-once.png", ".csv", ".json"].map(|suffix| format!("gas-reference{suffix}")));
+    files.sort();
+    assert_eq!(entries(out.path()), files);
+    let table = read_json(&out.path().join("gas-reference.json"))["table"].clone();
+    let rows = table["rows"].as_array().unwrap();
+    let number = |gas: &str, column: &str| {
+        let row = rows.iter().find(|row| row["gas"] == gas).unwrap_or_else(|| panic!("{gas}: {table}"));
+        row[column].as_f64().unwrap()
+    };
+    assert_eq!(rows.len(), 8);
+    assert!(number("scattered once", "light") < number("scattered at will", "light"), "{table}");
+    let (noise, once) = (number("scattered at will", "rms"), number("scattered once", "rms"));
+    assert!(noise > 0.0 && once > noise, "{table}");
+    for variant in variants {
+        assert!(number(variant, "rms") > noise && number(variant, "Luv mean") > 0.0, "{variant}: {table}");
+    }
+    assert_eq!(number("none", "rms"), number("surfaces", "rms"));
+    assert!(number("traced, nearest ambient", "rms") <= number("traced", "rms") + noise, "{table}");
+    let refused = |options: &str, parts: &[&str]| {
+        gas("experiment reference --quiet").args(options).on_test_device().inside(out.path()).run().refused(2, parts);
+    };
+    refused("--preset fig-4", &["no volume"]);
+    refused("--preset solid", &["solid", "--preset"]);
+    refused("--paths 0", &["--paths 0"]);
+    refused("--object teapot", &["--object", "no surfaces"]);
+    refused("--frames 3", &["--frames", "times nothing"]);
+    gas("experiment 2 --paths 3").run().refused(2, &["--paths"]);
+}
+
+/// The more froxels, the nearer to fine rays; the paper's table is measured beside them.
+#[test]
+fn froxels_are_swept_beside_the_table() {
+    let out = folder();
+    let small = "--size 60x42 --steps 12 --table 24 --froxels 60x42x48 --counts 6,1 --quiet --out .";
+    let program = gas("experiment froxel").args(small).args(ONCE);
+    program.on_test_device().inside(out.path()).run().succeeded();
+    let files = ["-1-difference.png", "-6-difference.png", "-fine.png", "-table-difference.png", ".csv", ".json"];
+    assert_eq!(entries(out.path()), files.map(|suffix| format!("gas-froxel{suffix}")));
+    let table = read_json(&out.path().join("gas-froxel.json"))["table"].clone();
+    let rows = table["rows"].as_array().unwrap();
+    let of = |column: &str| rows.iter().map(|row| row[column].clone()).collect::<Vec<_>>();
+    assert_eq!(of("variant"), ["table", "froxel", "froxel"]);
+    assert_eq!(of("froxels"), [serde_json::Value::Null, "10x7x8".into(), "60x42x48".into()]);
+    let means: Vec<f64> = of("Luv mean").iter().map(|mean| mean.as_f64().unwrap()).collect();
+    assert!(means[2] < 0.6 * means[1] && means.iter().all(|&mean| mean > 0.0), "{table}");
+    assert!(of("gas ms").iter().all(|ms| ms.as_f64().unwrap() > 0.0), "{table}");
+}
+
+/// Scales are measured in turn, by a bench and by their experiment, whose first row is what the others are set against.
+#[test]
+fn scales_of_the_gas_are_measured_in_turn() {
+    let record = small("bench --json --variant none --volume-scale 1,3").args(ONCE).run().succeeded().json();
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let scales: Vec<u64> = runs.iter().map(|run| run["config"]["volume_scale"].as_u64().unwrap()).collect();
+    assert_eq!(scales, [1, 3]);
+    let samples: Vec<u64> = runs.iter().map(|run| run["results"]["samples"].as_u64().unwrap()).collect();
+    assert!(samples[1] * 4 < samples[0] * 3, "{samples:?}");
+    let out = folder();
+    let small = "--size 48x32 --steps 6 --table 6 --quiet --out .";
+    gas("experiment volume-scale").args(small).args(ONCE).on_test_device().inside(out.path()).run().succeeded();
+    let table = read_json(&out.path().join("gas-volume-scale.json"))["table"].clone();
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 3 * 2 * 4);
+    for rows in rows.chunks(4) {
+        let scales: Vec<u64> = rows.iter().map(|row| row["volume-scale"].as_u64().unwrap()).collect();
+        assert_eq!(scales, [1, 2, 4, 8]);
+        assert_eq!(rows[0]["Luv mean"], 0.0);
+        assert!(rows[1..].iter().all(|row| row["Luv mean"].as_f64().unwrap() > 0.0), "{rows:?}");
+        let samples: Vec<u64> = rows.iter().map(|row| row["samples"].as_u64().unwrap()).collect();
+        assert!(samples.windows(2).all(|pair| pair[1] < pair[0]), "{samples:?}");
+    }
 }
 
 #[test]
@@ -217,6 +301,11 @@ fn every_number_of_the_gases_is_seen() {
                 "--object teapot",
             ][..],
         ),
+        (
+            "--volume sphere,0.8,1,0,0.4,0.4,0.4",
+            &["--gas-number 2:tau=40", "--gas-number 1:opaque=3", "--gas-number 2:density=clouds", "--tau 40"],
+        ),
+        ("--preset fig-4", &["--gas-number surfaces:opaque=0.4", "--gas-number surfaces:density=clouds"]),
         ("--preset fig-7", &["--front -2,0.017,2.5,0.8,0.6", "--full-fog 900", "--down 0.1"]),
         ("--density clouds", &["--frequency 9"]),
         ("--preset solid", &["--hypertexture 0.5,0.16", "--hypertexture 1.4,0.6"]),
@@ -269,7 +358,15 @@ fn what_no_gas_heeds_is_refused() {
         ("--march delta --steps 9", &["--steps", "--march delta", "--samples"]),
         ("--march delta --jitter blue-noise", &["--jitter blue-noise", "--march delta"]),
         ("--density-cache 1", &["--density-cache 1"]),
+        ("--volume-scale 0", &["--volume-scale 0", "1 to 16"]),
+        ("--volume-scale 17", &["--volume-scale 17"]),
+        ("--preset fig-4 --volume-scale 2", &["--volume-scale", "no volume"]),
         ("--skip-empty -1", &["--skip-empty -1"]),
+        ("--gas-number 2:tau=1", &["--gas-number 2:tau=1", "no such volume", "--volume"]),
+        ("--gas-number 1:tau=-1", &["--tau -1"]),
+        ("--gas-number 1:frequency=2", &["--gas-number 1:frequency=2", "--frequency"]),
+        ("--gas-number surfaces:opaque=1", &["--gas-number surfaces:opaque=1", "--preset fig-4"]),
+        ("--preset fig-4 --gas-number surfaces:tau=1", &["no --tau"]),
         ("--volume box,0,0,0,1,0,1", &["--volume 1,0,1", "half extents"]),
         ("--volume frustum,0,0,0,1,1,1,0,0", &["--volume 0,0", "radii"]),
     ] {
@@ -277,6 +374,8 @@ fn what_no_gas_heeds_is_refused() {
     }
     gas(&format!("render {}", "--volume sphere,0,0,0,1,1,1 ".repeat(8))).run().refused(2, &["--volume 9", "8"]);
     gas("render --volume ball,0,0,0,1,1,1").run().misused(&["--volume", "sphere"]);
+    gas("render --gas-number 1:colour=3").run().misused(&["--gas-number", "frequency"]);
+    gas("render --gas-number tau=3").run().misused(&["--gas-number", "2:tau=0.5"]);
     gas("experiment 2 --frequency 3").run().refused(2, &["--frequency"]);
 }
 
@@ -286,6 +385,8 @@ fn what_cannot_be_is_refused_by_its_option() {
         ("--steps 0", &["--steps 0", "1 to 100000"][..]),
         ("--table 1", &["--table 1"]),
         ("--table 513", &["--table 513"]),
+        ("--froxels 0x1x1", &["--froxels 0x1x1"]),
+        ("--froxels 9x9x1025", &["--froxels 9x9x1025"]),
         ("--tau -1", &["--tau -1"]),
         ("--albedo 1.5", &["--albedo"]),
         ("--falloff 2", &["--falloff 2"]),

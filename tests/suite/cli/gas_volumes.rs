@@ -78,7 +78,7 @@ fn a_file_is_recorded_and_fills_every_variant() {
     let record = read_json(&json);
     assert_schema(&record);
     let runs = record["runs"].as_array().unwrap();
-    assert_eq!(runs.len(), 5);
+    assert_eq!(runs.len(), 6);
     for run in runs {
         assert_eq!(run["config"]["volume_file"][0], path.to_str().unwrap());
         assert_eq!(run["config"]["volume_filter"], "trilinear");
@@ -104,6 +104,43 @@ fn a_scene_without_volumes_shows_a_file() {
     let plain = draw("plain.png", gas("render").on_test_device());
     let filled = draw("filled.png", gas("render").on_test_device().arg("--volume-file").arg(&path).args("--tau 20"));
     assert!(plain != filled);
+}
+
+/// A file of densities and temperatures glows in its temperatures' colours, and the more the lower the white one is.
+#[test]
+fn temperatures_of_a_file_are_seen() {
+    let out = folder();
+    let header = "NRRD0004\ntype: float\ndimension: 4\nsizes: 2 4 4 4\nkinds: vector domain domain domain\nendian: little\n\
+                  encoding: raw\n\n";
+    let write = |name: &str, kelvin: f32| {
+        let samples = (0..64).flat_map(|_| [1.0_f32, kelvin]).flat_map(f32::to_le_bytes);
+        file(&out, name, header.bytes().chain(samples).collect::<Vec<u8>>())
+    };
+    let hot = write("hot.nrrd", 1500.0);
+    let draw = |path: &Path, options: &str| {
+        let picture = out.path().join("picture.png");
+        let program = small("render", path, "").args("--quiet --variant none --albedo 0.1 --image").arg(&picture);
+        program.args(options).run().succeeded();
+        let pixels = read_png(&picture).unwrap().pixels().to_vec();
+        [0, 1, 2].map(|channel| pixels.chunks_exact(4).map(|pixel| u64::from(pixel[channel])).sum::<u64>())
+    };
+    let cold = draw(&hot, "");
+    let glowing = draw(&hot, "--volume-temperature 1 --white-temperature 1500");
+    let dim = draw(&hot, "--volume-temperature 1 --white-temperature 1800");
+    assert!(glowing[0] > dim[0] && dim[0] > cold[0], "{glowing:?} {dim:?} {cold:?}");
+    assert!(glowing[0] - cold[0] > 2 * (glowing[2] - cold[2]), "{glowing:?} {cold:?}");
+    for (path, options, parts) in [
+        (&hot, "--volume-temperature 2", &["no component 2"][..]),
+        (&hot, "--volume-temperature 1 --white-temperature 0", &["--white-temperature 0"]),
+        (&hot, "--white-temperature 900", &["--white-temperature", "--volume-temperature"]),
+        (&hot, "--volume-temperature 1 --density-cache 8", &["--density-cache 8", "--volume-temperature"]),
+        (&write("low.nrrd", -3.0), "--volume-temperature 1", &["-3 K", "--volume-unfit clamp"]),
+    ] {
+        small("render --image never.png", path, "").args(options).run().refused(2, parts);
+    }
+    for options in ["--volume-temperature 1", "--white-temperature 900"] {
+        gas("render --image never.png").args(options).run().misused(&["--volume-file"]);
+    }
 }
 
 #[test]

@@ -58,6 +58,8 @@ fn gas_is_clean_with_its_options() {
     let files = format!(
         "--steps 4 --lists tiles --density-cache 4 --skip-empty 0 --volume-filter tricubic --volume-file {eight}"
     );
+    let temperatures =
+        format!("--froxels 5x4x6 --volume-file {eight} --volume-temperature 0 --volume-unfit clamp --samples 2");
     assert_clean(
         &Paper { scene: "--size 24x16 --table 4", ..GAS },
         &[
@@ -65,6 +67,8 @@ fn gas_is_clean_with_its_options() {
             ("table", "--steps 4 --lists k:2 --skip-empty 0.1 --bricks 4 --object teapot --no-geometry-stage"),
             ("surfaces", "--march delta --density-cache 4 --density clouds"),
             ("table", "--steps 4 --preset fig-7"),
+            ("traced", "--steps 4 --volume-scale 3 --volume sphere,0,1,0,1,1,1 --gas-number 2:tau=9"),
+            ("froxel", temperatures.as_str()),
             ("table", "--steps 4 --preset solid --light 0,-1,0 --point-light 0,3,0"),
             ("no-volume", "--preset fig-4 --lists tiles"),
         ],

@@ -9,7 +9,7 @@ use fumarole::papers::gas::parameters::default_volume;
 use fumarole::papers::gas::reference::density::Medium;
 use fumarole::papers::gas::reference::rays::Sampling;
 use fumarole::papers::gas::reference::shadow_table::density_table;
-use fumarole::papers::gas::{Parameters, Variant};
+use fumarole::papers::gas::{March, Parameters, Variant};
 use fumarole::scene::random::Random;
 use glam::{DVec3, Vec3};
 
@@ -33,7 +33,7 @@ fn grid(seed: u64, size: [u32; 3], is_skewed: bool) -> Grid {
         // As a scan has its axes: from the left to the right, up, to the front.
         [DVec3::Z * side(0), DVec3::X * side(1), DVec3::Y * side(2)]
     };
-    Grid { size, steps_m, samples }
+    Grid { size, steps_m, samples, glow: Vec::new() }
 }
 
 fn volume(index: usize, grid: &Grid, center: Vec3) -> Volume {
@@ -75,11 +75,43 @@ fn several_grids_are_marched_at_once() {
     gpu_test(|device| {
         for filter in [Filter::Trilinear, Filter::Tricubic] {
             let one =
-                Grid { size: [1; 3], steps_m: [DVec3::X, DVec3::Y, DVec3::Z].map(|s| 1.5 * s), samples: vec![0.4] };
+                Grid { samples: vec![0.4], steps_m: [DVec3::X, DVec3::Y, DVec3::Z].map(|s| 1.5 * s), ..Grid::empty() };
             let parameters = scene(vec![grid(2, [5, 6, 2], true), one], filter);
             let drawing = Drawing::of(device, Variant::Traced, &parameters, &[]);
             let worst = worst(&differences(&drawing, &parameters, true, Sampling::Random));
             assert!(worst < 5e-5, "{filter:?}: {worst}");
+        }
+    });
+}
+
+/// Hot gas glows by what it absorbs, in every variant that has rays in double precision beside it, and in froxels.
+#[test]
+fn temperatures_glow() {
+    gpu_test(|device| {
+        for (filter, is_skewed) in [(Filter::Trilinear, true), (Filter::Tricubic, false)] {
+            let mut hot = grid(5, [6, 5, 7], is_skewed);
+            let mut random = Random::new(8);
+            hot.glow = hot.samples.iter().map(|_| [3.0 * random.unit(), random.unit(), 0.3 * random.unit()]).collect();
+            let mut own = scene(vec![hot, grid(2, [5, 6, 2], true)], filter);
+            own.volumes[0].albedo = Vec3::new(0.2, 0.5, 1.0);
+            for (variant, is_shadowed) in [(Variant::None, false), (Variant::Traced, true)] {
+                for compiler in [Compiler::Glslang, Compiler::Naga] {
+                    let drawing = Drawing::frame(device, compiler, variant, &own, &[], 0);
+                    let worst = worst(&differences(&drawing, &own, is_shadowed, Sampling::Random));
+                    assert!(worst < 5e-5, "{filter:?}, {variant:?}, {compiler:?}: {worst}");
+                }
+            }
+            let mut cold = own.clone();
+            cold.grids = own.grids.iter().map(|grid| Arc::new(Grid { glow: Vec::new(), ..(**grid).clone() })).collect();
+            let drawing = Drawing::of(device, Variant::None, &cold, &[]);
+            let off = differences(&drawing, &own, false, Sampling::Random);
+            let [red, blue] = [0, 2].map(|channel| off.iter().map(|d| d[channel].abs()).fold(0.0, f64::max));
+            assert!(red > 0.05 && blue < 1e-4, "what absorbs nothing does not glow: {red}, {blue}");
+            let tracked = Parameters { march: March::Delta, samples: 64, early_end: 0.3, ..own.clone() };
+            let drawing = Drawing::of(device, Variant::None, &tracked, &[]);
+            let off = differences(&drawing, &own, false, Sampling::Fine(4));
+            let mean = off.iter().sum::<DVec3>() / off.len() as f64;
+            assert!(mean.abs().max_element() < 0.03, "{mean}");
         }
     });
 }

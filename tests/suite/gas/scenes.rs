@@ -1,17 +1,18 @@
 //! The figures' scenes, small, and bad numbers.
 
 use fumarole::gpu::Compiler;
+use fumarole::papers::gas::model::Object;
 use fumarole::papers::gas::parameters::validate_object;
 use fumarole::papers::gas::scenes::Preset;
 use fumarole::papers::gas::{Parameters, Variant};
-use fumarole::scene::Light;
+use fumarole::scene::{Camera, Light};
 use glam::Vec3;
 
 use super::drawing::Drawing;
 use crate::common::gpu_test;
 
 /// 90 x 62 pixels, 16 steps and 32 entries a side; a solid has steps enough for its surface.
-pub fn small(preset: Preset) -> (Parameters, Vec<fumarole::papers::gas::model::Object>) {
+pub fn small(preset: Preset) -> (Parameters, Vec<Object>) {
     let scene = preset.scene();
     let steps = if preset == Preset::Solid { 60 } else { 16 };
     (Parameters { width: 90, height: 62, steps, table_size: 32, ..scene.parameters }, scene.objects)
@@ -64,6 +65,27 @@ fn every_scene_draws_its_gas() {
                 let changed = own.radiance.iter().zip(&bare.radiance).filter(|(a, b)| (*a - *b).abs() > 0.02).count();
                 assert!(changed > 100, "{preset:?}: {changed}");
             }
+        }
+    });
+}
+
+/// From below a board hides what stands on it, also where the two meet in one plane.
+#[test]
+fn a_board_hides_its_pieces_from_below() {
+    gpu_test(|device| {
+        for preset in [Preset::Fig4, Preset::Fig7] {
+            let (mut parameters, objects) = small(preset);
+            parameters.camera = Camera { eye: Vec3::new(0.5, -5.0, 4.0), target: Vec3::ZERO, ..parameters.camera };
+            let draw = |objects: &[Object]| Drawing::of(device, Variant::NoVolume, &parameters, objects);
+            let (all, board) = (draw(&objects), draw(&objects[..1]));
+            let mut hidden = 0;
+            for (pixel, list) in board.lists.iter().enumerate() {
+                if list.iter().fold(0, |mask, fragment| mask | fragment.mask) == u32::MAX {
+                    hidden += 1;
+                    assert_eq!(all.color(pixel), board.color(pixel), "{preset:?}, pixel {pixel}");
+                }
+            }
+            assert!(hidden > 500, "{preset:?}: {hidden} pixels of the board");
         }
     });
 }

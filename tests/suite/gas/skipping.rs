@@ -34,7 +34,7 @@ fn sparse(is_skewed: bool) -> Grid {
     } else {
         [DVec3::Z * 0.14, DVec3::X * 0.17, DVec3::Y * 0.14]
     };
-    Grid { size, steps_m, samples }
+    Grid { size, steps_m, samples, glow: Vec::new() }
 }
 
 fn of_grid(grid: Grid, filter: Filter) -> Parameters {

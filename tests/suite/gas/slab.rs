@@ -205,7 +205,7 @@ fn no_density_is_no_volume_bit_for_bit() {
         let objects = [pane(0.4, 0.5), Object::new(shapes::teapot(), Vec3::new(0.8, 0.5, 0.2))];
         let parameters = parameters(0.0);
         let without = Drawing::of(device, Variant::NoVolume, &parameters, &objects);
-        for variant in [Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table] {
+        for variant in [Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table, Variant::Froxel] {
             let with = Drawing::of(device, variant, &parameters, &objects);
             assert!(with.demand.sections > 0 && with.radiance == without.radiance, "{variant:?}");
         }

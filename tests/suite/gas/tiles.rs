@@ -62,7 +62,7 @@ fn every_variant_draws_the_same_by_tiles() {
     gpu_test(|device| {
         let (mut parameters, objects) = small(Preset::Fig6);
         parameters.camera.near_m = 4.0;
-        for variant in [Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table] {
+        for variant in [Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table, Variant::Froxel] {
             let linked = Drawing::of(device, variant, &parameters, &objects);
             let tiles = Drawing::of(device, variant, &with(Lists::Tiles, &parameters), &objects);
             assert!(tiles.radiance == linked.radiance, "{variant:?}");

@@ -62,6 +62,7 @@ fn gas_is_estimated() {
         "size=320x200 table=24",
         "size=64x48 table=48 object=teapot light=0,-1,0 light=1,-1,0",
         "size=320x200 table=24 object=bunny lists=tiles",
+        "size=64x48 table=8 froxels=70x50x60",
     ]);
 }
 

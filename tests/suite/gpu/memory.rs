@@ -59,6 +59,8 @@ fn gas_by_other_ways_needs_no_more_memory_from_frame_to_frame() {
         ("table", "march=delta bricks=8 lists=tiles"),
         ("table", "steps=12 density-cache=8 skip-empty=0 bricks=8 lists=k:8"),
         ("traced", file.as_str()),
+        ("froxel", &format!("froxels=9x7x8 volume-temperature=0 volume-unfit=clamp {file}")),
+        ("table", "steps=12 volume-scale=3"),
     ] {
         is_flat::<gas::setup::Setup>(variant, &format!("size=48x32 table=16 frame-step=1 {options}"));
     }

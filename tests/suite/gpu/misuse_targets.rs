@@ -151,3 +151,30 @@ fn depth_is_not_uploaded() {
         assert_eq!(message(transfer::upload_rectangle(&staging, &depth, (0, 0), (4, 4))), expected);
     });
 }
+
+/// An image of three dimensions is viewed, bound and read as one, and nothing draws into it or fills it.
+#[test]
+fn images_of_three_dimensions_have_no_layers_and_are_no_targets() {
+    gpu_test(|device| {
+        let library = shaders(device);
+        let format = vk::Format::R32_SFLOAT;
+        let desc = |extent| ImageDesc::new_3d("cube", format, extent);
+        for usage in [vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageUsageFlags::TRANSFER_DST] {
+            let made = Image::new(device, desc([4; 3]).usage(usage));
+            assert!(message(made).contains("cube"), "{usage:?}");
+        }
+        for extent in [[4, 4, 0], [4, 0, 4], [4, 4, u32::MAX]] {
+            let error = message(Image::new(device, desc(extent).usage(vk::ImageUsageFlags::SAMPLED)));
+            assert!(error.contains("in texels"), "{extent:?}: {error}");
+        }
+        let cube = Image::new(device, desc([4, 5, 6]).usage(vk::ImageUsageFlags::SAMPLED)).unwrap();
+        assert!(cube.layer(0).is_err() && cube.layer_array(0).is_err() && cube.layer(1).is_err());
+        let view = cube.view().unwrap();
+        assert_eq!((view.width(), view.height(), view.depth(), view.layer_count()), (4, 5, 6, 1));
+        let target = color_target(device, "target", vk::Format::R8G8B8A8_UNORM, 4, 4);
+        let look = Pass::graphics("look", "", "common/fullscreen.vert", "test/layers.frag");
+        let bound = look.color(&target, BLACK, Blend::Replace).with("layers", &view).build(&library);
+        assert_eq!(message(bound), "pass look: layers has another format, aspect or shape than cube");
+        assert!(message(transfer::read_image(device, &view)).contains("cube"), "nothing has written it");
+    });
+}

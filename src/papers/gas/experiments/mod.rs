@@ -1,6 +1,8 @@
 //! The tables and figures of the `gas` paper, with the paper's own numbers.
 
+mod froxel;
 mod lists;
+mod reference;
 mod savings;
 mod tables;
 mod trade;
@@ -16,7 +18,7 @@ use crate::field;
 use crate::image::contact_sheet::{below_each_other, side_by_side};
 use crate::measure::bench::{build, load};
 use crate::measure::experiment::{self, Experiment};
-use crate::measure::parameter::Parameter;
+use crate::measure::parameter::{Parameter, Range};
 use crate::measure::result_table::ResultTable;
 use crate::measure::study::Study;
 use crate::measure::sweep::{Point, Row};
@@ -25,10 +27,18 @@ use crate::measure::{Error, picture};
 type Context<'a> = experiment::Context<'a, Setup>;
 
 /// Options of the experiments.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Options {
-    /// Table sizes, steps or sheets of a sweep.
+    /// Table sizes, steps, sheets, entries or divisors of a sweep.
     counts: Vec<u32>,
+    /// Paths of a pixel in each half of the reference, 1 to 1,000,000.
+    paths: u32,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { counts: Vec::new(), paths: 32 }
+    }
 }
 
 /// The options of the experiments.
@@ -36,8 +46,11 @@ pub fn options() -> Vec<Parameter<Options>> {
     vec![
         Parameter::new("counts", field!(Options.counts))
             .placeholder("N,N,..")
-            .help("Table sizes, steps, sheets or entries of a sweep, comma-separated")
-            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128, or 24,32,48,64"),
+            .help("Table sizes, steps, sheets, entries or divisors of a sweep, comma-separated")
+            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128, or 24,32,48,64, or 4,2,1"),
+        Parameter::new("paths", field!(Options.paths))
+            .range(Range::from(1.0).to(1e6))
+            .help("Paths of a pixel in each of the reference's two halves, whose difference is its noise"),
     ]
 }
 
@@ -101,6 +114,33 @@ pub fn all() -> Vec<Experiment<Setup>> {
             options: &[],
             refuses: &[OWN_SCENES, ("skip-empty", "this experiment compares several")],
             run: savings::skipping,
+        },
+        Experiment {
+            name: "volume-scale",
+            help: "Gas that is marched in fewer pixels: cost against the difference from that of all",
+            options: &[],
+            refuses: &[OWN_SCENES, ("volume-scale", "this experiment compares several")],
+            run: savings::scale,
+        },
+        Experiment {
+            name: "froxel",
+            help: "Gas in froxels, divided by 4, 2 and 1 along each axis: cost against the difference from fine rays",
+            options: &["counts"],
+            refuses: &[("march", "this experiment measures froxels and steps")],
+            run: froxel::run,
+        },
+        Experiment {
+            name: "reference",
+            help: "The gas of each variant against light that is scattered any number of times, by paths",
+            options: &["paths"],
+            refuses: &[
+                ("lists", "this experiment draws no surfaces"),
+                ("object", "this experiment draws no surfaces"),
+                ("crease-angle", "this experiment draws no surfaces"),
+                ("frames", "this experiment times nothing"),
+                ("repeat", "this experiment times nothing"),
+            ],
+            run: reference::run,
         },
         Experiment {
             name: "sequence",

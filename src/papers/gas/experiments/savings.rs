@@ -20,12 +20,25 @@ use crate::papers::gas::setup::Setup;
 const ENTRIES: [u32; 4] = [24, 32, 48, 64];
 /// Optical depths that skipped bricks may have.
 const DEPTHS: [f32; 3] = [0.0, 0.01, 0.05];
+/// Columns and rows from one pixel whose gas is marched to the next.
+const SCALES: [u32; 4] = [1, 2, 4, 8];
 /// Scenes of which skipping is tried: fog behind its front, steam, a ball in its box.
 const SCENES: [Preset; 3] = [Preset::Fig7, Preset::Fig8, Preset::Solid];
 
+/// Scenes of which fewer pixels are tried: steam behind and before glasses, fog between pieces of chess, a ball and its rods.
+const SCALED: [Preset; 3] = [Preset::Fig6, Preset::Fig7, Preset::Fig5];
+
 /// Passes whose time follows from the densities.
-const GAS_PASSES: [&str; 6] =
-    ["density-cache", "bricks", "density-table", "shadow-table", "volume", "light-attenuation"];
+pub(super) const GAS_PASSES: [&str; 8] = [
+    "density-cache",
+    "bricks",
+    "density-table",
+    "shadow-table",
+    "froxel-inject",
+    "froxel-integrate",
+    "volume",
+    "light-attenuation",
+];
 
 /// Rays that ask the density's function, and those that read tables of it, in turn.
 ///
@@ -53,6 +66,19 @@ pub fn skipping(context: &mut Context<'_>) -> Result<(), Error> {
     run(context, &setups, &[Variant::None, Variant::Traced], title)
 }
 
+/// Gas that is marched in every pixel, and in ever fewer ones, in turn.
+///
+/// # Errors
+/// [`Error::Parameter`], [`Error::Scene`], [`Error::Gpu`], [`Error::Image`], [`Error::Output`].
+pub fn scale(context: &mut Context<'_>) -> Result<(), Error> {
+    let mut setups = context.setup.in_scenes(&SCALED)?;
+    for setup in &mut setups {
+        setup.ways.scales = SCALES.to_vec();
+    }
+    let title = "Gas of fewer pixels: cost and Luv difference from that of all, by columns and rows between them";
+    run(context, &setups, &[Variant::None, Variant::Table], title)
+}
+
 fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title: &'static str) -> Result<(), Error> {
     let mut points = Vec::new();
     for setup in setups {
@@ -76,6 +102,7 @@ fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title:
         "variant",
         "density-cache",
         "skip-empty",
+        "volume-scale",
         "frame ms",
         "gas ms",
         "of the first",
@@ -108,6 +135,7 @@ fn compared(
             json!(row.run.variant),
             json!(parameters.density_cache),
             json!(parameters.skip_empty),
+            json!(parameters.volume_scale),
             json!(row.run.median_frame_ms()),
             json!(ms),
             json!(Some(ms / all_ms).filter(|ratio| ratio.is_finite())),

@@ -1,5 +1,6 @@
 //! The paper's parameters under its own names, each declared once.
 
+pub mod gas_number;
 mod lists;
 mod march;
 pub mod or_off;
@@ -17,7 +18,7 @@ pub use march::March;
 use super::grid::{Filter, Grid};
 use super::model::{DensityFunction, HenyeyGreenstein, Object, Shape, SolidTexture, Volume};
 use crate::field;
-use crate::measure::parameter::{self, Choice, Cost, EyeAndTarget, Field, Parameter, Range, Size};
+use crate::measure::parameter::{self, Choice, Cost, Extents, EyeAndTarget, Field, Parameter, Range, Size};
 use crate::measure::{ParameterError, components};
 use crate::scene::{Camera, Light};
 
@@ -34,11 +35,13 @@ pub enum Variant {
     Traced,
     /// The gas shadows surfaces and itself, by the shadow table.
     Table,
+    /// As `Table`, with gas that is integrated in froxels: not the paper's.
+    Froxel,
 }
 
 impl crate::measure::Variant for Variant {
     const ALL: &'static [Variant] =
-        &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table];
+        &[Variant::NoVolume, Variant::None, Variant::Surfaces, Variant::Traced, Variant::Table, Variant::Froxel];
 
     fn as_str(self) -> &'static str {
         match self {
@@ -47,6 +50,7 @@ impl crate::measure::Variant for Variant {
             Variant::Surfaces => "surfaces",
             Variant::Traced => "traced",
             Variant::Table => "table",
+            Variant::Froxel => "froxel",
         }
     }
 }
@@ -69,6 +73,13 @@ impl Choice for Jitter {
             "At one place for each ray, by a mask of blue noise: far apart in neighbouring pixels, so that the grain is fine",
         ),
     ];
+}
+
+impl Variant {
+    /// The shadows are the table's.
+    pub(super) fn has_table(self) -> bool {
+        matches!(self, Variant::Table | Variant::Froxel)
+    }
 }
 
 /// Most volumes and lights of a scene: the shaders keep one value for each in registers.
@@ -106,10 +117,15 @@ pub struct Parameters {
     /// Rays skip bricks in which one through the whole volume loses no more than this optical depth, at least 0; without,
     /// none.
     pub skip_empty: Option<f32>,
+    /// Columns and rows from one pixel whose gas is marched to the next, 1 to 16; others take theirs from them where they
+    /// can.
+    pub volume_scale: u32,
     /// Bricks along each axis of a volume's box, 1 to 128.
     pub bricks: u32,
     /// Entries of the density and shadow tables along each axis, 2 to 512.
     pub table_size: u32,
+    /// Columns, rows and slices of froxels, each 1 to 1024.
+    pub froxels: [u32; 3],
     /// Octaves of turbulence go on while the scale exceeds it; 0.0001 to 1 texture units.
     pub pixel_size: f32,
     /// Density below which no shadow of the gas on itself is computed, at least 0.
@@ -159,8 +175,10 @@ impl Default for Parameters {
             march: March::Steps,
             density_cache: None,
             skip_empty: None,
+            volume_scale: 1,
             bricks: 16,
             table_size: 64,
+            froxels: [90, 62, 64],
             pixel_size: 1.0 / 16.0,
             shadow_threshold: 0.0,
             early_end: 0.01,
@@ -235,6 +253,11 @@ impl Parameters {
         (!grids.is_empty()).then_some(grids)
     }
 
+    /// Files have temperatures.
+    pub(super) fn glows(&self) -> bool {
+        self.grids.iter().any(|grid| !grid.glow.is_empty())
+    }
+
     /// The shaders' name of what rays and tables take the volumes' densities from.
     pub(super) fn density_shader(&self) -> &'static str {
         if self.density_cache.is_some() { "cached" } else { self.density_source() }
@@ -246,9 +269,11 @@ impl Parameters {
         format!("{}-{empty}", self.density_shader())
     }
 
-    /// The optical depth that a ray through a volume may lose in its bricks; nothing where there are no bricks.
-    pub(super) fn brick_depth(&self) -> Option<f32> {
-        self.skip_empty.or((self.march == March::Delta).then_some(0.0))
+    /// The optical depth that a ray through a volume may lose in its bricks; nothing where there are no bricks, as where no
+    /// ray is marched.
+    pub(super) fn brick_depth(&self, variant: Variant) -> Option<f32> {
+        let of_delta = || (self.march == March::Delta).then_some(0.0);
+        self.skip_empty.or_else(of_delta).filter(|_| variant != Variant::Froxel)
     }
 
     /// The shaders' name of what the volumes' densities are in the end.
@@ -258,6 +283,20 @@ impl Parameters {
             Filter::Trilinear => "trilinear",
             Filter::Tricubic => "tricubic",
         }
+    }
+
+    /// Depths between which all gas lies, metres, as far as it is between the hither and the yon plane.
+    pub fn gas_depths(&self) -> [f32; 2] {
+        let Camera { eye, target, near_m, far_m, .. } = self.camera;
+        let forward = (target - eye).normalize_or(Vec3::NEG_Z);
+        let [mut first, mut last] = [far_m, near_m];
+        for volume in &self.volumes {
+            let (middle, half) = ((volume.center - eye).dot(forward), volume.half_extent_m.dot(forward.abs()));
+            first = first.min((middle - half).clamp(near_m, far_m));
+            last = last.max((middle + half).clamp(near_m, far_m));
+        }
+        // None, or none that is seen: any depths do.
+        if last > first * 1.000_1 { [first, last] } else { [near_m, 2.0 * near_m] }
     }
 
     /// Mixes the seed into the 32 bits that the lattice's hash takes.
@@ -301,6 +340,12 @@ impl Parameters {
                 .help("Entries of the density and shadow tables along each axis")
                 .section("Calculation of the shadow table")
                 .default_text("the scene's, 64")
+                .cost(Cost::Buffers)
+                .everyday(),
+            Parameter::new("froxels", FROXELS)
+                .range(Range::from(1.0).to(1024.0))
+                .placeholder("WxHxD")
+                .help("Of variant froxel: columns and rows that the picture, and slices that its depth is cut into")
                 .cost(Cost::Buffers)
                 .everyday(),
             Parameter::new("pixel-size", field!(Parameters.pixel_size))
@@ -369,6 +414,9 @@ impl Parameters {
         let grids = self.volumes.iter().filter(|v| matches!(v.texture.function, DensityFunction::Grid(_))).count();
         let are_alike = grids == 0 || grids == volumes;
         ParameterError::check(are_alike, "volume", volumes, "are all of files or all of functions")?;
+        let is_known = !self.glows() || self.density_cache.is_none();
+        let problem = "has no place beside `volume-temperature`: a table of densities knows no temperatures";
+        ParameterError::check(is_known, "density-cache", self.density_cache.unwrap_or(0), problem)?;
         let lights = self.lights.len();
         ParameterError::check((1..=MAX_LIGHTS).contains(&lights), "light", lights, "a scene has 1 to 4 lights")?;
         volumes::check(&self.volumes)?;
@@ -388,6 +436,9 @@ const SIZE: Field<Parameters, Size> = Field {
     get: |p| Size { width: p.width, height: p.height },
     set: |p, size| (p.width, p.height) = (size.width, size.height),
 };
+
+const FROXELS: Field<Parameters, Extents<u32, 3>> =
+    Field { get: |p| Extents(p.froxels), set: |p, froxels| p.froxels = froxels.0 };
 
 const CAMERA: Field<Parameters, EyeAndTarget> = Field {
     get: |p| EyeAndTarget { eye: p.camera.eye, target: p.camera.target },

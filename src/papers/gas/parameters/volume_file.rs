@@ -6,10 +6,12 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::measure::parameter::{Choice, Shape, Value, one, with_place};
+use crate::field;
+use crate::measure::parameter::{Choice, Cost, Parameter, Range, Shape, Value, one, with_place};
 use crate::measure::{Error, components};
 use crate::papers::gas::grid::Grid;
 use crate::papers::gas::model::Volume;
+use crate::papers::lava::blackbody;
 use crate::scene::load_voxels;
 
 /// A file with its place. As text: the file, then nothing, or `@` and 3 to 5 numbers.
@@ -60,11 +62,18 @@ impl Choice for Unfit {
     ];
 }
 
+/// Hottest temperature that is told from others, kelvin.
+const MOST_K: f32 = 1e5;
+
 /// Rules by which densities are made of a file's samples.
 #[derive(Debug, Clone, Copy)]
 pub struct Reading {
     /// Component of samples of several values, from 0.
     pub component: u32,
+    /// Component whose samples are temperatures, kelvin, from 0.
+    pub temperature: Option<u32>,
+    /// Temperature at which the brightest primary of a black body is 1, kelvin, above 0.
+    pub white_k: f32,
     /// Values of density 0 and 1.
     pub range: Option<[f32; 2]>,
     /// Treatment of samples that are no number or lie outside the range.
@@ -90,15 +99,23 @@ impl VolumeFile {
     pub fn load(&self, reading: &Reading, first: &Volume) -> Result<Placed, Error> {
         let voxels = load_voxels(&self.path, reading.component)?;
         let (size, steps) = (voxels.size(), voxels.steps());
-        let samples = reading
-            .densities(size, voxels.into_samples())
-            .map_err(|reason| Error::Input(format!("`volume-file` {}: {reason}", self.path.display())))?;
+        let refused = |reason: String| Error::Input(format!("`volume-file` {}: {reason}", self.path.display()));
+        let samples = reading.densities(size, voxels.into_samples()).map_err(refused)?;
+        let mut glow = Vec::new();
+        if let Some(component) = reading.temperature {
+            let voxels = load_voxels(&self.path, component)?;
+            if (voxels.size(), voxels.steps()) != (size, steps) {
+                let reason = "its temperatures lie on another grid than its densities; write both on one";
+                return Err(refused(reason.to_owned()));
+            }
+            glow = reading.glow(size, voxels.samples()).map_err(refused)?;
+        }
         // The world's up is y, and its z comes towards the one who looks at the front.
         let to_world = match reading.upright {
             Upright::Z => DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y),
             Upright::Y => DMat3::IDENTITY,
         };
-        let plain = Grid { size, steps_m: steps.map(|step| to_world * step), samples };
+        let plain = Grid { size, steps_m: steps.map(|step| to_world * step), samples, glow };
         let half = plain.half_extent_m();
         let room = first.half_extent_m.as_dvec3();
         let longest_m = self.stand.and_then(|stand| stand.longest_m);
@@ -111,16 +128,99 @@ impl VolumeFile {
     }
 }
 
+/// A sample of a grid in words.
+fn place(size: [u32; 3], index: usize) -> String {
+    let [columns, rows, _] = size.map(|count| count as usize);
+    format!("sample ({}, {}, {})", index % columns, index / columns % rows, index / columns / rows)
+}
+
+/// Densities from 0 to the largest value, as scanners have them upright.
+impl Default for Reading {
+    fn default() -> Self {
+        Reading {
+            component: 0,
+            temperature: None,
+            white_k: 2000.0,
+            range: None,
+            unfit: Unfit::Refuse,
+            upright: Upright::Z,
+        }
+    }
+}
+
 impl Reading {
+    /// Each option once.
+    pub fn declared() -> Vec<Parameter<Reading>> {
+        vec![
+            Parameter::new("volume-range", field!(Reading.range))
+                .placeholder("A,B")
+                .help(
+                    "Of files: values of density 0 and of density 1, between which it is linear and beyond which it is cut \
+                     off; `opaque` and `power` go on from there",
+                )
+                .default_text("0 and the file's largest value")
+                .cost(Cost::Buffers)
+                .everyday()
+                .requires("volume-file"),
+            Parameter::new("volume-unfit", field!(Reading.unfit))
+                .help("Of files: what a value does that is no density, which NaN is, infinity, and without a range what is negative")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+            Parameter::new("volume-component", field!(Reading.component))
+                .help("Of files with several values a sample, or several grids: which of them is the density, from 0")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+            Parameter::new("volume-temperature", field!(Reading.temperature))
+                .help(
+                    "Of files with several values a sample, or several grids: which of them is the temperature in kelvin, \
+                     from 0: gas glows as a black body of it does, by the fraction of light that it absorbs",
+                )
+                .default_text("none")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+            Parameter::new("white-temperature", field!(Reading.white_k))
+                .range(Range::from(500.0).to(1e5))
+                .unit("kelvin")
+                .help("Of files with temperatures: that at which gas that absorbs all light shows 1 in its brightest primary")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+            Parameter::new("volume-up", field!(Reading.upright))
+                .help("Of files: their upright axis")
+                .cost(Cost::Buffers)
+                .requires("volume-file"),
+        ]
+    }
+
+    /// The light of each sample's temperature, as a black body of it has it.
+    fn glow(&self, size: [u32; 3], kelvins: &[f32]) -> Result<Vec<[f32; 3]>, String> {
+        /// Entries from 0 to the hottest: the light between them is on a straight line.
+        const ENTRIES: usize = 4096;
+        let is_unfit = |kelvin: &f32| !kelvin.is_finite() || *kelvin < 0.0;
+        if let Some(index) = kelvins.iter().position(is_unfit).filter(|_| self.unfit == Unfit::Refuse) {
+            let value = kelvins[index];
+            return Err(format!("{} is {value} K, no temperature; give `volume-unfit` clamp", place(size, index)));
+        }
+        let fit = |kelvin: f32| if is_unfit(&kelvin) { 0.0 } else { kelvin.min(MOST_K) };
+        let hottest = f64::from(kelvins.iter().copied().map(fit).fold(1.0, f32::max));
+        let white = blackbody::light(self.white_k.into()).into_iter().fold(0.0, f64::max);
+        let entry = |at: usize| blackbody::light(hottest * at as f64 / ENTRIES as f64).map(|light| light / white);
+        let table: Vec<[f64; 3]> = (0..=ENTRIES + 1).map(entry).collect();
+        let of = |&kelvin: &f32| {
+            let at = f64::from(fit(kelvin)) / hottest * ENTRIES as f64;
+            let (low, part) = (at as usize, at.fract());
+            std::array::from_fn(|channel| {
+                (table[low][channel] * (1.0 - part) + table[low + 1][channel] * part).min(1e6) as f32
+            })
+        };
+        Ok(kelvins.iter().map(of).collect())
+    }
+
     /// The samples as parts of the way from density 0 to density 1.
     fn densities(&self, size: [u32; 3], mut values: Vec<f32>) -> Result<Vec<f32>, String> {
         let is_clamped = self.unfit == Unfit::Clamp;
-        let place = |index: usize| {
-            let [columns, rows, _] = size.map(|count| count as usize);
-            format!("sample ({}, {}, {})", index % columns, index / columns % rows, index / columns / rows)
-        };
         if let Some(index) = values.iter().position(|value| !value.is_finite()).filter(|_| !is_clamped) {
-            return Err(format!("{} is {}, no density; give `volume-unfit` clamp", place(index), values[index]));
+            let (place, value) = (place(size, index), values[index]);
+            return Err(format!("{place} is {value}, no density; give `volume-unfit` clamp"));
         }
         let [low, high] = match self.range {
             Some(range) => range,
@@ -130,7 +230,7 @@ impl Reading {
                     return Err(format!(
                         "{} is {value}, below density 0; give the values of density 0 and 1 by `volume-range`, or \
                          `volume-unfit` clamp",
-                        place(index)
+                        place(size, index)
                     ));
                 }
                 [0.0, values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max)]

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::mem::discriminant;
 
 use glam::Vec3;
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
 use super::default_volume;
 use crate::measure::parameter::{
@@ -301,6 +301,16 @@ pub fn declared() -> Vec<Parameter<Vec<Volume>>> {
             .default_text("0.8,0.5,0.2,-0.3"),
     ];
     parameters.into_iter().map(|p| p.group("Gases").cost(Cost::Buffers).unrecorded()).collect()
+}
+
+/// A volume as the record has it.
+pub fn recorded(v: &Volume) -> Json {
+    json!({
+        "shape": format!("{:?}", v.shape), "center": v.center.to_array(), "half_extent": v.half_extent_m.to_array(),
+        "falloff": v.falloff, "solid": v.is_solid, "density": format!("{:?}", v.texture.function),
+        "opaque": v.texture.opaque, "power": v.texture.power, "texture_scale": v.texture.scale_per_m,
+        "tau": v.tau_per_m, "albedo": v.albedo.to_array(), "phase": v.phase.map(|f| [f.weight, f.g]),
+    })
 }
 
 /// Checks the numbers of all volumes.

@@ -122,6 +122,17 @@ impl Medium {
         }
     }
 
+    /// The light of a file's temperature, linear RGB.
+    pub fn glow(&self, volume: &Volume, world: DVec3) -> DVec3 {
+        match volume.texture.function {
+            DensityFunction::Grid(index) => {
+                let from_middle = world - volume.center.as_dvec3();
+                self.grids.get(index).map_or(DVec3::ZERO, |grid| grid::glow(grid, from_middle))
+            }
+            _ => DVec3::ZERO,
+        }
+    }
+
     /// Density inside the solid, faded towards its boundary; of a hypertexture solid -ln(1 - density).
     pub fn density(&self, volume: &Volume, world: DVec3) -> f64 {
         let inside = inwardness(volume, world);

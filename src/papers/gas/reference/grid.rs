@@ -10,6 +10,20 @@ const BORDER: f64 = 0.501;
 
 /// The value at a point, metres from the grid's middle; 0 outside. Samples beyond the outermost ones are like them.
 pub fn value(grid: &Grid, filter: Filter, from_middle: DVec3) -> f64 {
+    mean(grid, filter, from_middle, |sample| f64::from(grid.samples[sample]))
+}
+
+/// The light of the temperatures at a point, likewise, linearly.
+pub fn glow(grid: &Grid, from_middle: DVec3) -> DVec3 {
+    let channel = |channel: usize| {
+        let of_sample = |sample: usize| grid.glow.get(sample).map_or(0.0, |light| f64::from(light[channel]));
+        mean(grid, Filter::Trilinear, from_middle, of_sample)
+    };
+    DVec3::new(channel(0), channel(1), channel(2))
+}
+
+/// The mean of what is known of each sample.
+fn mean(grid: &Grid, filter: Filter, from_middle: DVec3, of_sample: impl Fn(usize) -> f64) -> f64 {
     // Cramer's rule: the point as a sum of steps.
     let [x, y, z] = grid.steps_m;
     let whole = DMat3::from_cols(x, y, z).determinant();
@@ -31,8 +45,7 @@ pub fn value(grid: &Grid, filter: Filter, from_middle: DVec3) -> f64 {
     for (layer, of_layer) in along(2) {
         for (row, of_row) in along(1) {
             for (column, of_column) in along(0) {
-                let sample = grid.samples[(layer * rows + row) * columns + column];
-                sum += f64::from(sample) * of_layer * of_row * of_column;
+                sum += of_sample((layer * rows + row) * columns + column) * of_layer * of_row * of_column;
             }
         }
     }
@@ -61,7 +74,7 @@ mod tests {
         let index = |i: u32| DVec3::new(f64::from(i % 7), f64::from(i / 7 % 6), f64::from(i / 42));
         let samples = (0..7 * 6 * 5).map(|i| of(index(i)) as f32).collect();
         let steps_m = [DVec3::new(0.1, 0.02, 0.0), DVec3::new(0.0, -0.2, 0.01), DVec3::new(0.03, 0.0, 0.3)];
-        Grid { size, steps_m, samples }
+        Grid { size, steps_m, samples, glow: Vec::new() }
     }
 
     fn point(grid: &Grid, index: DVec3) -> DVec3 {

@@ -190,6 +190,7 @@ impl March<'_> {
             extinction += thickness;
             if thickness > 0.0 {
                 emission += volume.albedo.as_dvec3() * self.light(volume, point, are_shadowed) * thickness;
+                emission += (1.0 - volume.albedo.as_dvec3()) * self.rays.medium.glow(volume, point) * thickness;
             }
         }
         if extinction > 0.0 {
@@ -242,7 +243,7 @@ pub fn towards(light: &Light, point: DVec3) -> (DVec3, f64, DVec3) {
 
 /// The ray segment of a unit direction inside a solid: any point inside, and from there both ends by halving. It misses
 /// segments shorter than a five-hundredth of the solid.
-fn segment(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
+pub(super) fn segment(volume: &Volume, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
     let radius = volume.half_extent_m.as_dvec3().length() * 1.001;
     let nearest = (volume.center.as_dvec3() - origin).dot(direction);
     let is_inside = |at: f64| inwardness(volume, origin + direction * at) >= 0.0;

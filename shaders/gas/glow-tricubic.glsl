@@ -1,0 +1,1 @@
+#include "gas/glow-trilinear.glsl"
