@@ -6,7 +6,6 @@
 #include "caustics/waves.glsl"
 
 layout(push_constant) uniform Water {
-    float time_s;
     uint wave_count;
     float eta; // refraction index of air over that of water
     float absorption_per_m;
@@ -14,7 +13,7 @@ layout(push_constant) uniform Water {
 
 // Height above the level in x, slopes along x and z in y and z.
 vec3 surface_at(vec2 place) {
-    return wave_at(place, water.time_s, water.wave_count);
+    return wave_at(place, water.wave_count);
 }
 
 #include "caustics/view-above.glsl"

@@ -25,7 +25,6 @@ layout(push_constant) uniform Surface {
     uint rows; // vertices along z
     uint wave_count;
     float level_m;
-    float time_s;
 } surface;
 
 void main() {
@@ -34,7 +33,7 @@ void main() {
         return;
     }
     vec2 place = surface.corner + surface.cell * vec2(float(index % surface.columns), float(index / surface.columns));
-    vec3 wave = wave_at(place, surface.time_s, surface.wave_count);
+    vec3 wave = wave_at(place, surface.wave_count);
     water.vertices[index].position = vec4(place.x, surface.level_m + wave.x, place.y, 1.0);
     water.vertices[index].normal = vec4(surface_normal(wave.yz), 0.0);
 }

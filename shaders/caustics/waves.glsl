@@ -1,10 +1,10 @@
 // The water's surface: a sum of sine waves, height = level + sum A sin(k . x - omega t + phi). The thesis leaves the wave function
-// to the program; it is its controlled variable (section 5.2). The includer declares the buffer `waves` with the list of waves.
+// to the program; it is its controlled variable (section 5.2). The host takes omega t off the phases: in single precision it
+// would lose them in late frames.
 
 struct Wave {
     vec2 vector; // k along x and z, rad/m
-    float angular_frequency; // omega, rad/s
-    float phase_rad;
+    float phase_rad; // of the frame
     float amplitude_m;
 };
 
@@ -13,11 +13,11 @@ layout(std430, set = 0, binding = 0) readonly buffer Waves {
 } waves;
 
 // Height above the level in x, slopes along x and z in y and z.
-vec3 wave_at(vec2 place, float time_s, uint count) {
+vec3 wave_at(vec2 place, uint count) {
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < count; i++) {
         Wave wave = waves.list[i];
-        float angle = dot(wave.vector, place) - wave.angular_frequency * time_s + wave.phase_rad;
+        float angle = dot(wave.vector, place) + wave.phase_rad;
         sum.x += wave.amplitude_m * sin(angle);
         sum.yz += wave.amplitude_m * cos(angle) * wave.vector;
     }

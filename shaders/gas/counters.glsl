@@ -12,3 +12,7 @@ layout(set = 0, binding = 11, std430) buffer Counters {
     uint lost_pixels; // of a frame so far, see fragments-nearest.comp
     uint most_lost_pixels; // of a frame before
 };
+
+// No buffer has so many slots. Whoever is told of more takes back what he has counted, so that no count comes round to slots
+// that others hold.
+const uint MOST_SLOTS = 0x80000000u;

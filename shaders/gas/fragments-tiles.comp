@@ -82,6 +82,9 @@ void main() {
     }
     if (lane == 0u) {
         first_of_tile = of_tile > 0u ? atomicAdd(fragment_count, of_tile) : 0u;
+        if (first_of_tile >= MOST_SLOTS) {
+            atomicAdd(fragment_count, 0u - of_tile);
+        }
     }
     barrier();
     uint first = first_of_tile + before;

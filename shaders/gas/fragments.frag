@@ -39,6 +39,9 @@ void main() {
     }
     uint slot = atomicAdd(fragment_count, 1u);
     if (slot >= frame.fragment_capacity) {
+        if (slot >= MOST_SLOTS) {
+            atomicAdd(fragment_count, 0xffffffffu);
+        }
         return; // counted: the host grows the buffers and repeats the run
     }
     fragment.link.next = atomicExchange(heads[list_of(pixel)], slot);

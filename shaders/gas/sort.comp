@@ -204,6 +204,9 @@ void main() {
     if (wanted > 0u) {
         first = atomicAdd(section_count, wanted);
         if (first + wanted > frame.section_capacity) {
+            if (first >= MOST_SLOTS) {
+                atomicAdd(section_count, 0u - wanted);
+            }
             wanted = 0u; // counted: the host grows the buffers and repeats the run
         }
     }

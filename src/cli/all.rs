@@ -12,6 +12,7 @@ use super::outcome;
 use super::report;
 use super::spelling;
 use super::watch::{interrupted, watched};
+use crate::measure::Error;
 use crate::measure::bench::{Bench, load};
 use crate::measure::limits;
 use crate::measure::machine::Machine;
@@ -55,6 +56,8 @@ struct Measured {
     limits: Option<Limits>,
     runs: Vec<Run>,
     traces: Vec<TraceRun>,
+    /// The first of what failed and kept no other paper from being measured.
+    failed: Option<Failure>,
 }
 
 pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
@@ -68,11 +71,20 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     let page = arguments.report.clone().map(|page| page.unwrap_or_else(|| output.out.join("report.html")));
     page.iter().try_for_each(|page| outcome::check_file(page))?;
 
+    papers::each(&mut Pictures { folder: &output.out })?;
+
     // Every paper runs on one device, so that their figures compare.
     let mut machine = Machine::open(&arguments.machine.resolve(0), &[])?;
     outcome::say_device(&output, &machine);
     let mut measured = Measured::default();
-    papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured })?;
+    let ended = papers::each(&mut All { machine: &mut machine, output: &output, measured: &mut measured });
+    // A paper that fails throws away no other's measurement.
+    let failed = measured.failed.or(ended.err());
+    if measured.runs.is_empty()
+        && let Some(failed) = failed
+    {
+        return Err(failed);
+    }
     let record = Record::new(machine.environment(), environment::command(), measured.runs);
     outcome::publish(&output, &record, &measured.traces)?;
     if let Some(page) = &page {
@@ -82,7 +94,25 @@ pub fn run(arguments: &AllArgs) -> Result<(), Failure> {
     if !output.quiet {
         summary(&record, &output, page.as_deref()).iter().for_each(|line| outcome::say(line));
     }
-    Ok(())
+    failed.map_or(Ok(()), Err)
+}
+
+/// Checks before the long work that the pictures can be written.
+struct Pictures<'a> {
+    folder: &'a Path,
+}
+
+impl Visitor for Pictures<'_> {
+    type Error = Failure;
+
+    fn visit<S: Study>(&mut self) -> Result<(), Failure> {
+        pictures::<S>(self.folder).iter().try_for_each(|picture| outcome::check_file(picture))
+    }
+}
+
+/// Files of the pictures of a paper's variants.
+fn pictures<S: Study>(folder: &Path) -> Vec<PathBuf> {
+    bench::picture_files(&folder.join(format!("{}.png", S::PAPER)), S::BENCHED)
 }
 
 /// The papers with the slowest pass of every variant, the files, and what to try next; a line each.
@@ -130,17 +160,17 @@ impl Visitor for All<'_> {
     type Error = Failure;
 
     fn visit<S: Study>(&mut self) -> Result<(), Failure> {
-        measure_quick(&S::quick(), S::BENCHED, self.machine, self.output, self.measured)
+        measure_quick(&S::quick(), self.machine, self.output, self.measured)
     }
 }
 
 fn measure_quick<S: Study>(
     study: &S,
-    variants: &[S::Variant],
     machine: &mut Machine,
     output: &OutputArgs,
     measured: &mut Measured,
 ) -> Result<(), Failure> {
+    let variants = S::BENCHED;
     if interrupted().load(Ordering::Relaxed) && !measured.runs.is_empty() {
         return Ok(());
     }
@@ -153,22 +183,32 @@ fn measure_quick<S: Study>(
     if measured.limits.is_none() {
         measured.limits = Some(limits::measure(machine)?);
     }
-    let pictures = bench::picture_files(&output.out.join(format!("{paper}.png")), variants);
-    pictures.iter().try_for_each(|picture| outcome::check_file(picture))?;
     let loaded = load(study)?;
     let limits = measured.limits.as_ref();
     let bench = Bench { study, loaded: &loaded, variants, schedule: SCHEDULE, limits };
-    let found = watched(output.quiet, paper, |watch| bench.measure(machine, watch))?;
+    let found = match watched(output.quiet, paper, |watch| bench.measure(machine, watch)) {
+        Err(Error::Interrupted) if !measured.runs.is_empty() => return Ok(()),
+        found => found?,
+    };
     let (mut runs, traces): (Vec<Run>, Vec<_>) = found.into_iter().map(|m| (m.run, m.trace)).unzip();
     for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
         *warning = spelling::options(warning);
     }
+    let pictures = pictures::<S>(&output.out);
     for (index, ((&variant, picture), run)) in variants.iter().zip(&pictures).zip(&mut runs).enumerate() {
         if index > 0 && interrupted().load(Ordering::Relaxed) {
             break;
         }
-        run.image = Some(bench::write_picture(machine, study, &loaded, variant, 0, picture)?);
-        outcome::wrote(output, picture);
+        match bench::write_picture(machine, study, &loaded, variant, 0, picture) {
+            Ok(image) => {
+                run.image = Some(image);
+                outcome::wrote(output, picture);
+            }
+            Err(failure) => {
+                run.warnings.push(format!("without a picture: {failure}"));
+                measured.failed.get_or_insert(failure);
+            }
+        }
     }
     measured.runs.extend(runs);
     measured.traces.extend(traces);

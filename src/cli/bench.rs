@@ -17,7 +17,7 @@ use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::picture;
 use crate::measure::profile::{self, profile};
 use crate::measure::study::Study;
-use crate::measure::{Paper, Variant};
+use crate::measure::{Error, Paper, Variant};
 use crate::report::record::{ImageFile, Run};
 use crate::report::trace::TraceRun;
 use crate::report::{Record, environment};
@@ -35,8 +35,10 @@ pub fn publish<S: Study>(
     variants: &[S::Variant],
 ) -> Result<(), Failure> {
     let CommonArgs { measure: MeasureArgs { processes, .. }, output, .. } = common;
-    let mut pictures = output.image.iter().flat_map(|named| picture_files(named, variants));
-    pictures.try_for_each(|path| outcome::check_file(&path))?;
+    let pictures: Vec<PathBuf> = output.image.iter().flat_map(|named| picture_files(named, variants)).collect();
+    pictures.iter().try_for_each(|path| outcome::check_file(path))?;
+    let documents = output.files().filter(|path| Some(*path) != output.image.as_ref());
+    outcome::check_apart(documents.chain(&pictures), &outcome::read_by(study))?;
     if *processes > 1 {
         let (record, failed) = processes::run(*processes, output.quiet)?;
         // The first process has written the pictures and the trace.
@@ -83,35 +85,46 @@ fn measure<S: Study>(
     for warning in runs.iter_mut().flat_map(|run| &mut run.warnings) {
         *warning = spelling::options(warning);
     }
+    // What fails from here on throws no measurement away.
+    let mut failed = None;
+    let mut without = |what: &str, run: &mut Run, failure: Failure| {
+        run.warnings.push(format!("without {what}: {failure}"));
+        failed.get_or_insert(failure);
+    };
     for (&variant, run) in variants.iter().zip(runs.iter_mut().step_by(alternatives.len().max(1))) {
         if let Some(pass) = depth.profile.as_deref().filter(|_| profiled.contains(&variant)) {
             let title = format!("{} {pass}, both compilers", S::PAPER);
-            run.profile = watched(output.quiet, &title, |watch| {
+            let profiled = watched(output.quiet, &title, |watch| {
                 profile(&mut machine, &options, (study, &loaded), (variant, pass), schedule, watch)
-            })?;
+            });
+            match profiled {
+                Ok(profile) => run.profile = profile,
+                Err(Error::Interrupted) => run.warnings.push(format!("interrupted before {pass} was profiled")),
+                Err(error) => without("a profile", run, error.into()),
+            }
         }
         if let Some(capture) = &capture {
-            let file = capture_frame(&mut machine, capture, study, &loaded, variant, &output.out)?;
-            outcome::wrote(output, &file);
+            match capture_frame(&mut machine, capture, study, &loaded, variant, &output.out) {
+                Ok(file) => outcome::wrote(output, &file),
+                Err(failure) => without("a capture", run, failure),
+            }
         }
     }
-    // A picture that fails throws no measurement away.
-    let mut failed = None;
     let files = output.image.iter().flat_map(|named| picture_files(named, variants));
     let first_runs = runs.iter_mut().step_by(alternatives.len().max(1));
     for (index, ((&variant, file), run)) in variants.iter().zip(files).zip(first_runs).enumerate() {
         if index > 0 && interrupted().load(Ordering::Relaxed) {
             break;
         }
-        match write_picture(&mut machine, study, &loaded, variant, schedule.frames - 1, &file) {
+        // Of an interrupted run the last that was measured: a state that goes step by step may be hours from the end.
+        let measured = run.frame_ms.as_ref().map_or(1, |times| times.samples.len());
+        let last = schedule.frames.min(u32::try_from(measured).unwrap_or(u32::MAX)) - 1;
+        match write_picture(&mut machine, study, &loaded, variant, last, &file) {
             Ok(image) => {
                 run.image = Some(image);
                 outcome::wrote(output, &file);
             }
-            Err(failure) => {
-                run.warnings.push(format!("without a picture: {failure}"));
-                failed.get_or_insert(failure);
-            }
+            Err(failure) => without("a picture", run, failure),
         }
     }
     Ok((Record::new(machine.environment(), environment::command(), runs), traces, failed))

@@ -136,6 +136,8 @@ impl VerdictArgs {
 }
 
 pub fn run(arguments: &CompareArgs) -> Result<(), Failure> {
+    let read: Vec<PathBuf> = arguments.a.0.iter().chain(&arguments.b.0).cloned().collect();
+    outcome::check_apart(&arguments.verdict.json, &read)?;
     let (a, b) = (arguments.a.read()?, arguments.b.read()?);
     let options = match arguments.blocks {
         true => arguments.verdict.options(Design::Blocks).for_blocks(&a, &b),

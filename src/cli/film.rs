@@ -21,7 +21,11 @@ pub fn check(path: &Path) -> Result<(), Failure> {
 }
 
 /// Writes a film, and gives the number of its frames; without one there is no file.
-pub fn shoot(path: &Path, rate: u32, mut frames: impl Iterator<Item = Result<Rgba8, Failure>>) -> Result<u32, Failure> {
+pub fn shoot(
+    path: &Path,
+    rate: u32,
+    mut frames: impl Iterator<Item = Result<Rgba8, Failure>>,
+) -> Result<usize, Failure> {
     // Before the first frame is there, nothing is written: an older film stays.
     let Some(first) = frames.next().transpose()? else { return Ok(0) };
     let (mut count, mut failure) = (0, None);

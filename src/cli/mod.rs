@@ -126,6 +126,7 @@ fn umbrella_command(papers: &[Paper]) -> clap::Command {
 
 /// Runs `fumarole`.
 pub fn umbrella() -> ExitCode {
+    watch::keep_ignored();
     gpu::pin_software_threads();
     let papers = listed();
     let command = umbrella_command(&papers);
@@ -164,6 +165,7 @@ pub fn umbrella() -> ExitCode {
 
 /// Runs the own binary of a listed paper.
 pub fn binary<S: Study>() -> ExitCode {
+    watch::keep_ignored();
     gpu::pin_software_threads();
     // Found by its name: were `Paper::of::<S>` named here, each binary would compile the whole paper once more.
     let Some(paper) = listed().into_iter().find(|paper| paper.name == S::PAPER) else {

@@ -1,19 +1,20 @@
 //! Writing what a measurement leaves behind.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::options::OutputArgs;
 use super::spelling;
 use super::watch::watched;
-use crate::file::{check_writable, write};
+use crate::file::{check_writable, destination, write};
 use crate::image;
 use crate::measure::Error;
 use crate::measure::estimate::Estimate;
 use crate::measure::experiment::Console;
 use crate::measure::machine::Machine;
 use crate::measure::measure::Watch;
+use crate::measure::study::Study;
 use crate::report::record::Record;
 use crate::report::table::Style;
 use crate::report::text::{escaped, one_line};
@@ -81,7 +82,35 @@ pub fn warn(output: &OutputArgs, warning: &str) {
 /// Fails before long work if a file could not be written after it.
 pub fn check(output: &OutputArgs) -> Result<(), Failure> {
     output.image.iter().try_for_each(|path| check_picture(path))?;
-    output.files().try_for_each(|path| check_file(path))
+    output.files().try_for_each(|path| check_file(path))?;
+    check_apart(output.files(), &[])
+}
+
+/// Fails where two of the files that are `written` are one, or one of them is `read`: the one would take the other's place
+/// without a word.
+pub fn check_apart<'a>(written: impl IntoIterator<Item = &'a PathBuf>, read: &[PathBuf]) -> Result<(), Failure> {
+    let read: Vec<PathBuf> = read.iter().filter_map(|path| destination(path)).collect();
+    let mut before = Vec::new();
+    for path in written {
+        let Some(place) = destination(path) else { continue };
+        if read.contains(&place) {
+            let message =
+                format!("{}: it is read, and what is written there would replace it; name another", path.display());
+            return Err(Failure::Input(message));
+        }
+        if before.contains(&place) {
+            let message =
+                format!("{}: two outputs are to be written there; give each a file of its own", path.display());
+            return Err(Failure::Input(message));
+        }
+        before.push(place);
+    }
+    Ok(())
+}
+
+/// The files that a paper reads, as its parameters name them.
+pub fn read_by<S: Study>(study: &S) -> Vec<PathBuf> {
+    S::parameters().iter().flat_map(|parameter| parameter.files(study)).collect()
 }
 
 /// Fails for a file that cannot be written, and for `-`, which only `--json` knows.

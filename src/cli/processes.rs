@@ -41,10 +41,16 @@ pub fn run(count: u32, quiet: bool) -> Result<(Record, Option<Failure>), Failure
             break;
         }
         match measure(&program, &given, process, interrupted) {
-            Ok(record) => match &mut joined {
-                Some(all) => all.runs.extend(record.runs),
-                None => joined = Some(Record { command: environment::command(), ..record }),
-            },
+            Ok((record, failed)) => {
+                match &mut joined {
+                    Some(all) => all.runs.extend(record.runs),
+                    None => joined = Some(Record { command: environment::command(), ..record }),
+                }
+                failure = failed;
+                if failure.is_some() {
+                    break;
+                }
+            }
             Err(_) if interrupted.load(Ordering::Relaxed) && joined.is_some() => break,
             Err(_) if interrupted.load(Ordering::Relaxed) => return Err(Error::Interrupted.into()),
             Err(failed) => {
@@ -61,8 +67,14 @@ pub fn run(count: u32, quiet: bool) -> Result<(Record, Option<Failure>), Failure
     }
 }
 
-/// Measures in one fresh process, with the arguments that this one was given.
-fn measure(program: &Path, given: &[OsString], process: u32, interrupted: &AtomicBool) -> Result<Record, Failure> {
+/// Measures in one fresh process, with the arguments that this one was given. One that fails after it has measured leaves its
+/// record all the same.
+fn measure(
+    program: &Path,
+    given: &[OsString],
+    process: u32,
+    interrupted: &AtomicBool,
+) -> Result<(Record, Option<Failure>), Failure> {
     let removed = if process == 0 { OURS.to_vec() } else { [&OURS[..], &OF_THE_FIRST[..]].concat() };
     let file = crate::file::temporary().map_err(failed)?;
     let mut command = Command::new(program);
@@ -73,9 +85,13 @@ fn measure(program: &Path, given: &[OsString], process: u32, interrupted: &Atomi
         .stdin(Stdio::null());
     let ended = finish(&mut command, interrupted).map_err(failed)?;
     if !ended.status.success() {
-        return Err(failure(&format!("process {process}"), &ended));
+        let failure = failure(&format!("process {process}"), &ended);
+        return match json::read(file.path()) {
+            Ok(record) => Ok((record, Some(failure))),
+            Err(_) => Err(failure),
+        };
     }
-    Ok(json::read(file.path())?)
+    Ok((json::read(file.path())?, None))
 }
 
 fn failed(reason: impl Display) -> Failure {

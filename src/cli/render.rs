@@ -130,6 +130,9 @@ pub fn draw<S: Study>(
     }
 
     let study = resolve()?;
+    let picture = has_pictures.then(|| picture_path(frames.first));
+    let dumps = arguments.dump.iter().map(|dump| &dump.file);
+    outcome::check_apart(dumps.chain(&picture).chain(&arguments.film), &outcome::read_by(&study))?;
     let (whole, height) = (frames.first..frames.end, study.identity().height);
     let (numbers, rows) = arguments.share(height)?;
     if numbers.is_empty() || rows.is_empty() {
@@ -203,8 +206,9 @@ pub fn draw<S: Study>(
         bar.inc(1);
         Ok(Some(rendered))
     };
+    let wanted = numbers.len();
     let numbers = numbers.into_iter();
-    let filmed = match &arguments.film {
+    let filmed: usize = match &arguments.film {
         Some(path) => film::shoot(path, arguments.film_rate, numbers.map(&mut next).map_while(Result::transpose))?,
         None => {
             numbers.map(&mut next).map_while(Result::transpose).try_fold(0, |count, drawn| drawn.map(|_| count + 1))?
@@ -213,6 +217,9 @@ pub fn draw<S: Study>(
     bar.finish_and_clear();
     if filmed == 0 {
         return Err(Failure::Running("interrupted before a picture was written".into()));
+    }
+    if filmed < wanted {
+        outcome::warn(&output, &format!("interrupted after {filmed} of {wanted} frames"));
     }
     written.extend(arguments.film.clone());
     built.paper.warnings().iter().for_each(|warning| outcome::warn(&output, warning));

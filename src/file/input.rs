@@ -15,20 +15,24 @@ pub fn open(path: &Path) -> io::Result<(File, u64)> {
     Ok((File::open(path)?, metadata.len()))
 }
 
-/// The bytes of a regular file of at most `limit_bytes`; of one that grows meanwhile no more than that.
+/// The bytes of a regular file of at most `limit_bytes`, also of one that grows meanwhile.
 ///
 /// # Errors
 /// As [`open`]; [`io::ErrorKind::FileTooLarge`] for more bytes.
 pub fn read(path: &Path, limit_bytes: u64) -> io::Result<Vec<u8>> {
     let (file, size_bytes) = open(path)?;
-    if size_bytes > limit_bytes {
+    let too_large = |size_bytes: u64| {
         let reason = format!("its {size_bytes} bytes exceed the limit of {limit_bytes}");
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
+        Err(io::Error::new(io::ErrorKind::FileTooLarge, reason))
+    };
+    if size_bytes > limit_bytes {
+        return too_large(size_bytes);
     }
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(size_bytes as usize)?;
-    file.take(limit_bytes).read_to_end(&mut bytes)?;
-    Ok(bytes)
+    file.take(limit_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    let read_bytes = bytes.len() as u64;
+    if read_bytes > limit_bytes { too_large(read_bytes) } else { Ok(bytes) }
 }
 
 /// As [`read`], for text.

@@ -107,6 +107,8 @@ pub fn write_with(
 /// As [`write()`].
 pub fn check_writable(path: &Path) -> Result<(), OutputError> {
     let opened = match Destination::find(path)? {
+        // Its reader would take the end of this for the end of what is written later.
+        Destination::Stream if is_fifo(path) => Ok(()),
         Destination::Stream => File::options().write(true).open(path).map(drop),
         Destination::File(target) => {
             temporary::sweep(&parent(&target));
@@ -114,6 +116,19 @@ pub fn check_writable(path: &Path) -> Result<(), OutputError> {
         }
     };
     opened.map_err(|source| OutputError::Write { path: path.to_owned(), source })
+}
+
+/// The regular file that `path` names or would name, every link followed; `None` for a device or a pipe, and where there can be
+/// none.
+pub fn destination(path: &Path) -> Option<PathBuf> {
+    let target = match fs::metadata(path) {
+        Ok(metadata) if !metadata.is_file() => return None,
+        Ok(_) => path.to_owned(),
+        Err(_) => followed(path).ok()?,
+    };
+    // A file that is not there yet has its folder's place.
+    let folder = fs::canonicalize(parent(&target));
+    fs::canonicalize(&target).ok().or_else(|| Some(folder.ok()?.join(target.file_name()?)))
 }
 
 fn buffered(file: &mut File, fill: impl FnOnce(&mut BufWriter<&mut File>) -> io::Result<()>) -> io::Result<()> {
@@ -153,6 +168,18 @@ impl Destination {
         let target = fs::canonicalize(path).map_err(|source| OutputError::Write { path: path.to_owned(), source })?;
         Ok(Self::File(target))
     }
+}
+
+/// True of a pipe that has a name.
+#[cfg(unix)]
+fn is_fifo(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    fs::metadata(path).is_ok_and(|metadata| metadata.file_type().is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_fifo(_: &Path) -> bool {
+    false
 }
 
 /// The end of a chain of symbolic links, of which nothing need exist.
@@ -276,6 +303,20 @@ mod tests {
         let circle = root.path().join("circle");
         std::os::unix::fs::symlink("circle", &circle).unwrap();
         assert!(write(&circle, b"x").unwrap_err().to_string().contains("circle"));
+    }
+
+    #[test]
+    fn ways_to_one_file_have_one_destination() {
+        let root = tempfile::tempdir().unwrap();
+        let (file, folder) = (root.path().join("a"), root.path().join("folder"));
+        fs::create_dir(&folder).unwrap();
+        for is_there in [false, true] {
+            let found = destination(&file).unwrap();
+            assert_eq!(destination(&folder.join("../a")).as_ref(), Some(&found), "{is_there}");
+            assert_ne!(destination(&folder.join("a")).as_ref(), Some(&found), "{is_there}");
+            fs::write(&file, "x").unwrap();
+        }
+        assert_eq!([destination(&folder), destination(Path::new("/dev/null"))], [None, None]);
     }
 
     #[test]

@@ -100,12 +100,17 @@ impl Calibration {
         has.then(|| Calibration { calls: ext::calibrated_timestamps::Device::new(&device.instance().raw, &device.raw) })
     }
 
-    /// A timestamp of the device and the host's moment for it, in the middle of the call; `None` where the device fails.
-    pub fn now(&self) -> Option<(u64, Instant)> {
+    /// A timestamp of the device and the host's moment for it, in the middle of the call.
+    ///
+    /// # Errors
+    /// Any error of Vulkan.
+    pub fn now(&self) -> Result<(u64, Instant), Error> {
         let wanted = [vk::CalibratedTimestampInfoEXT::default().time_domain(vk::TimeDomainEXT::DEVICE)];
         let before = Instant::now();
         // SAFETY: the device, which its recorder keeps alive, was opened with the extension and has this domain.
-        let (ticks, _) = unsafe { self.calls.get_calibrated_timestamps(&wanted) }.ok()?;
-        Some((*ticks.first()?, before + before.elapsed() / 2))
+        let (ticks, _) =
+            unsafe { self.calls.get_calibrated_timestamps(&wanted) }.context("reading the clock of", "the device")?;
+        // One was asked for.
+        Ok((ticks[0], before + before.elapsed() / 2))
     }
 }

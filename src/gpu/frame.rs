@@ -161,6 +161,7 @@ impl Frame<'_> {
             wait_ms: None,
             counts: None,
             work: None,
+            is_overrun: false,
         });
         passes.len() - 1
     }

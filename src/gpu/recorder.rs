@@ -43,7 +43,7 @@ pub struct Recorder {
     /// The pass, as an index into `sample.passes`, of each timestamped interval and of each counter.
     pub(super) intervals: Vec<usize>,
     pub(super) counted: Vec<Counted>,
-    /// Passes with calls beyond the queries: not measured, rather than in part.
+    /// Passes with calls beyond the queries or the range of timestamps: not measured, rather than in part.
     overrun: Vec<usize>,
     pub(super) labels: Vec<(&'static str, CString)>,
     pub(super) sample: FrameSample,
@@ -162,9 +162,10 @@ impl Recorder {
         }
         frame.finish()?;
         drop(frame);
+        self.sample.bracket_ms = self.sample.bracket_ms.filter(|ms| ms.is_finite());
         for &pass in &self.overrun {
             let sample = &mut self.sample.passes[pass];
-            (sample.gpu_ms, sample.counts, sample.work) = (None, None, None);
+            (sample.gpu_ms, sample.counts, sample.work, sample.is_overrun) = (None, None, None, true);
         }
         Ok(&self.sample)
     }
@@ -184,7 +185,8 @@ impl Recorder {
             }
             Ok::<(), Error>(())
         })?;
-        if let Some(pool) = &mut self.timestamps {
+        let is_in_range = !self.comes_round(self.sample.frame_ms);
+        if let Some(pool) = self.timestamps.as_mut().filter(|_| is_in_range) {
             let timestamps = pool.read()?;
             floors.extend(
                 timestamps
@@ -194,6 +196,12 @@ impl Recorder {
         }
         floors.sort_by(f64::total_cmp);
         Ok(floors.get(floors.len() / 2).copied())
+    }
+
+    /// True where timestamps may have come back to their start in this time, by the clock of the host: their differences mean
+    /// nothing then.
+    fn comes_round(&self, duration_ms: f64) -> bool {
+        duration_ms >= (self.timestamp_mask as f64 + 1.0) * self.period_ns * 1e-6
     }
 
     /// `full, timestamp, full` after a pass.
@@ -227,15 +235,19 @@ impl Recorder {
     /// Gives the timestamps' differences to their passes. `started` is the frame's start, `submitted_ms` after which its work
     /// was handed in.
     pub(super) fn read_timestamps(&mut self, mode: Mode, started: Instant, submitted_ms: f64) -> Result<(), Error> {
+        if self.comes_round(started.elapsed().as_secs_f64() * 1e3 - submitted_ms) {
+            self.overrun.extend(&self.intervals);
+            self.sample.bracket_ms = Some(f64::NAN);
+            return Ok(());
+        }
         let Some(pool) = &mut self.timestamps else { return Ok(()) };
         let (mask, period_ns) = (self.timestamp_mask, self.period_ns);
         let difference_ms = |w: &[u64]| (w[1].wrapping_sub(w[0]) & mask) as f64 * period_ns * 1e-6;
         let timestamps = pool.read()?;
         let mut start_ms = submitted_ms;
         // The device's clock runs on: the first timestamp lies as long before this reading as the ticks between them.
-        if let (Some((ticks, moment)), Some(first)) =
-            (self.calibration.as_ref().and_then(Calibration::now), timestamps.first())
-        {
+        let now = self.calibration.as_ref().map(Calibration::now).transpose()?;
+        if let (Some((ticks, moment)), Some(first)) = (now, timestamps.first()) {
             start_ms = (moment - started).as_secs_f64() * 1e3 - difference_ms(&[*first, ticks]);
         }
         if mode == Mode::Bracketed {

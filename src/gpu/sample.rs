@@ -68,6 +68,8 @@ pub struct PassSample {
     pub counts: Option<Counts>,
     /// Bytes, samples and triangles by its declaration, in a counted frame.
     pub work: Option<Work>,
+    /// It has more calls in the frame than there are queries, or ran longer than timestamps count: neither time nor counters.
+    pub is_overrun: bool,
 }
 
 /// The time span of one call of a pass.

@@ -146,8 +146,9 @@ impl Surface {
                 continue;
             }
             // SAFETY: surface and device belong to the same living instance, and the family is one of the device's.
-            let presents = unsafe { self.calls.get_physical_device_surface_support(physical.raw, family, self.raw) };
-            if presents == Ok(true) {
+            let presents = unsafe { self.calls.get_physical_device_surface_support(physical.raw, family, self.raw) }
+                .before_a_device("asking about the surface of", "the window")?;
+            if presents {
                 able.push(physical);
             }
         }

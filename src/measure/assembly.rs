@@ -66,13 +66,31 @@ pub fn assemble(metadata: RunMetadata, measurement: &Measurement, schedule: Sche
     let of_passes = |times: fn(&Pass) -> Option<f64>| passes.iter().filter_map(times).sum::<f64>();
     let gpu_ms = of_passes(|p| p.gpu_ms.as_ref().map(|s| s.median));
     let host_ms = of_passes(|p| p.host_ms.as_ref().map(|s| s.median));
-    let is_timestamped = passes.iter().any(|p| p.gpu_ms.is_some());
+    let is_untimed = |p: &&MeasuredPass| p.gpu_ms.iter().any(|ms| ms.is_nan());
+    let untimed: Vec<&str> = measurement.passes.iter().filter(is_untimed).map(|p| p.info.name).collect();
+    let uncounted: Vec<&str> = measurement.passes.iter().filter(|p| p.is_uncounted).map(|p| p.info.name).collect();
+    let is_timestamped = untimed.is_empty() && passes.iter().any(|p| p.gpu_ms.is_some());
     let mut warnings = metadata.warnings;
+    if !untimed.is_empty() {
+        let names = untimed.join(", ");
+        warnings.push(format!(
+            "GPU times of {names} are absent: a frame has more calls than there are time stamps, or runs longer than they count"
+        ));
+    }
+    if !uncounted.is_empty() {
+        let names = uncounted.join(", ");
+        warnings.push(format!("statistics of {names} are absent: a frame has more calls than there are counters"));
+    }
     if let Some(noise) = repetition_noise(&measurement.frame_ms, schedule.frames as usize).filter(|&n| n > NOISY) {
         warnings.push(format!("{SCATTERS_BY}{:.0} %", noise * 100.0));
     }
     if measurement.repeat < schedule.repeat {
         warnings.push(format!("interrupted after {} of {} repetitions", measurement.repeat, schedule.repeat));
+    }
+    let measured_s = measurement.frame_ms.iter().sum::<f64>() * 1e-3;
+    if measured_s < schedule.min_time_s {
+        let wanted_s = schedule.min_time_s;
+        warnings.push(format!("plain frames took {measured_s:.1} s of the {wanted_s} s that `min-time` asks for"));
     }
     let sum =
         |host: bool| Some(metadata.memory.iter().filter(|m| m.host_visible == host).map(|m| m.bytes).sum::<u64>());
@@ -149,7 +167,7 @@ fn pass(measured: &MeasuredPass, limits: Option<&Limits>, is_cpu: bool) -> Pass 
             samples_passed: c.samples_passed,
         }),
         bytes: measured.work.as_ref().map(bytes),
-        counted_ms: median(&measured.counted_ms).filter(|_| measured.work.is_some()),
+        counted_ms: median(&measured.counted_ms).filter(|ms| measured.work.is_some() && ms.is_finite()),
         floor_ms: floor.as_ref().map(|floor| floor.ms),
         bound: floor.as_ref().map(|floor| floor.bound.to_owned()),
         floors: floor.iter().flat_map(|f| &f.terms).map(|(name, ms)| ((*name).to_owned(), *ms)).collect(),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::Error;
 use super::limits;
-use super::machine::{Machine, MachineOptions};
+use super::machine::{Drawn, Machine, MachineOptions};
 use super::measure::{Schedule, Watch};
 use super::parameter::Given;
 use super::result_table::ResultTable;
@@ -132,6 +132,8 @@ pub struct Doubts {
     of_runs: RefCell<Vec<Vec<String>>>,
     /// Of what is measured without runs.
     of_machine: RefCell<Vec<String>>,
+    /// Of pictures.
+    drawn: Drawn,
 }
 
 impl<S: Study> Context<'_, S> {
@@ -163,11 +165,17 @@ impl<S: Study> Context<'_, S> {
         if text.is_empty() || self.is_json_printed() { Ok(()) } else { self.print(text) }
     }
 
-    /// Warnings so far, each once: of the runs, or of the machine where there are none.
+    /// Warnings so far, each once: of the runs, or of the machine where there are none; and of pictures.
     fn warnings(&self) -> Vec<String> {
         let (of_runs, of_machine) = (self.doubts.of_runs.borrow(), self.doubts.of_machine.borrow());
         let of_machine = of_runs.is_empty().then_some(of_machine.as_slice());
-        console::counted_warnings(of_runs.iter().map(Vec::as_slice).chain(of_machine))
+        let is_told = |warning: &String| of_runs.iter().any(|run| run.contains(warning));
+        let mut of_pictures: Vec<String> =
+            self.doubts.drawn.warnings().iter().map(|warning| self.console.spell(warning)).collect();
+        of_pictures.retain(|warning| !is_told(warning));
+        let mut all = console::counted_warnings(of_runs.iter().map(Vec::as_slice).chain(of_machine));
+        all.extend(console::counted_warnings([of_pictures.as_slice()]));
+        all
     }
 
     fn refuse(&self, experiment: &Experiment<S>) -> Result<(), Error> {
@@ -207,7 +215,8 @@ impl<S: Study> Context<'_, S> {
     /// # Errors
     /// Any error of the Vulkan layer.
     pub fn open(&self) -> Result<Machine, Error> {
-        let machine = Machine::open(&self.machine, S::NEEDS)?;
+        let mut machine = Machine::open(&self.machine, S::NEEDS)?;
+        machine.drawn = self.doubts.drawn.clone();
         self.console.say(&format!("device: {}", machine.description()));
         Ok(machine)
     }
@@ -292,10 +301,11 @@ impl<S: Study> Context<'_, S> {
     }
 
     /// Publishes runs: the record, its rows, the plots, each with its file's suffix, and the tables as files; on standard
-    /// output `text` and the tables, or the record. The runs' warnings are said at the end.
+    /// output `text` and the tables, or the record. The runs' warnings are said at the end. Each is written even when another
+    /// cannot be.
     ///
     /// # Errors
-    /// [`Error::Output`].
+    /// [`Error::Output`], the first.
     pub fn publish_runs(
         &self,
         machine: &Machine,
@@ -307,19 +317,19 @@ impl<S: Study> Context<'_, S> {
         self.spell_warnings(&mut runs);
         let record = Record::new(machine.environment(), environment::command(), runs);
         let json = json_text(&record)?;
-        self.save(&self.json_file(), json.as_bytes())?;
-        self.save(&self.csv_file(), csv::to_string(&record).as_bytes())?;
+        let mut saved = self.save(&self.json_file(), json.as_bytes());
+        saved = saved.and(self.save(&self.csv_file(), csv::to_string(&record).as_bytes()));
         for (suffix, svg) in plots {
-            self.save(&self.file(suffix), svg.as_bytes())?;
+            saved = saved.and(self.save(&self.file(suffix), svg.as_bytes()));
         }
-        self.save_tables(machine, tables)?;
+        saved = saved.and(self.save_tables(machine, tables));
         let style = self.console.style();
         for (_, table) in tables {
             let space = if text.is_empty() { "" } else { "\n" };
             text.push_str(&format!("{space}{}", table.render(style)));
         }
         self.doubts.of_runs.borrow_mut().extend(record.runs.into_iter().map(|run| run.warnings));
-        self.print(if self.is_json_printed() { json } else { text })
+        saved.and(self.print(if self.is_json_printed() { json } else { text }))
     }
 
     fn spell_warnings(&self, runs: &mut [Run]) {
@@ -340,10 +350,11 @@ impl<S: Study> Context<'_, S> {
     /// # Errors
     /// [`Error::Output`].
     pub fn save_tables(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
+        let mut saved = self.save_document(machine, tables);
         for (name, table) in tables {
-            self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes())?;
+            saved = saved.and(self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes()));
         }
-        self.save_document(machine, tables)
+        saved
     }
 
     fn save_document(&self, machine: &Machine, tables: &[NamedTable]) -> Result<(), Error> {
@@ -385,12 +396,12 @@ impl<S: Study> Context<'_, S> {
         }
         *self.doubts.of_machine.borrow_mut() = machine.warnings().iter().map(|text| self.console.spell(text)).collect();
         let text = json_text(&self.document(machine, table, more, self.warnings()))?;
-        self.save(&self.json_file(), text.as_bytes())?;
-        self.save(&self.csv_file(), table.csv().as_bytes())?;
+        let mut saved = self.save(&self.json_file(), text.as_bytes());
+        saved = saved.and(self.save(&self.csv_file(), table.csv().as_bytes()));
         for (name, table) in more {
-            self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes())?;
+            saved = saved.and(self.save(&self.file(&format!("-{name}.csv")), table.csv().as_bytes()));
         }
-        self.print(if self.is_json_printed() { text } else { printed })
+        saved.and(self.print(if self.is_json_printed() { text } else { printed }))
     }
 
     /// Publishes one more table after those that were published with the runs: its CSV file, the document of all, and the

@@ -1,7 +1,7 @@
 //! The machine that measures: one device, its shaders, its recorder, and their description for the record.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::Error as InputError;
 use crate::content;
@@ -53,6 +53,29 @@ pub struct Machine {
     opened: String,
     /// Number of this process among several fresh ones, from 0.
     pub process: u32,
+    /// Warnings of what it has drawn as pictures.
+    pub drawn: Drawn,
+}
+
+/// Warnings of papers that were drawn, each once; clones share them.
+#[derive(Debug, Clone, Default)]
+pub struct Drawn(Arc<Mutex<Vec<String>>>);
+
+impl Drawn {
+    /// Adds a paper's.
+    pub fn add(&self, warnings: Vec<String>) {
+        let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        for warning in warnings {
+            if !all.contains(&warning) {
+                all.push(warning);
+            }
+        }
+    }
+
+    /// All of them.
+    pub fn warnings(&self) -> Vec<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 impl Machine {
@@ -71,6 +94,7 @@ impl Machine {
             device,
             opened: environment::date(),
             process: options.process,
+            drawn: Drawn::default(),
         })
     }
 

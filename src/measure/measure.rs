@@ -54,12 +54,14 @@ pub struct MeasuredPass {
     pub calls: u32,
     /// Index of the queue submission within the frame, from 0.
     pub submission: u32,
-    /// Milliseconds between the pass's timestamps, one sample a timestamped frame.
+    /// Milliseconds between the pass's timestamps, one sample a timestamped frame; no number where they cannot be told.
     pub gpu_ms: Vec<f64>,
     /// Milliseconds of host work without waiting, one sample a frame.
     pub host_ms: Vec<f64>,
     /// Milliseconds that the host waited for the GPU, one sample a frame.
     pub wait_ms: Vec<f64>,
+    /// The counted frame had more calls of it than there are counters: its work is not known.
+    pub is_uncounted: bool,
     /// Those of [`gpu_ms`](Self::gpu_ms) that are of the counted frame, one sample a repetition.
     pub counted_ms: Vec<f64>,
     /// Pipeline statistics of the first frame; `None` where none were taken.
@@ -172,6 +174,7 @@ pub fn measure(
         for pass in &sample.passes {
             let measured = result.pass(pass);
             (measured.counts, measured.work) = (pass.counts, pass.work.clone());
+            measured.is_uncounted = pass.is_overrun;
         }
         tick(expected);
     }
@@ -203,6 +206,7 @@ impl Measurement {
                 calls: sample.calls,
                 submission: sample.submission,
                 gpu_ms: Vec::new(),
+                is_uncounted: false,
                 host_ms: Vec::new(),
                 wait_ms: Vec::new(),
                 counted_ms: Vec::new(),
@@ -229,8 +233,9 @@ impl Measurement {
             Mode::Timestamped => {
                 for pass in &sample.passes {
                     let measured = self.pass(pass);
-                    measured.gpu_ms.extend(pass.gpu_ms);
-                    measured.counted_ms.extend(pass.gpu_ms.filter(|_| frame == COUNTED));
+                    let gpu_ms = if pass.is_overrun { Some(f64::NAN) } else { pass.gpu_ms };
+                    measured.gpu_ms.extend(gpu_ms);
+                    measured.counted_ms.extend(gpu_ms.filter(|_| frame == COUNTED));
                 }
             }
             Mode::Counted => {}

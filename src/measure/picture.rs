@@ -67,6 +67,7 @@ pub fn render_unless(
             break;
         }
     }
+    machine.drawn.add(paper.warnings());
     let view = paper.picture();
     let texels = transfer::read_image(&machine.device, view)?;
     Ok(Rgba8::new(view.width(), view.height(), texels)?)

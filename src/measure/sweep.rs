@@ -72,12 +72,14 @@ impl Plan<'_> {
     ) -> Result<Swept, Error> {
         let mut swept = Swept { rows: Vec::new(), stopped: None };
         let total = points.len() as u64;
+        let mut finished = 0;
         for (index, point) in (0..).zip(points) {
             let progress = &mut *watch.progress;
             let mut of_all = |done: u64, expected: u64| progress(index * expected + done, total * expected);
             let mut watch = Watch { interrupted: watch.interrupted, progress: &mut of_all };
             match self.measure_point(point, machine, &mut watch) {
                 Ok(rows) => {
+                    finished += 1;
                     swept.rows.extend(rows);
                     keep(machine, &swept.rows)?;
                 }
@@ -91,6 +93,12 @@ impl Plan<'_> {
             if watch.interrupted.load(Ordering::Relaxed) {
                 break;
             }
+        }
+        if finished < total
+            && swept.stopped.is_none()
+            && let Some(last) = swept.rows.last_mut()
+        {
+            last.run.warnings.push(format!("the sweep was interrupted after {finished} of {total} points"));
         }
         Ok(swept)
     }

@@ -52,8 +52,11 @@ fn parse(text: &str) -> Result<Coordinates, Fault> {
         return Err(whole("it turns the picture; write one with north up with gdalwarp".to_owned()));
     }
     if a <= 0.0 || e >= 0.0 {
-        let reason =
-            format!("its steps are {a} east and {e} north; a picture with north up has {} and {}", a.abs(), -e.abs());
+        let reason = format!(
+            "its steps are {a:?} east and {e:?} north; a picture with north up has {:?} and {:?}",
+            a.abs(),
+            -e.abs()
+        );
         return Err(whole(reason));
     }
     Ok(Coordinates { north_west: DVec2::new(c, f), step: DVec2::new(a, -e) })
@@ -74,8 +77,8 @@ mod tests {
             ("1 0 0 x 2 3", "line 4: \"x\""),
             ("1 0 0 -1 inf 3", "line 5: \"inf\""),
             ("1 0.5 0.5 -1 2 3", "gdalwarp"),
-            ("1 0 0 1 2 3", "north up has 1 and -1"),
-            ("0 0 0 -1 2 3", "steps are 0 east"),
+            ("1 0 0 1 2 3", "north up has 1.0 and -1.0"),
+            ("0 0 0 -1 2 3", "steps are 0.0 east"),
         ] {
             let fault = parse(text).unwrap_err().to_string();
             assert!(fault.contains(expected), "{text}: {fault}");

@@ -6,8 +6,8 @@ use std::ffi::{CStr, CString, c_void};
 use std::fmt::Write;
 use std::fs;
 use std::mem::transmute;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard};
 
 use ash::vk;
 
@@ -17,7 +17,7 @@ type Call = unsafe extern "system" fn(usize, usize, usize, usize, usize, usize, 
 
 /// Every command of Vulkan 1.3 and of the extensions in use that returns a result, but for those that make an instance or a
 /// device, which stand in `lib.rs`, and those that the loader answers itself before there is an instance.
-const RESULTS: [&str; 63] = [
+const RESULTS: [&str; 77] = [
     "vkEnumeratePhysicalDevices",
     "vkGetPhysicalDeviceImageFormatProperties",
     "vkGetPhysicalDeviceImageFormatProperties2",
@@ -81,10 +81,24 @@ const RESULTS: [&str; 63] = [
     "vkEndCommandBuffer",
     "vkResetCommandBuffer",
     "vkSetDebugUtilsObjectNameEXT",
+    "vkCreateDebugUtilsMessengerEXT",
+    "vkGetPhysicalDeviceCalibrateableTimeDomainsEXT",
+    "vkGetCalibratedTimestampsEXT",
+    "vkCreateXcbSurfaceKHR",
+    "vkCreateXlibSurfaceKHR",
+    "vkCreateWaylandSurfaceKHR",
+    "vkGetPhysicalDeviceSurfaceSupportKHR",
+    "vkGetPhysicalDeviceSurfaceCapabilitiesKHR",
+    "vkGetPhysicalDeviceSurfaceFormatsKHR",
+    "vkGetPhysicalDeviceSurfacePresentModesKHR",
+    "vkCreateSwapchainKHR",
+    "vkGetSwapchainImagesKHR",
+    "vkAcquireNextImageKHR",
+    "vkQueuePresentKHR",
 ];
 
 /// Commands that end an object.
-const ENDS: [&str; 17] = [
+const ENDS: [&str; 20] = [
     "vkDestroyInstance",
     "vkDestroyDevice",
     "vkFreeMemory",
@@ -102,28 +116,50 @@ const ENDS: [&str; 17] = [
     "vkDestroyDescriptorPool",
     "vkDestroyFramebuffer",
     "vkDestroyRenderPass",
+    "vkDestroyDebugUtilsMessengerEXT",
+    "vkDestroySurfaceKHR",
+    "vkDestroySwapchainKHR",
 ];
 
 /// The one that does not fit above by its number of arguments alone: a pool takes its buffers along.
 const END_OF_POOL: &str = "vkDestroyCommandPool";
 
 /// Calls that a lost device refuses for good.
-const LOST_FOR: [&str; 5] =
-    ["vkQueueSubmit", "vkQueueSubmit2", "vkWaitForFences", "vkDeviceWaitIdle", "vkGetQueryPoolResults"];
+const LOST_FOR: [&str; 8] = [
+    "vkQueueSubmit",
+    "vkQueueSubmit2",
+    "vkQueuePresentKHR",
+    "vkAcquireNextImageKHR",
+    "vkWaitForFences",
+    "vkDeviceWaitIdle",
+    "vkGetQueryPoolResults",
+    "vkGetCalibratedTimestampsEXT",
+];
 
 static NEXT_RESULTS: [AtomicUsize; RESULTS.len()] = [const { AtomicUsize::new(0) }; RESULTS.len()];
 static NEXT_ENDS: [AtomicUsize; ENDS.len() + 1] = [const { AtomicUsize::new(0) }; ENDS.len() + 1];
-static COUNT: AtomicUsize = AtomicUsize::new(0);
+/// Calls so far, by their names.
+static COUNTS: Mutex<BTreeMap<&str, usize>> = Mutex::new(BTreeMap::new());
 static LOST: AtomicBool = AtomicBool::new(false);
 static FAILED: Mutex<Option<&str>> = Mutex::new(None);
 static ALIVE: Mutex<BTreeMap<String, i64>> = Mutex::new(BTreeMap::new());
 
+fn counts() -> MutexGuard<'static, BTreeMap<&'static str, usize>> {
+    COUNTS.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
 /// Counts a call; its failure, if it is the one that is to fail.
 pub fn counted(name: &'static str) -> Option<vk::Result> {
-    let number = COUNT.fetch_add(1, Ordering::Relaxed) + 1;
+    let number = {
+        let mut counts = counts();
+        let count = counts.entry(name).or_default();
+        *count += 1;
+        *count
+    };
     let wanted = env::var("FUMAROLE_LAYER_FAIL").ok()?;
-    let (at, failure) = wanted.split_once(':')?;
-    if at.parse() != Ok(number) {
+    let (call, failure) = wanted.split_once(':')?;
+    let (wanted, at) = call.split_once('@')?;
+    if wanted != name || at.parse() != Ok(number) {
         return None;
     }
     *FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(name);
@@ -142,6 +178,8 @@ fn kind(name: &str) -> Option<&str> {
     let verbs = ["vkCreateGraphics", "vkCreateCompute", "vkCreate", "vkAllocate", "vkDestroy", "vkFree"];
     let kind = verbs.iter().find_map(|verb| name.strip_prefix(verb))?;
     let kind = kind.trim_end_matches('2').trim_end_matches('s');
+    // Whatever the kind of display.
+    let kind = if kind.ends_with("SurfaceKHR") { "SurfaceKHR" } else { kind };
     // Both go with their pools.
     (!["DescriptorSet", "CommandBuffer"].contains(&kind)).then_some(kind)
 }
@@ -215,10 +253,13 @@ unsafe extern "system" fn end<const I: usize>(parent: usize, object: usize, allo
     }
 }
 
-/// Writes the number of calls, the one that failed, and what is alive.
+/// Writes how often each call was made, the one that failed, and what is alive.
 fn report() {
     let Some(path) = env::var_os("FUMAROLE_LAYER_REPORT") else { return };
-    let mut text = format!("calls {}\n", COUNT.load(Ordering::Relaxed));
+    let mut text = String::new();
+    for (name, count) in counts().iter() {
+        let _infallible = writeln!(text, "call {name} {count}");
+    }
     if let Some(name) = *FAILED.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) {
         let _infallible = writeln!(text, "failed {name}");
     }
@@ -250,9 +291,9 @@ macro_rules! table {
 /// The hook before a command, if it has one.
 pub fn hook(name: &str) -> Option<*const c_void> {
     let results: [*const c_void; RESULTS.len()] = table!(result;
-        0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40 41
-        42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62);
-    let ends: [*const c_void; ENDS.len() + 1] = table!(end; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17);
+        0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37 38 39 40
+        41 42 43 44 45 46 47 48 49 50 51 52 53 54 55 56 57 58 59 60 61 62 63 64 65 66 67 68 69 70 71 72 73 74 75 76);
+    let ends: [*const c_void; ENDS.len() + 1] = table!(end; 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20);
     let result = RESULTS.iter().position(|&hooked| hooked == name).map(|index| results[index]);
     let end = ENDS.iter().chain([&END_OF_POOL]).position(|&hooked| hooked == name);
     result.or(end.map(|index| ends[index]))

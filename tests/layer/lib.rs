@@ -3,7 +3,7 @@
 //!
 //! | variable | meaning |
 //! | --- | --- |
-//! | `FUMAROLE_LAYER_FAIL` | `17:host`, `17:device` or `17:lost`: the 17th call that returns a result fails so |
+//! | `FUMAROLE_LAYER_FAIL` | `vkCreateFence@3:host`, `:device` or `:lost`: the third call of that name fails so |
 //! | `FUMAROLE_LAYER_LACKS` | features by the names of `fumarole devices`, comma-separated |
 //! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |

@@ -114,7 +114,7 @@ pub fn run(arguments: &AbArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     if let Some(shard) = arguments.shard {
-        let left = arguments.leave(shard, own.start, &records);
+        let left = arguments.leave(shard, own, &records);
         return failed.map_or(left, Err);
     }
     if has_two_blocks(&records) {
@@ -174,8 +174,9 @@ impl AbArgs {
         }
     }
 
-    /// Writes the records of a shard, whose first block has a number.
-    fn leave(&self, shard: Shard, first: u32, records: &[Vec<Record>; 2]) -> Result<(), Failure> {
+    /// Writes the records of a shard, of as many of its blocks as were measured.
+    fn leave(&self, shard: Shard, own: Range<u32>, records: &[Vec<Record>; 2]) -> Result<(), Failure> {
+        let (first, all, done) = (own.start, own.len(), records[0].len() / 2);
         for side in [Side::A, Side::B] {
             let measured = &records[side as usize];
             let Some(mut record) = joined(measured) else {
@@ -185,7 +186,13 @@ impl AbArgs {
             let items = blocks.flat_map(|(block, runs)| std::iter::repeat_n(block, runs)).collect();
             record.share =
                 Some(Share { identity: self.identity(side)?, shard: Some([shard.number, shard.count]), items });
+            if let Some(last) = record.runs.last_mut().filter(|_| done < all) {
+                last.warnings.push(format!("{shard} was ended after {done} of its {all} blocks"));
+            }
             self.write(&self.record_file(side), &record)?;
+        }
+        if done < all && !self.quiet {
+            outcome::say(&format!("warning: {shard} was ended after {done} of its {all} blocks"));
         }
         Ok(())
     }

@@ -287,6 +287,7 @@ impl<S: Study> Ascent<'_, S> {
         let csv = self.csv.clone().unwrap_or_else(|| file(".csv"));
         check_writable(&json)?;
         outcome::check_file(&csv)?;
+        outcome::check_apart([&json, &csv], &outcome::read_by(&self.setup))?;
         let record = self.climb(File::new(json.clone()), budget_s)?;
 
         let files = outcome_files(&record, &self.stem(), &self.output.out, csv);

@@ -409,7 +409,7 @@ impl Paper for Caustics {
     fn record_picture(&mut self, frame: &mut Frame<'_>, number: u32) -> Result<(), Error> {
         self.record(frame, number)?;
         self.is_viewed = true;
-        self.view.record(frame, self.time_s(number))
+        self.view.record(frame)
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -35,7 +35,6 @@ host_block! {
 
 host_block! {
     struct WavesConstants {
-        time_s: f32,
         wave_count: u32,
         eta: f32,
         absorption_per_m: f32,
@@ -50,7 +49,7 @@ host_block! {
     }
 }
 
-/// The constants of the view from above, but for the time; the plain view has none.
+/// The constants of the view from above; the plain view has none.
 enum Constants {
     Below,
     AboveWaves(WavesConstants),
@@ -116,9 +115,9 @@ impl View {
         let eta = 1.0 / parameters.refraction_index;
         let absorption_per_m = parameters.absorption_per_m;
         let (pass, constants) = match &water.shape {
-            Shape::Waves { list, count } => (
+            Shape::Waves { list, waves } => (
                 pass("view-above").with("waves", list).constants::<WavesConstants>(),
-                Constants::AboveWaves(WavesConstants { time_s: 0.0, wave_count: *count, eta, absorption_per_m }),
+                Constants::AboveWaves(WavesConstants { wave_count: waves.len() as u32, eta, absorption_per_m }),
             ),
             Shape::Map { coefficients, place } => (
                 pass("view-above-map").with("coefficients", coefficients).constants::<MapConstants>(),
@@ -147,11 +146,11 @@ impl View {
     ///
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn record(&self, frame: &mut Frame<'_>, time_s: f64) -> Result<(), Error> {
+    pub fn record(&self, frame: &mut Frame<'_>) -> Result<(), Error> {
         frame.graphics(&self.pass, |draw| {
             match self.constants {
                 Constants::Below => draw,
-                Constants::AboveWaves(waves) => draw.constants(&WavesConstants { time_s: time_s as f32, ..waves }),
+                Constants::AboveWaves(waves) => draw.constants(&waves),
                 Constants::AboveMap(map) => draw.constants(&map),
             }
             .vertices(3);

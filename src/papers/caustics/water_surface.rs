@@ -1,15 +1,16 @@
 //! Pass `water-surface` (section 5.2): vertices of the water's mesh in the shape of a sum of sine waves or of a height
 //! map.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use ash::vk;
 use glam::DVec2;
 
 use super::resources::Context;
-use super::water::{Grid, LEVEL_M, waves};
+use super::water::{Grid, LEVEL_M, Wave, waves};
 use super::water_map::WaterMap;
-use crate::gpu::{Buffer, BufferDesc, Error, Frame, Pass};
+use crate::gpu::{Buffer, BufferDesc, Error, Frame, Location, Pass};
 use crate::host_block;
 
 const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -17,10 +18,20 @@ const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
 host_block! {
     pub struct WaveBlock {
         vector: [f32; 2],
-        angular_frequency: f32,
         phase_rad: f32,
         amplitude_m: f32,
-        _pad: f32,
+    }
+}
+
+impl WaveBlock {
+    /// The wave at a time. Its phase is reduced here, where whole turns of late frames are lost without a trace.
+    fn new(wave: &Wave, time_s: f64) -> Self {
+        let phase_rad = (wave.phase_rad - wave.angular_frequency * time_s).rem_euclid(TAU);
+        WaveBlock {
+            vector: wave.vector.as_vec2().to_array(),
+            phase_rad: phase_rad as f32,
+            amplitude_m: wave.amplitude_m as f32,
+        }
     }
 }
 
@@ -42,7 +53,6 @@ host_block! {
         rows: u32,
         wave_count: u32,
         level_m: f32,
-        time_s: f32,
     }
 }
 
@@ -60,10 +70,10 @@ host_block! {
 /// Shape of the water on the device.
 pub enum Shape {
     Waves {
-        /// [`WaveBlock`]\[count\], of one element at least.
+        /// [`WaveBlock`]\[count\] of the frame, of one element at least.
         list: Arc<Buffer>,
-        /// Number of waves; 0 for flat water.
-        count: u32,
+        /// The waves before the frame's phases; none for flat water.
+        waves: Vec<Wave>,
     },
     Map {
         /// Coefficients of the interpolating spline, one float a sample, row by row.
@@ -82,21 +92,10 @@ impl Shape {
     }
 
     fn waves(context: Context<'_>) -> Result<Self, Error> {
-        let mut blocks: Vec<WaveBlock> = waves(context.parameters)
-            .iter()
-            .map(|wave| WaveBlock {
-                vector: wave.vector.as_vec2().to_array(),
-                angular_frequency: wave.angular_frequency as f32,
-                phase_rad: wave.phase_rad as f32,
-                amplitude_m: wave.amplitude_m as f32,
-                _pad: 0.0,
-            })
-            .collect();
-        let count = blocks.len() as u32;
-        // Flat water has no wave, but a buffer has at least one element.
-        blocks.resize(blocks.len().max(1), bytemuck::Zeroable::zeroed());
-        let list = context.upload("waves", STORAGE, bytemuck::cast_slice(&blocks))?;
-        Ok(Shape::Waves { list, count })
+        let waves = waves(context.parameters);
+        let size_bytes = (waves.len().max(1) * size_of::<WaveBlock>()) as u64;
+        let desc = BufferDesc::new(context.name("waves"), size_bytes).usage(STORAGE).location(Location::Upload);
+        Ok(Shape::Waves { list: Buffer::new(context.device(), desc)?, waves })
     }
 
     fn map(context: Context<'_>, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
@@ -163,19 +162,20 @@ impl WaterSurface {
         let Grid { corner, cell, columns, rows } = self.grid;
         let (corner, cell) = (corner.as_vec2().to_array(), cell.as_vec2().to_array());
         let (columns, rows, level_m) = (columns + 1, rows + 1, LEVEL_M as f32);
+        if let Shape::Waves { list, waves } = &self.shape {
+            let mut blocks: Vec<WaveBlock> = waves.iter().map(|wave| WaveBlock::new(wave, time_s)).collect();
+            // Flat water has no wave, but a buffer has at least one element.
+            blocks.resize(blocks.len().max(1), bytemuck::Zeroable::zeroed());
+            list.write(0, bytemuck::cast_slice(&blocks))?;
+        }
         frame.compute(&self.pass, |dispatch| {
-            match self.shape {
-                Shape::Waves { count, .. } => dispatch.constants(&WavesConstants {
-                    corner,
-                    cell,
-                    columns,
-                    rows,
-                    wave_count: count,
-                    level_m,
-                    time_s: time_s as f32,
-                }),
+            match &self.shape {
+                Shape::Waves { waves, .. } => {
+                    let wave_count = waves.len() as u32;
+                    dispatch.constants(&WavesConstants { corner, cell, columns, rows, wave_count, level_m })
+                }
                 Shape::Map { place, .. } => {
-                    dispatch.constants(&MapConstants { map: place, corner, cell, columns, rows, level_m })
+                    dispatch.constants(&MapConstants { map: *place, corner, cell, columns, rows, level_m })
                 }
             }
             .elements(self.grid.vertex_count());

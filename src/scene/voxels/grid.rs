@@ -62,7 +62,7 @@ pub(super) fn check_steps(steps: [DVec3; 3]) -> Result<(), Fault> {
     if lengths.iter().all(|length| RANGE.contains(length)) && volume > 1e-3 * lengths.iter().product::<f64>() {
         return Ok(());
     }
-    let text = steps.map(|step| format!("({}, {}, {})", step.x, step.y, step.z)).join(", ");
+    let text = steps.map(|step| format!("({:?}, {:?}, {:?})", step.x, step.y, step.z)).join(", ");
     let reason = format!("its axes go {text} from sample to sample; they must span space, in steps of 1e-12 to 1e12");
     Err(Fault::new(Place::Whole, reason))
 }

@@ -15,6 +15,8 @@ use crate::scene::{Error, file};
 
 /// Headers are a few lines.
 const MOST_BYTES: u64 = 1 << 20;
+/// Bytes of the longest path that Linux takes.
+const LONGEST_NAME: usize = 4096;
 
 /// Reads the fields of a format's header.
 type ReadFields = fn(&mut BufReader<File>) -> Result<Fields, Fault>;
@@ -125,6 +127,11 @@ impl Fields {
         let Some(name) = self.get(key) else { return Ok(None) };
         if name == "LIST" || name.starts_with("LIST ") || name.contains('%') {
             let fault = self.fault(key, "names several files; save the volume as one file");
+            return Err(malformed(header, fault));
+        }
+        // A message would show what no file is called.
+        if name.len() > LONGEST_NAME || name.contains(char::is_control) {
+            let fault = self.fault(key, format!("is {}, no name of a file", shown(name)));
             return Err(malformed(header, fault));
         }
         beside(header, name).map(Some)

@@ -112,6 +112,7 @@ fn faults_of_nrrd_files_name_line_and_field() {
         (("key:=value: x", "data file: LIST"), "names several files"),
         (("key:=value: x", "data file: ../a.raw"), "it lies outside the folder"),
         (("key:=value: x", "data file: b.raw"), "b.raw"),
+        (("key:=value: x", "data file: b\u{1b}.raw"), "line 10: data file is \"b\\u{1b}.raw\", no name of a file"),
     ] {
         let header = NRRD.replace(change.0, change.1);
         assert_ne!(header, NRRD, "{part}");
@@ -168,6 +169,8 @@ fn faults_of_metaimages_name_line_and_key() {
         (("MET_SHORT", "MET_STRING"), "line 10: ElementType is \"MET_STRING\""),
         (("MET_SHORT", "MET_SHORT\nElementNumberOfChannels = 0"), "line 11: ElementNumberOfChannels is 0"),
         (("0.5 2 3", "0.5 0 3"), "must span space"),
+        (("0.5 2 3", "0.5 1e-300 3"), "1e-300"),
+        (("= LOCAL", "= b\0.raw"), "line 11: ElementDataFile is \"b\\0.raw\", no name of a file"),
         (("Offset = 1 2 3", "NDims = 3"), "line 7: \"NDims\" stands on line 2 already"),
     ] {
         let header = META.replace(change.0, change.1);

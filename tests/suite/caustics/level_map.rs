@@ -4,7 +4,7 @@ use std::slice::from_ref;
 
 use fumarole::papers::caustics::reference::{AIR, CausticsMap, diffuse_map, refract};
 use fumarole::papers::caustics::water::LEVEL_M;
-use fumarole::papers::caustics::{ReceiverInput, Variant};
+use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant};
 use fumarole::scene::Light;
 use glam::{DVec3, Vec3};
 
@@ -27,21 +27,24 @@ fn rows<const N: usize>(values: &[f32]) -> impl Iterator<Item = [DVec3; N]> {
     values.chunks_exact(4 * N).map(|row| std::array::from_fn(|i| Vec3::from_slice(&row[4 * i..]).as_dvec3()))
 }
 
+/// Late frames too: in single precision a phase would have lost 0.002 radians after an hour.
 #[test]
 fn the_water_is_the_sum_of_its_waves() {
     gpu_test(|device| {
-        let parameters = parameters(OVERHEAD);
-        let drawing = Drawing::of(device, Variant::LevelMap, &parameters, &[sphere()]);
-        let oracle = Oracle::of(&parameters, &OVERHEAD, &sphere(), &drawing.grid);
-        let water = drawing.target("water");
-        assert_eq!(water.len(), 8 * oracle.water.len());
-        let mut highest_m = f64::NEG_INFINITY;
-        for ([position, normal], expected) in rows(water).zip(&oracle.water) {
-            assert!(position.distance(expected.position) < 1e-6, "{position}: {expected:?}");
-            assert!(normal.distance(expected.normal) < 1e-6, "{normal}: {expected:?}");
-            highest_m = highest_m.max(position.y);
+        let early = parameters(OVERHEAD);
+        for parameters in [early.clone(), Parameters { time_step_s: 1000.0, ..early }] {
+            let drawing = Drawing::of(device, Variant::LevelMap, &parameters, &[sphere()]);
+            let oracle = Oracle::of(&parameters, &OVERHEAD, &sphere(), &drawing.grid);
+            let water = drawing.target("water");
+            assert_eq!(water.len(), 8 * oracle.water.len());
+            let mut highest_m = f64::NEG_INFINITY;
+            for ([position, normal], expected) in rows(water).zip(&oracle.water) {
+                assert!(position.distance(expected.position) < 1e-6, "{position}: {expected:?}");
+                assert!(normal.distance(expected.normal) < 1e-6, "{normal}: {expected:?}");
+                highest_m = highest_m.max(position.y);
+            }
+            assert!(highest_m > 0.02 && highest_m <= f64::from(parameters.waves.amplitude_m), "{highest_m}");
         }
-        assert!(highest_m > 0.02 && highest_m <= f64::from(parameters.waves.amplitude_m), "{highest_m}");
     });
 }
 

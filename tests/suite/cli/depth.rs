@@ -105,5 +105,13 @@ fn renderdoc_captures_one_frame_of_each_variant() {
     let expected: Vec<String> = of_device.map(label).collect();
     assert_eq!(captured.lines().collect::<Vec<_>>(), expected);
 
-    under_renderdoc("--quiet --variant level-map --out refused").run().refused(2, &["it captured nothing"]);
+    // What was measured before is kept.
+    let refused = under_renderdoc("--quiet --variant level-map --out refused --json kept.json");
+    refused.run().refused(2, &["it captured nothing"]);
+    let kept = read_json(&out.path().join("kept.json"));
+    assert_schema(&kept);
+    assert!(kept["runs"][0]["warnings"].to_string().contains("without a capture"), "{kept}");
+    let refused = under_renderdoc("--quiet --variant level-map --processes 2 --out refused --json first.json");
+    refused.run().refused(2, &["it captured nothing"]);
+    assert_eq!(read_json(&out.path().join("first.json"))["runs"].as_array().unwrap().len(), 1);
 }

@@ -56,6 +56,35 @@ fn table_5_1_is_written_and_printed_with_its_ratios() {
     assert_eq!(roxmltree::Document::parse(&svg).unwrap().root_element().tag_name().name(), "svg");
 }
 
+/// A record that finds no room takes neither the rows nor the table along.
+#[test]
+fn what_can_be_written_is_written() {
+    let out = folder();
+    let program = caustics("experiment 5-1 --counts 3 --mesh sphere --json /dev/full --out out").inside(out.path());
+    let ended = program.args(SMALL).args(ONCE).on_test_device().run();
+    assert_eq!(ended.status.code(), Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("error: ") && ended.stderr.contains("/dev/full"), "{}", ended.stderr);
+    let files = ["-against-volumetric.csv", "-tables.json", ".csv", ".svg"];
+    assert_eq!(entries(&out.path().join("out")), files.map(|suffix| format!("caustics-5-1{suffix}")));
+    assert!(ended.stdout.contains("volumetric"), "{}", ended.stdout);
+}
+
+/// What is wrong with a scene is told of its pictures in an experiment as `render` tells it.
+#[test]
+fn pictures_of_experiments_have_their_warnings() {
+    let out = folder();
+    let scene = format!("{SMALL} --mesh box --planes 3");
+    let render = caustics("render --image a.png --variant level-map").args(&scene).inside(out.path());
+    let told = render.on_test_device().run().succeeded().stderr;
+    let told: Vec<&str> = told.lines().filter(|line| line.starts_with("warning: ")).collect();
+    assert!(told.iter().any(|line| line.contains("folds light")), "{told:?}");
+    let program = caustics("experiment 5-13 --out pair").args(&scene).inside(out.path()).on_test_device();
+    let ended = program.run().succeeded();
+    for warning in told {
+        assert_eq!(ended.stdout.matches(warning).count(), 1, "{warning}: {}", ended.stdout);
+    }
+}
+
 #[test]
 fn chapter_6_is_set_against_the_level_map() {
     let out = folder();

@@ -1,6 +1,7 @@
 //! `gas` through the binary: its passes, its record, its tables, and what it refuses.
 
 use super::program::{ONCE, Program, assert_schema, entries, folder, gas, read_json};
+use super::shaders::own_shaders;
 
 const SMALL: &str = "--size 45x31 --steps 8 --table 8";
 
@@ -446,4 +447,23 @@ fn ways_to_the_lists_are_measured_in_turn() {
     small("bench --density-cache 8,off,8").run().refused(2, &["--density-cache", "8", "twice"]);
     small("render --lists linked,tiles --image never.png").run().refused(2, &["give one"]);
     small("render --lists k:0 --image never.png").run().misused(&["k:1 to k:32"]);
+}
+
+/// Counts of fragments and of sections end below 2^32: what would come round to slots that others hold is refused. They begin
+/// shortly before it here, which a picture of billions of fragments would take long to reach.
+#[test]
+fn counts_that_would_come_round_are_refused() {
+    for (count, options) in [
+        ("fragment_count", "--variant no-volume"),
+        ("fragment_count", "--lists tiles"),
+        ("section_count", "--variant none"),
+    ] {
+        let out = folder();
+        let path = own_shaders(out.path()).join("gas/empty-lists.comp");
+        let (text, zero) = (std::fs::read_to_string(&path).unwrap(), format!("{count} = 0u;"));
+        assert!(text.contains(&zero), "{text}");
+        std::fs::write(&path, text.replace(&zero, &format!("{count} = 0xffffff80u;"))).unwrap();
+        let ended = small("render --quiet --shader-dir my-shaders").args(options).inside(out.path()).run();
+        ended.refused(2, &[count.split('_').next().unwrap(), "--size"]);
+    }
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::program::{Ended, Program, Running, assert_schema, caustics, entries, folder, lava, read_json};
+use super::program::{Ended, Program, Running, assert_schema, burning, caustics, entries, folder, lava, read_json};
 
 /// Far above what a frame of the tiny scene takes.
 const SOON: Duration = Duration::from_secs(30);
@@ -96,6 +96,20 @@ fn a_bench_keeps_its_finished_frames() {
     }
 }
 
+/// The last frame is hours of fire away.
+#[test]
+fn an_interrupted_bench_draws_a_frame_that_it_has_measured() {
+    let out = folder();
+    let scene = "--size 24x16 --mesh sphere --triangles 200 --blocks 2x2x2 --fire 20 --smoke 10 --speed 0.001";
+    let program = || {
+        let bench = burning("bench --variant shell --frames 100000 --repeat 1 --no-limits --json a.json --image a.png");
+        bench.args(scene).inside(out.path()).on_test_device()
+    };
+    interrupt(program, handles_interrupts).succeeded();
+    assert_interrupted(&out.path().join("a.json"));
+    fumarole::image::read_png(&out.path().join("a.png")).unwrap();
+}
+
 #[test]
 fn fresh_processes_keep_theirs() {
     let out = folder();
@@ -108,6 +122,46 @@ fn fresh_processes_keep_theirs() {
 }
 
 #[test]
+fn a_film_says_that_it_is_cut_short() {
+    let out = folder();
+    let program = || caustics("render --frame 0..1000000 --film a.y4m").inside(out.path()).tiny();
+    let ended = interrupt(program, handles_interrupts).succeeded();
+    assert!(ended.stderr.contains("of 1000000 frames"), "{}", ended.stderr);
+    assert_eq!(entries(out.path()), ["a.y4m"]);
+}
+
+#[test]
+fn less_time_than_was_asked_for_is_told() {
+    let out = folder();
+    let options = "bench --frames 1 --repeat 1 --min-time 3600 --no-limits --variant level-map --json a.json";
+    interrupt(|| caustics(options).inside(out.path()).tiny(), handles_interrupts).succeeded();
+    let record = read_json(&out.path().join("a.json"));
+    let warnings = record["runs"][0]["warnings"].to_string();
+    assert!(warnings.contains("of the 3600 s that --min-time asks for"), "{warnings}");
+}
+
+/// `nohup` has a program ignore that its terminal is closed: it goes on, and so do its fresh processes. Ctrl-C ends it still.
+#[test]
+fn what_is_to_outlive_its_terminal_does() {
+    let out = folder();
+    let program = caustics(LONG).args("--processes 2").inside(out.path()).tiny().under("nohup");
+    let mut running = program.start();
+    wait_until(&mut running, |id| children(id).iter().any(|&child| handles_interrupts(child)));
+    let (id, child) = (running.id(), children(running.id())[0]);
+    let kill = |signal: &str| {
+        let group = format!("-{id}");
+        assert!(Command::new("kill").args([signal, "--", &group]).status().unwrap().success());
+    };
+    kill("-HUP");
+    // Some frames are finished in this time.
+    thread::sleep(Duration::from_secs(3));
+    assert!(!running.has_ended() && children(id) == [child], "a process has ended");
+    kill("-INT");
+    running.end().succeeded();
+    assert_interrupted(&out.path().join("a.json"));
+}
+
+#[test]
 fn a_range_of_pictures_keeps_those_that_it_names() {
     for signal in SIGNALS {
         let out = folder();
@@ -116,6 +170,8 @@ fn a_range_of_pictures_keeps_those_that_it_names() {
         let ended = interrupt_by(signal, program, ready).succeeded();
         let named = ended.stderr.lines().filter_map(|line| line.strip_prefix("wrote ./"));
         let named: Vec<&str> = named.collect();
+        let (count, last) = (named.len(), "of 1000000 frames");
+        assert!(ended.stderr.contains(&format!("interrupted after {count} {last}")), "{signal}: {}", ended.stderr);
         assert_eq!(named, entries(out.path()), "{signal}");
         fumarole::image::read_png(&out.path().join(named[named.len() - 1])).unwrap();
     }
@@ -131,6 +187,8 @@ fn a_sweep_keeps_its_finished_rows() {
     assert_schema(&record);
     let runs = record["runs"].as_array().unwrap();
     assert!(!runs.is_empty() && runs.len() < 2 * 99, "{} runs", runs.len());
+    let warnings = runs[runs.len() - 1]["warnings"].to_string();
+    assert!(warnings.contains("the sweep was interrupted after") && warnings.contains("of 99 points"), "{warnings}");
 }
 
 #[test]

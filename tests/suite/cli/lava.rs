@@ -72,14 +72,14 @@ fn a_density_that_accepts_nothing_is_a_warning_with_the_range() {
     assert!(warnings.contains("no grid point was accepted") && warnings.contains("densities are"), "{warnings}");
 }
 
-/// The warnings of a record stand on standard error of a picture.
+/// A warning of a record stands on standard error of a picture, and of an experiment at its end.
 #[test]
 fn a_picture_of_nothing_is_a_warning_too() {
     let out = folder();
     let ended = small("render --rho 1e6 --image flat.png").inside(out.path()).run().succeeded();
     assert!(ended.stderr.contains("warning: no grid point was accepted"), "{}", ended.stderr);
     let ended = small("experiment fig-8.1 --rho 1e6 --out .").inside(out.path()).run().succeeded();
-    assert!(ended.stderr.contains("warning: no grid point was accepted"), "{}", ended.stderr);
+    assert_eq!(ended.stdout.matches("warning: no grid point was accepted").count(), 1, "{}", ended.stdout);
 }
 
 #[test]

@@ -30,7 +30,7 @@ mod pages;
 mod parts;
 mod passes;
 pub mod program;
-mod properties;
+pub mod properties;
 mod ranges;
 mod render;
 mod report;

@@ -2,8 +2,14 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
-use super::program::{ONCE, Program, assert_schema, caustics, entries, file, folder, fumarole, read_json};
+use fumarole::image::{Rgba8, write_png};
+
+use super::program::{ONCE, Program, assert_schema, caustics, entries, file, folder, fumarole, read_json, terrain};
+use crate::common::beside_others;
 
 /// Would measure for hours, were its destination not checked first.
 fn long(folder: &Path) -> Program {
@@ -37,11 +43,89 @@ fn a_destination_that_cannot_be_written_is_refused_before_the_work() {
     dump.run().refused(2, &["folder.png"]);
 }
 
+/// What is written would else take the place of what was written before it, or of what was read.
+#[test]
+fn outputs_that_are_one_file_or_an_input_are_refused() {
+    let out = folder();
+    fs::create_dir(out.path().join("sub")).unwrap();
+    let picture = Rgba8::new(2, 2, [90, 120, 60, 255].repeat(4)).unwrap();
+    write_png(&out.path().join("land.png"), &picture).unwrap();
+    let before = fs::read(out.path().join("land.png")).unwrap();
+    for options in ["--json a --csv a", "--csv a.png --trace sub/../a.png --json b", "--image a.png --trace ./a.png"] {
+        long(out.path()).args(options).run().refused(2, &["two outputs"]);
+    }
+    let variants = "--variant level-map,volumetric --image a.png --csv a-volumetric.png";
+    long(out.path()).args(variants).run().refused(2, &["a-volumetric.png", "two outputs"]);
+    let dumps = "--dump caustics-map=a.png --dump position-map=./a.png";
+    for options in [dumps, "--dump caustics-map=b.png --image b.png"] {
+        let render = caustics("render --image c.png").args(options).inside(out.path()).tiny();
+        render.run().refused(2, &["two outputs"]);
+    }
+    for verb in ["render --image sub/../land.png", "render --dump depth=land.png", "bench --csv land.png"] {
+        let program = terrain(verb).args("--drape land.png --size 32x24").inside(out.path()).on_test_device();
+        program.run().refused(2, &["land.png", "it is read"]);
+    }
+    assert_eq!(fs::read(out.path().join("land.png")).unwrap(), before);
+    // Devices take what comes.
+    let quiet = "--quiet --csv /dev/null --trace /dev/null";
+    caustics("bench").args(quiet).args(ONCE).inside(out.path()).tiny().run().succeeded();
+    let record = "bench --quiet --json a.json";
+    caustics(record).args(ONCE).inside(out.path()).tiny().run().succeeded();
+    fumarole("compare a.json a.json --json sub/../a.json")
+        .inside(out.path())
+        .run()
+        .refused(2, &["a.json", "it is read"]);
+    assert_schema(&read_json(&out.path().join("a.json")));
+}
+
+/// Its reader is there once, and gets all of the record.
+#[test]
+fn a_pipe_that_has_a_name_is_opened_once() {
+    let out = folder();
+    let pipe = out.path().join("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let reader = Command::new("cat").arg(&pipe).stdout(Stdio::piped()).spawn().unwrap();
+    caustics("bench --quiet --json pipe").args(ONCE).inside(out.path()).tiny().run().succeeded();
+    let read = reader.wait_with_output().unwrap();
+    assert_schema(&serde_json::from_slice(&read.stdout).unwrap());
+}
+
 #[test]
 fn the_main_job_names_its_pictures_itself() {
     let out = folder();
     fumarole("all --image a.png").inside(out.path()).run().refused(2, &["--image", "--out"]);
     assert!(entries(out.path()).is_empty());
+    // Of the last paper, too, before the first is measured.
+    fs::create_dir(out.path().join("terrain.png")).unwrap();
+    fumarole("all --out . --device no-such").inside(out.path()).run().refused(2, &["terrain.png"]);
+}
+
+/// The picture of the second paper cannot be written any more, and the rest is interrupted.
+#[test]
+fn the_main_job_keeps_what_it_has_measured() {
+    let out = folder();
+    let ended = beside_others(|| {
+        let mut running = fumarole("all --out .").on_test_device().inside(out.path()).start();
+        let begun = Instant::now();
+        while !out.path().join("lava.png").exists() && !running.has_ended() {
+            assert!(begun.elapsed() < Duration::from_secs(100), "lava takes long");
+            thread::sleep(Duration::from_millis(20));
+        }
+        fs::create_dir(out.path().join("gas.png")).unwrap();
+        thread::sleep(Duration::from_secs(2));
+        assert!(Command::new("kill").args(["-INT", &running.id().to_string()]).status().unwrap().success());
+        running.end()
+    });
+    let record = read_json(&out.path().join("fumarole.json"));
+    assert_schema(&record);
+    let runs = record["runs"].as_array().unwrap();
+    let of = |paper: &str| runs.iter().filter(|run| run["paper"] == paper).collect::<Vec<_>>();
+    assert!(!of("lava").is_empty(), "{record}");
+    // Interrupted before a frame of it was finished, it has none.
+    if let Some(first) = of("gas").first() {
+        assert!(first["image"].is_null() && first["warnings"].to_string().contains("without a picture"), "{first}");
+        assert_eq!(ended.status.code(), Some(2), "{}", ended.stderr);
+    }
 }
 
 #[test]

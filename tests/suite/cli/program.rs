@@ -124,6 +124,22 @@ impl Program {
         self
     }
 
+    /// Runs it by another program, which is given its command line.
+    pub fn under(self, program: &str) -> Self {
+        let mut command = Command::new(program);
+        command.arg(self.command.get_program()).args(self.command.get_args()).stdin(Stdio::null());
+        for (name, value) in self.command.get_envs() {
+            match value {
+                Some(value) => command.env(name, value),
+                None => command.env_remove(name),
+            };
+        }
+        if let Some(folder) = self.command.get_current_dir() {
+            command.current_dir(folder);
+        }
+        Program { command }
+    }
+
     /// The command for a shell, each word quoted.
     pub fn for_shell(&self) -> String {
         let words = std::iter::once(self.command.get_program()).chain(self.command.get_args());

@@ -129,6 +129,17 @@ fn blocks_of_shards_are_compared_together() {
     let part = place("parts").join("ab-b-shard-1-of-2.json");
     fumarole("compare --blocks").arg(&a).arg(&part).run().refused(2, &["not of the same blocks"]);
     fumarole("compare").arg(&a).arg(&b).run().refused(2, &["seed is 1 in the first and 2 in the second"]);
+
+    // Its time is over after a block of four.
+    let ab = fumarole("ab --blocks 4 --budget 1 --shard 0/1 --out").arg(place("cut")).arg("--b").arg("--seed 2");
+    let ab = ab.args("caustics --variant level-map").args(SCENE).args(ONCE).args("--min-time 1");
+    let ended = ab.arg("--device").arg(device()).run().succeeded();
+    let cut = "shard-0-of-1 was ended after 1 of its 4 blocks";
+    assert!(ended.stderr.contains(cut), "{}", ended.stderr);
+    for side in ["a", "b"] {
+        let record = read_json(&place("cut").join(format!("ab-{side}-shard-0-of-1.json")));
+        assert!(record["runs"][1]["warnings"].to_string().contains(cut), "{record}");
+    }
 }
 
 #[test]

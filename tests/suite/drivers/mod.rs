@@ -6,6 +6,7 @@
 
 mod layer;
 mod options;
+mod sample;
 mod swiftshader;
 
 use std::env;

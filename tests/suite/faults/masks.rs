@@ -135,6 +135,28 @@ fn narrow_time_stamps_are_read_as_such() {
     }
 }
 
+/// Stamps of 12 bits come round every 4 microseconds here, which no frame of these keeps to.
+#[test]
+fn times_that_time_stamps_cannot_tell_are_absent_and_said_so() {
+    let layer = Layer::new();
+    for paper in &PAPERS {
+        let ended = run_all(paper, &layer, "FUMAROLE_LAYER_LIMITS", "timestamp-valid-bits=12");
+        let record = ended.succeeded().json();
+        for run in record["runs"].as_array().unwrap() {
+            let passes = run["passes"].as_array().unwrap().iter();
+            let device: Vec<_> = passes.filter(|pass| pass["kind"] != "host").collect();
+            if device.is_empty() {
+                continue;
+            }
+            let warnings = run["warnings"].to_string();
+            let name = device[0]["name"].as_str().unwrap();
+            assert!(device.iter().all(|pass| pass["gpu_ms"].is_null()), "{} {name}", paper.name);
+            assert!(run["overlap_ms"].is_null() && run["unaccounted_ms"].is_null(), "{} {name}", paper.name);
+            assert!(warnings.contains("runs longer than they count") && warnings.contains(name), "{warnings}");
+        }
+    }
+}
+
 #[test]
 fn a_device_of_the_portability_subset_is_used_and_its_lacks_are_named() {
     let layer = Layer::new();

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+pub use self::calls::FAILURES;
 use crate::cli::program::{self, Ended, Program, file};
 use crate::drivers::layer_manifest;
 
@@ -114,7 +115,7 @@ impl Layer {
         self.before(program, false).env("FUMAROLE_LAYER_LIMITS", LEAST)
     }
 
-    /// The calls that were counted, the name of the one that failed, and what was alive at the end.
+    /// How often each call was made, the name of the one that failed, and what was alive at the end.
     ///
     /// # Panics
     /// When the program ended without ending its instance.
@@ -124,9 +125,15 @@ impl Layer {
             .unwrap_or_else(|error| panic!("no report: {error}: {}: {}", ended.status, ended.stderr));
         fs::remove_file(path).unwrap();
         let field = |name: &str| text.lines().find_map(|line| line.strip_prefix(name)).map(str::to_owned);
-        let fields = |name: &str| text.lines().filter_map(|line| line.strip_prefix(name)).map(str::to_owned).collect();
+        let fields = |name: &str| -> Vec<String> {
+            text.lines().filter_map(|line| line.strip_prefix(name)).map(str::to_owned).collect()
+        };
+        let calls = fields("call ").into_iter().map(|line| {
+            let (name, count) = line.split_once(' ').unwrap();
+            (name.to_owned(), count.parse().unwrap())
+        });
         Report {
-            calls: field("calls ").unwrap().parse().unwrap(),
+            calls: calls.collect(),
             failed: field("failed "),
             alive: fields("alive "),
             misuses: fields("misuse "),
@@ -138,7 +145,8 @@ impl Layer {
 }
 
 pub struct Report {
-    pub calls: usize,
+    /// Calls that return a result by their names, and how often each was made.
+    pub calls: Vec<(String, usize)>,
     pub failed: Option<String>,
     /// Kinds and numbers of objects.
     pub alive: Vec<String>,
@@ -150,4 +158,11 @@ pub struct Report {
     pub labels: Vec<String>,
     /// Names of pipelines.
     pub pipelines: Vec<String>,
+}
+
+impl Report {
+    /// How often a call was made.
+    pub fn count(&self, name: &str) -> usize {
+        self.calls.iter().find(|(called, _)| called == name).map_or(0, |(_, count)| *count)
+    }
 }

@@ -5,6 +5,7 @@ mod client;
 mod desktop;
 mod display;
 mod drop;
+mod faults;
 mod headless;
 mod interface;
 mod lasting;

@@ -110,13 +110,8 @@ pub enum Drawn {
     Texture(Raster),
 }
 
-/// A figure of one frame.
-pub struct Drawing {
-    /// Each with what its file is called.
-    pub parts: Vec<(&'static str, Drawn)>,
-    /// Doubts about the frame, one line each.
-    pub warnings: Vec<String>,
-}
+/// Drawn parts with what their files are called.
+pub type Parts = Vec<(&'static str, Drawn)>;
 
 impl Figure {
     /// Takes the figure's numbers where the user gave none; its own camera for the figures of chapter 8.
@@ -154,14 +149,13 @@ impl Figure {
         self.setups(setup).try_for_each(|setup| setup.check())
     }
 
-    /// Draws the parts from frame `number` of `setup`.
+    /// Draws the parts from frame `number` of `setup`, each with what its file is called.
     ///
     /// # Errors
     /// [`Error::Gpu`], [`Error::Image`], [`Error::Parameter`], [`Error::Input`].
-    pub fn draw(&self, machine: &mut Machine, setup: &Setup, number: u32) -> Result<Drawing, Error> {
+    pub fn draw(&self, machine: &mut Machine, setup: &Setup, number: u32) -> Result<Parts, Error> {
         let scene = setup.load()?;
         let mut parts = Vec::new();
-        let mut warnings = Vec::new();
         for (&(suffix, part), setup) in self.parts.iter().zip(self.setups(setup)) {
             setup.check()?;
             if part == Part::Rock {
@@ -170,7 +164,6 @@ impl Figure {
             }
             let mut built = build(machine, &setup, &scene, Variant::Paper)?;
             let picture = picture::render(machine, &mut built.paper, number)?;
-            warnings.extend(built.paper.warnings());
             let targets = built.paper.targets();
             let texture = match part {
                 Part::Texture(name) => targets.iter().find(|t| t.name == name),
@@ -186,9 +179,7 @@ impl Figure {
                 None => (suffix, Drawn::Picture(picture)),
             });
         }
-        // The parts are of one frame.
-        warnings.dedup();
-        Ok(Drawing { parts, warnings })
+        Ok(parts)
     }
 }
 

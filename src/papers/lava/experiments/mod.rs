@@ -7,7 +7,7 @@ mod results;
 mod scaling;
 mod surface;
 
-use self::figures::{Drawing, Drawn, FIGURES};
+use self::figures::{Drawn, FIGURES};
 use self::scaling::Axis;
 use super::parameters::Variant;
 use super::setup::Setup;
@@ -83,16 +83,13 @@ fn draw(context: &mut Context<'_>) -> Result<(), Error> {
     figure.set_up(&mut context.setup, &context.given);
     figure.check(&context.setup)?;
     let mut machine = context.open()?;
-    let Drawing { parts, warnings } = figure.draw(&mut machine, &context.setup, context.options.frame)?;
+    let parts = figure.draw(&mut machine, &context.setup, context.options.frame)?;
     for (suffix, drawn) in parts {
         let suffix = format!("{suffix}.png");
         match drawn {
             Drawn::Picture(picture) => context.picture(&suffix, &picture)?,
             Drawn::Texture(texture) => context.drawing(&suffix, &texture)?,
         }
-    }
-    for warning in warnings {
-        context.console.say(&format!("warning: {}", context.console.spell(&warning)));
     }
     machine.check_validation().map_err(Error::from).map(drop)
 }
