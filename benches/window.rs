@@ -102,9 +102,13 @@ fn place(window: &Window<'_>, text: &str) -> Option<[i16; 4]> {
     })
 }
 
-/// Time of the window's own drawing by its own text, milliseconds.
-fn own_ms(window: &Window<'_>) -> Option<f64> {
-    words(window).iter().find_map(|text| text.strip_prefix("window ")?.strip_suffix(" ms")?.parse().ok())
+/// Time of the window's own drawing by its own text, milliseconds: of the last frame whose panels were laid out, and of the last
+/// that showed a new picture alone.
+fn own_ms(window: &Window<'_>) -> [Option<f64>; 2] {
+    let words = words(window);
+    let text = words.iter().find_map(|text| text.strip_prefix("window ")?.strip_suffix(" ms"));
+    let mut parts = text.into_iter().flat_map(|text| text.split(" / ")).map(|part| part.parse().ok());
+    [parts.next().flatten(), parts.next().flatten()]
 }
 
 /// The window's text on the last frame, as "frame 3 in 21.4 ms".
@@ -125,18 +129,23 @@ fn interface(what: &str, scene: &str) -> Option<String> {
     let window = open(&display, scene);
     display.key(SPACE);
     let started = Instant::now();
-    let mut samples = vec![];
+    let (mut laid_out, mut of_pictures) = (vec![], vec![]);
     let mut last = String::new();
     while started.elapsed() < Duration::from_secs(20) {
         let now = frame(&window);
         if now != last {
-            samples.extend(own_ms(&window));
+            let [panels, picture] = own_ms(&window);
+            laid_out.extend(panels);
+            of_pictures.extend(picture);
             last = now;
         }
         sleep(Duration::from_millis(20));
     }
-    let middle =
-        tell("interface", &format!("ms of the window's own drawing at 1280x800 while {what} plays"), samples).0;
+    let own = format!("ms of the window's own drawing at 1280x800 while {what} plays");
+    let mut middle = tell("interface", &format!("{own}, its panels laid out"), laid_out).0;
+    if !of_pictures.is_empty() {
+        middle = middle.max(tell("interface", &format!("{own}, a new picture alone"), of_pictures).0);
+    }
     window.close().succeeded();
     held(middle <= MOST_OWN_MS, format!("the interface takes more than {MOST_OWN_MS} ms a frame with {what}"))
 }

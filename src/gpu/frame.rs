@@ -35,6 +35,8 @@ pub struct Frame<'a> {
     pub(super) interrupted: Option<&'a AtomicBool>,
     /// Work of this submission, as [`Frame::make_room`] was told.
     pub(super) work: f64,
+    /// The pass that was recorded last in this submission, as an index into the sample's passes.
+    pub(super) last: Option<usize>,
 }
 
 /// End of a frame.
@@ -55,7 +57,7 @@ impl Frame<'_> {
         r.commands.begin()?;
         r.intervals.clear();
         r.counted.clear();
-        self.work = 0.0;
+        (self.work, self.last) = (0.0, None);
         for pool in [&mut r.timestamps, &mut r.samples_passed, &mut r.graphics_counts, &mut r.compute_counts]
             .into_iter()
             .flatten()
@@ -126,10 +128,7 @@ impl Frame<'_> {
         if self.interrupted.is_some_and(|interrupted| interrupted.load(Ordering::Relaxed)) {
             return Err(Error::Interrupted);
         }
-        self.submission += 1;
-        self.begin()?;
-        self.failed = None;
-        Ok(())
+        self.go_on_after(pass.info().name)
     }
 
     /// Makes room for a dispatch of `pass`: where this submission would hold more `work` than `most`, what is recorded is
@@ -300,6 +299,29 @@ impl Frame<'_> {
         }
     }
 
+    /// Submits what the pass before this one has recorded and waits for it, where passes are submitted one by one.
+    fn part_from_last(&mut self, next: &Arc<PassInfo>) -> Result<(), Error> {
+        let Some(at) = self.last.filter(|_| self.recorder.submits_by_pass && self.mode == Mode::Plain) else {
+            return Ok(());
+        };
+        let last = self.recorder.sample.passes[at].info.name;
+        if last == next.name {
+            return Ok(());
+        }
+        self.finish(Some(at))?;
+        self.go_on_after(last)
+    }
+
+    /// Begins the rest of the frame, behind a submission that ended with this pass.
+    fn go_on_after(&mut self, last: &'static str) -> Result<(), Error> {
+        // Until it has begun, nothing may be recorded.
+        self.failed = Some(last);
+        self.submission += 1;
+        self.begin()?;
+        self.failed = None;
+        Ok(())
+    }
+
     fn envelope(
         &mut self,
         pass: &Pass,
@@ -307,6 +329,7 @@ impl Frame<'_> {
     ) -> Result<(), Error> {
         self.check_open()?;
         self.admit(pass.info())?;
+        self.part_from_last(pass.info())?;
         let is_counted = self.recorder.performance.as_ref().is_some_and(|pool| pool.counts(pass.info().name));
         if is_counted {
             self.wait_for(pass)?;
@@ -330,6 +353,7 @@ impl Frame<'_> {
         let name = pass.info().name;
         self.recorder.commands.device.check_own(&pass.inner.device, name, name)?;
         let at = self.sample_of(pass.info());
+        self.last = Some(at);
         let mode = self.mode;
         let r = &mut *self.recorder;
         r.commands.keep(pass);

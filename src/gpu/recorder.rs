@@ -47,6 +47,8 @@ pub struct Recorder {
     overrun: Vec<usize>,
     pub(super) labels: Vec<(&'static str, CString)>,
     pub(super) sample: FrameSample,
+    /// Each pass of a plain frame is a submission of its own.
+    pub(super) submits_by_pass: bool,
 }
 
 pub(super) struct Counted {
@@ -87,7 +89,15 @@ impl Recorder {
             overrun: Vec::new(),
             labels: Vec::new(),
             sample: FrameSample::default(),
+            submits_by_pass: false,
         })
+    }
+
+    /// From now on, each pass of a plain frame is a submission of its own or not, and is waited for before the next: another
+    /// process that wants the device waits for one pass at most, and the frame takes longer by what lies between. Calls of
+    /// one pass that follow each other stay together.
+    pub fn submit_by_pass(&mut self, is_wanted: bool) {
+        self.submits_by_pass = is_wanted;
     }
 
     /// Records a frame with `record`, submits it and waits for it.
@@ -153,6 +163,7 @@ impl Recorder {
             recording_ms: 0.0,
             interrupted,
             work: 0.0,
+            last: None,
         };
         frame.begin()?;
         match record(&mut frame) {

@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 use egui_winit::accesskit_winit;
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
 use super::client::Client;
 use super::controls;
 use super::error::Error;
+use super::event_loop::event_loop;
 use super::interface::{Interface, Wish};
 use super::layout::Layout;
 use super::protocol::{Ended, Event};
@@ -49,7 +50,11 @@ pub struct Options {
     pub controls: Option<PathBuf>,
 }
 
-/// Events that wake the loop, beside the display's own.
+/// Time from one layout of the panels to the next while nothing but the paper's pictures and their numbers go on: nobody
+/// reads numbers that change more often.
+const LAYOUT_PAUSE: Duration = Duration::from_millis(100);
+
+/// Events that wake the loop, beside the display's own events.
 #[derive(Debug)]
 pub enum Wake {
     /// The worker has said something.
@@ -101,30 +106,6 @@ pub fn run(options: Options, on_quit: impl FnOnce(Box<dyn Fn() + Send>)) -> Resu
     Ok(())
 }
 
-/// The loop. A library of the display that is missing is the loop's error as well: winit panics there.
-fn event_loop() -> Result<EventLoop<Wake>, Error> {
-    let hook = std::panic::take_hook();
-    std::panic::set_hook(Box::new(|_| {}));
-    let built = std::panic::catch_unwind(|| EventLoop::<Wake>::with_user_event().build());
-    std::panic::set_hook(hook);
-    match built {
-        Ok(Ok(events)) => Ok(events),
-        Ok(Err(error)) => {
-            let text = error.to_string();
-            // Behind the place in winit's source.
-            let reason = text.rsplit_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
-            let reason = reason.map_or(text.as_str(), |(_, reason)| reason).trim_end_matches('.').to_owned();
-            Err(Error::NoDisplay { reason })
-        }
-        Err(panic) => {
-            let words = panic.downcast_ref::<String>().cloned();
-            let reason = words.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-            let reason = reason.unwrap_or_else(|| "a library of the display is missing".to_owned());
-            Err(Error::NoDisplay { reason })
-        }
-    }
-}
-
 struct Application {
     options: Options,
     proxy: EventLoopProxy<Wake>,
@@ -144,8 +125,14 @@ struct Open {
     next_frame: Option<Instant>,
     frames_left: Option<u32>,
     had_worker: bool,
+    /// The display's scale, as it was last told.
+    scale: f64,
     /// A frame is asked of the display.
     is_due: bool,
+    /// More has happened than new pictures.
+    needs_layout: bool,
+    /// When the panels were laid out last.
+    laid_out: Option<Instant>,
     controls: Option<PathBuf>,
 }
 
@@ -197,11 +184,14 @@ impl Application {
             input,
             context,
             screen,
+            scale: window.scale_factor(),
             window,
             next_frame: None,
             frames_left: options.exit_after,
             had_worker: false,
             is_due: false,
+            needs_layout: true,
+            laid_out: None,
             controls: options.controls.clone(),
         })
     }
@@ -304,6 +294,7 @@ impl Open {
                 }
                 _ => {}
             }
+            self.needs_layout |= !self.interface.is_going_on(&event);
             self.interface.take(event);
             if self.frames_left == Some(0) {
                 return Ok(Flow::Ended);
@@ -312,9 +303,41 @@ impl Open {
         Ok(Flow::On)
     }
 
+    /// Draws what has changed: the panels with all that is in them, or new pictures alone.
     fn draw(&mut self) -> Result<Vec<Wish>, Error> {
         self.is_due = false;
+        let next_layout = self.laid_out.map(|laid_out| laid_out + LAYOUT_PAUSE).filter(|_| !self.needs_layout);
+        match next_layout.filter(|next| *next > Instant::now()) {
+            Some(next) => {
+                self.draw_pictures()?;
+                self.next_frame = Some(self.next_frame.map_or(next, |earlier| earlier.min(next)));
+                Ok(Vec::new())
+            }
+            None => self.draw_panels(),
+        }
+    }
+
+    /// Shows the pictures that have come where the panels were laid out last.
+    fn draw_pictures(&mut self) -> Result<(), Error> {
         let started = Instant::now();
+        self.interface.update_pictures(&self.context);
+        let changes = self.context.tex_manager().write().take_delta();
+        self.screen.update(&changes)?;
+        let pixels_per_point = self.context.pixels_per_point();
+        let prepared = started.elapsed();
+        let drawn = self.screen.draw_textures(|shapes| self.context.tessellate(shapes, pixels_per_point))?;
+        self.screen.free(&changes);
+        if let Drawn::Yes(painted) = drawn {
+            self.interface.drew(prepared + painted, false);
+        }
+        self.take_messages();
+        Ok(())
+    }
+
+    fn draw_panels(&mut self) -> Result<Vec<Wish>, Error> {
+        self.needs_layout = false;
+        let started = Instant::now();
+        self.laid_out = Some(started);
         let input = self.input.take_egui_input(&self.window);
         let interface = &mut self.interface;
         let output = self.context.run(input, |context| interface.show(context));
@@ -324,12 +347,7 @@ impl Open {
         let tessellate = |shapes| self.context.tessellate(shapes, pixels_per_point);
         let drawn = self.screen.draw(pixels_per_point, output.shapes, tessellate)?;
         self.screen.free(&output.textures_delta);
-        let messages = self.screen.device().instance().take_messages();
-        if !messages.is_empty() {
-            self.interface.take(Event::Validation(messages.iter().map(ToString::to_string).collect()));
-            self.context.request_repaint();
-            self.ask();
-        }
+        self.take_messages();
         if let Some(path) = &self.controls
             && let Some(update) = &output.platform_output.accesskit_update
         {
@@ -339,7 +357,7 @@ impl Open {
         let delay = output.viewport_output.get(&egui::ViewportId::ROOT).map(|viewport| viewport.repaint_delay);
         self.next_frame = delay.filter(|delay| *delay < Duration::from_secs(3600)).map(|delay| Instant::now() + delay);
         match drawn {
-            Drawn::Yes(painted) => self.interface.drew(laid_out + painted),
+            Drawn::Yes(painted) => self.interface.drew(laid_out + painted, true),
             Drawn::Later { is_soon: true } => {
                 let soon = Instant::now() + Duration::from_millis(50);
                 self.next_frame = Some(self.next_frame.map_or(soon, |next| next.min(soon)));
@@ -347,6 +365,16 @@ impl Open {
             Drawn::Unchanged | Drawn::Later { .. } => {}
         }
         Ok(self.interface.wishes())
+    }
+
+    /// Takes what the validation layer has said of the window's own drawing.
+    fn take_messages(&mut self) {
+        let messages = self.screen.device().instance().take_messages();
+        if !messages.is_empty() {
+            self.interface.take(Event::Validation(messages.iter().map(ToString::to_string).collect()));
+            self.needs_layout = true;
+            self.ask();
+        }
     }
 
     fn validation_message(&self) -> Option<String> {
@@ -397,6 +425,7 @@ impl ApplicationHandler<Wake> for Application {
                         }
                         accesskit_winit::WindowEvent::AccessibilityDeactivated => open.context.disable_accesskit(),
                     }
+                    open.needs_layout = true;
                     open.ask();
                 }
             }
@@ -408,6 +437,10 @@ impl ApplicationHandler<Wake> for Application {
         match &event {
             WindowEvent::CloseRequested => return self.end(events, None),
             WindowEvent::RedrawRequested => {
+                if !open.is_due {
+                    // The display asks by itself: it has lost what it showed.
+                    open.screen.exposed();
+                }
                 match self.frame(events) {
                     Ok(Flow::On) => {}
                     Ok(Flow::Ended) => self.end(events, None),
@@ -415,14 +448,28 @@ impl ApplicationHandler<Wake> for Application {
                 }
                 return;
             }
-            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+            WindowEvent::ScaleFactorChanged { scale_factor, inner_size_writer } => {
+                // Under X11, winit tells of it again when the window manager answers, and would have the window grow twice.
+                if std::mem::replace(&mut open.scale, *scale_factor) == *scale_factor {
+                    drop(inner_size_writer.clone().request_inner_size(open.window.inner_size()));
+                }
                 open.screen.resized();
+                open.needs_layout = true;
                 open.ask();
             }
-            WindowEvent::Occluded(false) => open.ask(),
+            WindowEvent::Resized(_) => {
+                open.screen.resized();
+                open.needs_layout = true;
+                open.ask();
+            }
+            WindowEvent::Occluded(false) => {
+                open.screen.exposed();
+                open.ask();
+            }
             _ => {}
         }
         if open.input.on_window_event(&open.window, &event).repaint {
+            open.needs_layout = true;
             open.ask();
         }
     }
@@ -432,6 +479,7 @@ impl ApplicationHandler<Wake> for Application {
             && open.next_frame.is_some_and(|next| next <= Instant::now())
         {
             open.next_frame = None;
+            open.needs_layout = true;
             open.ask();
         }
         self.schedule(events);

@@ -4,9 +4,8 @@ use egui::{Key, PointerButton, Response, Ui, Vec2};
 use glam::DVec3;
 
 use super::interface::Interface;
+use super::session::CAMERA;
 
-/// Name of the parameter.
-const CAMERA: &str = "camera";
 /// Radians for a point that the pointer is dragged.
 const ORBIT_RAD: f64 = 0.008;
 /// Nearest that the view comes to straight up or down, radians.
@@ -91,10 +90,13 @@ impl View {
     }
 }
 
-/// The camera as the user has it.
+/// The camera as the user has it; `None` while only the worker knows, as between a reset to one that it has not told and its
+/// answer.
 fn view(face: &Interface) -> Option<View> {
-    let moved = face.flight.view.filter(|_| face.sent.is_underway(CAMERA));
-    moved.or_else(|| face.session.side(0)?.camera.map(View::from_numbers))
+    if face.sent.is_underway(CAMERA) {
+        return face.flight.view;
+    }
+    face.session.side(0)?.camera.map(View::from_numbers)
 }
 
 /// Moves the camera; nothing happens for a paper without one.
@@ -166,14 +168,18 @@ pub fn steer_by_keys(ui: &egui::Context, face: &mut Interface) {
 
 /// The camera as fields: typed in, or set back.
 pub fn show_field(ui: &mut Ui, face: &mut Interface) {
-    let Some(view) = view(face) else { return };
+    if face.session.parameter(CAMERA).is_none() {
+        return;
+    }
     ui.horizontal(|ui| {
         ui.label("Camera").on_hover_text("Eye x,y,z and target x,y,z. Drag the picture to orbit, right button to pan, wheel to dolly; W A S D Q E fly.");
         if ui.small_button("Reset").on_hover_text("The figure's own camera (R)").clicked() {
             reset(face);
         }
     });
-    let mut text = face.flight.text.clone().unwrap_or_else(|| view.text());
+    let told = || face.session.side(0)?.camera.map(View::from_numbers);
+    let known = view(face).or_else(told).map(|view| view.text()).unwrap_or_default();
+    let mut text = face.flight.text.clone().unwrap_or(known);
     let field =
         ui.add(egui::TextEdit::singleline(&mut text).desired_width(f32::INFINITY).font(egui::TextStyle::Monospace));
     field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "camera"));

@@ -5,8 +5,12 @@ use egui::{Rect, Sense, Stroke, Ui};
 use super::camera;
 use super::interface::Interface;
 use super::layout::Comparison;
-use super::picture_view::{navigate, paint, point, show_nothing, texel_at};
+use super::picture_view::{lay, navigate, point, say, show_nothing, texel_at};
+use super::pictures::DIFFERENCE;
 use super::protocol::Request;
+
+/// In place of a difference.
+const SIZES_DIFFER: &str = "The sides' pictures differ in size: they have no difference.";
 
 /// Both sides' pictures.
 pub fn show(ui: &mut Ui, face: &mut Interface) {
@@ -14,22 +18,20 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
     let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "pictures"));
     let area = response.rect;
-    let [Some(left), Some(right)] = face.pictures.sides.clone() else {
+    let (Some(size), Some(second)) = (face.session.picture_size(0), face.session.picture_size(1)) else {
         return show_nothing(ui, face, area);
     };
-    let size = left.size_vec2();
     let pixels_per_point = ui.ctx().pixels_per_point();
     match face.layout.comparison {
         Comparison::Difference => {
-            let Some(texture) = face.pictures.difference.clone() else {
-                return show_nothing(ui, face, area);
-            };
+            if face.session.frame.as_ref().is_none_or(|frame| frame.difference.is_none()) {
+                let words = if size == second { "The difference comes with the next frame." } else { SIZES_DIFFER };
+                return say(ui, area, words);
+            }
             navigate(&mut face.picture_view, ui, &response, size, true);
             camera::steer(ui, face, &response);
             let rect = face.picture_view.place(area, size, pixels_per_point);
-            face.pictures.is_small = face.picture_view.scale(area.size() * pixels_per_point, size) < 1.0;
-            paint(&painter, &texture, rect);
-            point(face, 0, &response, rect, size);
+            lay(&painter, face, DIFFERENCE, rect);
         }
         Comparison::Beside => {
             let middle = area.center().x.round();
@@ -37,15 +39,14 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
             let one = response.clone().with_new_rect(areas[0]);
             navigate(&mut face.picture_view, ui, &one, size, true);
             camera::steer(ui, face, &response);
-            for (side, (area, texture)) in areas.into_iter().zip([&left, &right]).enumerate() {
-                let rect = face.picture_view.place(area, texture.size_vec2(), pixels_per_point);
-                paint(&painter.with_clip_rect(area), texture, rect);
+            for (side, (area, size)) in areas.into_iter().zip([size, second]).enumerate() {
+                let rect = face.picture_view.place(area, size, pixels_per_point);
+                lay(&painter.with_clip_rect(area), face, side, rect);
                 let is_here = response.hover_pos().is_some_and(|pointer| area.contains(pointer));
                 if is_here {
-                    point(face, side, &response, rect, texture.size_vec2());
+                    point(face, side, &response, rect, size);
                 }
             }
-            face.pictures.is_small = face.picture_view.scale(areas[0].size() * pixels_per_point, size) < 1.0;
         }
         Comparison::Divider => {
             let rect = face.picture_view.place(area, size, pixels_per_point);
@@ -55,12 +56,11 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
                 navigate(&mut face.picture_view, ui, &response, size, true);
                 camera::steer(ui, face, &response);
             }
-            paint(&painter.with_clip_rect(shown.with_max_x(at.x)), &left, rect);
-            paint(&painter.with_clip_rect(shown.with_min_x(at.x)), &right, rect);
+            lay(&painter.with_clip_rect(shown.with_max_x(at.x)), face, 0, rect);
+            lay(&painter.with_clip_rect(shown.with_min_x(at.x)), face, 1, rect);
             painter.vline(at.x, shown.y_range(), Stroke::new(2.0, ui.visuals().strong_text_color()));
             let side = response.hover_pos().map_or(0, |pointer| usize::from(pointer.x >= at.x));
-            point(face, side, &response, rect, size);
-            face.pictures.is_small = face.picture_view.scale(area.size() * pixels_per_point, size) < 1.0;
+            point(face, side, &response, rect, if side == 0 { size } else { second });
         }
     }
     if let Some(pointer) = response.hover_pos()

@@ -9,73 +9,7 @@ use std::sync::Arc;
 use egui::epaint::{ClippedShape, RectShape, Shape, TextShape};
 use egui::{Color32, CornerRadius, Pos2, Rect, TextureId};
 
-/// A rectangle of whole pixels that is not empty.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Area {
-    /// First column, from 0 at the window's left edge.
-    pub left: u32,
-    /// First row, from 0 at the window's upper edge.
-    pub top: u32,
-    /// Column after the last one.
-    pub right: u32,
-    /// Row after the last one.
-    pub bottom: u32,
-}
-
-impl Area {
-    /// The rectangle from the upper left corner on.
-    pub fn whole((width, height): (u32, u32)) -> Self {
-        Area { left: 0, top: 0, right: width, bottom: height }
-    }
-
-    /// The pixels between corners that lie on pixels' edges.
-    fn between(left: f32, top: f32, right: f32, bottom: f32) -> Option<Self> {
-        // What is not a number, or lies before the first pixel, becomes zero.
-        let [left, top, right, bottom] = [left, top, right, bottom].map(|side| side as u32);
-        (left < right && top < bottom).then_some(Area { left, top, right, bottom })
-    }
-
-    /// The pixels that a clip of the interface leaves, corners in points.
-    pub fn of_clip(clip: Rect, pixels_per_point: f32) -> Option<Self> {
-        let pixel = |side: f32| (side * pixels_per_point).round();
-        Self::between(pixel(clip.min.x), pixel(clip.min.y), pixel(clip.max.x), pixel(clip.max.y))
-    }
-
-    /// The part in both.
-    pub fn common(self, other: Area) -> Option<Self> {
-        let (left, top) = (self.left.max(other.left), self.top.max(other.top));
-        let (right, bottom) = (self.right.min(other.right), self.bottom.min(other.bottom));
-        (left < right && top < bottom).then_some(Area { left, top, right, bottom })
-    }
-
-    fn around(self, other: Area) -> Self {
-        Area {
-            left: self.left.min(other.left),
-            top: self.top.min(other.top),
-            right: self.right.max(other.right),
-            bottom: self.bottom.max(other.bottom),
-        }
-    }
-
-    fn holds(self, other: Area) -> bool {
-        self.common(other) == Some(other)
-    }
-
-    /// Width and height.
-    pub fn size(self) -> (u32, u32) {
-        (self.right - self.left, self.bottom - self.top)
-    }
-
-    fn pixels(self) -> u64 {
-        let (width, height) = self.size();
-        u64::from(width) * u64::from(height)
-    }
-
-    /// Pixels that a rectangle around both has beyond the two.
-    fn waste(self, other: Area) -> i64 {
-        self.around(other).pixels() as i64 - self.pixels() as i64 - other.pixels() as i64
-    }
-}
+use super::area::Area;
 
 /// Rectangles that are drawn again, at most. Each is a few draws more.
 const MOST_AREAS: usize = 6;
@@ -156,6 +90,15 @@ impl Canvas {
             }
         }
         self.pieces = pieces;
+    }
+
+    /// The shapes stay, and these textures have changed.
+    pub fn change_textures(&mut self, redrawn: &HashSet<TextureId>) {
+        for piece in self.pieces.iter().filter(|piece| uses(&piece.shape.shape, redrawn)) {
+            if !self.stale_pictures.contains(&piece.area) {
+                self.stale_pictures.push(piece.area);
+            }
+        }
     }
 
     /// Pixels of a point of the shapes' places.
@@ -457,6 +400,23 @@ mod tests {
         canvas.change(shapes.to_vec(), 1.0, &HashSet::new(), |_| false);
         let seen = canvas.seen_in(area);
         assert_eq!((seen.picture, seen.shapes), (None, shapes.to_vec()), "it lets through what is below");
+    }
+
+    #[test]
+    fn a_texture_is_drawn_again_where_the_last_shapes_show_it() {
+        let mut canvas = Canvas::default();
+        canvas.change(vec![square(0.0, 0.0), picture(3), picture(4)], 1.0, &HashSet::new(), |_| true);
+        canvas.settle();
+        canvas.change_textures(&HashSet::from([TextureId::Managed(9)]));
+        assert_eq!(canvas.stale(EXTENT), []);
+        canvas.change_textures(&HashSet::from([TextureId::Managed(3)]));
+        let area = Area { left: 100, top: 100, right: 420, bottom: 300 };
+        assert_eq!(canvas.stale(EXTENT), [area]);
+        assert_eq!(
+            canvas.seen_in(area).picture.map(|sheet| sheet.texture),
+            Some(TextureId::Managed(4)),
+            "the upper one"
+        );
     }
 
     #[test]

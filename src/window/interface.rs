@@ -4,16 +4,23 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use egui::{CentralPanel, Context, RichText, SidePanel, TopBottomPanel};
+use egui::{CentralPanel, Context, Rangef, RichText, SidePanel, TopBottomPanel, Vec2};
 
 use super::bench_tab::Bench;
 use super::keep_tab::Saving;
 use super::layout::{Comparison, Layout, Theme};
 use super::pictures::Pictures;
-use super::protocol::{Assignment, Event, MeasureChoice, Request, TargetChoice, ThumbnailChoice, Verb};
+use super::protocol::{
+    Assignment, Event, Frame, MeasureChoice, Picture, Request, TargetChoice, TargetShape, ThumbnailChoice, Verb,
+};
 use super::sent::Sent;
 use super::session::Session;
 use super::{camera, compare, drawer, keys, parameters_panel, passes_panel, picture_view, target_view, top_bar};
+
+/// Fractions that the panels take of the window's width and height at most.
+const PASSES_SHARE: f32 = 0.36;
+const PARAMETERS_SHARE: f32 = 0.28;
+const DRAWER_SHARE: f32 = 0.4;
 
 /// A wish of the interface.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,10 +78,14 @@ pub struct Interface {
     /// When it was made.
     pub(super) opened: Instant,
     pub(super) has_keys: bool,
+    /// Width and height of the window in points.
+    screen: Vec2,
     pub(super) is_plot_paused: bool,
     /// Line under the picture: place and value at the pointer.
     pub(super) pointed: String,
+    /// The window's own last times: of frames whose panels were laid out, and of frames that showed new pictures alone.
     pub(super) interface_ms: VecDeque<f32>,
+    pub(super) pictures_ms: VecDeque<f32>,
     /// Requests at the start, once the worker is ready.
     first: Vec<Request>,
     wishes: Vec<Wish>,
@@ -113,9 +124,11 @@ impl Interface {
             note: None,
             opened: Instant::now(),
             has_keys: false,
+            screen: Vec2::ZERO,
             is_plot_paused: false,
             pointed: String::new(),
             interface_ms: VecDeque::new(),
+            pictures_ms: VecDeque::new(),
             first: Vec::new(),
             wishes: Vec::new(),
         }
@@ -162,6 +175,7 @@ impl Interface {
         match answer {
             Some(Event::Command(arguments)) => self.answered(arguments),
             Some(Event::Kept(files)) => self.note = Some(format!("wrote {}", summary(&files))),
+            Some(Event::Measuring(measure)) => self.measure = measure,
             _ => {}
         }
     }
@@ -194,11 +208,12 @@ impl Interface {
         }
     }
 
-    /// A frame of the interface took so long.
-    pub fn drew(&mut self, time: Duration) {
-        self.interface_ms.push_back(time.as_secs_f32() * 1e3);
-        if self.interface_ms.len() > 120 {
-            self.interface_ms.pop_front();
+    /// A frame of the interface took so long, with its panels laid out or of new pictures alone.
+    pub fn drew(&mut self, time: Duration, is_laid_out: bool) {
+        let last_ms = if is_laid_out { &mut self.interface_ms } else { &mut self.pictures_ms };
+        last_ms.push_back(time.as_secs_f32() * 1e3);
+        if last_ms.len() > 120 {
+            last_ms.pop_front();
         }
     }
 
@@ -259,14 +274,23 @@ impl Interface {
         }
     }
 
-    /// Looks at a pass: its targets come as thumbnails.
+    /// Looks at a pass: its targets come as thumbnails, the first of them large; without one, the picture is back.
     pub(super) fn select_pass(&mut self, pass: Option<usize>) {
         self.pass = pass;
         let names = pass.map(|pass| self.targets_of(pass)).unwrap_or_default();
+        // Rather a picture than a table.
+        let large = names.iter().find(|name| self.is_image(name)).or(names.first()).cloned();
+        self.look_at(large.map(|name| TargetChoice { side: 0, name, layer: 0, first_row: 0 }));
         let choice = (!names.is_empty()).then_some(ThumbnailChoice { side: 0, names, longest_px: 160 });
         self.ask(Request::Thumbnails(choice));
     }
 
+    fn is_image(&self, name: &str) -> bool {
+        let target = self.session.side_built(0).and_then(|built| built.targets.iter().find(|one| one.name == name));
+        target.is_some_and(|target| matches!(target.shape, TargetShape::Image { .. }))
+    }
+
+    /// Names of the targets that a pass writes, then of those that it reads.
     fn targets_of(&self, pass: usize) -> Vec<String> {
         let Some(built) = self.session.side_built(0) else { return Vec::new() };
         let Some(info) = built.passes.get(pass) else { return Vec::new() };
@@ -303,44 +327,79 @@ impl Interface {
         self.wish(Wish::Restart(paper));
     }
 
+    /// Takes over the pictures that have come.
+    pub fn update_pictures(&mut self, context: &Context) {
+        self.pictures.update(context, &self.session);
+    }
+
+    /// True for an event that changes nothing but pictures of the same sizes, and numbers that nobody reads as fast as they
+    /// come. To be asked before the event is taken.
+    pub fn is_going_on(&self, event: &Event) -> bool {
+        match event {
+            Event::Frame(next) => {
+                let is_alike = self.session.frame.as_ref().is_some_and(|last| sizes(last) == sizes(next));
+                // A target is drawn with the panels round it.
+                is_alike && next.is_playing && (next.target.is_none() || self.shown == Shown::Picture)
+            }
+            Event::Times(_) => !self.session.times.is_empty(),
+            Event::Progress(next) => {
+                self.session.progress.as_ref().is_some_and(|last| last.what == next.what && next.done < next.total)
+            }
+            _ => false,
+        }
+    }
+
     /// Lays all panels out.
     pub fn show(&mut self, context: &Context) {
         keys::handle(context, self);
         parameters_panel::take_dropped(context, self);
-        self.pictures.update(context, &self.session);
+        self.update_pictures(context);
         if let Some(line) = self.pictures.to_copy.take() {
             context.copy_text(line);
         }
         TopBottomPanel::top("top").show(context, |ui| top_bar::show(ui, self));
         TopBottomPanel::bottom("status").show(context, |ui| top_bar::show_status(ui, self));
-        if self.layout.has_drawer {
-            let drawn = TopBottomPanel::bottom("drawer")
-                .resizable(true)
-                .default_height(self.layout.drawer_height)
-                .min_height(60.0)
-                .show(context, |ui| drawer::show(ui, self));
-            self.layout.drawer_height = drawn.response.rect.height();
-        }
-        if self.layout.has_passes {
-            let drawn = SidePanel::left("passes")
-                .resizable(true)
-                .default_width(self.layout.passes_width)
-                .min_width(160.0)
-                .show(context, |ui| passes_panel::show(ui, self));
-            self.layout.passes_width = drawn.response.rect.width();
-        }
-        if self.layout.has_parameters {
-            let drawn = SidePanel::right("parameters")
-                .resizable(true)
-                .default_width(self.layout.parameters_width)
-                .min_width(160.0)
-                .show(context, |ui| parameters_panel::show(ui, self));
-            self.layout.parameters_width = drawn.response.rect.width();
-        }
+        self.show_panels(context);
         let frame = egui::Frame::central_panel(&context.style()).inner_margin(4.0);
         CentralPanel::default().frame(frame).show(context, |ui| self.show_middle(ui));
+        self.pictures.fit(context, &self.session);
         keys::show_list(context, self);
         self.bench.poll(context);
+    }
+
+    /// The panels, as large as their user has made them, as far as a small window leaves the middle some room.
+    fn show_panels(&mut self, context: &Context) {
+        let screen = context.content_rect().size();
+        let is_resized = std::mem::replace(&mut self.screen, screen) != screen;
+        // Of a window that changes, they take the sizes that they would have in a larger one again.
+        let range = |wanted: f32, (least, most): (f32, f32)| {
+            let most = most.max(least);
+            let shown = wanted.clamp(least, most);
+            (shown, if is_resized { Rangef::point(shown) } else { Rangef::new(least, most) })
+        };
+        let changed = |drawn: f32, shown: f32, wanted: &mut f32| {
+            if (drawn - shown).abs() > 0.5 {
+                *wanted = drawn;
+            }
+        };
+        if self.layout.has_drawer {
+            let (shown, range) = range(self.layout.drawer_height, (60.0, screen.y * DRAWER_SHARE));
+            let panel = TopBottomPanel::bottom("drawer").resizable(true).default_height(shown).height_range(range);
+            let drawn = panel.show(context, |ui| drawer::show(ui, self)).response.rect.height();
+            changed(drawn, shown, &mut self.layout.drawer_height);
+        }
+        if self.layout.has_passes {
+            let (shown, range) = range(self.layout.passes_width, (160.0, screen.x * PASSES_SHARE));
+            let panel = SidePanel::left("passes").resizable(true).default_width(shown).width_range(range);
+            let drawn = panel.show(context, |ui| passes_panel::show(ui, self)).response.rect.width();
+            changed(drawn, shown, &mut self.layout.passes_width);
+        }
+        if self.layout.has_parameters {
+            let (shown, range) = range(self.layout.parameters_width, (160.0, screen.x * PARAMETERS_SHARE));
+            let panel = SidePanel::right("parameters").resizable(true).default_width(shown).width_range(range);
+            let drawn = panel.show(context, |ui| parameters_panel::show(ui, self)).response.rect.width();
+            changed(drawn, shown, &mut self.layout.parameters_width);
+        }
     }
 
     fn show_middle(&mut self, ui: &mut egui::Ui) {
@@ -371,6 +430,15 @@ impl Interface {
             Shown::Picture => picture_view::show(ui, self),
         }
     }
+}
+
+/// Which pictures a frame has, and how large they are.
+fn sizes(frame: &Frame) -> impl PartialEq + use<> {
+    let size = |picture: Option<&Picture>| picture.map(|picture| (picture.width, picture.height));
+    let large = frame.sides.iter().map(|side| side.picture.as_ref());
+    let large = large.chain([frame.difference.as_ref().map(|difference| &difference.picture)]).map(size);
+    let small = frame.thumbnails.iter().map(|thumbnail| (thumbnail.name.clone(), size(thumbnail.picture.as_ref())));
+    (large.collect::<Vec<_>>(), small.collect::<Vec<_>>())
 }
 
 /// The end of a worker in words.

@@ -14,6 +14,7 @@
 //! alone. The two speak by [`protocol`].
 
 pub mod application;
+mod area;
 mod bench_tab;
 mod camera;
 pub mod client;
@@ -22,6 +23,7 @@ mod controls;
 mod damage;
 mod drawer;
 mod error;
+mod event_loop;
 mod false_colour;
 pub mod interface;
 mod keep_tab;
@@ -34,6 +36,7 @@ mod picture_view;
 mod pictures;
 mod program;
 pub mod protocol;
+mod reduction;
 mod screen;
 mod sent;
 pub mod session;

@@ -8,7 +8,8 @@ use ash::vk;
 use egui::epaint::{ClippedPrimitive, ClippedShape, ImageData, ImageDelta, Mesh, Primitive};
 use egui::{ColorImage, TextureFilter, TextureId};
 
-use super::damage::{Area, Canvas, Sheet};
+use super::area::Area;
+use super::damage::{Canvas, Sheet};
 use crate::gpu::transfer::{copy_rectangle, upload_rectangle, upload_rows};
 use crate::gpu::{
     Blend, Buffer, BufferDesc, Compiler, Device, Error, Image, ImageDesc, ImageView, Load, Location, Mode, Pass,
@@ -233,6 +234,12 @@ impl Painter {
         self.redrawn.clear();
     }
 
+    /// Keeps the shapes that there are, and takes over which textures have changed.
+    pub fn take_textures(&mut self) {
+        self.canvas.change_textures(&self.redrawn);
+        self.redrawn.clear();
+    }
+
     /// Draws what has changed into the window's picture, and gives it; `None` where it would be what it is. `tessellate` makes
     /// triangles of shapes.
     ///
@@ -276,9 +283,21 @@ impl Painter {
             let is_first = is_whole && passes.is_empty();
             passes.extend(self.pass(texture, is_first, &view)?.map(|pass| (pass, runs)));
         }
-        let screen = Screen { pixels: [width as f32, height as f32] };
+        self.draw(&passes, Screen { pixels: [width as f32, height as f32] })?;
+        self.canvas.settle();
+        if let Some(target) = &mut self.target {
+            target.is_drawn = true;
+        }
+        Ok(Some(view))
+    }
+
+    fn draw(&mut self, passes: &[(Pass, Vec<Run>)], screen: Screen) -> Result<(), Error> {
+        // Pictures that were copied are all that there was.
+        if passes.is_empty() {
+            return Ok(());
+        }
         self.recorder.run(Mode::Plain, |frame| {
-            for (pass, runs) in &passes {
+            for (pass, runs) in passes {
                 frame.graphics(pass, |draw| {
                     draw.constants(&screen);
                     for run in runs {
@@ -289,11 +308,7 @@ impl Painter {
             }
             Ok::<(), Error>(())
         })?;
-        self.canvas.settle();
-        if let Some(target) = &mut self.target {
-            target.is_drawn = true;
-        }
-        Ok(Some(view))
+        Ok(())
     }
 
     /// The window's picture in that size and format.

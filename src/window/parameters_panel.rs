@@ -10,6 +10,7 @@ use egui::{
 use super::camera;
 use super::interface::Interface;
 use super::protocol::{Cost, ParameterInfo};
+use super::session::CAMERA;
 
 /// Texts being typed.
 #[derive(Debug, Default)]
@@ -34,7 +35,8 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
     show_dropped(ui, face);
     camera::show_field(ui, face);
     ui.separator();
-    let parameters = face.session.parameters().to_vec();
+    let Some(ready) = face.session.ready.clone() else { return };
+    let parameters = &ready.parameters;
     let values = face.session.side(0).map(|side| side.values.clone()).unwrap_or_default();
     let set = face.session.side(0).map(|side| side.set.clone()).unwrap_or_default();
     let search = face.fields.search.to_lowercase();
@@ -43,7 +45,7 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
             || [&parameter.name, &parameter.help, &parameter.section].iter().any(|t| t.to_lowercase().contains(&search))
     };
     let mut groups: Vec<&str> = Vec::new();
-    for parameter in &parameters {
+    for parameter in parameters {
         if !groups.contains(&parameter.group.as_str()) {
             groups.push(&parameter.group);
         }
@@ -53,7 +55,7 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
             let rows = || {
                 let pairs = parameters.iter().zip(&values);
                 pairs.filter(|(parameter, _)| {
-                    parameter.group == group && parameter.name != "camera" && is_wanted(parameter)
+                    parameter.group == group && parameter.name != CAMERA && is_wanted(parameter)
                 })
             };
             if rows().next().is_none() {
@@ -79,7 +81,7 @@ fn show_parameter(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, 
     if parameter.is_flag {
         ui.horizontal(|ui| {
             let mut is_on = value == "on" || value == "true";
-            let checkbox = ui.checkbox(&mut is_on, name).on_hover_text(help(parameter));
+            let checkbox = ui.checkbox(&mut is_on, name).on_hover_ui(|ui| explain(ui, parameter));
             if checkbox.changed() {
                 face.set(&parameter.name, vec![is_on.to_string()]);
             }
@@ -88,7 +90,7 @@ fn show_parameter(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, 
         return;
     }
     ui.horizontal(|ui| {
-        ui.label(name).on_hover_text(help(parameter));
+        ui.label(name).on_hover_ui(|ui| explain(ui, parameter));
         ui.weak(&parameter.unit);
         show_reset(ui, face, parameter, is_set);
     });
@@ -113,8 +115,8 @@ fn show_reset(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, is_s
     }
 }
 
-/// All that the declaration says.
-fn help(parameter: &ParameterInfo) -> String {
+/// All that the declaration says, under the pointer.
+fn explain(ui: &mut Ui, parameter: &ParameterInfo) {
     let mut lines = vec![parameter.help.clone()];
     let bounds = [parameter.range.as_str(), parameter.unit.as_str()].join(" ").trim().to_owned();
     if !bounds.is_empty() {
@@ -131,7 +133,8 @@ fn help(parameter: &ParameterInfo) -> String {
         Cost::Buffers => "buffers are made anew".to_owned(),
         Cost::Pipelines => "pipelines are built anew".to_owned(),
     });
-    lines.join("\n")
+    ui.set_max_width(ui.spacing().tooltip_width);
+    ui.label(lines.join("\n"));
 }
 
 fn show_choices(ui: &mut Ui, face: &mut Interface, parameter: &ParameterInfo, value: &str) {

@@ -117,7 +117,7 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             let is_recorded = face.after.is_none_or(|after| index < after as usize);
             let name = RichText::new(&pass.name);
             let name = if is_recorded { name } else { name.weak().strikethrough() };
-            if ui.selectable_label(face.pass == Some(index), name).on_hover_text(help(pass)).clicked() {
+            if ui.selectable_label(face.pass == Some(index), name).on_hover_ui(|ui| explain(ui, pass)).clicked() {
                 chosen = Some(index);
             }
             if is_compared {
@@ -150,7 +150,10 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             ui.end_row();
         }
         for pass in second.iter().filter(|pass| passes.iter().all(|own| own.name != pass.name)) {
-            ui.label(RichText::new(&pass.name).italics()).on_hover_text(format!("B alone: {}", help(pass)));
+            ui.label(RichText::new(&pass.name).italics()).on_hover_ui(|ui| {
+                ui.label("B alone");
+                explain(ui, pass);
+            });
             number(ui, None);
             number(ui, of_second(&pass.name));
             (0..1 + usize::from(has_floors)).for_each(|_| drop(ui.label("")));
@@ -178,9 +181,11 @@ fn whole(times: &PassTimes) -> Option<f64> {
     }
 }
 
-fn help(pass: &PassInfo) -> String {
+/// What a pass is and touches, under the pointer.
+fn explain(ui: &mut Ui, pass: &PassInfo) {
     let list = |names: &[String]| if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
-    format!("{}; reads {}; writes {}", pass.kind, list(&pass.reads), list(&pass.writes))
+    ui.set_max_width(ui.spacing().tooltip_width);
+    ui.label(format!("{}; reads {}; writes {}", pass.kind, list(&pass.reads), list(&pass.writes)));
 }
 
 /// A time, or nothing where none is known.

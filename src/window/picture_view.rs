@@ -5,6 +5,7 @@ use egui::{Pos2, Rect, Response, Sense, Ui, Vec2};
 
 use super::camera;
 use super::interface::Interface;
+use super::pictures::{DIFFERENCE, small_size};
 
 /// Zoom and pan of the picture, the same for both sides.
 #[derive(Debug, Clone, Default)]
@@ -27,10 +28,11 @@ impl PictureView {
         self.zoom.unwrap_or(fits)
     }
 
-    /// The picture's rectangle in `area`, in points; its corner lies on a whole pixel.
+    /// The picture's rectangle in `area`, in points; its corner lies on a whole pixel, and of one that is smaller than it is
+    /// the sides do as well.
     pub fn place(&self, area: Rect, size: Vec2, pixels_per_point: f32) -> Rect {
         let scale = self.scale(area.size() * pixels_per_point, size);
-        let shown = size * scale;
+        let shown = if scale < 1.0 { (size * scale).round().max(Vec2::splat(1.0)) } else { size * scale };
         let corner = area.center().to_vec2() * pixels_per_point + self.pan_px - shown * 0.5;
         let corner = Vec2::new(corner.x.round(), corner.y.round());
         Rect::from_min_size((corner / pixels_per_point).to_pos2(), shown / pixels_per_point)
@@ -87,17 +89,25 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
     let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Image, true, "picture"));
     let area = response.rect;
-    let Some(texture) = face.pictures.sides[0].clone() else {
+    let Some(size) = face.session.picture_size(0) else {
         return show_nothing(ui, face, area);
     };
-    let size = texture.size_vec2();
     navigate(&mut face.picture_view, ui, &response, size, true);
     camera::steer(ui, face, &response);
-    let pixels_per_point = ui.ctx().pixels_per_point();
-    let rect = face.picture_view.place(area, size, pixels_per_point);
-    face.pictures.is_small = face.picture_view.scale(area.size() * pixels_per_point, size) < 1.0;
-    paint(&painter, &texture, rect);
+    let rect = face.picture_view.place(area, size, ui.ctx().pixels_per_point());
+    lay(&painter, face, 0, rect);
     point(face, 0, &response, rect, size);
+}
+
+/// Draws a side's picture, or the difference, into a rectangle.
+pub fn lay(painter: &egui::Painter, face: &mut Interface, index: usize, rect: Rect) {
+    // A difference is as large as both sides.
+    let side = if index == DIFFERENCE { 0 } else { index };
+    let Some(size) = face.session.picture_size(side) else { return };
+    let shown = small_size(rect.size(), painter.pixels_per_point(), size);
+    if let Some(texture) = face.pictures.shown(index, shown) {
+        paint(painter, texture, rect);
+    }
 }
 
 /// Draws a texture into a rectangle.
@@ -129,8 +139,14 @@ pub fn show_nothing(ui: &Ui, face: &Interface, area: Rect) {
     } else {
         "Loading and building."
     };
-    let font = egui::TextStyle::Heading.resolve(ui.style());
-    ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, words, font, ui.visuals().weak_text_color());
+    say(ui, area, words);
+}
+
+/// Words in the middle of an area.
+pub fn say(ui: &Ui, area: Rect, words: &str) {
+    let (font, color) = (egui::TextStyle::Heading.resolve(ui.style()), ui.visuals().weak_text_color());
+    let galley = ui.painter().layout(words.to_owned(), font, color, area.width());
+    ui.painter().galley(area.center() - galley.size() / 2.0, galley, color);
 }
 
 #[cfg(test)]

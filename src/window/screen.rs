@@ -78,6 +78,11 @@ impl Screen {
         self.is_stale = true;
     }
 
+    /// What was on the screen may be lost: it is shown again with the next frame, changed or not.
+    pub fn exposed(&mut self) {
+        self.shown = None;
+    }
+
     /// Takes over what changed of the textures, whether or not the frame is drawn.
     ///
     /// # Errors
@@ -97,6 +102,22 @@ impl Screen {
         tessellate: impl Fn(Vec<ClippedShape>) -> Vec<ClippedPrimitive>,
     ) -> Result<Drawn, Error> {
         self.painter.take(pixels_per_point, shapes);
+        self.show(tessellate)
+    }
+
+    /// Draws textures that have changed where the last frame's shapes show them.
+    ///
+    /// # Errors
+    /// As [`Screen::draw`].
+    pub fn draw_textures(
+        &mut self,
+        tessellate: impl Fn(Vec<ClippedShape>) -> Vec<ClippedPrimitive>,
+    ) -> Result<Drawn, Error> {
+        self.painter.take_textures();
+        self.show(tessellate)
+    }
+
+    fn show(&mut self, tessellate: impl Fn(Vec<ClippedShape>) -> Vec<ClippedPrimitive>) -> Result<Drawn, Error> {
         // Of a window that changes while it is drawn to, the second picture is the right one; a display that never
         // settles gets its next chance with the next frame.
         for _ in 0..3 {

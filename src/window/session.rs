@@ -1,12 +1,16 @@
 //! State of the worker as far as it has told.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::protocol::{
     Built, DeviceLimits, Ended, Event, Frame, Memory, ParameterInfo, Progress, Ready, Setup, SideBuilt, SideSetup,
     SideTimes,
 };
+
+/// Name of the parameter that is the camera.
+pub const CAMERA: &str = "camera";
 
 /// Points of the plots that are kept: the minutes that they show, at the pace of a display.
 const HISTORY: usize = 3 * 60 * 60;
@@ -26,7 +30,7 @@ pub struct Point {
 #[derive(Default)]
 pub struct Session {
     /// Device, paper and parameters of the worker; `None` until it has said them.
-    pub ready: Option<Ready>,
+    pub ready: Option<Arc<Ready>>,
     /// Values of all parameters; `None` until the first set-up holds.
     pub setup: Option<Setup>,
     /// Eye and target of the camera where none is set by hand, as it was last told.
@@ -67,15 +71,11 @@ impl Session {
         match event {
             Event::Ready(ready) => {
                 self.warnings.clone_from(&ready.warnings);
-                self.ready = Some(ready);
+                self.ready = Some(Arc::new(ready));
             }
             Event::Setup(setup) => {
                 self.heeds = self.heeds.max(setup.heeds);
-                if let Some(side) = setup.sides.first()
-                    && side.set.iter().all(|name| name != "camera")
-                {
-                    self.home = side.camera;
-                }
+                self.home = self.home_of(&setup);
                 self.setup = Some(setup);
             }
             Event::Built(built) => {
@@ -121,9 +121,24 @@ impl Session {
                 self.progress = None;
                 self.ended = Some(ended);
             }
-            answer @ Event::Command(_) => return Some(answer),
+            answer @ (Event::Command(_) | Event::Measuring(_)) => return Some(answer),
         }
         None
+    }
+
+    /// The camera that a reset goes back to, where a set-up tells it, or nothing that it may depend on has changed.
+    fn home_of(&self, setup: &Setup) -> Option<[f64; 6]> {
+        let side = setup.sides.first()?;
+        if side.set.iter().all(|name| name != CAMERA) {
+            return side.camera;
+        }
+        let camera = self.parameter(CAMERA);
+        let others = |side: &SideSetup| {
+            let values = side.values.iter().enumerate().filter(|(index, _)| Some(*index) != camera);
+            (side.choice.clone(), values.map(|(_, value)| value.clone()).collect::<Vec<_>>())
+        };
+        let is_alike = self.side(0).is_some_and(|last| others(last) == others(side));
+        self.home.filter(|_| is_alike)
     }
 
     /// The declared parameters.
@@ -149,6 +164,12 @@ impl Session {
     /// Number of the sides.
     pub fn side_count(&self) -> usize {
         self.setup.as_ref().map_or(1, |setup| setup.sides.len().max(1))
+    }
+
+    /// Width and height of a side's picture in pixels.
+    pub fn picture_size(&self, side: usize) -> Option<egui::Vec2> {
+        let picture = self.frame.as_ref()?.sides.get(side)?.picture.as_ref()?;
+        Some(egui::vec2(picture.width as f32, picture.height as f32))
     }
 
     /// Number of the frame that is shown.

@@ -5,7 +5,9 @@ use egui::{ComboBox, DragValue, Rect, Sense, TextureHandle, TextureOptions, Ui};
 use super::false_colour::{Channel, Drawing, Ramp, draw, linear_depth, number, texel};
 use super::interface::Interface;
 use super::picture_view::{PictureView, navigate, paint, texel_at};
+use super::pictures::small_size;
 use super::protocol::{Statistics, TargetChoice, TargetInfo, TargetShape, TargetValues, ValueKind};
+use super::reduction::reduced;
 use super::table_view;
 
 /// View of the target.
@@ -21,8 +23,8 @@ pub struct TargetView {
     is_linear_depth: bool,
     is_logarithmic: bool,
     texture: Option<TextureHandle>,
-    /// Contents of the texture: the frame and the drawing.
-    drawn: Option<(u64, TargetChoice, Drawing, bool)>,
+    /// Contents of the texture: the frame, the drawing, and its pixels on the screen where they are fewer than its own.
+    drawn: Option<(u64, TargetChoice, Drawing, Option<[usize; 2]>)>,
 }
 
 impl TargetView {
@@ -81,11 +83,18 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
     let size = egui::vec2(values.width as f32, values.height as f32);
     navigate(&mut view.view, ui, &response, size, false);
     let rect = view.view.place(response.rect, size, pixels_per_point);
-    let is_small = view.view.scale(response.rect.size() * pixels_per_point, size) < 1.0;
-    let state = (serial, choice.clone(), drawing, is_small);
+    // The mean of two labels is a third.
+    let is_of_labels = drawing.ramp == Ramp::Labels && drawing.channel != Channel::Colour;
+    let shown = small_size(rect.size(), pixels_per_point, size).filter(|_| !is_of_labels);
+    let state = (serial, choice.clone(), drawing, shown);
     if view.drawn.as_ref() != Some(&state) {
-        let options = if is_small { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
+        let options = TextureOptions::NEAREST;
         if let Some(image) = draw(values, &drawing, info.is_srgb) {
+            let small = shown.and_then(|shown| {
+                let pixels = reduced(bytemuck::cast_slice(&image.pixels), image.size, shown)?;
+                Some(egui::ColorImage::new(shown, pixels))
+            });
+            let image = small.unwrap_or(image);
             match &mut view.texture {
                 Some(texture) => texture.set(image, options),
                 None => view.texture = Some(ui.ctx().load_texture("target", image, options)),

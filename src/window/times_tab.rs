@@ -11,6 +11,9 @@ use super::session::Point;
 /// Time that the plots show.
 const SPAN: Duration = Duration::from_secs(180);
 
+/// Height of the words above and below the lines, points.
+const CAPTION: f32 = 12.0;
+
 /// The plots.
 pub fn show(ui: &mut Ui, face: &mut Interface) {
     ui.horizontal(|ui| {
@@ -59,9 +62,12 @@ fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], (since, now): (
     if most <= 0.0 {
         return;
     }
+    // Between the legend and the words on time.
+    let (top, bottom) = (rect.top() + CAPTION, (rect.bottom() - CAPTION).max(rect.top() + CAPTION + 1.0));
+    painter.hline(rect.x_range(), bottom, Stroke::new(1.0, ui.visuals().weak_text_color().gamma_multiply(0.5)));
     let place = |point: &Point, value: f64| {
         let x = rect.right() - age(point).as_secs_f32() / SPAN.as_secs_f32() * rect.width();
-        Pos2::new(x, rect.bottom() - (value / most) as f32 * (rect.height() - 14.0))
+        Pos2::new(x, bottom - (value / most) as f32 * (bottom - top))
     };
     for index in 0..names.len() {
         let line: Vec<Pos2> =
@@ -77,6 +83,14 @@ fn plot(ui: &mut Ui, points: &VecDeque<Point>, names: &[String], (since, now): (
     let font = egui::TextStyle::Small.resolve(ui.style());
     let text = ui.visuals().text_color();
     painter.text(rect.left_top(), egui::Align2::LEFT_TOP, format!("{most:.2} ms"), font.clone(), text);
+    let weak = ui.visuals().weak_text_color();
+    let ends = [
+        (rect.left_bottom(), egui::Align2::LEFT_BOTTOM, "0 ms, 3 min ago"),
+        (rect.right_bottom(), egui::Align2::RIGHT_BOTTOM, "now"),
+    ];
+    for (at, align, words) in ends {
+        painter.text(at, align, words, font.clone(), weak);
+    }
     legend(&painter, rect, names, font, ui.visuals().dark_mode);
     if let (Some(pointer), false) = (response.hover_pos(), seen.is_empty()) {
         let near = seen.iter().min_by(|a, b| {

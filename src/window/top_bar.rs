@@ -1,5 +1,7 @@
 //! The bar at the top: paper, variants, preset, the clock; and the line at the bottom: the pointer, times, progress.
 
+use std::collections::VecDeque;
+
 use egui::{ComboBox, ProgressBar, RichText, TextEdit, Ui};
 
 use super::compare;
@@ -59,17 +61,17 @@ fn show_paper(ui: &mut Ui, face: &mut Interface) {
 
 /// Variant and compiler of each side.
 fn show_sides(ui: &mut Ui, face: &mut Interface) {
-    let Some(variants) = face.session.ready.as_ref().map(|ready| ready.variants.clone()) else { return };
+    let Some(ready) = face.session.ready.clone() else { return };
+    let (variants, presets) = (&ready.variants, &ready.presets);
     let sides: Vec<SideChoice> = (0..face.session.side_count())
         .filter_map(|side| face.session.side(side).map(|side| side.choice.clone()))
         .collect();
-    let presets = face.session.ready.as_ref().map(|ready| ready.presets.clone()).unwrap_or_default();
     let mut wanted = sides.clone();
     for (index, side) in wanted.iter_mut().enumerate() {
         let letter = ["A", "B"][index.min(1)];
         let name = side.variant.clone().unwrap_or_default();
         let combo = ComboBox::from_id_salt(("variant", index)).selected_text(&name).show_ui(ui, |ui| {
-            for variant in &variants {
+            for variant in variants {
                 if ui.selectable_label(*variant == name, variant).clicked() {
                     side.variant = Some(variant.clone());
                 }
@@ -83,7 +85,7 @@ fn show_sides(ui: &mut Ui, face: &mut Interface) {
             }
             if sides.len() > 1 && !presets.is_empty() {
                 ui.separator();
-                for preset in &presets {
+                for preset in presets {
                     let is_own = side.preset.as_ref() == Some(&preset.name);
                     if ui.selectable_label(is_own, &preset.name).on_hover_text(&preset.help).clicked() {
                         side.preset = (!is_own).then(|| preset.name.clone());
@@ -125,10 +127,8 @@ pub fn toggle_comparison(face: &mut Interface) {
 }
 
 fn show_presets(ui: &mut Ui, face: &mut Interface) {
-    let presets = face.session.ready.as_ref().map(|ready| ready.presets.clone()).unwrap_or_default();
-    if presets.is_empty() {
-        return;
-    }
+    let Some(ready) = face.session.ready.clone().filter(|ready| !ready.presets.is_empty()) else { return };
+    let presets = &ready.presets;
     let current = face.session.setup.as_ref().and_then(|setup| setup.preset.clone());
     let mut chosen = None;
     let text = current.clone().unwrap_or_else(|| "no preset".to_owned());
@@ -136,7 +136,7 @@ fn show_presets(ui: &mut Ui, face: &mut Interface) {
         if ui.selectable_label(current.is_none(), "no preset").clicked() {
             chosen = Some(None);
         }
-        for preset in &presets {
+        for preset in presets {
             let is_current = current.as_ref() == Some(&preset.name);
             if ui.selectable_label(is_current, &preset.name).on_hover_text(&preset.help).clicked() {
                 chosen = Some(Some(preset.name.clone()));
@@ -179,7 +179,7 @@ fn show_clock(ui: &mut Ui, face: &mut Interface) {
     }
     let known = face.session.frame.as_ref().map_or(1.0, |frame| frame.speed);
     let mut speed = face.sent.speed().unwrap_or(known);
-    let drag = egui::DragValue::new(&mut speed).range(0.01..=1000.0).speed(0.05).prefix("x ").max_decimals(2);
+    let drag = egui::DragValue::new(&mut speed).range(0.01..=1000.0).speed(0.05).prefix("speed x ").max_decimals(2);
     let drag = ui.add(drag).on_hover_text("Frames that the clock goes on by from picture to picture");
     drag.widget_info(|| egui::WidgetInfo::slider(true, speed, "speed"));
     if drag.changed() {
@@ -189,11 +189,11 @@ fn show_clock(ui: &mut Ui, face: &mut Interface) {
 
 fn show_theme(ui: &mut Ui, face: &mut Interface) {
     let name = match face.layout.theme {
-        Theme::System => "System",
-        Theme::Light => "Light",
-        Theme::Dark => "Dark",
+        Theme::System => "Theme: display's",
+        Theme::Light => "Theme: light",
+        Theme::Dark => "Theme: dark",
     };
-    if ui.button(name).on_hover_text("Light or dark (L)").clicked() {
+    if ui.button(name).on_hover_text("Light, dark, as the display (L)").clicked() {
         keys::next_theme(ui.ctx(), face);
     }
 }
@@ -231,13 +231,7 @@ pub fn show_status(ui: &mut Ui, face: &mut Interface) {
                 let times: Vec<String> = frame.sides.iter().map(|side| format!("{:.1} ms", side.frame_ms)).collect();
                 ui.label(format!("frame {} in {}", frame.number, times.join(" | ")));
             }
-            let slowest = face.interface_ms.iter().copied().fold(0.0, f32::max);
-            if let Some(last) = face.interface_ms.back() {
-                ui.weak(format!("window {last:.1} ms")).on_hover_text(format!(
-                    "This window's own drawing, largest of the last {}: {slowest:.1} ms",
-                    face.interface_ms.len()
-                ));
-            }
+            show_own_times(ui, face);
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let line = if face.pointed.is_empty() {
                     face.note.clone().unwrap_or_default()
@@ -248,6 +242,25 @@ pub fn show_status(ui: &mut Ui, face: &mut Interface) {
             });
         });
     });
+}
+
+/// What the window's own drawing takes.
+fn show_own_times(ui: &mut Ui, face: &Interface) {
+    let Some(last) = face.interface_ms.back() else { return };
+    let of_pictures = face.pictures_ms.back().map(|last| format!(" / {last:.1}")).unwrap_or_default();
+    let largest = |times: &VecDeque<f32>| times.iter().copied().fold(0.0, f32::max);
+    let mut lines = vec![format!(
+        "This window's own drawing, with its panels laid out: largest of the last {} {:.1} ms",
+        face.interface_ms.len(),
+        largest(&face.interface_ms)
+    )];
+    if !of_pictures.is_empty() {
+        let (count, most) = (face.pictures_ms.len(), largest(&face.pictures_ms));
+        lines.push(format!(
+            "A new picture alone, of which several come between: largest of the last {count} {most:.1} ms"
+        ));
+    }
+    ui.weak(format!("window {last:.1}{of_pictures} ms")).on_hover_text(lines.join("\n"));
 }
 
 /// The next way to show two sides.

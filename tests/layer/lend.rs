@@ -1,5 +1,5 @@
 //! Extensions that the driver lacks and the layer plays: counters of the device, what its compiler made of pipelines, ends
-//! of frames. What their rules forbid is written down, and told in the report.
+//! of frames, fences of presents. What their rules forbid is written down, and told in the report.
 
 mod pipelines;
 mod queries;
@@ -12,7 +12,7 @@ use std::mem::transmute_copy;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
-use ash::{khr, vk};
+use ash::{ext, khr, vk};
 
 use crate::calls;
 use crate::mask::change_in_chain;
@@ -20,13 +20,14 @@ use crate::mask::change_in_chain;
 const FRAME_BOUNDARY: &CStr = c"VK_EXT_frame_boundary";
 
 /// The word that lends an extension, and the extension.
-const LENT: [(&str, &CStr); 3] = [
+const LENT: [(&str, &CStr); 4] = [
+    ("present-fences", ext::swapchain_maintenance1::NAME),
     ("performance-query", khr::performance_query::NAME),
     ("executable-properties", khr::pipeline_executable_properties::NAME),
     ("frame-boundary", FRAME_BOUNDARY),
 ];
 
-fn lends(word: &str) -> bool {
+pub fn lends(word: &str) -> bool {
     env::var("FUMAROLE_LAYER_LENDS").is_ok_and(|list| list.split(',').any(|lent| lent == word))
 }
 
@@ -181,8 +182,11 @@ unsafe fn next<F: Copy>(name: &str) -> F {
 /// The hook before a command, if it has one; the whole command for one that the driver lacks.
 pub fn hook(name: &str) -> Option<*const c_void> {
     lent().next()?;
+    // What presents is in `presents.rs`.
+    let is_presents_alone = lent().all(|name| name == ext::swapchain_maintenance1::NAME);
     Some(match name {
         "vkEnumerateDeviceExtensionProperties" => extensions as *const c_void,
+        _ if is_presents_alone => return None,
         "vkCreateQueryPool" => queries::create_pool as *const c_void,
         "vkDestroyQueryPool" => queries::destroy_pool as *const c_void,
         "vkResetQueryPool" => queries::reset_pool as *const c_void,
@@ -292,7 +296,8 @@ unsafe extern "system" fn extensions(
     }
 }
 
-const FEATURES: [vk::StructureType; 3] = [
+const FEATURES: [vk::StructureType; 4] = [
+    vk::StructureType::PHYSICAL_DEVICE_SWAPCHAIN_MAINTENANCE_1_FEATURES_EXT,
     vk::StructureType::PHYSICAL_DEVICE_PERFORMANCE_QUERY_FEATURES_KHR,
     vk::StructureType::PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR,
     vk::StructureType::PHYSICAL_DEVICE_FRAME_BOUNDARY_FEATURES_EXT,
@@ -339,6 +344,12 @@ pub unsafe fn features(chain: *mut c_void) {
     use vk::StructureType as Type;
     // SAFETY: the types are those of their structures.
     unsafe {
+        if lends("present-fences") {
+            let change = |found: &mut vk::PhysicalDeviceSwapchainMaintenance1FeaturesEXT<'_>| {
+                found.swapchain_maintenance1 = vk::TRUE;
+            };
+            change_in_chain(chain, Type::PHYSICAL_DEVICE_SWAPCHAIN_MAINTENANCE_1_FEATURES_EXT, change);
+        }
         if lends("performance-query") {
             let change = |found: &mut vk::PhysicalDevicePerformanceQueryFeaturesKHR<'_>| {
                 found.performance_counter_query_pools = vk::TRUE;

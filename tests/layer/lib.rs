@@ -4,8 +4,10 @@
 //! | variable | meaning |
 //! | --- | --- |
 //! | `FUMAROLE_LAYER_FAIL` | `vkCreateFence@3:host`, `:device` or `:lost`: the third call of that name fails so |
+//! | `FUMAROLE_LAYER_ONLY` | `worker`: calls fail in programs with this argument alone |
+//! | `FUMAROLE_LAYER_DISCRETE` | set: the device says that it is a GPU of its own |
 //! | `FUMAROLE_LAYER_LACKS` | features by the names of `fumarole devices`, comma-separated |
-//! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary` |
+//! | `FUMAROLE_LAYER_LENDS` | extensions that the layer plays: `performance-query`, `executable-properties`, `frame-boundary`, `present-fences` |
 //! | `FUMAROLE_LAYER_LOCKED` | set: another process holds the profiling lock |
 //! | `FUMAROLE_LAYER_LIMITS` | `max-push-constants-size=64,...`: the device's limits, where they are higher |
 //! | `FUMAROLE_LAYER_PRESENTS` | `acquire@3=out-of-date,present@5=surface-lost,...`: ends of calls to a window's swapchain |

@@ -80,6 +80,13 @@ fn mask_features(core: &mut vk::PhysicalDeviceFeatures) {
     clear("full-draw-index", &mut core.full_draw_index_uint32);
 }
 
+fn mask_properties(properties: &mut vk::PhysicalDeviceProperties) {
+    mask_limits(&mut properties.limits);
+    if env::var_os("FUMAROLE_LAYER_DISCRETE").is_some() {
+        properties.device_type = vk::PhysicalDeviceType::DISCRETE_GPU;
+    }
+}
+
 fn mask_limits(limits: &mut vk::PhysicalDeviceLimits) {
     lower("max-image-dimension-2d", &mut limits.max_image_dimension2_d);
     lower("max-image-dimension-3d", &mut limits.max_image_dimension3_d);
@@ -205,7 +212,7 @@ unsafe extern "system" fn properties(physical: vk::PhysicalDevice, found: *mut v
     // SAFETY: as above.
     unsafe {
         next::<vk::PFN_vkGetPhysicalDeviceProperties>(2)(physical, found);
-        mask_limits(&mut (*found).limits);
+        mask_properties(&mut *found);
     }
 }
 
@@ -213,7 +220,7 @@ unsafe extern "system" fn properties2(physical: vk::PhysicalDevice, found: *mut 
     // SAFETY: as above.
     unsafe {
         next::<vk::PFN_vkGetPhysicalDeviceProperties2>(3)(physical, found.cast());
-        mask_limits(&mut (*found).properties.limits);
+        mask_properties(&mut (*found).properties);
         change_in_chain(
             (*found).p_next,
             vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES,

@@ -1,15 +1,20 @@
-//! Presenting to a window that changes: acquisitions and presents that end as a display may let them end.
+//! Presenting to a window that changes: acquisitions and presents that end as a display may let them end. And fences of
+//! presents, for a driver that has none: each is signalled when all that was handed in before is done.
 
 use std::env;
 use std::ffi::{CStr, CString, c_void};
 use std::mem::transmute;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use ash::vk;
 
+use crate::lend::lends;
+
 const ACQUIRE: &str = "vkAcquireNextImageKHR";
 const PRESENT: &str = "vkQueuePresentKHR";
-const NAMES: [&str; 2] = [ACQUIRE, PRESENT];
+/// Not hooked: it signals the fences.
+const SUBMIT: &str = "vkQueueSubmit";
+const NAMES: [&str; 3] = [ACQUIRE, PRESENT, SUBMIT];
 
 static NEXT: [AtomicUsize; NAMES.len()] = [const { AtomicUsize::new(0) }; NAMES.len()];
 static COUNTS: [AtomicUsize; NAMES.len()] = [const { AtomicUsize::new(0) }; NAMES.len()];
@@ -25,7 +30,9 @@ pub fn resolve(next: &dyn Fn(&CStr) -> vk::PFN_vkVoidFunction) {
 
 /// The hook before a command, if it has one.
 pub fn hook(name: &str) -> Option<*const c_void> {
-    env::var_os("FUMAROLE_LAYER_PRESENTS")?;
+    if env::var_os("FUMAROLE_LAYER_PRESENTS").is_none() && !lends("present-fences") {
+        return None;
+    }
     match name {
         ACQUIRE => Some(acquire as *const c_void),
         PRESENT => Some(present as *const c_void),
@@ -73,8 +80,38 @@ unsafe extern "system" fn acquire(
 
 unsafe extern "system" fn present(queue: vk::Queue, info: *const vk::PresentInfoKHR<'_>) -> vk::Result {
     let next = NEXT[1].load(Ordering::Acquire);
-    // A present that fails so has waited for its semaphores all the same.
-    // SAFETY: see above.
-    let result = unsafe { transmute::<usize, vk::PFN_vkQueuePresentKHR>(next)(queue, info) };
+    // SAFETY: see above; the structures of a chain are of the types that they say, and live for the call.
+    let result = unsafe {
+        let mut known = *info;
+        let fences = if lends("present-fences") { take_fences(&mut known) } else { &[] };
+        // A present that fails so has waited for its semaphores all the same.
+        let result = transmute::<usize, vk::PFN_vkQueuePresentKHR>(next)(queue, &known);
+        for fence in fences {
+            let submit = transmute::<usize, vk::PFN_vkQueueSubmit>(NEXT[2].load(Ordering::Acquire));
+            let signalled = submit(queue, 0, std::ptr::null(), *fence);
+            if !SIGNALLED.swap(true, Ordering::Relaxed) {
+                eprintln!("layer: fences of presents are signalled: {signalled:?}");
+            }
+        }
+        result
+    };
     ending(1).filter(|_| result == vk::Result::SUCCESS).unwrap_or(result)
+}
+
+static SIGNALLED: AtomicBool = AtomicBool::new(false);
+
+/// Takes the fences out of the chain of a present, where they come first.
+///
+/// # Safety
+/// The chain is Vulkan's.
+unsafe fn take_fences<'a>(info: &mut vk::PresentInfoKHR<'a>) -> &'a [vk::Fence] {
+    // SAFETY: the caller's.
+    unsafe {
+        let Some(first) = info.p_next.cast::<vk::SwapchainPresentFenceInfoEXT<'a>>().as_ref() else { return &[] };
+        if first.s_type != vk::StructureType::SWAPCHAIN_PRESENT_FENCE_INFO_EXT {
+            return &[];
+        }
+        info.p_next = first.p_next;
+        std::slice::from_raw_parts(first.p_fences, first.swapchain_count as usize)
+    }
 }

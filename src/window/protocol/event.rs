@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{DeviceLimits, Ended, Frame, Memory, Progress, SideChoice, SideTimes};
+use super::{DeviceLimits, Ended, Frame, MeasureChoice, Memory, Progress, SideChoice, SideTimes};
 
 /// An event from the worker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,6 +18,8 @@ pub enum Event {
     Frame(Box<Frame>),
     /// Times and counters, as of the last frames recorded for them.
     Times(Vec<SideTimes>),
+    /// Measurement from now on, where that is not what was asked for: what was too long, or failed, is given up.
+    Measuring(MeasureChoice),
     /// Progress of something long.
     Progress(Progress),
     /// A request could not be done; what was shown last stays.

@@ -57,7 +57,8 @@ pub struct Frame {
 pub struct SideFrame {
     /// `None` where no pass so far has written it.
     pub picture: Option<Picture>,
-    /// Milliseconds from the start of recording to the last fence, without stamps.
+    /// Milliseconds from the start of recording to the last fence, without stamps; on a GPU with what lies between its passes,
+    /// which are submitted one by one, unless times or counters are wanted.
     pub frame_ms: f64,
     /// Names of the targets that passes of this frame have written.
     pub written: Vec<String>,

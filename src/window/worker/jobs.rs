@@ -11,9 +11,7 @@ use crate::gpu::physical::DeviceType;
 use crate::gpu::{Mode, RenderDoc};
 use crate::measure::study::Study;
 use crate::measure::{Error, limits};
-use crate::window::protocol::{
-    DeviceLimits, Event, Keep, MeasureChoice, Memory, Progress, Request, ResourceMemory, Work,
-};
+use crate::window::protocol::{DeviceLimits, Event, Keep, Memory, Progress, Request, ResourceMemory, Work};
 
 impl<S: Study> State<S> {
     /// Does what a request wants done beside frames.
@@ -47,6 +45,7 @@ impl<S: Study> State<S> {
             Request::Keep(keep) => Event::Kept(self.keep(keep)?),
             Request::Capture => {
                 let renderdoc = RenderDoc::attach()?;
+                self.share_device(false);
                 let (number, count) = (self.clock.number(), self.sides.len());
                 let file = renderdoc.capture(None, || {
                     let draw = |index| self.draw(index, number, None, (Mode::Plain, true)).map(drop);
@@ -74,11 +73,12 @@ impl<S: Study> State<S> {
             return Ok(());
         }
         let number = self.clock.number();
-        // What was made anew has shown nothing yet.
-        self.needs_frame = self.is_new;
+        // What was made anew has shown nothing yet. Else a target, or whatever was asked for on the way, is shown of the frame
+        // that stays, unless it was on the way there that it was stopped.
+        self.needs_frame = self.is_new || (self.wants_more && number != self.shown);
         self.clock.at = if self.is_new { 0.0 } else { f64::from(self.shown) };
         self.clock.is_playing = false;
-        self.wanted.measure = MeasureChoice::default();
+        self.stop_measuring();
         let problem = format!("stopped on the way to frame {number}; frame {} stays", self.clock.number());
         self.fail(id, Error::Input(problem))
     }

@@ -17,6 +17,7 @@ mod shaders;
 mod side;
 mod state;
 mod times;
+mod wanted;
 
 use std::io;
 use std::path::PathBuf;

@@ -10,46 +10,19 @@ use super::outbox::{Exchange, Outbox};
 use super::shaders::{Libraries, Shaders};
 use super::side::Side;
 use super::times::Times;
+use super::wanted::{Clock, Wanted};
 use super::{AHEAD, due, is_fatal, keep};
+use crate::gpu::physical::DeviceType;
 use crate::gpu::{FrameSample, Mode};
 use crate::measure::machine::{Machine, MachineOptions};
 use crate::measure::parameter::Given;
 use crate::measure::study::Study;
 use crate::measure::{Error, Paper, Variant};
 use crate::report::record::Limits;
-use crate::window::protocol::{
-    Built, Event, MeasureChoice, Numbered, Progress, Request, Setup, TargetChoice, ThumbnailChoice, Work,
-};
+use crate::window::protocol::{Built, Event, MeasureChoice, Numbered, Progress, Request, Setup, Work};
 
 /// Time in which the files of one saving change.
 const SAVING: Duration = Duration::from_millis(60);
-
-/// Contents that the window wants to see.
-#[derive(Default)]
-pub(super) struct Wanted {
-    pub(super) after: Option<u32>,
-    pub(super) target: Option<TargetChoice>,
-    pub(super) thumbnails: Option<ThumbnailChoice>,
-    pub(super) has_difference: bool,
-    pub(super) measure: MeasureChoice,
-}
-
-/// The clock.
-pub(super) struct Clock {
-    /// Number of the frame, with the part of a frame by which a slow clock is past it.
-    pub(super) at: f64,
-    pub(super) speed: f64,
-    pub(super) is_playing: bool,
-    /// When it last went on.
-    pub(super) moved: Option<Instant>,
-}
-
-impl Clock {
-    pub(super) fn number(&self) -> u32 {
-        // Saturates at both ends.
-        self.at as u32
-    }
-}
 
 /// The worker.
 pub struct State<S: Study> {
@@ -80,6 +53,8 @@ pub struct State<S: Study> {
     pub(super) shown: u32,
     /// A state is on its way to the frame that is wanted.
     pub(super) is_replaying: bool,
+    /// What is shown of a frame has changed since the last was told.
+    pub(super) wants_more: bool,
     pub(super) jobs: Vec<Numbered>,
     pub(super) warned: Vec<String>,
     pub(super) frame_ms: Vec<f64>,
@@ -119,6 +94,7 @@ impl<S: Study> State<S> {
             is_new: false,
             shown: 0,
             is_replaying: false,
+            wants_more: false,
             jobs: Vec::new(),
             warned: Vec::new(),
             frame_ms: Vec::new(),
@@ -218,10 +194,18 @@ impl<S: Study> State<S> {
         if let Some((index, mode)) = self.measured().filter(|_| !self.needs_frame)
             && let Err(error) = self.measure(index, mode)
         {
-            self.wanted.measure = MeasureChoice::default();
+            self.stop_measuring();
             self.fail(self.heeds, error)?;
         }
         Ok(())
+    }
+
+    /// Gives up times and counters, and tells of it.
+    pub(super) fn stop_measuring(&mut self) {
+        let MeasureChoice { times, counters } = std::mem::take(&mut self.wanted.measure);
+        if times > 0 || counters {
+            self.outbox.tell(&Event::Measuring(self.wanted.measure));
+        }
     }
 
     pub(super) fn fail(&self, id: u64, error: Error) -> Result<(), Error> {
@@ -289,19 +273,19 @@ impl<S: Study> State<S> {
             }
             Request::After(passes) => {
                 self.wanted.after = *passes;
-                self.needs_frame = true;
+                (self.needs_frame, self.wants_more) = (true, true);
             }
             Request::Target(target) => {
                 self.wanted.target = target.clone();
-                self.needs_frame = true;
+                (self.needs_frame, self.wants_more) = (true, true);
             }
             Request::Thumbnails(thumbnails) => {
                 self.wanted.thumbnails = thumbnails.clone();
-                self.needs_frame = true;
+                (self.needs_frame, self.wants_more) = (true, true);
             }
             Request::Difference(has_difference) => {
                 self.wanted.has_difference = *has_difference;
-                self.needs_frame = true;
+                (self.needs_frame, self.wants_more) = (true, true);
             }
             Request::Measure(measure) => {
                 self.wanted.measure = MeasureChoice { times: measure.times.min(100), ..*measure };
@@ -404,9 +388,10 @@ impl<S: Study> State<S> {
     fn show(&mut self) -> Result<bool, Error> {
         let number = self.clock.number();
         let mut samples = Vec::new();
+        let measure = self.wanted.measure;
+        let is_measured = self.clock.is_playing && (measure.times > 0 || measure.counters);
+        self.share_device(!is_measured);
         for index in 0..self.sides.len() {
-            let measure = self.wanted.measure;
-            let is_measured = self.clock.is_playing && (measure.times > 0 || measure.counters);
             let mode = match &self.times[index] {
                 times if is_measured => times.following(measure.counters),
                 _ => Mode::Plain,
@@ -425,7 +410,7 @@ impl<S: Study> State<S> {
             self.outbox.tell(&Event::Built(Built { heeds: self.heeds, sides }));
         }
         self.serial += 1;
-        self.shown = number;
+        (self.shown, self.wants_more) = (number, false);
         let frame = self.frame(number, &samples)?;
         self.outbox.tell(&Event::Frame(Box::new(frame)));
         if self.clock.is_playing && (self.wanted.measure.times > 0 || self.wanted.measure.counters) {
@@ -469,6 +454,13 @@ impl<S: Study> State<S> {
         Ok(drawn)
     }
 
+    /// Has the window draw between two passes of a frame, on a device that does one thing after the other; a processor does
+    /// both at once. Frames that are timed are whole.
+    pub(super) fn share_device(&mut self, is_wanted: bool) {
+        let is_cpu = self.machine.device.physical().device_type == DeviceType::Cpu;
+        self.machine.recorder.submit_by_pass(is_wanted && !is_cpu);
+    }
+
     /// The side and the mode of the next frame that is recorded for times alone: while the clock stands.
     fn measured(&self) -> Option<(usize, Mode)> {
         let MeasureChoice { times, counters } = self.wanted.measure;
@@ -483,6 +475,7 @@ impl<S: Study> State<S> {
 
     fn measure(&mut self, index: usize, mode: Mode) -> Result<(), Error> {
         let number = self.clock.number();
+        self.share_device(false);
         let Some(sample) = self.draw(index, number, None, (mode, true))? else { return Ok(()) };
         self.times[index].take(mode, &sample, self.wanted.measure.times.max(1));
         self.tell_times();

@@ -41,10 +41,11 @@ fn a_lost_device_ends_its_series_and_the_record_says_so() {
         let ended = layer.before(program, false).env("FUMAROLE_LAYER_FAIL", failing).run().succeeded();
         (record(out.path()), layer.report(&ended))
     };
-    let (whole, report) = climb("0:host");
+    let (whole, report) = climb("");
     assert_eq!((kinds(&whole), steps(&whole).len()), (vec!["end"], 1));
     // The report is that of the last process, the step's; late in it frames are drawn.
-    let (lost, report) = climb(&format!("{}:lost", report.calls * 3 / 4));
+    let (_, submissions) = report.calls.iter().find(|(name, _)| name == "vkQueueSubmit2").unwrap();
+    let (lost, report) = climb(&format!("vkQueueSubmit2@{}:lost", submissions * 3 / 4));
     assert!(report.failed.is_some());
     assert_eq!((kinds(&lost), steps(&lost).len()), (vec!["device"], 0));
     let reason = lost["series"][0]["stop"]["reason"].as_str().unwrap();

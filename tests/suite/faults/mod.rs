@@ -5,6 +5,7 @@ mod files;
 pub mod lent;
 mod masks;
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -68,6 +69,21 @@ fn library() -> PathBuf {
     library
 }
 
+/// The layer's manifest, with more said of it.
+fn manifest(more: serde_json::Value) -> String {
+    let mut layer = serde_json::json!({
+        "name": LAYER,
+        "type": "GLOBAL",
+        "library_path": library(),
+        "api_version": "1.3.0",
+        "implementation_version": "1",
+        "description": "Failing calls and lesser devices for the tests of fumarole",
+    });
+    let more = more.as_object().cloned().unwrap_or_default();
+    layer.as_object_mut().unwrap().extend(more);
+    serde_json::json!({ "file_format_version": "1.2.0", "layer": layer }).to_string()
+}
+
 /// A folder with the layer's manifest, and its report; another with that of the Khronos layer. The loader (1.3.239) takes
 /// layers in the order in which it finds their manifests, whatever the order of their names: the folder that is searched
 /// first holds the layer that is next to the program.
@@ -79,16 +95,7 @@ pub struct Layer {
 impl Layer {
     pub fn new() -> Self {
         let folder = program::folder();
-        let layer = serde_json::json!({
-            "name": LAYER,
-            "type": "GLOBAL",
-            "library_path": library(),
-            "api_version": "1.3.0",
-            "implementation_version": "1",
-            "description": "Failing calls and lesser devices for the tests of fumarole",
-        });
-        let manifest = serde_json::json!({ "file_format_version": "1.2.0", "layer": layer });
-        file(&folder, "test_layer.json", manifest.to_string());
+        file(&folder, "test_layer.json", manifest(serde_json::json!({})));
         let above = program::folder();
         layer_manifest(&above, Path::new("libVkLayer_khronos_validation.so"));
         Layer { folder, above }
@@ -98,16 +105,50 @@ impl Layer {
         self.folder.path().join("report")
     }
 
+    /// Variables of a program with the layer next to the driver, `validated` with the Khronos layer above it.
+    pub fn environment(&self, validated: bool) -> Vec<(&'static str, OsString)> {
+        // Mesa's implicit layer makes calls of its own, whose failures it hides from the program.
+        let mut set = vec![("FUMAROLE_LAYER_REPORT", self.report_path().into()), ("NODEVICE_SELECT", "1".into())];
+        if validated {
+            let folders = std::env::join_paths([self.above.path(), self.folder.path()]).unwrap();
+            set.extend([
+                ("VK_LAYER_PATH", folders),
+                ("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}").into()),
+            ]);
+        } else {
+            set.extend([("VK_ADD_LAYER_PATH", self.folder.path().into()), ("VK_INSTANCE_LAYERS", LAYER.into())]);
+        }
+        set
+    }
+
+    /// Runs with the layer next to the program, among those that the loader takes unasked: their extensions of the instance
+    /// are the only ones of layers that it lists.
+    pub fn with_extensions(&self, program: Program, extensions: &[&str]) -> Program {
+        let of = |name: &&str| serde_json::json!({ "name": name, "spec_version": "1" });
+        let more = serde_json::json!({
+            "disable_environment": { "FUMAROLE_LAYER_IS_OFF": "1" },
+            "instance_extensions": extensions.iter().map(of).collect::<Vec<_>>(),
+        });
+        let folder = self.folder.path().join("vulkan/implicit_layer.d");
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("test_layer.json"), manifest(more)).unwrap();
+        let program = program.env("XDG_DATA_HOME", self.folder.path()).env("NODEVICE_SELECT", "1");
+        program.env("FUMAROLE_LAYER_REPORT", self.report_path())
+    }
+
     /// Runs with the layer next to the driver, `validated` with the Khronos layer above it.
     pub fn before(&self, program: Program, validated: bool) -> Program {
-        // Mesa's implicit layer makes calls of its own, whose failures it hides from the program.
-        let program = program.env("FUMAROLE_LAYER_REPORT", self.report_path()).env("NODEVICE_SELECT", "1");
-        if !validated {
-            return program.env("VK_INSTANCE_LAYERS", LAYER).env("VK_ADD_LAYER_PATH", self.folder.path());
-        }
-        let folders = std::env::join_paths([self.above.path(), self.folder.path()]).unwrap();
-        let program = program.env("VK_LAYER_PATH", folders).env("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}"));
-        program.args("--validate")
+        let program = self.environment(validated).into_iter().fold(program, |program, (name, value)| program.env(name, value));
+        if validated { program.args("--validate") } else { program }
+    }
+
+    /// The calls that were counted in a program that has ended.
+    ///
+    /// # Panics
+    /// When it ended without ending its instance.
+    pub fn calls(&self) -> usize {
+        let text = fs::read_to_string(self.report_path()).unwrap();
+        text.lines().find_map(|line| line.strip_prefix("calls ")?.parse().ok()).unwrap()
     }
 
     /// Runs on a device with the least limits, whatever the one of the tests has.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ash::vk;
 use fumarole::gpu::{
     Blend, Buffer, BufferDesc, DepthTest, Device, Image, ImageDesc, ImageView, Load, Location, Mode, Pass, PassKind,
-    Track,
+    Recorder, Track,
 };
 
 use super::fixtures::{
@@ -217,5 +217,48 @@ fn the_host_reads_in_the_middle_of_a_frame() {
             }
         }
         assert_eq!(values(device, &buffer), [44.0; 4]);
+    });
+}
+
+#[test]
+fn passes_that_are_submitted_one_by_one_draw_the_same() {
+    gpu_test(|device| {
+        let shaders = shaders(device);
+        let targets = ["a", "b"].map(|name| color_target(device, name, vk::Format::R32_SFLOAT, 4, 4));
+        let passes = [("first", 0), ("second", 1)]
+            .map(|(name, at)| paint_pass(&shaders, name, &targets[at], BLACK, Blend::Replace));
+        let mut recorder = Recorder::new(device).unwrap();
+        for (is_wanted, mode, submissions) in [
+            (true, Mode::Plain, [0, 1]),
+            (false, Mode::Plain, [0, 0]),
+            // What is timed is one submission.
+            (true, Mode::Timestamped, [0, 0]),
+        ] {
+            recorder.submit_by_pass(is_wanted);
+            let sample = recorder.run(mode, |frame| {
+                paint(frame, &passes[0], 1.0)?;
+                paint(frame, &passes[0], 2.0)?;
+                paint(frame, &passes[1], 3.0)?;
+                paint(frame, &passes[0], 4.0)
+            });
+            let sample = sample.unwrap();
+            let listed: Vec<_> =
+                sample.passes.iter().map(|pass| (pass.info.name, pass.calls, pass.submission)).collect();
+            assert_eq!(listed, [("first", 3, submissions[0]), ("second", 1, submissions[1])]);
+            let waits = sample.spans.iter().filter(|span| span.track == Track::Wait).count();
+            assert_eq!(waits, if submissions[1] > 0 { 3 } else { 1 }, "{mode:?}");
+            assert!(sample.passes.iter().all(|pass| pass.wait_ms.is_none()), "the method itself waits for nothing");
+            let found: Vec<f32> = targets.iter().map(|target| texels::<f32>(device, target)[5]).collect();
+            assert_eq!(found, [4.0, 3.0]);
+        }
+        // A frame that ends before its last pass, as well.
+        recorder.submit_by_pass(true);
+        let record = |frame: &mut fumarole::gpu::Frame<'_>| {
+            paint(frame, &passes[0], 5.0)?;
+            paint(frame, &passes[1], 6.0)
+        };
+        assert_eq!(recorder.run_first(Mode::Plain, 1, record).unwrap().passes.len(), 1);
+        let found: Vec<f32> = targets.iter().map(|target| texels::<f32>(device, target)[5]).collect();
+        assert_eq!(found, [5.0, 3.0]);
     });
 }

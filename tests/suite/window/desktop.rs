@@ -2,6 +2,7 @@
 //! All runs are under validation with synchronization validation in both processes; a window that leaves a Vulkan object
 //! alive, or hears a message, does not end with 0.
 
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -9,7 +10,7 @@ use fumarole::image::{Rgba8, read_png};
 
 use super::display::{Display, Window, wait};
 use super::scene::{PAPERS, small};
-use crate::cli::program::{device, fumarole};
+use crate::cli::program::{Program, device, fumarole};
 use crate::common::beside_others;
 
 /// X key symbols.
@@ -55,103 +56,133 @@ fn is_drawn(screen: &Rgba8, [left, top, right, bottom]: [i16; 4]) -> bool {
     (top..bottom).any(|y| (left..right).any(|x| pixel(screen, x as u32, y as u32) != corner))
 }
 
-#[test]
-fn every_paper_opens_and_its_picture_is_that_of_render() {
+/// A driver by its manifest, or the device of the tests.
+type Driver<'a> = Option<&'a Path>;
+
+/// On the driver.
+fn on(driver: Driver<'_>, program: Program) -> Program {
+    match driver {
+        Some(manifest) => program.env("VK_DRIVER_FILES", manifest),
+        None => program.on_test_device(),
+    }
+}
+
+/// Window and worker on a second driver beside the one that the tests run on.
+fn on_second_driver(test: impl Fn(Driver<'_>)) {
     beside_others(|| {
-        let display = Display::start();
-        for (paper, scene) in PAPERS {
-            let mut window = Window::open(&display, &format!("{paper} {scene}"));
-            window.wait_for_frame(0);
-            let passes = fumarole(&format!("{paper} passes --json {scene}")).on_test_device().run().succeeded().json();
-            let names = passes[0]["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap());
-            let screen = display.screenshot();
-            for name in names {
-                assert!(is_drawn(&screen, window.rectangle(name)), "{paper}: {name} is not on the screen");
-            }
-            let file = window.folder.path().join("rendered.png");
-            let render = fumarole(&format!("{paper} render {scene}")).arg("--device").arg(device());
-            render.arg("--image").arg(&file).run().succeeded();
-            let rendered = read_png(&file).unwrap();
-            let area = window.rectangle("picture");
-            wait(&format!("{paper}: the picture on the screen"), || {
-                shows(&display.screenshot(), &rendered, area).then_some(())
-            });
-            window.close().succeeded();
-        }
+        let folder = tempfile::tempdir().unwrap();
+        test(Some(&crate::drivers::driver_manifest(&folder)));
     });
 }
 
 #[test]
-fn events_of_a_user_do_what_they_say() {
-    beside_others(|| {
-        let display = Display::start();
-        let mut window = Window::open(&display, &format!("caustics {}", small("caustics")));
+fn every_paper_opens_and_its_picture_is_that_of_render() {
+    beside_others(|| every_paper_opens(None));
+}
+
+#[test]
+fn every_paper_opens_on_a_second_driver() {
+    on_second_driver(every_paper_opens);
+}
+
+fn every_paper_opens(driver: Driver<'_>) {
+    let display = Display::start();
+    for (paper, scene) in PAPERS {
+        let mut window = Window::open_with(&display, &format!("{paper} {scene}"), |program| on(driver, program));
         window.wait_for_frame(0);
-        // A button, a key, a field.
-        window.click(">");
-        window.wait_for_frame(1);
-        display.key('.' as u32);
-        window.wait_for_frame(2);
-        window.enter("frame");
-        display.keys(&[CONTROL, 'a' as u32]);
-        display.write("5");
-        display.key(RETURN);
-        window.wait_for_frame(5);
-        // A pass and its target, with room for them.
-        display.key(F4);
-        window.wait("no drawer", |window| (!window.has("Hold")).then_some(()));
-        window.click("caustics-map");
-        window.click("thumbnail caustics-map");
-        window.wait("the target", |window| window.shows("caustics-map").then_some(()));
-        // Its colours: a ramp with hues, and one without.
-        let hues = |window: &Window<'_>| {
-            let [left, top, right, bottom] = window.try_image("caustics-map")?;
-            let screen = display.screenshot();
-            let rows =
-                (top.max(0)..bottom.min(screen.height() as i16)).flat_map(|y| (left..right).map(move |x| (x, y)));
-            Some(
-                rows.filter(|&(x, y)| pixel(&screen, x as u32, y as u32).windows(2).any(|two| two[0] != two[1]))
-                    .count(),
-            )
-        };
-        window.wait("a target with hues", |window| hues(window).filter(|&count| count > 500));
-        window.click("ramp");
-        window.click("grey");
-        window.wait("a target in grey", |window| hues(window).filter(|&count| count < 50));
-        display.key('t' as u32);
-        window.wait("the picture", |window| window.shows("picture").then_some(()));
-        // The camera.
-        let before = window.wait("the camera", |window| camera(window));
-        let middle = window.middle("picture");
-        window.drag(1, middle, (middle.0 + 60, middle.1 + 10));
-        let orbited = window.wait("another camera", |window| camera(window).filter(|camera| *camera != before));
-        display.button(WHEEL_UP);
-        window.wait("a nearer camera", |window| camera(window).filter(|camera| *camera != orbited));
-        window.enter("camera");
-        display.keys(&[CONTROL, 'a' as u32]);
-        display.write("0,3,6,0,0,0");
-        display.key(RETURN);
-        window.wait("the camera that was typed", |window| camera(window).filter(|camera| camera == "0,3,6,0,0,0"));
-        // Across the view, and along it.
-        window.drag(3, middle, (middle.0 + 40, middle.1 - 30));
-        let panned = window.wait("a camera to one side", |window| {
-            let now = eye_and_offset(window).filter(|(eye, _)| eye[0] != 0.0)?;
-            // Not while it still moves.
-            thread::sleep(Duration::from_millis(300));
-            (eye_and_offset(window) == Some(now)).then_some(now)
+        let passes = on(driver, fumarole(&format!("{paper} passes --json {scene}"))).run().succeeded().json();
+        let names = passes[0]["passes"].as_array().unwrap().iter().map(|pass| pass["name"].as_str().unwrap());
+        let screen = display.screenshot();
+        for name in names {
+            assert!(is_drawn(&screen, window.rectangle(name)), "{paper}: {name} is not on the screen");
+        }
+        let file = window.folder.path().join("rendered.png");
+        let render = on(driver, fumarole(&format!("{paper} render {scene}")));
+        render.arg("--image").arg(&file).run().succeeded();
+        let rendered = read_png(&file).unwrap();
+        let area = window.rectangle("picture");
+        wait(&format!("{paper}: the picture on the screen"), || {
+            shows(&display.screenshot(), &rendered, area).then_some(())
         });
-        let is_near = |a: f64, b: f64| (a - b).abs() < 1e-3;
-        let (eye, offset) = panned;
-        assert!(is_near(offset[0], 0.0) && is_near(offset[1], offset[2] / 2.0), "{panned:?} looks another way");
-        // Where it looks has gone across the view.
-        let target: [f64; 3] = std::array::from_fn(|axis| eye[axis] - offset[axis]);
-        assert!(is_near(target[1] + 2.0 * target[2], 0.0), "{panned:?} is not across the view");
-        display.hold('w' as u32, Duration::from_millis(300));
-        let flown = window.wait("a camera ahead", |window| eye_and_offset(window).filter(|now| *now != panned));
-        let moved: [f64; 3] = std::array::from_fn(|axis| flown.0[axis] - panned.0[axis]);
-        assert!(moved[2] < 0.0 && is_near(moved[0], 0.0) && is_near(moved[1], moved[2] / 2.0), "{moved:?}");
         window.close().succeeded();
+    }
+}
+
+#[test]
+fn events_of_a_user_do_what_they_say() {
+    beside_others(|| events_do_what_they_say(None));
+}
+
+#[test]
+fn events_do_what_they_say_on_a_second_driver() {
+    on_second_driver(events_do_what_they_say);
+}
+
+fn events_do_what_they_say(driver: Driver<'_>) {
+    let display = Display::start();
+    let scene = format!("caustics {}", small("caustics"));
+    let mut window = Window::open_with(&display, &scene, |program| on(driver, program));
+    window.wait_for_frame(0);
+    // A button, a key, a field.
+    window.click(">");
+    window.wait_for_frame(1);
+    display.key('.' as u32);
+    window.wait_for_frame(2);
+    window.enter("frame");
+    display.keys(&[CONTROL, 'a' as u32]);
+    display.write("5");
+    display.key(RETURN);
+    window.wait_for_frame(5);
+    // A pass and its target, with room for them.
+    display.key(F4);
+    window.wait("no drawer", |window| (!window.has("Hold")).then_some(()));
+    window.click("caustics-map");
+    window.click("thumbnail caustics-map");
+    window.wait("the target", |window| window.shows("caustics-map").then_some(()));
+    // Its colours: a ramp with hues, and one without.
+    let hues = |window: &Window<'_>| {
+        let [left, top, right, bottom] = window.try_image("caustics-map")?;
+        let screen = display.screenshot();
+        let rows = (top.max(0)..bottom.min(screen.height() as i16)).flat_map(|y| (left..right).map(move |x| (x, y)));
+        Some(rows.filter(|&(x, y)| pixel(&screen, x as u32, y as u32).windows(2).any(|two| two[0] != two[1])).count())
+    };
+    window.wait("a target with hues", |window| hues(window).filter(|&count| count > 500));
+    window.click("ramp");
+    window.click("grey");
+    window.wait("a target in grey", |window| hues(window).filter(|&count| count < 50));
+    display.key('t' as u32);
+    window.wait("the picture", |window| window.shows("picture").then_some(()));
+    // The camera.
+    let before = window.wait("the camera", |window| camera(window));
+    let middle = window.middle("picture");
+    window.drag(1, middle, (middle.0 + 60, middle.1 + 10));
+    let orbited = window.wait("another camera", |window| camera(window).filter(|camera| *camera != before));
+    display.button(WHEEL_UP);
+    window.wait("a nearer camera", |window| camera(window).filter(|camera| *camera != orbited));
+    window.enter("camera");
+    display.keys(&[CONTROL, 'a' as u32]);
+    display.write("0,3,6,0,0,0");
+    display.key(RETURN);
+    window.wait("the camera that was typed", |window| camera(window).filter(|camera| camera == "0,3,6,0,0,0"));
+    // Across the view, and along it.
+    window.drag(3, middle, (middle.0 + 40, middle.1 - 30));
+    let panned = window.wait("a camera to one side", |window| {
+        let now = eye_and_offset(window).filter(|(eye, _)| eye[0] != 0.0)?;
+        // Not while it still moves.
+        thread::sleep(Duration::from_millis(300));
+        (eye_and_offset(window) == Some(now)).then_some(now)
     });
+    let is_near = |a: f64, b: f64| (a - b).abs() < 1e-3;
+    let (eye, offset) = panned;
+    assert!(is_near(offset[0], 0.0) && is_near(offset[1], offset[2] / 2.0), "{panned:?} looks another way");
+    // Where it looks has gone across the view.
+    let target: [f64; 3] = std::array::from_fn(|axis| eye[axis] - offset[axis]);
+    assert!(is_near(target[1] + 2.0 * target[2], 0.0), "{panned:?} is not across the view");
+    display.hold('w' as u32, Duration::from_millis(300));
+    let flown = window.wait("a camera ahead", |window| eye_and_offset(window).filter(|now| *now != panned));
+    let moved: [f64; 3] = std::array::from_fn(|axis| flown.0[axis] - panned.0[axis]);
+    assert!(moved[2] < 0.0 && is_near(moved[0], 0.0) && is_near(moved[1], moved[2] / 2.0), "{moved:?}");
+    window.close().succeeded();
 }
 
 #[test]
@@ -249,8 +280,18 @@ fn a_window_is_minimised_and_comes_back() {
         let display = Display::managed();
         let mut window = Window::open(&display, &format!("gas {}", small("gas")));
         window.wait_for_frame(0);
+        let file = window.folder.path().join("rendered.png");
+        let render = fumarole(&format!("gas render {}", small("gas"))).on_test_device();
+        render.arg("--image").arg(&file).run().succeeded();
+        let rendered = read_png(&file).unwrap();
+        let is_shown = |window: &mut Window<'_>, what: &str| {
+            let area = window.rectangle("picture");
+            wait(what, || shows(&display.screenshot(), &rendered, area).then_some(()));
+        };
+        is_shown(&mut window, "the picture");
         window.minimise();
         window.restore();
+        is_shown(&mut window, "the picture, with nothing that has changed");
         window.focus();
         display.key('.' as u32);
         window.wait_for_frame(1);
@@ -364,22 +405,6 @@ fn a_benchmark_from_the_window_is_the_one_of_the_shell() {
         let of_shell: serde_json::Value = serde_json::from_slice(&std::fs::read(&file).unwrap()).unwrap();
         assert_eq!(configuration(&record), configuration(&of_shell));
         assert_eq!(record["environment"]["host"], of_shell["environment"]["host"], "as many threads");
-        window.close().succeeded();
-    });
-}
-
-#[test]
-fn the_window_is_drawn_by_a_second_driver() {
-    beside_others(|| {
-        let display = Display::start();
-        let folder = tempfile::tempdir().unwrap();
-        let manifest = crate::drivers::driver_manifest(&folder);
-        let scene = format!("terrain {}", small("terrain"));
-        let mut window = Window::open_with(&display, &scene, |program| program.env("VK_DRIVER_FILES", &manifest));
-        window.wait_for_frame(0);
-        window.resize(700, 500);
-        display.key('.' as u32);
-        window.wait_for_frame(1);
         window.close().succeeded();
     });
 }

@@ -13,8 +13,8 @@ use serde_json::Value;
 use tempfile::TempDir;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, EventMask, ImageFormat, InputFocus, PropMode,
-    Window as WindowId,
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt, CreateWindowAux, EventMask, ImageFormat,
+    InputFocus, PropMode, Window as WindowId, WindowClass,
 };
 use x11rb::protocol::xtest::ConnectionExt as XtestExt;
 use x11rb::rust_connection::RustConnection;
@@ -126,6 +126,39 @@ impl Display {
         changed.unwrap().check().unwrap();
     }
 
+    /// Offers settings as a desktop's daemon does (XSETTINGS), of which there are the dots per inch, to windows that open from
+    /// now on. Gives the window that [`Display::change_settings`] changes them with.
+    pub fn offer_settings(&self, dpi: u32) -> WindowId {
+        let owner = self.connection.generate_id().unwrap();
+        let (class, aux) = (WindowClass::INPUT_OUTPUT, CreateWindowAux::new());
+        let made = self.connection.create_window(0, owner, self.root, 0, 0, 1, 1, 0, class, 0, &aux);
+        made.unwrap().check().unwrap();
+        self.change_settings(owner, dpi);
+        let selection = self.atom("_XSETTINGS_S0");
+        self.connection.set_selection_owner(owner, selection, x11rb::CURRENT_TIME).unwrap().check().unwrap();
+        owner
+    }
+
+    /// Changes what [`Display::offer_settings`] offers.
+    pub fn change_settings(&self, owner: WindowId, dpi: u32) {
+        const NAME: &[u8] = b"Xft/DPI\0";
+        let atom = self.atom("_XSETTINGS_SETTINGS");
+        // Lowest byte first; a serial number; one setting: an integer, its name, when it changed, and its value.
+        let mut bytes = vec![0, 0, 0, 0];
+        bytes.extend([dpi, 1].iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend([0, 0, 7, 0]);
+        bytes.extend(NAME);
+        bytes.extend([dpi, dpi * 1024].iter().flat_map(|number| number.to_le_bytes()));
+        let changed = self.connection.change_property8(PropMode::REPLACE, owner, atom, atom, &bytes);
+        changed.unwrap().check().unwrap();
+    }
+
+    /// Width and height of a window, pixels.
+    pub fn size(&self, window: WindowId) -> [f64; 2] {
+        let geometry = self.connection.get_geometry(window).unwrap().reply().unwrap();
+        [geometry.width, geometry.height].map(f64::from)
+    }
+
     /// Picture of the screen.
     pub fn screenshot(&self) -> Rgba8 {
         let geometry = self.connection.get_geometry(self.root).unwrap().reply().unwrap();
@@ -168,6 +201,25 @@ impl Display {
         let code = self.code(symbol);
         self.input(KEY_PRESS, code, (0, 0));
         thread::sleep(time);
+        self.input(KEY_PRESS + 1, code, (0, 0));
+    }
+
+    /// Drags with the left button and a key held, step by step.
+    pub fn carry(&self, symbol: u32, from: (i16, i16), to: (i16, i16)) {
+        const STEPS: i16 = 10;
+        let code = self.code(symbol);
+        self.point(from);
+        thread::sleep(LOOK);
+        self.input(KEY_PRESS, code, (0, 0));
+        thread::sleep(LOOK);
+        self.input(BUTTON_PRESS, 1, (0, 0));
+        for step in 1..=STEPS {
+            let part = |a: i16, b: i16| a + (b - a) / STEPS * step;
+            thread::sleep(LOOK);
+            self.point((part(from.0, to.0), part(from.1, to.1)));
+        }
+        thread::sleep(LOOK);
+        self.input(BUTTON_PRESS + 1, 1, (0, 0));
         self.input(KEY_PRESS + 1, code, (0, 0));
     }
 

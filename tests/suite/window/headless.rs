@@ -1,5 +1,7 @@
 //! Without a display, and without a window.
 
+use std::process::Command;
+
 use fumarole::gpu::{Device, Instance, PhysicalDevice};
 
 use crate::cli::program::fumarole;
@@ -56,5 +58,22 @@ fn what_no_paper_takes_is_refused_before_a_window_opens() {
         ("view lava --exit-after 0", "exit-after"),
     ] {
         fumarole(arguments).without("DISPLAY").without("WAYLAND_DISPLAY").run().misused(&[word]);
+    }
+}
+
+#[test]
+fn without_the_feature_no_crate_of_windows_is_compiled() {
+    let tree = |more: &[&str]| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["tree", "--offline", "--locked", "--edges", "normal,build", "--prefix", "none"]).args(more);
+        let ended = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap();
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        String::from_utf8(ended.stdout).unwrap()
+    };
+    const OF_WINDOWS: [&str; 6] = ["winit ", "egui ", "egui-winit ", "ash-window ", "raw-window-handle ", "accesskit "];
+    let (with, without) = (tree(&[]), tree(&["--no-default-features"]));
+    for name in OF_WINDOWS {
+        let is_in = |tree: &str| tree.lines().any(|line| line.starts_with(name));
+        assert!(is_in(&with) && !is_in(&without), "{name}");
     }
 }

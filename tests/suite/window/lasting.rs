@@ -1,9 +1,15 @@
 //! Size of text by option and display, and what a window remembers of the last one.
 
 use std::fs;
+use std::thread;
+use std::time::Duration;
 
-use super::display::{Display, Window};
+use fumarole::image::read_png;
+
+use super::desktop::shows;
+use super::display::{Display, Window, wait};
 use super::scene::small;
+use crate::cli::program::fumarole;
 use crate::common::beside_others;
 
 /// X key symbol.
@@ -34,6 +40,41 @@ fn text_has_the_size_of_the_option_and_of_the_display() {
             assert!(is_near(found, scale * usual), "{found} for {usual} at {scale}");
             window.close().succeeded();
         }
+    });
+}
+
+#[test]
+fn text_and_window_follow_a_display_whose_scale_changes_while_it_is_open() {
+    beside_others(|| {
+        let display = Display::managed();
+        let settings = display.offer_settings(96);
+        let scene = small("caustics");
+        let mut window = Window::open(&display, &format!("caustics {scene}"));
+        window.resize(800, 640);
+        window.wait_for_frame(0);
+        let usual = window.wait("a control", height);
+        let file = window.folder.path().join("rendered.png");
+        let render = fumarole(&format!("caustics render {scene}")).on_test_device();
+        render.arg("--image").arg(&file).run().succeeded();
+        let rendered = read_png(&file).unwrap();
+        for dpi in [120, 96] {
+            display.change_settings(settings, dpi);
+            let scale = f64::from(dpi) / 96.0;
+            window.wait(&format!("text at {dpi} dots per inch"), |window| {
+                height(window).filter(|found| is_near(*found, scale * usual))
+            });
+            let wanted = [800.0 * scale, 640.0 * scale];
+            window.wait(&format!("a window of {wanted:?} pixels"), |window| {
+                // Not while it still grows.
+                thread::sleep(Duration::from_millis(300));
+                let size = display.size(window.id);
+                (0..2).all(|axis| (size[axis] - wanted[axis]).abs() < 3.0).then_some(())
+            });
+            // The picture stays texel by pixel.
+            let area = window.rectangle("picture");
+            wait("the picture on the screen", || shows(&display.screenshot(), &rendered, area).then_some(()));
+        }
+        window.close().succeeded();
     });
 }
 

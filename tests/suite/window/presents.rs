@@ -6,7 +6,7 @@ use fumarole::image::read_png;
 use super::desktop::shows;
 use super::display::{Display, Window, wait};
 use super::scene::small;
-use crate::cli::program::{device, fumarole};
+use crate::cli::program::{Program, device, fumarole};
 use crate::common::beside_others;
 use crate::faults::Layer;
 
@@ -23,28 +23,47 @@ const ENDINGS: [(&str, &str); 7] = [
 #[test]
 fn the_window_goes_on_whatever_its_display_does() {
     beside_others(|| {
-        let display = Display::start();
-        let layer = Layer::new();
-        let scene = small("caustics");
-        let endings = ENDINGS.map(|(call, ending)| format!("{call}={ending}")).join(",");
-        let program = layer.before(fumarole(&format!("view caustics {scene}")).on_test_device(), true);
-        let mut window = Window::start(&display, program.env("FUMAROLE_LAYER_PRESENTS", endings));
-        window.wait_for_frame(0);
-        const LAST: u32 = 16;
-        for frame in 1..=LAST {
-            display.key('.' as u32);
-            window.wait_for_frame(frame);
-        }
-        let file = window.folder.path().join("rendered.png");
-        let render = fumarole(&format!("caustics render {scene} --frame {LAST}")).arg("--device").arg(device());
-        render.arg("--image").arg(&file).run().succeeded();
-        let (rendered, area) = (read_png(&file).unwrap(), window.rectangle("picture"));
-        wait("the picture on the screen", || shows(&display.screenshot(), &rendered, area).then_some(()));
-        let ended = window.close().succeeded();
-        for (call, _) in ENDINGS {
-            assert!(ended.stderr.contains(&format!("layer: {call}=")), "{call}: {}", ended.stderr);
-        }
+        let said = goes_on(|layer, program| layer.before(program, true));
+        assert!(!said.contains("fences of presents"), "{said}");
     });
+}
+
+/// As on the drivers that have `VK_EXT_swapchain_maintenance1`, which a layer plays.
+#[test]
+fn the_window_goes_on_with_fences_of_its_presents() {
+    beside_others(|| {
+        let said = goes_on(|layer, program| {
+            let program = layer.with_extensions(program, &["VK_EXT_surface_maintenance1"]);
+            program.arg("--validate").env("FUMAROLE_LAYER_LENDS", "present-fences")
+        });
+        assert!(said.contains("layer: fences of presents are signalled: SUCCESS"), "{said}");
+    });
+}
+
+/// Plays a window whose presents end in every way, and gives what it has said.
+fn goes_on(with_layer: impl FnOnce(&Layer, Program) -> Program) -> String {
+    let display = Display::start();
+    let layer = Layer::new();
+    let scene = small("caustics");
+    let endings = ENDINGS.map(|(call, ending)| format!("{call}={ending}")).join(",");
+    let program = with_layer(&layer, fumarole(&format!("view caustics {scene}")).on_test_device());
+    let mut window = Window::start(&display, program.env("FUMAROLE_LAYER_PRESENTS", endings));
+    window.wait_for_frame(0);
+    const LAST: u32 = 16;
+    for frame in 1..=LAST {
+        display.key('.' as u32);
+        window.wait_for_frame(frame);
+    }
+    let file = window.folder.path().join("rendered.png");
+    let render = fumarole(&format!("caustics render {scene} --frame {LAST}")).arg("--device").arg(device());
+    render.arg("--image").arg(&file).run().succeeded();
+    let (rendered, area) = (read_png(&file).unwrap(), window.rectangle("picture"));
+    wait("the picture on the screen", || shows(&display.screenshot(), &rendered, area).then_some(()));
+    let ended = window.close().succeeded();
+    for (call, _) in ENDINGS {
+        assert!(ended.stderr.contains(&format!("layer: {call}=")), "{call}: {}", ended.stderr);
+    }
+    ended.stderr
 }
 
 #[test]

@@ -51,6 +51,18 @@ impl Worker {
         Self::spawn(program(), Vec::new(), paper, options)
     }
 
+    /// Of the paper's small scene, with these variables in its environment.
+    pub fn in_environment(variables: &[(&str, OsString)], paper: &str) -> Self {
+        let set = variables.iter().map(|(name, value)| {
+            let mut word = OsString::from(name);
+            word.push("=");
+            word.push(value);
+            word
+        });
+        let words: Vec<OsString> = set.chain([OsString::from(program())]).collect();
+        Self::spawn(Path::new("env"), words, paper, small(paper))
+    }
+
     /// With what stands for RenderDoc in its process, which writes its files to `folder`.
     pub fn under_renderdoc(paper: &str, folder: &Path) -> Self {
         let variable = |name: &str| [OsStr::new(name), folder.as_os_str()].into_iter().collect::<OsString>();

@@ -3,9 +3,9 @@
 use fumarole::measure::parameter::Cost;
 use fumarole::measure::study::Study;
 use fumarole::papers::{burning, caustics, gas, lava, terrain};
-use fumarole::window::protocol::{Event, Request};
+use fumarole::window::protocol::{Event, MeasureChoice, Request, TargetChoice};
 
-use super::scene::{PAPERS, Worker, picture, rendered, set, small, unset, variant};
+use super::scene::{PAPERS, Worker, picture, pixels, rendered, set, small, unset, variant};
 use crate::common::beside_others;
 
 /// A camera for each paper that shows the scene from elsewhere.
@@ -177,6 +177,29 @@ fn a_replay_is_stopped_and_what_is_shown_stays() {
         // It is there for what comes next.
         let next = worker.frame_of(Request::Step(1));
         assert!(picture(&next, 0) == rendered("lava", &format!("{} --frame 1", small("lava"))));
+        worker.quit();
+    });
+}
+
+#[test]
+fn what_is_asked_for_during_a_replay_that_is_stopped_comes_with_the_frame_that_stays() {
+    beside_others(|| {
+        let mut worker = Worker::small("lava");
+        let first = worker.frame_after(0);
+        worker.client.send(Request::Measure(MeasureChoice { times: 9, counters: true }));
+        worker.client.send(Request::GoTo(2_000_000));
+        worker.wait_for(|event| matches!(event, Event::Progress(progress) if progress.total > 1000).then_some(()));
+        let choice = TargetChoice { side: 0, name: "density".into(), layer: 0, first_row: 0 };
+        let asked = worker.client.send(Request::Target(Some(choice.clone())));
+        let problem = worker.refusal_of(Request::Cancel);
+        assert!(problem.contains("frame 0 stays"), "{problem}");
+        // The times would have the state on its way again.
+        let given_up =
+            |event: &Event| matches!(event, Event::Measuring(measure) if *measure == MeasureChoice::default());
+        assert!(worker.events.iter().any(given_up), "no word of the times");
+        let frame = worker.frame_after(asked);
+        assert_eq!((frame.number, frame.target.as_ref().map(|target| &target.choice)), (0, Some(&choice)));
+        assert!(frame.sides[0].picture.as_ref().map(pixels) == first.sides[0].picture.as_ref().map(pixels));
         worker.quit();
     });
 }
