@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 #include "caustics/cull.glsl"
+#include "caustics/pyramid.glsl"
 
 layout(std430, set = 0, binding = 0) readonly buffer Rays {
     Ray list[];
@@ -24,7 +25,7 @@ layout(std430, set = 0, binding = 2) readonly buffer Steps {
 } steps;
 
 layout(std430, set = 0, binding = 3) readonly buffer Pyramid {
-    vec2 list[]; // least and greatest height, level after level, row by row
+    uint list[];
 } pyramid;
 
 layout(std430, set = 0, binding = 4) readonly buffer Cells {
@@ -35,9 +36,9 @@ layout(std430, set = 0, binding = 5) buffer Kept {
     uint list[]; // a bit for each pair, triangle after triangle
 } kept;
 
-layout(std430, set = 0, binding = 6) readonly buffer Levels {
-    uvec2 list[]; // first entry of the pyramid's levels, and entries a side
-} levels;
+layout(std430, set = 0, binding = 6) readonly buffer Heights {
+    float list[]; // of the position map's texels, row by row
+} heights;
 
 const uint GROUP = 8u;
 // Groups of 32 planes of an invocation.
@@ -80,13 +81,13 @@ vec2 heights_within(Rectangle texels, float lower, float upper) {
     // The finest level on which it is no more than two entries wide and high, or the one above it.
     uvec2 span = texels.to - texels.from;
     uint longest = max(span.x, span.y);
-    uint level = longest > 1u ? min(uint(findMSB(longest - 1u)) + 1u, cull.levels - 1u) : 0u;
-    uvec2 at_level = levels.list[level];
+    uint level = longest > 1u ? min(uint(findMSB(longest - 1u)) + 1u, cull.levels) : 1u;
+    uint first = first_entry(level, cull.levels, cull.map_size);
     texels.from >>= level;
     texels.to >>= level;
     for (uint i = 0u; i < 4u; i++) {
         uvec2 at = uvec2((i & 1u) == 0u ? texels.from.x : texels.to.x, i < 2u ? texels.from.y : texels.to.y);
-        vec2 range = pyramid.list[at_level.x + at.y * at_level.y + at.x];
+        vec2 range = heights_of(pyramid.list[first + at.y * row_of_entries(cull.map_size) + at.x], cull.top);
         if (range.x < upper && range.y >= lower) {
             found = vec2(min(found.x, range.x), max(found.y, range.y));
         }
@@ -183,13 +184,13 @@ uint covered(Beam beam, uint base, uint planes) {
     uvec2 texel = texels.from;
     uint at = texel.y * cull.map_size + texel.x;
     for (uint i = 0u; i < count; i++) {
-        float height = pyramid.list[at].x;
+        float height = heights.list[at];
         vec2 middle = vec2(texel) + 0.5;
         bool ends = texel.x >= texels.to.x;
         texel = ends ? uvec2(texels.from.x, texel.y + 1u) : uvec2(texel.x + 1u, texel.y);
         at += ends ? cull.map_size + 1u - span.x : 1u;
 
-        bool is_held = height < 1.0e29;
+        bool is_held = height > -1.0e29;
         float plane = is_held ? plane_of(height) : 0.0;
         float descent = descent_to(plane);
         // From the texel's middle, where numbers are small.

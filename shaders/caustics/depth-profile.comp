@@ -32,9 +32,8 @@ void main() {
         float height = texelFetch(sampler2D(position_map, nearest), ivec2(column, row), 0).r;
         if (height > -1.0e29) {
             uint level = level_of(height, (profile.top - height) * profile.levels_per_m, profile.levels);
-            // Whoever stores it, and however often, it is 1.
             if (level != last) {
-                held.list[level] = 1u;
+                atomicOr(held.list[level], 1u);
                 last = level;
             }
         }

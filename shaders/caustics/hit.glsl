@@ -2,6 +2,7 @@
 // map, which is read as a surface: between four texels that hold the receiver it is bilinear. Heights are of box space.
 
 #include "caustics/ray.glsl"
+#include "caustics/pyramid.glsl"
 
 layout(push_constant) uniform Hits {
     vec2 center; // of the box along U and W, from the rays' reference point, metres
@@ -20,23 +21,37 @@ layout(push_constant) uniform Hits {
     vec2 shadow_texels_per_m;
     float shadow_middle; // height of that box's centre along V, from the reference point, metres
     float shadow_top; // of its top
+    uint columns; // vertices of the refined water along x
 } plane;
 
-layout(set = 0, binding = 0) uniform texture2D position_map;
+layout(std430, set = 0, binding = 0) readonly buffer Heights {
+    float list[]; // of the position map's texels, row by row
+} heights;
+
+#ifdef SHADOW_ON
 layout(set = 0, binding = 1) uniform sampler nearest;
+#endif
 
 layout(std430, set = 0, binding = 3) readonly buffer Pyramid {
-    vec2 list[]; // least and greatest height, level after level, row by row
+    uint list[];
 } pyramid;
 
-layout(std430, set = 0, binding = 10) readonly buffer Levels {
-    uvec2 list[]; // first entry of the pyramid's levels, and entries a side
-} levels;
+// Whole vectors: where a load costs by its number, as on a CPU, the members one by one would take longer.
+layout(std430, set = 0, binding = 4) readonly buffer Rays {
+    vec4 list[]; // three a ray
+} rays;
 
 // Steps of a ray through the position map, of a texel each: more than a map has texels along a side.
 const int MOST_STEPS = 32768;
 // Steps that are left out together where the ray passes above all that is near.
 const int STRIDE = 8;
+
+Ray ray_at(uint index) {
+    vec4 from = rays.list[3u * index];
+    vec4 on = rays.list[3u * index + 1u];
+    vec4 light = rays.list[3u * index + 2u];
+    return Ray(from.xyz, from.w, on.xy, on.z, on.w, light.xyz, light.w);
+}
 
 bool is_receiver(float height) {
     return height > -1.0e29;
@@ -45,7 +60,7 @@ bool is_receiver(float height) {
 // The border's texels go on beyond it.
 float height_at(ivec2 texel) {
     ivec2 inside = clamp(texel, ivec2(0), ivec2(int(plane.map_size) - 1));
-    return texelFetch(sampler2D(position_map, nearest), inside, 0).r;
+    return heights.list[uint(inside.y) * plane.map_size + uint(inside.x)];
 }
 
 struct Surface {
@@ -77,24 +92,22 @@ Surface surface_at(vec2 place, float instead, bool whole) {
     return Surface(a + along_u.x * t.x + w * t.y, length(vec2(u, w)));
 }
 
-// The finest level of the pyramid on which a rectangle of texels is no wider than so many entries and one more: its first entry and
-// its size; the rectangle, a texel wider on each side, in its entries.
-void climb(vec2 one, vec2 other, uint widest, out uvec2 from, out uvec2 to, out uint first, out uint level_size) {
+// The finest level of the pyramid on which a rectangle of texels is no wider than so many entries and one more: the first entry of its
+// list; the rectangle, a texel wider on each side, in its entries.
+void climb(vec2 one, vec2 other, uint widest, out uvec2 from, out uvec2 to, out uint at) {
     vec2 last = vec2(float(plane.map_size) - 1.0);
-    from = uvec2(clamp(min(one, other) - 1.0, vec2(0.0), last));
-    to = uvec2(clamp(max(one, other) + 1.0, vec2(0.0), last));
-    uvec2 span = to - from;
+    uvec2 first = uvec2(clamp(min(one, other) - 1.0, vec2(0.0), last));
+    uvec2 end = uvec2(clamp(max(one, other) + 1.0, vec2(0.0), last));
+    uvec2 span = end - first;
     uint longest = max(span.x, span.y);
     // By halves until it is no wider, and once more where its ends lie so.
     uint level = longest > widest ? uint(findMSB(longest / (widest + 1u))) : 0u;
-    level += uint(any(greaterThan((to >> level) - (from >> level), uvec2(widest))));
-    level += uint(any(greaterThan((to >> level) - (from >> level), uvec2(widest))));
-    level = min(level, plane.levels - 1u);
-    from >>= level;
-    to >>= level;
-    uvec2 at = levels.list[level];
-    first = at.x;
-    level_size = at.y;
+    level += uint(any(greaterThan((end >> level) - (first >> level), uvec2(widest))));
+    level += uint(any(greaterThan((end >> level) - (first >> level), uvec2(widest))));
+    level = clamp(level, 1u, plane.levels);
+    from = first >> level;
+    to = end >> level;
+    at = first_entry(level, plane.levels, plane.map_size);
 }
 
 // Least and greatest height near a rectangle of texels, from the four entries of the pyramid that hold it. Where nothing is, the
@@ -102,31 +115,28 @@ void climb(vec2 one, vec2 other, uint widest, out uvec2 from, out uvec2 to, out 
 vec2 heights_between(vec2 one, vec2 other) {
     uvec2 from;
     uvec2 to;
-    uint first;
-    uint level_size;
-    climb(one, other, 1u, from, to, first, level_size);
-    vec2 a = pyramid.list[first + from.y * level_size + from.x];
-    vec2 b = pyramid.list[first + from.y * level_size + to.x];
-    vec2 c = pyramid.list[first + to.y * level_size + from.x];
-    vec2 d = pyramid.list[first + to.y * level_size + to.x];
-    return vec2(min(min(a.x, b.x), min(c.x, d.x)), max(max(a.y, b.y), max(c.y, d.y)));
+    uint at;
+    climb(one, other, 1u, from, to, at);
+    uint first = at + from.y * row_of_entries(plane.map_size);
+    uint last = at + to.y * row_of_entries(plane.map_size);
+    uint upper = joined(pyramid.list[first + from.x], pyramid.list[first + to.x]);
+    uint lower = joined(pyramid.list[last + from.x], pyramid.list[last + to.x]);
+    return heights_of(joined(upper, lower), plane.half_height);
 }
 
 // The same from up to sixteen entries of a finer level: for what must not be taken for more than it is.
 vec2 heights_within(vec2 one, vec2 other) {
     uvec2 from;
     uvec2 to;
-    uint first;
-    uint level_size;
-    climb(one, other, 3u, from, to, first, level_size);
-    vec2 range = vec2(1.0e30, -1.0e30);
+    uint at;
+    climb(one, other, 3u, from, to, at);
+    uint entry = NOTHING;
     for (uint y = from.y; y <= to.y; y++) {
         for (uint x = from.x; x <= to.x; x++) {
-            vec2 entry = pyramid.list[first + y * level_size + x];
-            range = vec2(min(range.x, entry.x), max(range.y, entry.y));
+            entry = joined(entry, pyramid.list[at + y * row_of_entries(plane.map_size) + x]);
         }
     }
-    return range;
+    return heights_of(entry, plane.half_height);
 }
 
 // Where a ray is at a height, in texels.

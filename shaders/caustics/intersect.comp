@@ -9,13 +9,13 @@ layout(local_size_x = 64) in;
 #include "caustics/hit.glsl"
 #include "caustics/shadow-{SHADOW}.glsl"
 
-layout(std430, set = 0, binding = 4) readonly buffer Rays {
-    Ray list[];
-} rays;
-
 layout(std430, set = 0, binding = 5) buffer Landings {
     vec4 list[]; // place in texels, height, and 1 / cos theta_t e^(-K d); -1 for a ray that does not land, -2 without light
 } landings;
+
+layout(std430, set = 0, binding = 11) buffer Intensities {
+    float list[]; // I_c where each ray lands, negative where the light is turned over, 0 where it is not known
+} intensities;
 
 // The first place where a ray meets the receiver: texels in x and y, the height in z, and in w 1, or 0 where it meets nothing that
 // the map holds. A receiver is solid below what the light sees of it: what enters by its side is lost.
@@ -81,14 +81,36 @@ vec4 first_hit(vec3 origin, vec2 slope) {
     return vec4(place_at(origin, slope, met), met, 1.0);
 }
 
+// Eq. 4-18 for a vertex without e^(-K d): the water's area around it against the area that its light has on the plane across V at
+// that height, by the rays of its neighbours.
+float intensity_at(uint index, Ray ray, float height) {
+    uint column = index % plane.columns;
+    uint before = column > 0u ? index - 1u : index;
+    uint after = column + 1u < plane.columns ? index + 1u : index;
+    uint above = index >= plane.columns ? index - plane.columns : index;
+    uint below = index + plane.columns < plane.vertices ? index + plane.columns : index;
+    Ray a = ray_at(before);
+    Ray b = ray_at(after);
+    Ray c = ray_at(above);
+    Ray d = ray_at(below);
+    vec2 along = place_at(b.origin, b.slope, height) - place_at(a.origin, a.slope, height);
+    vec2 across = place_at(d.origin, d.slope, height) - place_at(c.origin, c.slope, height);
+    float lit = along.x * across.y - along.y * across.x;
+    vec3 face = cross(b.origin - a.origin, d.origin - c.origin);
+    float enters = min(min(a.enters, b.enters), min(c.enters, d.enters));
+    float passing = abs(dot(face, ray.incident)) * ray.secant / plane.texel_area_m2;
+    return enters > 0.0 && abs(lit) > 1.0e-6 * passing ? passing / lit : 0.0;
+}
+
 void main() {
     uint index = element(64u);
     if (index >= plane.vertices) {
         return;
     }
-    Ray ray = rays.list[index];
+    Ray ray = ray_at(index);
     // Of a ray that meets nothing, the place halfway down the box.
     vec4 landing = vec4(place_at(ray.origin, ray.slope, 0.0), 0.0, -2.0);
+    float light = 0.0;
     if (ray.enters > 0.0 && ray.origin.y > plane.middle - plane.half_height) {
         vec4 hit = first_hit(ray.origin, ray.slope);
         landing.w = -1.0;
@@ -97,9 +119,12 @@ void main() {
             landing.xyz = hit.xyz;
             if (reaches(vec3(place.x, hit.z + plane.middle, place.y), ray.origin)) {
                 float descent = max(ray.origin.y - plane.middle - hit.z, 0.0);
-                landing.w = exp(-plane.absorption_per_m * (descent * ray.secant)) * ray.secant;
+                float passed = exp(-plane.absorption_per_m * (descent * ray.secant));
+                landing.w = passed * ray.secant;
+                light = passed * intensity_at(index, ray, hit.z);
             }
         }
     }
     landings.list[index] = landing;
+    intensities.list[index] = light;
 }

@@ -1,8 +1,8 @@
 #version 450
 
 // Each triangle of the refined water once, where its light lands (section 6.3): its flux over the texels that it covers there, by the
-// exact area of each. Those whose corners do not land on one surface are listed for the next pass. The thesis only names the idea.
-// An invocation takes the two triangles of a cell, which share most of their texels.
+// exact area of each and linear between its corners. Those whose corners do not land on one surface are listed for the next pass. The
+// thesis only names the idea. An invocation takes the two triangles of a cell, which share most of their texels.
 
 layout(local_size_x = 64) in;
 
@@ -15,6 +15,10 @@ layout(local_size_x = 64) in;
 layout(std430, set = 0, binding = 5) readonly buffer Landings {
     vec4 list[];
 } landings;
+
+layout(std430, set = 0, binding = 11) readonly buffer Intensities {
+    float list[]; // I_c where each ray lands, negative where the light is turned over, 0 where it is not known
+} intensities;
 
 // Texels of a triangle's rectangle beyond which it is listed instead: those of two beside each other are at most four times as many,
 // and a driver may end all loops together after 65,535 turns.
@@ -70,17 +74,49 @@ void list_it(uint triangle, vec2 heights) {
 
 // A triangle that lands whole: its corners in texels, and its flux over its area there; no light for any other.
 struct Landed {
+    bool straddles;
     vec2 p;
     vec2 q;
     vec2 r;
     vec2 low;
     vec2 high;
     float light;
+    vec2 middle;
+    vec2 rise; // of the light from texel to texel, of its mean
 };
 
-// Lists the triangle where it straddles.
-Landed landed(uint triangle, Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, vec4 c, vec2 base) {
-    Landed whole = Landed(vec2(0.0), vec2(0.0), vec2(0.0), vec2(1.0e6), vec2(-1.0e6), 0.0);
+// By which light may rise from texel to texel: of a texel that is covered in part the light is not told to the last digit. What rises
+// more is on few texels, which show as edges whatever is done.
+const float MOST_RISE = 0.15;
+
+// How the light of a triangle rises from texel to texel, of its mean: linear between its corners', as far as they are known and
+// none of it is turned over.
+vec2 rise_of(vec2 p, vec2 q, vec2 r, vec3 lights) {
+    float mean = (lights.x + lights.y + lights.z) / 3.0;
+    vec2 to_q = q - p;
+    vec2 to_r = r - p;
+    float there = to_q.x * to_r.y - to_q.y * to_r.x;
+    if (min(lights.x, min(lights.y, lights.z)) * max(lights.x, max(lights.y, lights.z)) <= 0.0 || abs(there) < 1.0e-3) {
+        return vec2(0.0);
+    }
+    vec2 more = vec2(lights.y - lights.x, lights.z - lights.x) / mean;
+    vec2 rise = (more.x * vec2(to_r.y, -to_r.x) + more.y * vec2(-to_q.y, to_q.x)) / there;
+    return rise * min(1.0, MOST_RISE / max(abs(rise.x) + abs(rise.y), 1.0e-9));
+}
+
+// The light of a triangle about the middle of what a row of texels and its rectangle have in common, of its mean, at its own middle.
+float light_in_row(Landed whole, float y) {
+    return 1.0 + whole.rise.y * (0.5 * (max(y, whole.low.y) + min(y + 1.0, whole.high.y)) - whole.middle.y);
+}
+
+// And of what a texel of that row has in common with it.
+float light_in_texel(Landed whole, float of_row, float x) {
+    float middle = 0.5 * (max(x, whole.low.x) + min(x + 1.0, whole.high.x)) - whole.middle.x;
+    return max(of_row + whole.rise.x * middle, 0.0);
+}
+
+Landed landed(Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, vec4 c, vec3 lights, vec2 base) {
+    Landed whole = Landed(false, vec2(0.0), vec2(0.0), vec2(0.0), vec2(1.0e6), vec2(-1.0e6), 0.0, vec2(0.0), vec2(0.0));
     float least = min(a.w, min(b.w, c.w));
     vec2 low = min(a.xy, min(b.xy, c.xy));
     vec2 high = max(a.xy, max(b.xy, c.xy));
@@ -93,10 +129,7 @@ Landed landed(uint triangle, Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, ve
     bool is_one = least >= 0.0 && rectangle.x * rectangle.y <= MOST_TEXELS;
     float turned = is_one ? divisor(ray_a, ray_b, ray_c, a.xyz, b.xyz, c.xyz) : 0.0;
     if (abs(turned - 1.0) > TURNED || !lies_flat(a.xyz, b.xyz, c.xyz)) {
-        vec2 heights = heights_met(ray_a, ray_b, ray_c);
-        if (heights.x <= heights.y) {
-            list_it(triangle, heights);
-        }
+        whole.straddles = true;
         return whole;
     }
     vec3 face = face_of(ray_a, ray_b, ray_c);
@@ -104,6 +137,8 @@ Landed landed(uint triangle, Ray ray_a, Ray ray_b, Ray ray_c, vec4 a, vec4 b, ve
     whole.p = a.xy - base;
     whole.q = b.xy - base;
     whole.r = c.xy - base;
+    whole.middle = (whole.p + whole.q + whole.r) / 3.0;
+    whole.rise = rise_of(whole.p, whole.q, whole.r, lights);
     widen(whole.p, whole.q, whole.r);
     whole.low = min(whole.p, min(whole.q, whole.r));
     whole.high = max(whole.p, max(whole.q, whole.r));
@@ -121,16 +156,26 @@ void main() {
     vec4 b = landings.list[corners.y];
     vec4 c = landings.list[corners.z];
     vec4 d = landings.list[corners.w];
-    Ray ray_a = rays.list[corners.x];
-    Ray ray_b = rays.list[corners.y];
-    Ray ray_c = rays.list[corners.z];
-    Ray ray_d = rays.list[corners.w];
+    Ray ray_a = ray_at(corners.x);
+    Ray ray_b = ray_at(corners.y);
+    Ray ray_c = ray_at(corners.z);
+    Ray ray_d = ray_at(corners.w);
     // Small numbers keep their digits.
     float size = float(plane.map_size);
     vec2 base = clamp(floor(min(min(a.xy, b.xy), min(c.xy, d.xy))), vec2(-1.0), vec2(size));
     // As the mesh lists them: a, b, c and c, b, d.
-    Landed one = landed(first / 3u, ray_a, ray_b, ray_c, a, b, c, base);
-    Landed other = landed(first / 3u + 1u, ray_c, ray_b, ray_d, c, b, d, base);
+    vec3 lights = vec3(intensities.list[corners.x], intensities.list[corners.y], intensities.list[corners.z]);
+    Landed one = landed(ray_a, ray_b, ray_c, a, b, c, lights, base);
+    Landed other = landed(ray_c, ray_b, ray_d, c, b, d, vec3(lights.zy, intensities.list[corners.w]), base);
+    if (one.straddles || other.straddles) {
+        vec2 heights = heights_met(ray_a, ray_b, ray_c, ray_d);
+        if (one.straddles && heights.x <= heights.y) {
+            list_it(first / 3u, heights);
+        }
+        if (other.straddles && heights.x <= heights.y) {
+            list_it(first / 3u + 1u, heights);
+        }
+    }
     vec2 low = min(one.low, other.low);
     vec2 high = max(one.high, other.high);
     ivec2 origin = ivec2(base);
@@ -150,17 +195,25 @@ void main() {
         vec2 ends = joined(ends_of(row), ends_of(beside));
         int x = int(max(floor(ends.x), float(from.x)));
         int last = int(min(floor(ends.y), float(to.x)));
-        float before = left_of(row, float(x)) + left_of(beside, float(x));
+        float one_in_row = light_in_row(one, float(y));
+        float other_in_row = light_in_row(other, float(y));
+        float before = left_of(row, float(x));
+        float before_beside = left_of(beside, float(x));
         while (x <= last) {
             // A low word that is full is left for a moment: this is rare, and a place of its own makes the rest faster.
             bool is_full = false;
             ivec2 texel = origin + ivec2(x, y);
             while (x <= last && !is_full) {
                 texel = origin + ivec2(x, y);
+                float one_in_texel = light_in_texel(one, one_in_row, float(x));
+                float other_in_texel = light_in_texel(other, other_in_row, float(x));
                 x++;
-                float after = left_of(row, float(x)) + left_of(beside, float(x));
-                is_full = add_low(texel, max(before - after, 0.0));
+                float after = left_of(row, float(x));
+                float after_beside = left_of(beside, float(x));
+                float light = (before - after) * one_in_texel + (before_beside - after_beside) * other_in_texel;
+                is_full = add_low(texel, max(light, 0.0));
                 before = after;
+                before_beside = after_beside;
             }
             if (is_full) {
                 add_high(texel);

@@ -1,7 +1,9 @@
 #version 450
 
-// A level of the position map's pyramid (section 6.1): least and greatest height in a square of texels; the finest and the one above
-// it together. Places without a receiver have neither.
+// The position map as a list, which kernels read faster than an image where a CPU samples, and a level of its pyramid (section 6.1);
+// the finest and the one above it together.
+
+#include "caustics/pyramid.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -9,52 +11,68 @@ layout(set = 0, binding = 0) uniform texture2D position_map;
 layout(set = 0, binding = 1) uniform sampler nearest;
 
 layout(std430, set = 0, binding = 2) buffer Pyramid {
-    vec2 list[]; // least and greatest height, level after level, row by row
+    uint list[];
 } pyramid;
 
+layout(std430, set = 0, binding = 3) buffer Heights {
+    float list[]; // of the texels, row by row
+} heights;
+
 layout(push_constant) uniform Level {
-    uint from; // first entry of the finer level; this one's own where it is the finest
-    uint from_size; // entries a side of the finer level
-    uint to; // first entry of this level
-    uint to_size; // entries a side
+    uint number; // from 1
+    uint count; // of levels
+    uint map_size; // texels a side
+    float half_height; // of the box, metres
 } level;
 
-vec2 joined(vec2 a, vec2 b) {
-    return vec2(min(a.x, b.x), max(a.y, b.y));
+// Entries a side.
+uint size_of(uint number) {
+    return (level.map_size + (1u << number) - 1u) >> number;
 }
 
-vec2 finer(uint x, uint y) {
-    uint last = level.from_size - 1u;
-    return pyramid.list[level.from + min(y, last) * level.from_size + min(x, last)];
+uint texel(uint x, uint y) {
+    uint last = level.map_size - 1u;
+    x = min(x, last);
+    y = min(y, last);
+    float height = texelFetch(sampler2D(position_map, nearest), ivec2(uvec2(x, y)), 0).r;
+    heights.list[y * level.map_size + x] = height;
+    return height > -1.0e29 ? entry_of(height, level.half_height) : NOTHING;
 }
 
-// A texel of the map, as an entry of the finest level.
-vec2 finest(uint x, uint y) {
-    uint last = level.to_size - 1u;
-    uvec2 texel = uvec2(min(x, last), min(y, last));
-    float height = texelFetch(sampler2D(position_map, nearest), ivec2(texel), 0).r;
-    vec2 bounds = height > -1.0e29 ? vec2(height) : vec2(1.0e30, -1.0e30);
-    pyramid.list[texel.y * level.to_size + texel.x] = bounds;
-    return bounds;
+// An entry of the finest level.
+uint finest(uint x, uint y) {
+    uint last = size_of(1u) - 1u;
+    x = min(x, last);
+    y = min(y, last);
+    uint entry = joined(joined(texel(2u * x, 2u * y), texel(2u * x + 1u, 2u * y)),
+        joined(texel(2u * x, 2u * y + 1u), texel(2u * x + 1u, 2u * y + 1u)));
+    pyramid.list[y * row_of_entries(level.map_size) + x] = entry;
+    return entry;
+}
+
+// An entry of the level under this one.
+uint finer(uint x, uint y) {
+    uint last = size_of(level.number - 1u) - 1u;
+    uint first = first_entry(level.number - 1u, level.count, level.map_size);
+    return pyramid.list[first + min(y, last) * row_of_entries(level.map_size) + min(x, last)];
 }
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
-    bool is_finest = level.from == level.to;
-    uint size = is_finest ? (level.to_size + 1u) / 2u : level.to_size;
-    if (max(at.x, at.y) >= size) {
+    bool is_finest = level.number == 1u;
+    uint to = is_finest ? 2u : level.number;
+    if (max(at.x, at.y) >= size_of(to)) {
         return;
     }
-    uvec2 first = 2u * at;
+    uint x = 2u * at.x;
+    uint y = 2u * at.y;
+    uint entry = NOTHING;
     if (is_finest) {
-        vec2 bounds = joined(joined(finest(first.x, first.y), finest(first.x + 1u, first.y)),
-            joined(finest(first.x, first.y + 1u), finest(first.x + 1u, first.y + 1u)));
-        if (level.to_size > 1u) {
-            pyramid.list[level.to_size * level.to_size + at.y * size + at.x] = bounds;
-        }
+        entry = joined(joined(finest(x, y), finest(x + 1u, y)), joined(finest(x, y + 1u), finest(x + 1u, y + 1u)));
     } else {
-        pyramid.list[level.to + at.y * size + at.x] =
-            joined(joined(finer(first.x, first.y), finer(first.x + 1u, first.y)),
-                joined(finer(first.x, first.y + 1u), finer(first.x + 1u, first.y + 1u)));
+        entry = joined(joined(finer(x, y), finer(x + 1u, y)), joined(finer(x, y + 1u), finer(x + 1u, y + 1u)));
+    }
+    if (to <= level.count) {
+        pyramid.list[first_entry(to, level.count, level.map_size) + at.y * row_of_entries(level.map_size) + at.x] = entry;
     }
 }

@@ -1,9 +1,5 @@
 // A triangle of the refined water (section 6.3).
 
-layout(std430, set = 0, binding = 4) readonly buffer Rays {
-    Ray list[];
-} rays;
-
 layout(std430, set = 0, binding = 7) readonly buffer Indices {
     uint list[]; // three a water triangle
 } indices;
@@ -32,24 +28,30 @@ vec3 face_of(Ray a, Ray b, Ray c) {
     return face * (sign(dot(face, plane.up)) / plane.texel_area_m2);
 }
 
-// The least and greatest height that a beam may meet; the least is above the greatest where it meets nothing.
-vec2 heights_met(Ray a, Ray b, Ray c) {
+// The places of four rays at a height, and between which they lie.
+void around(Ray a, Ray b, Ray c, Ray d, float height, inout vec2 low, inout vec2 high) {
+    vec2 at_a = place_at(a.origin, a.slope, height);
+    vec2 at_b = place_at(b.origin, b.slope, height);
+    vec2 at_c = place_at(c.origin, c.slope, height);
+    vec2 at_d = place_at(d.origin, d.slope, height);
+    low = min(low, min(min(at_a, at_b), min(at_c, at_d)));
+    high = max(high, max(max(at_a, at_b), max(at_c, at_d)));
+}
+
+// The least and greatest height that the beam of a cell may meet; the least is above the greatest where it meets nothing.
+vec2 heights_met(Ray a, Ray b, Ray c, Ray d) {
     float size = float(plane.map_size);
-    float top = min(plane.half_height, max(a.origin.y, max(b.origin.y, c.origin.y)) - plane.middle);
+    float top = min(plane.half_height, max(max(a.origin.y, b.origin.y), max(c.origin.y, d.origin.y)) - plane.middle);
     float bottom = -plane.half_height;
     for (int i = 0; i < 2; i++) {
-        vec2 top_a = place_at(a.origin, a.slope, top);
-        vec2 top_b = place_at(b.origin, b.slope, top);
-        vec2 top_c = place_at(c.origin, c.slope, top);
-        vec2 end_a = place_at(a.origin, a.slope, bottom);
-        vec2 end_b = place_at(b.origin, b.slope, bottom);
-        vec2 end_c = place_at(c.origin, c.slope, bottom);
-        vec2 first = min(min(top_a, min(top_b, top_c)), min(end_a, min(end_b, end_c)));
-        vec2 last = max(max(top_a, max(top_b, top_c)), max(end_a, max(end_b, end_c)));
-        if (any(greaterThanEqual(first, vec2(size))) || any(lessThan(last, vec2(0.0)))) {
+        vec2 low = vec2(1.0e30);
+        vec2 high = vec2(-1.0e30);
+        around(a, b, c, d, top, low, high);
+        around(a, b, c, d, bottom, low, high);
+        if (any(greaterThanEqual(low, vec2(size))) || any(lessThan(high, vec2(0.0)))) {
             return vec2(1.0, -1.0);
         }
-        vec2 range = heights_within(first, last);
+        vec2 range = heights_within(low, high);
         top = min(top, range.y);
         bottom = max(bottom, range.x);
         if (top < bottom) {

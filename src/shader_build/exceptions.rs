@@ -26,6 +26,7 @@ pub const NAGA_EXCEPTIONS: &[(&str, &str)] = &[
     ("burning/surface-removal-mark-free.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-kept.comp", "an atomic: removed triangles are counted"),
     ("burning/surface-removal-mark-parts.comp", "an atomic: removed triangles are counted"),
+    ("caustics/depth-profile.comp", "an atomic: levels that hold the receiver are marked"),
     ("caustics/land.comp", "atomics: the light of triangles is summed"),
     ("caustics/straddle-off.comp", "atomics: the light of triangles is summed"),
     ("caustics/straddle-on.comp", "atomics: the light of triangles is summed"),

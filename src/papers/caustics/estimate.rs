@@ -3,6 +3,7 @@
 use super::bounding_box::{Axes, ReceiverBox};
 use super::parameters::{Parameters, Variant};
 use super::planes::{Fit, most_fitted, threshold};
+use super::position_pyramid;
 use super::receiver::ReceiverInput;
 use super::water::{Grid, cells};
 use crate::measure::estimate::Estimate;
@@ -51,6 +52,8 @@ impl Parameters {
 
         // Position, depth and caustics, diffuse and combined light.
         let maps = (3.0 * NUMBER + 2.0 * LIGHT) * texels;
+        let entries = position_pyramid::extent(self.map_size).map(|n| n as f64).iter().product::<f64>();
+        let pyramid = NUMBER * (texels + entries);
         // What lies on every plane follows the planes and its own size: a refusal names both.
         let by_planes = match variant {
             Variant::Volumetric => "map-size` or `planes",
@@ -61,16 +64,17 @@ impl Parameters {
         let (of_map, of_planes, of_pixel) = match variant {
             Variant::LevelMap => (maps, 0.0, NUMBER + LIGHT + NUMBER),
             Variant::LevelMapSmart => (maps + NUMBER * texels, 0.0, NUMBER + LIGHT + NUMBER),
-            // The pyramid of heights, two a texel; a bit and three indices a pair of triangle and plane, and a count a triangle.
+            // Heights and their pyramid; a bit and three indices a pair of triangle and plane, and a count a triangle.
             Variant::Culled => (
-                maps + 2.0 * NUMBER * texels * 4.0 / 3.0,
+                maps + pyramid,
                 water_triangles * (culled * 3.0 * NUMBER + ((culled / 32.0).ceil() + 1.0) * NUMBER),
                 NUMBER + LIGHT + NUMBER,
             ),
-            // The pyramid, and two words of light a texel; where the water's vertices land, which triangles straddle, and where.
+            // Heights, their pyramid, and two words of light a texel; where the water's vertices land and how bright, which
+            // triangles straddle, and where.
             Variant::Hit => (
-                maps + 2.0 * NUMBER * texels * 7.0 / 3.0,
-                4.0 * NUMBER * water_vertices + 3.0 * NUMBER * water_triangles,
+                maps + pyramid + 2.0 * NUMBER * texels,
+                5.0 * NUMBER * water_vertices + 3.0 * NUMBER * water_triangles,
                 NUMBER + LIGHT + NUMBER,
             ),
             Variant::Volumetric => ((3.0 * NUMBER + LIGHT) * texels, LIGHT * texels * planes, NUMBER + LIGHT + NUMBER),

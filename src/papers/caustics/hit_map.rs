@@ -32,6 +32,7 @@ host_block! {
         shadow_texels_per_m: [f32; 2],
         shadow_middle: f32,
         shadow_top: f32,
+        columns: u32,
     }
 }
 
@@ -92,10 +93,11 @@ impl HitMap {
             let desc = BufferDesc::new(context.name(name), bytes).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by(by))
         };
-        let position_pyramid = PositionPyramid::new(context, position_map)?;
+        let position_pyramid = PositionPyramid::new(context, lit, position_map)?;
         let sums = buffer("landed-light", 4 * u64::from(words), "map-size")?;
         let bytes = 4 * u64::from(LANDING_FLOATS) * u64::from(vertices);
         let landings = buffer("landings", bytes, "water-triangles")?;
+        let intensities = buffer("landed-intensities", 4 * u64::from(vertices), "water-triangles")?;
         let straddling = buffer("straddling", 4 * (1 + 3 * u64::from(triangles)), "water-triangles")?;
 
         let unfinished = upload(
@@ -108,25 +110,24 @@ impl HitMap {
         let kernel = |name, shader: &str| {
             Pass::compute(name, "6.3", shader)
                 .constants::<HitConstants>()
-                .with("position_map", position_map)
-                .with("nearest", context.nearest)
-                .with("pyramid", &position_pyramid.heights)
-                .with("levels", &position_pyramid.table)
+                .with("heights", &position_pyramid.heights)
+                .with("pyramid", &position_pyramid.entries)
                 .with("rays", &volumes.rays)
         };
         let (intersect, straddle) = match shadows {
             None => ("caustics/intersect-off.comp", "caustics/straddle-off.comp"),
             Some(_) => ("caustics/intersect-on.comp", "caustics/straddle-on.comp"),
         };
-        let mut intersect = kernel("intersect", intersect).with("landings", &landings);
+        let mut intersect =
+            kernel("intersect", intersect).with("landings", &landings).with("intensities", &intensities);
         let mut straddle = kernel("straddle", straddle)
             .with("sums", &sums)
             .with("indices", &water.indices)
             .with("straddling", &straddling)
             .with("unfinished", &unfinished);
         if let Some(shadows) = shadows {
-            intersect = intersect.with("shadow_map", &shadows.map);
-            straddle = straddle.with("shadow_map", &shadows.map);
+            intersect = intersect.with("shadow_map", &shadows.map).with("nearest", context.nearest);
+            straddle = straddle.with("shadow_map", &shadows.map).with("nearest", context.nearest);
         }
         Ok(HitMap {
             empty_sums: Pass::compute("empty-sums", "6.3", "caustics/empty-sums.comp")
@@ -140,6 +141,7 @@ impl HitMap {
                 .with("indices", &water.indices)
                 .with("straddling", &straddling)
                 .with("landings", &landings)
+                .with("intensities", &intensities)
                 .with("unfinished", &unfinished)
                 .build(shaders)?,
             straddle: straddle.build(shaders)?,
@@ -234,6 +236,7 @@ fn constants(
         vertices: water.grid.vertex_count(),
         up: volumes.axes.along(DVec3::Y).as_vec3().to_array(),
         receiver: lit.index as f32,
+        columns: water.grid.columns + 1,
         ..bytemuck::Zeroable::zeroed()
     };
     if let Some(ShadowMap { bounds, map, .. }) = shadows {

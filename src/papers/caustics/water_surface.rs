@@ -14,6 +14,8 @@ use crate::gpu::{Buffer, BufferDesc, Error, Frame, Location, Pass};
 use crate::host_block;
 
 const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
+/// Waves that the shaders' block has room for: the greatest number of `waves`.
+const MOST_WAVES: usize = 64;
 
 host_block! {
     pub struct WaveBlock {
@@ -70,7 +72,7 @@ host_block! {
 /// Shape of the water on the device.
 pub enum Shape {
     Waves {
-        /// [`WaveBlock`]\[count\] of the frame, of one element at least.
+        /// [`WaveBlock`]\[[`MOST_WAVES`]\] of the frame.
         list: Arc<Buffer>,
         /// The waves before the frame's phases; none for flat water.
         waves: Vec<Wave>,
@@ -92,10 +94,10 @@ impl Shape {
     }
 
     fn waves(context: Context<'_>) -> Result<Self, Error> {
-        let waves = waves(context.parameters);
-        let size_bytes = (waves.len().max(1) * size_of::<WaveBlock>()) as u64;
-        let desc = BufferDesc::new(context.name("waves"), size_bytes).usage(STORAGE).location(Location::Upload);
-        Ok(Shape::Waves { list: Buffer::new(context.device(), desc)?, waves })
+        let size_bytes = size_of::<[WaveBlock; MOST_WAVES]>() as u64;
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let desc = BufferDesc::new(context.name("waves"), size_bytes).usage(usage).location(Location::Upload);
+        Ok(Shape::Waves { list: Buffer::new(context.device(), desc)?, waves: waves(context.parameters) })
     }
 
     fn map(context: Context<'_>, middle: DVec2, map: &WaterMap) -> Result<Self, Error> {
@@ -163,9 +165,10 @@ impl WaterSurface {
         let (corner, cell) = (corner.as_vec2().to_array(), cell.as_vec2().to_array());
         let (columns, rows, level_m) = (columns + 1, rows + 1, LEVEL_M as f32);
         if let Shape::Waves { list, waves } = &self.shape {
-            let mut blocks: Vec<WaveBlock> = waves.iter().map(|wave| WaveBlock::new(wave, time_s)).collect();
-            // Flat water has no wave, but a buffer has at least one element.
-            blocks.resize(blocks.len().max(1), bytemuck::Zeroable::zeroed());
+            let mut blocks: [WaveBlock; MOST_WAVES] = bytemuck::Zeroable::zeroed();
+            for (block, wave) in blocks.iter_mut().zip(waves) {
+                *block = WaveBlock::new(wave, time_s);
+            }
             list.write(0, bytemuck::cast_slice(&blocks))?;
         }
         frame.compute(&self.pass, |dispatch| {

@@ -2,7 +2,9 @@
 
 use std::slice::from_ref;
 
-use fumarole::papers::caustics::reference::{LandedTriangle, Photons, correlation, flat_water_intensity, landed_map};
+use fumarole::papers::caustics::reference::{
+    LandedTriangle, Photons, WaterVertex, correlation, flat_water_intensity, landed_map, refract,
+};
 use fumarole::papers::caustics::{Parameters, ReceiverInput, Variant, WaveParameters};
 use fumarole::scene::Light;
 use glam::{DVec2, DVec3};
@@ -182,7 +184,7 @@ fn rays_land_where_exact_ones_do() {
                 for (vertex, found) in oracle.water.iter().zip(drawing.target("landings").chunks_exact(4)) {
                     let incident = oracle.light.direction_at(vertex.position);
                     let index = oracle.medium.refraction_index;
-                    let refracted = fumarole::papers::caustics::reference::refract(incident, vertex.normal, 1.0, index);
+                    let refracted = refract(incident, vertex.normal, 1.0, index);
                     let Some(refracted) = refracted else { continue };
                     let origin = oracle.receiver.to_box(vertex.position);
                     let ray = oracle.receiver.direction_to_box(refracted);
@@ -212,6 +214,48 @@ fn rays_land_where_exact_ones_do() {
     });
 }
 
+/// I_c of eq. 4-18 where the ray of each vertex of the water meets a floor, by the areas that its neighbours bound on the water and
+/// on the floor; negative where the light is turned over.
+fn floor_intensities(oracle: &Oracle, columns: usize) -> Vec<f64> {
+    let up = oracle.receiver.direction_to_box(DVec3::Y);
+    let landing = |vertex: &WaterVertex| {
+        let incident = oracle.light.direction_at(vertex.position);
+        let refracted = refract(incident, vertex.normal, 1.0, oracle.medium.refraction_index).unwrap();
+        let (origin, ray) = (oracle.receiver.to_box(vertex.position), oracle.receiver.direction_to_box(refracted));
+        let distance_m = -origin.dot(up) / ray.dot(up);
+        (origin + ray * distance_m, (-oracle.medium.absorption_per_m * distance_m).exp() / -ray.y)
+    };
+    let landings: Vec<(DVec3, f64)> = oracle.water.iter().map(landing).collect();
+    let count = landings.len();
+    let intensity = |index: usize| {
+        let column = index % columns;
+        let [left, right] = [index - usize::from(column > 0), index + usize::from(column + 1 < columns)];
+        let above = index.checked_sub(columns).unwrap_or(index);
+        let below = if index + columns < count { index + columns } else { index };
+        let across = |place: &dyn Fn(usize) -> DVec3| (place(right) - place(left)).cross(place(below) - place(above));
+        let passing =
+            across(&|i| oracle.water[i].position).dot(oracle.light.direction_at(oracle.water[index].position));
+        passing * landings[index].1 / across(&|i| landings[i].0).y
+    };
+    (0..count).map(intensity).collect()
+}
+
+/// The triangles of the water over the floor under light from overhead, where they land on the device.
+fn landed_triangles(drawing: &Drawing, oracle: &Oracle, intensities: &[f64]) -> Vec<LandedTriangle> {
+    let texel_area_m2 = oracle.receiver.texel_area_m2(drawing.target("caustics-map").len());
+    let landings: Vec<&[f32]> = drawing.target("landings").chunks_exact(4).collect();
+    let triangle = |corners: &[u32]| {
+        let corners = [0, 1, 2].map(|i| corners[i] as usize);
+        let [a, b, c] = corners.map(|i| oracle.water[i].position);
+        let face = (b - a).cross(c - a) / 2.0;
+        let weight = corners.iter().map(|&i| f64::from(landings[i][3])).sum::<f64>() / 3.0;
+        let places = corners.map(|i| DVec2::new(f64::from(landings[i][0]), f64::from(landings[i][1])));
+        let light = face.y.abs() * weight.max(0.0) / texel_area_m2;
+        LandedTriangle { corners: places, light, intensities: corners.map(|i| intensities[i]) }
+    };
+    drawing.grid.indices().chunks_exact(3).map(triangle).collect()
+}
+
 /// On the floor under light from overhead, where every triangle lands whole: the map by the areas that they cover.
 #[test]
 fn triangles_cover_texels_by_area() {
@@ -219,24 +263,60 @@ fn triangles_cover_texels_by_area() {
         let parameters = Parameters { waves: STEEP, map_size: 64, water_triangles: 600, ..parameters(OVERHEAD) };
         let drawing = Drawing::of(device, Variant::Hit, &parameters, &[floor()]);
         let oracle = Oracle::of(&parameters, &OVERHEAD, &floor(), &drawing.grid);
-        let texels = drawing.target("caustics-map");
-        let texel_area_m2 = oracle.receiver.texel_area_m2(texels.len());
-        let landings: Vec<&[f32]> = drawing.target("landings").chunks_exact(4).collect();
-        let triangles = drawing.grid.indices();
-        let landed = triangles.chunks_exact(3).map(|corners| {
-            let corners = [0, 1, 2].map(|i| corners[i] as usize);
-            let [a, b, c] = corners.map(|i| oracle.water[i].position);
-            let face = (b - a).cross(c - a) / 2.0;
-            let weight = corners.iter().map(|&i| f64::from(landings[i][3])).sum::<f64>() / 3.0;
-            let places = corners.map(|i| DVec2::new(f64::from(landings[i][0]), f64::from(landings[i][1])));
-            LandedTriangle { corners: places, light: face.y.abs() * weight.max(0.0) / texel_area_m2 }
-        });
+        let intensities = floor_intensities(&oracle, drawing.grid.columns as usize + 1);
+        let landed = landed_triangles(&drawing, &oracle, &intensities);
         let expected = landed_map(landed, parameters.map_size as usize);
-        let found: Vec<f64> = texels.iter().copied().map(f64::from).collect();
+        let found: Vec<f64> = drawing.target("caustics-map").iter().copied().map(f64::from).collect();
         let (flux, exact) = (found.iter().sum::<f64>(), expected.iter().sum::<f64>());
         let apart = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).sum::<f64>() / exact;
         println!("flux {:.6}, apart {apart:.6}, correlation {:.6}", flux / exact, correlation(&found, &expected));
         assert!((flux / exact - 1.0).abs() < 1e-3 && apart < 5e-3 && correlation(&found, &expected) > 0.9999);
+    });
+}
+
+/// I_c on the floor at a place under gentle water and light from overhead, by the exact water: the ray that lands there is found by
+/// steps, and the areas by differences of its neighbours.
+fn exact_light(surface: &impl Fn(f64, f64) -> WaterVertex, oracle: &Oracle, floor_m: f64, place: DVec2) -> f64 {
+    let landing = |at: DVec2| {
+        let vertex = surface(at.x, at.y);
+        let ray = refract(DVec3::NEG_Y, vertex.normal, 1.0, oracle.medium.refraction_index).unwrap();
+        let distance_m = (floor_m - vertex.position.y) / ray.y;
+        let landed = vertex.position + ray * distance_m;
+        (DVec2::new(landed.x, landed.z), (-oracle.medium.absorption_per_m * distance_m).exp() / -ray.y)
+    };
+    let at = (0..60).fold(place, |at, _| at + place - landing(at).0);
+    assert!(landing(at).0.distance(place) < 1e-9, "the light folds");
+    let step = 1e-4;
+    let moved = |by: DVec2| (landing(at + by).0 - landing(at - by).0) / (2.0 * step);
+    landing(at).1 / moved(DVec2::X * step).perp_dot(moved(DVec2::Y * step)).abs()
+}
+
+/// Where the light does not fold a map of triangles of many texels has the exact light in each, not that of facets.
+#[test]
+fn light_is_smooth_over_triangles() {
+    gpu_test(|device| {
+        let waves = WaveParameters { count: 12, amplitude_m: 0.05, wavelength_m: 2.4 };
+        let parameters = Parameters { waves, map_size: 256, ..parameters(OVERHEAD) };
+        let receiver = floor();
+        let drawing = Drawing::of(device, Variant::Hit, &parameters, from_ref(&receiver));
+        let oracle = Oracle::of(&parameters, &OVERHEAD, &receiver, &drawing.grid);
+        let unknown = vec![0.0; oracle.water.len()];
+        let facets = landed_map(landed_triangles(&drawing, &oracle, &unknown), 256);
+        let surface = waves_surface(&parameters);
+        let texel_m = oracle.receiver.width / 256.0;
+        let (mut count, mut smooth, mut faceted) = (0.0, 0.0, 0.0);
+        for (row, column) in (8..248).step_by(3).flat_map(|row| (8..248).step_by(3).map(move |column| (row, column))) {
+            let aside = (DVec2::new(f64::from(column), f64::from(row)) - 127.5) * texel_m;
+            let place = oracle.receiver.to_world(DVec3::new(aside.x, 0.0, aside.y));
+            let exact = exact_light(&surface, &oracle, place.y, DVec2::new(place.x, place.z));
+            let texel = (256 * row + column) as usize;
+            count += 1.0;
+            smooth += (f64::from(drawing.target("caustics-map")[texel]) / exact - 1.0).powi(2);
+            faceted += (facets[texel] / exact - 1.0).powi(2);
+        }
+        let [smooth, faceted] = [smooth, faceted].map(|sum: f64| (sum / count).sqrt());
+        println!("{} triangles: off by {smooth:.5}, facets by {faceted:.5}", drawing.grid.triangle_count());
+        assert!(smooth < 0.005 && smooth < faceted / 2.0, "{smooth} {faceted}");
     });
 }
 

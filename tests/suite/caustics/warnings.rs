@@ -7,14 +7,20 @@ use std::sync::Arc;
 use fumarole::gpu::{Compiler, Device, ShaderLibrary};
 use fumarole::measure::Paper as _;
 use fumarole::measure::study::Study;
+use fumarole::papers::caustics::reference::intersection_triangle;
 use fumarole::papers::caustics::setup::Setup;
 use fumarole::papers::caustics::{
     Caustics, CullSteps, IntensityRule, Parameters, ReceiverInput, Variant, WaveParameters,
 };
+use fumarole::scene::Light;
 use glam::{Mat4, Vec3};
 
+use super::drawing::Drawing;
+use super::oracle::Oracle;
 use super::scene::{OVERHEAD, floor, parameters};
 use crate::common::gpu_test;
+
+const GRAZING: Light = Light::Parallel { direction: Vec3::new(1.0, -0.3, 0.2), intensity: Vec3::ONE };
 
 fn warnings(device: &Arc<Device>, variant: Variant, parameters: &Parameters, receiver: &ReceiverInput) -> Vec<String> {
     parameters.validate().unwrap();
@@ -47,6 +53,30 @@ fn folded_light_is_warned_of_where_points_are_sampled() {
         assert!(!is_warned(Variant::LevelMap, &Parameters { waves: waves(0.005), ..default.clone() }, &floor()));
         assert!(!is_warned(Variant::LevelMap, &default, &shallow));
         assert!(is_warned(Variant::LevelMap, &Parameters { waves: waves(0.21), ..default }, &shallow));
+    });
+}
+
+/// Slanted light goes farther through the water and is turned more: where it lands the water's cells are turned over, by the oracle's
+/// rays, in water under which light from overhead is not.
+#[test]
+fn slanted_light_that_folds_is_warned_of() {
+    gpu_test(|device| {
+        let waves = WaveParameters { amplitude_m: 0.03, ..Parameters::default().waves };
+        for (light, is_folded) in [(OVERHEAD, false), (GRAZING, true)] {
+            let parameters = Parameters { waves, water_triangles: 40_000, ..parameters(light) };
+            let receiver = floor();
+            let drawing = Drawing::of(device, Variant::LevelMap, &parameters, from_ref(&receiver));
+            let oracle = Oracle::of(&parameters, &light, &receiver, &drawing.grid);
+            // On the plane across the light through the floor's middle.
+            let triangles = oracle.volumes.iter().filter_map(|v| intersection_triangle(v, &oracle.receiver, 0.0));
+            let rises: Vec<f64> =
+                triangles.map(|t| (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).y).collect();
+            let share = rises.iter().filter(|rise| **rise < 0.0).count() as f64 / rises.len() as f64;
+            println!("{light:?}: {share:.4} of the triangles are turned over");
+            assert_eq!(share.min(1.0 - share) > 0.005, is_folded, "{share}");
+            let found = warnings(device, Variant::LevelMap, &parameters, &receiver);
+            assert_eq!(found.iter().any(|line| line.contains("folds light")), is_folded, "{light:?}: {found:?}");
+        }
     });
 }
 

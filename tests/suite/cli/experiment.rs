@@ -215,6 +215,22 @@ fn every_method_is_set_against_photons() {
     caustics("experiment 5-1 --photons 3").run().refused(2, &["--photons"]);
 }
 
+/// Without a number of photons the truth has as many as make its halves agree, which 100 a texel do not where the light hardly folds.
+#[test]
+fn photons_are_as_many_as_make_the_truth_certain() {
+    let out = folder();
+    let alone = "--light 0,-1,0 --amplitude 0.05 --absorption 0.1";
+    let small = "--size 96x64 --water-triangles 2000 --sizes 16,32 --counts 5 --frames 1 --repeat 1 --out .";
+    let program = caustics("experiment accuracy --mesh sphere").args(alone).args(small).inside(out.path());
+    program.on_test_device().run().succeeded();
+    let record = read_json(&out.path().join("caustics-accuracy.json"));
+    let rows = record["table"]["rows"].as_array().unwrap();
+    assert!(!rows.is_empty());
+    for row in rows {
+        assert!(row["halves"].as_f64().unwrap() >= 0.999 && row["photons"].as_u64().unwrap() > 100, "{row}");
+    }
+}
+
 /// Each step drops pairs, all of them together the most, and what is kept of the fragments stays the same.
 #[test]
 fn each_step_of_culling_is_measured() {

@@ -191,6 +191,20 @@ fn a_sweep_keeps_its_finished_rows() {
     assert!(warnings.contains("the sweep was interrupted after") && warnings.contains("of 99 points"), "{warnings}");
 }
 
+/// A table without times too: its rows so far, the plot and the document.
+#[test]
+fn a_table_keeps_its_finished_rows() {
+    let out = folder();
+    let options = "--step 1 --mesh sphere --out . --size 96x64 --map-size 64";
+    let program = || caustics("experiment 5-5").args(options).inside(out.path()).on_test_device();
+    let ready = |id: u32| handles_interrupts(id) && !entries(out.path()).is_empty();
+    interrupt(program, ready).succeeded();
+    assert_eq!(entries(out.path()), [".csv", ".json", ".svg"].map(|ending| format!("caustics-5-5{ending}")));
+    let record = read_json(&out.path().join("caustics-5-5.json"));
+    let rows = record["table"]["rows"].as_array().unwrap();
+    assert!(!rows.is_empty() && rows.len() < 99, "{} rows", rows.len());
+}
+
 #[test]
 fn term_ends_a_run_of_fresh_processes_and_keeps_what_is_finished() {
     let out = folder();

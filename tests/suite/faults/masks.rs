@@ -277,7 +277,9 @@ fn pictures_in_rows_of_workgroups_are_those_in_one() {
         ("burning", format!("{fire} --variant melting")),
         ("burning", format!("{fire} --variant shell --look dissertation")),
         ("caustics", format!("{water} --variant culled")),
+        ("caustics", format!("{water} --variant culled --smart --water-map volcano --water-map-range 0.1")),
         ("caustics", format!("{water} --variant hit")),
+        ("caustics", format!("{water} --variant hit --water-map volcano --water-map-range 0.1")),
         ("lava", format!("{flow} --variant gpu-driven")),
         ("lava", format!("{flow} --variant gpu-driven --simulation sph")),
     ];

@@ -3,6 +3,7 @@
 mod accuracy;
 mod culling;
 mod drawn;
+mod points;
 mod ratios;
 mod slicing;
 mod sweep;
@@ -61,8 +62,13 @@ impl Options {
         if self.sizes.is_empty() { SIZES.to_vec() } else { self.sizes.clone() }
     }
 
+    /// Those to begin with, where none are given.
     fn photons(&self) -> u32 {
         self.photons.unwrap_or(PHOTONS)
+    }
+
+    fn has_photons(&self) -> bool {
+        self.photons.is_some()
     }
 
     /// The errors given, of `accuracy` its own without any.
@@ -89,9 +95,9 @@ pub fn options() -> Vec<Parameter<Options>> {
             .help("Sizes of maps whose accuracy is measured, comma-separated; each divides the greatest")
             .default_text("64,128"),
         Parameter::new("photons", field!(Options.photons))
-            .range(Range::from(1.0).to(100_000.0))
+            .range(Range::from(1.0).to(f64::from(accuracy::MOST_PHOTONS)))
             .help("Photons of each half of the truth for a texel of the greatest map")
-            .default_text("100"),
+            .default_text("100, and more until the halves correlate 0.999"),
         Parameter::new("errors", field!(Options.errors))
             .placeholder("N,N,..")
             .range(Range::from(1.0).to(1000.0))
@@ -239,36 +245,29 @@ fn polygons(context: &mut Context<'_>) -> Result<(), Error> {
 
 fn planes(context: &mut Context<'_>) -> Result<(), Error> {
     let (meshes, mut machine) = open(context)?;
-    let table = slicing::actual_planes(&mut machine, &context.setup, &meshes, &context.options.counts())?;
-    let plot = table.lines("specified", "planes drawn", &["fitted", "kept", "thesis"]);
-    context.publish_plotted(&machine, &table, plot)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    let plot = |table: &ResultTable| table.lines("specified", "planes drawn", &["fitted", "kept", "thesis"]);
+    points::publish(context, &mut machine, &meshes, slicing::ACTUAL_PLANES, slicing::actual_planes, plot)
 }
 
 fn differences(context: &mut Context<'_>) -> Result<(), Error> {
     let (meshes, mut machine) = open(context)?;
     look_from_below(context);
-    let table = slicing::intensity_difference(&mut machine, &context.setup, &meshes, &context.options.counts())?;
-    let plot = table.lines("planes", "mean Luv difference", &["fitted mean", "kept mean", "thesis"]);
-    context.publish_plotted(&machine, &table, plot)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    let plot =
+        |table: &ResultTable| table.lines("planes", "mean Luv difference", &["fitted mean", "kept mean", "thesis"]);
+    points::publish(context, &mut machine, &meshes, slicing::INTENSITY_DIFFERENCE, slicing::intensity_difference, plot)
 }
 
 fn fewer_planes(context: &mut Context<'_>) -> Result<(), Error> {
     let (meshes, mut machine) = open(context)?;
     look_from_below(context);
-    let table = slicing::fewer_planes(&mut machine, &context.setup, &meshes, &context.options.counts())?;
-    let plot = table.lines("planes drawn", "mean Luv difference", &["mean", "p99"]);
-    context.publish_plotted(&machine, &table, plot)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    let plot = |table: &ResultTable| table.lines("planes drawn", "mean Luv difference", &["mean", "p99"]);
+    points::publish(context, &mut machine, &meshes, slicing::FEWER_PLANES, slicing::fewer_planes, plot)
 }
 
 fn memory(context: &mut Context<'_>) -> Result<(), Error> {
     let (meshes, mut machine) = open(context)?;
-    let table = slicing::memory(&mut machine, &context.setup, &meshes, &context.options.counts())?;
-    let plot = table.lines("planes", "maps, bytes", &["maps, bytes"]);
-    context.publish_plotted(&machine, &table, plot)?;
-    machine.check_validation().map_err(Error::from).map(drop)
+    let plot = |table: &ResultTable| table.lines("planes", "maps, bytes", &["maps, bytes"]);
+    points::publish(context, &mut machine, &meshes, slicing::MEMORY, slicing::memory, plot)
 }
 
 /// The histogram of each mesh as a plot; rows of mesh, level and texels.

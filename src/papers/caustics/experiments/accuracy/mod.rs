@@ -1,6 +1,7 @@
 //! Every method's maps against photons in double precision, beside their time: what a user needs to choose one.
 
 mod cases;
+mod certain;
 mod judge;
 mod settings;
 mod smallest;
@@ -11,6 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use serde_json::{Value, json};
 
 use self::cases::{Case, cases};
+pub use self::certain::MOST_PHOTONS;
+use self::certain::more_photons;
 use self::judge::{Found, Verdict, judge};
 use self::settings::{Setting, all_settings, some_settings};
 use self::truth::{FRAME, Surface, Truth, trace};
@@ -39,6 +42,8 @@ struct Row {
     mesh: String,
     setting: Setting,
     verdict: Verdict,
+    /// Of each half of the truth, for a texel of the greatest map.
+    photons: u32,
     frame_ms: f64,
 }
 
@@ -204,12 +209,16 @@ fn measure_trial(
     // Photons first: what the device cannot hold has been refused, and a wrong number of photons shows at once.
     let all = papers.iter().map(Caustics::grid);
     let grid = all.reduce(covering).ok_or_else(|| Error::Input("`counts`: give at least one".into()))?;
-    let truths = truths(context, &setup, &scene, &grid, greatest, watch.interrupted)?;
+    let mut photons = context.options.photons();
+    let interrupted = watch.interrupted;
+    let traced = |photons| truths(&setup, &scene, &grid, (greatest, photons), interrupted);
+    let mut truths = traced(photons)?;
 
-    // Methods in turn, so that drift meets all alike.
+    // Methods in turn, so that drift meets all alike. The photons count as much as all frames.
     let mut frame_ms = vec![Vec::new(); papers.len()];
-    let expected = u64::from(rounds) * papers.len() as u64;
-    let mut done = 0;
+    let mut done = u64::from(rounds) * papers.len() as u64;
+    let expected = 2 * done;
+    (watch.progress)(done, expected);
     for round in 0..rounds {
         for (paper, times) in papers.iter_mut().zip(&mut frame_ms) {
             let sample =
@@ -236,20 +245,36 @@ fn measure_trial(
         let is_it = |setting: &Setting| setting.variant == Variant::LevelMap && setting.map_size == size;
         trial.settings.iter().position(is_it).map(|at| &papers[at])
     };
-    let mut rows = Vec::with_capacity(papers.len());
-    for ((paper, setting), times) in papers.iter().zip(&trial.settings).zip(&frame_ms) {
-        let found = match level_map(setting.map_size).filter(|_| setting.variant == Variant::Volumetric) {
-            Some(level_map) => volumetric(machine, paper, &lit, level_map)?,
-            None => maps(machine, paper, &lit)?,
-        };
-        let verdict = judge(&found, &truths).ok_or_else(|| {
-            let name = setting.name();
-            Error::Input(format!("judging {name} on {}: no texel is lit; take larger `sizes`", trial.mesh.name))
-        })?;
-        let frame_ms = median(times).unwrap_or(f64::NAN);
-        rows.push(Row { case: trial.case.name, mesh: trial.mesh.name.clone(), setting: *setting, verdict, frame_ms });
+    let of_papers = papers.iter().zip(&trial.settings).map(|(paper, setting)| {
+        match level_map(setting.map_size).filter(|_| setting.variant == Variant::Volumetric) {
+            Some(level_map) => volumetric(machine, paper, &lit, level_map),
+            None => maps(machine, paper, &lit),
+        }
+    });
+    let found = of_papers.collect::<Result<Vec<_>, Error>>()?;
+    let judged = |truths: &[Truth]| {
+        let verdicts = found.iter().zip(&trial.settings).map(|(found, setting)| {
+            judge(found, truths).ok_or_else(|| {
+                let name = setting.name();
+                Error::Input(format!("judging {name} on {}: no texel is lit; take larger `sizes`", trial.mesh.name))
+            })
+        });
+        verdicts.collect::<Result<Vec<Verdict>, Error>>()
+    };
+    let mut verdicts = judged(&truths)?;
+    let mut before = None;
+    while !context.options.has_photons() {
+        let halves = verdicts.iter().map(|verdict| verdict.halves).fold(f64::NAN, f64::min);
+        let Some(more) = more_photons(photons, halves, before) else { break };
+        (photons, before) = (more, Some(halves));
+        truths = traced(photons)?;
+        verdicts = judged(&truths)?;
     }
-    Ok(rows)
+    let rows = verdicts.into_iter().zip(&trial.settings).zip(&frame_ms).map(|((verdict, setting), times)| {
+        let frame_ms = median(times).unwrap_or(f64::NAN);
+        Row { case: trial.case.name, mesh: trial.mesh.name.clone(), setting: *setting, verdict, photons, frame_ms }
+    });
+    Ok(rows.collect())
 }
 
 /// The smallest rectangle of water over both meshes of it.
@@ -261,15 +286,13 @@ fn covering(a: Grid, b: Grid) -> Grid {
 
 /// The truth of each receiver under each light, light by light, as the paper has its maps.
 fn truths(
-    context: &Context<'_>,
     setup: &Setup,
     scene: &Scene,
     grid: &Grid,
-    size: u32,
+    (size, photons): (u32, u32),
     interrupted: &AtomicBool,
 ) -> Result<Vec<Truth>, Error> {
     let surface = Surface::of(&setup.parameters, &scene.receivers);
-    let photons = context.options.photons();
     let lights = setup.parameters.lights.iter();
     let mut truths = Vec::new();
     for of in lights.flat_map(|light| (0..scene.receivers.len()).map(move |receiver| (light, receiver))) {
@@ -328,23 +351,18 @@ fn volumetric(
 
 fn table(rows: &[Row]) -> ResultTable {
     let row = |row: &Row| {
-        let Row { case, mesh, setting, verdict, frame_ms } = row;
-        let numbers = [
-            verdict.correlation,
-            verdict.rms,
-            verdict.greatest,
-            verdict.flux,
-            verdict.rms_at_truth,
-            verdict.halves,
-            *frame_ms,
-        ];
+        let Row { case, mesh, setting, verdict, photons, frame_ms } = row;
+        let numbers =
+            [verdict.correlation, verdict.rms, verdict.greatest, verdict.flux, verdict.rms_at_truth, verdict.halves];
         let names = [json!(case), json!(mesh), json!(setting.name()), json!(setting.map_size), setting.planes()];
-        names.into_iter().chain(numbers.map(|number| json!(number))).collect::<Vec<Value>>()
+        let more = [json!(photons), json!(frame_ms)];
+        names.into_iter().chain(numbers.map(|number| json!(number))).chain(more).collect::<Vec<Value>>()
     };
     ResultTable {
         title: "Accuracy: caustics maps against photons in double precision, over the texels that receivers fill. correlation, \
                 rms (of the truth's mean), greatest texel and flux (of the truth's): at the map's own size; rms seen: at the \
-                greatest size, the map interpolated; halves: correlation of the truth's two halves at the map's size",
+                greatest size, the map interpolated; halves: correlation of the truth's two halves at the map's size; photons: \
+                of each half, for a texel of the greatest map",
         columns: &[
             "case",
             "mesh",
@@ -357,6 +375,7 @@ fn table(rows: &[Row]) -> ResultTable {
             "flux",
             "rms seen",
             "halves",
+            "photons",
             "frame ms",
         ],
         rows: rows.iter().map(row).collect(),
