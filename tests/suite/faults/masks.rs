@@ -241,6 +241,10 @@ fn pictures_in_pieces_are_those_in_one() {
         ("caustics", format!("--mesh {object} --variant level-map --camera below"), Some("tree-1")),
         ("terrain", format!("--object {object}@0,0,0,500 --shadows --variant gpu-compute"), Some("tree-1")),
         ("terrain", format!("--object {object}@0,0,0,500 --shadows --variant gpu-fragment"), Some("tree-1")),
+        // What is not cut fits, or is refused.
+        ("lava", "--variant gpu-driven".to_owned(), None),
+        ("burning", "--mesh sphere --triangles 1500 --look dissertation --variant shell".to_owned(), None),
+        ("burning", "--mesh sphere --triangles 1500 --look dissertation --variant solid".to_owned(), None),
     ];
     for (number, (name, scene, cut)) in scenes.iter().enumerate() {
         let paper = PAPERS.iter().find(|paper| paper.name == *name).unwrap();
