@@ -11,7 +11,7 @@
 //! No safe call of this layer breaks a rule of Vulkan. What the types do not rule out is checked before it is recorded;
 //! for a draw that is a few comparisons of integers. Every line is tried under validation: in `tests/suite/gpu` by
 //! `misuse.rs`, `misuse_passes.rs`, `misuse_targets.rs` and `misuse_shaders.rs`, what a build refuses also by
-//! `pass_desc.rs`, reads of nothing by `refusals.rs`; failed waits and devices of lower limits in
+//! `pass_desc.rs`, reads of nothing by `refusals.rs`; failed waits, devices of lower limits and swapchains in
 //! `src/gpu/tests.rs`.
 //!
 //! | a caller cannot | because | checked by |

@@ -99,13 +99,15 @@ pub(super) fn targets(device: &Arc<Device>, desc: &PassDesc, program: &Program) 
     attachments(device, desc)?;
     let Some(fragment) = program.modules.last() else { return Ok(()) };
     stage_limits::attachments(device, desc.name, &program.slots, fragment, desc.targets.colors.len())?;
-    for (at, (target, blend)) in (0..).zip(&desc.targets.colors) {
-        if *blend == Blend::Masked {
-            continue;
-        }
+    outputs(desc, fragment, &desc.targets)
+}
+
+/// Every attachment is written with values of its type, a masked one with those or none.
+fn outputs(desc: &PassDesc, fragment: &ShaderModule, targets: &Targets) -> Result<(), Error> {
+    for (at, (target, blend)) in (0..).zip(&targets.colors) {
         let output = fragment.interface.outputs.iter().find(|output| takes(output, at));
-        let wanted = scalar_of(&target.view);
-        if output.map(|output| output.format.scalar) != wanted {
+        let given = output.map(|output| output.format.scalar);
+        if given != scalar_of(&target.view) && (given.is_some() || *blend != Blend::Masked) {
             let (shader, image) = (&fragment.name, target.view.image().name());
             return Err(desc.problem(format!("shader {shader} writes no value of its type to target {at}, {image}")));
         }
@@ -178,6 +180,7 @@ pub(super) fn counting(
     let Some(fragment) = modules.last() else { return Ok(()) };
     stage_limits::stage(device, desc.name, fragment)?;
     stage_limits::attachments(device, desc.name, &program.slots, fragment, targets.colors.len())?;
+    outputs(desc, fragment, targets)?;
     for binding in &fragment.interface.bindings {
         let block_bytes = binding.block.as_ref().map(|block| block.size_bytes);
         let known = |slot: &Slot| {
@@ -199,7 +202,7 @@ pub(super) fn counting(
     Ok(())
 }
 
-/// What is read through a linear sampler is of a format that the device filters, and no sampler is taken for one that
+/// What is joined with a linear sampler is of a format that the device filters, and no sampler is taken for one that
 /// compares.
 pub(super) fn filters(device: &Device, desc: &PassDesc, pipeline: &Pipeline) -> Result<(), Error> {
     let bound = |kind: BindingKind, binding: Option<u32>| {
@@ -207,20 +210,20 @@ pub(super) fn filters(device: &Device, desc: &PassDesc, pipeline: &Pipeline) -> 
         let slots = slots.filter(move |slot| slot.kind == kind && binding.is_none_or(|at| slot.binding == at));
         slots.filter_map(|slot| desc.resources.iter().find(|(name, _)| *name == slot.name))
     };
-    for filtering in &pipeline.filterings {
-        for (filter, sampler) in bound(BindingKind::Sampler, filtering.sampler) {
-            if filtering.compares {
+    for sampling in &pipeline.samplings {
+        for (filter, sampler) in bound(BindingKind::Sampler, sampling.sampler) {
+            if sampling.compares {
                 return Err(desc.problem(format!("compares with texels through {filter}, which no sampler does")));
             }
             if !matches!(sampler, Resource::Sampler(sampler) if sampler.is_linear) {
                 continue;
             }
-            for (name, texture) in bound(BindingKind::SampledImage, filtering.texture) {
+            for (name, texture) in bound(BindingKind::SampledImage, sampling.texture) {
                 let Resource::Image(view) = texture else { continue };
                 let format = view.image().desc().format;
                 if !device.format_features(format).contains(vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR) {
                     let problem = format!("reads {name} through {filter}, and this device does not filter {format:?}");
-                    return Err(desc.problem(problem));
+                    return Err(desc.problem(format!("{problem}; give a sampler of the nearest texel")));
                 }
             }
         }

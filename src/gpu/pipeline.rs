@@ -12,7 +12,7 @@ use super::program::{Program, stage_infos};
 use super::render_pass::{RenderPass, Targets};
 use super::shader::ShaderModule;
 use crate::shader_build::HostBlock;
-use crate::shader_build::{Filtering, Format, Scalar};
+use crate::shader_build::{Format, Sampling, Scalar};
 
 /// One attribute of a vertex: location, format, byte offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,8 +141,8 @@ pub struct Pipeline {
     device: Arc<Device>,
     /// Stages, descriptor layout and push constants.
     pub program: Arc<Program>,
-    /// Textures that its stages read through samplers' filters.
-    pub(crate) filterings: Vec<Filtering>,
+    /// Textures that its stages join with samplers.
+    pub(crate) samplings: Vec<Sampling>,
 }
 
 impl Pipeline {
@@ -238,8 +238,8 @@ impl Pipeline {
         let raw = made.map_err(|(_, result)| result).context("creating the pipeline of pass", pass)?[0];
         device.live().add(Kind::Pipeline);
         device.name(raw, pass);
-        let filterings = modules.iter().flat_map(|module| module.interface.filterings.iter().copied()).collect();
-        Ok(Arc::new(Pipeline { raw, device: device.clone(), program: program.clone(), filterings }))
+        let samplings = modules.iter().flat_map(|module| module.interface.samplings.iter().copied()).collect();
+        Ok(Arc::new(Pipeline { raw, device: device.clone(), program: program.clone(), samplings }))
     }
 }
 

@@ -1,6 +1,8 @@
 //! Tests that need the layer's inside: a barrier left out is reported, and every shader makes a pipeline.
 
 mod limits;
+#[cfg(feature = "window")]
+mod swapchains;
 
 use std::cell::RefCell;
 use std::env;

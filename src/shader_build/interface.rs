@@ -26,8 +26,8 @@ pub struct Interface {
     pub writes_point_size: bool,
     /// Every resource that the binary declares, by ascending set and binding.
     pub bindings: Vec<Binding>,
-    /// Textures that are read through samplers' filters.
-    pub filterings: Vec<Filtering>,
+    /// Textures that are joined with samplers; fetches need none.
+    pub samplings: Vec<Sampling>,
     /// Block of push constants, if there is one.
     pub push_constants: Option<Block>,
     /// Located inputs by ascending location; built-ins are not listed.
@@ -55,10 +55,9 @@ pub struct Binding {
     pub image: Option<ImageShape>,
 }
 
-/// A texture read through a sampler's filter: their bindings in set 0, or `None` for a function's argument, which may be
-/// any of them.
+/// A texture joined with a sampler: their bindings in set 0, or `None` for a function's argument, which may be any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Filtering {
+pub struct Sampling {
     /// Binding of the texture.
     pub texture: Option<u32>,
     /// Binding of the sampler.

@@ -77,7 +77,7 @@ pub use error::{DirectiveProblem, Error, InterfaceMismatch, ReflectError};
 pub use exceptions::{NAGA_EXCEPTIONS, check_exceptions};
 pub use include::Source;
 pub use interface::{
-    Binding, BindingKind, Block, Filtering, Format, ImageFormat, ImageShape, Interface, Location, Member, Scalar,
+    Binding, BindingKind, Block, Format, ImageFormat, ImageShape, Interface, Location, Member, Sampling, Scalar,
 };
 pub use layout::{HostBlock, LayoutMismatch};
 pub use spirv::{capabilities, instruction_count};

@@ -31,7 +31,7 @@ impl Interface {
                 lies_in_rows: lies_in_rows(words),
                 shared_bytes: spirv::shared_bytes(words),
                 writes_point_size: spirv::writes_point_size(words),
-                filterings: spirv::filterings(words),
+                samplings: spirv::samplings(words),
                 ..read_entry_point(entry_point)?
             }),
             other => Err(refuse(&format!("it has {} entry points; compile one stage a binary", other.len()))),
@@ -61,7 +61,7 @@ fn read_entry_point(entry_point: &EntryPoint) -> Result<Interface, ReflectError>
         invocations: read_operands(entry_point, ExecutionMode::Invocations).map(|[invocations]| invocations),
         writes_point_size: false,
         bindings: Vec::new(),
-        filterings: Vec::new(),
+        samplings: Vec::new(),
         push_constants: None,
         inputs: Vec::new(),
         outputs: Vec::new(),

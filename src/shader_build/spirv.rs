@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use spirq::spirv::{BuiltIn, Decoration, Op, StorageClass};
 
-use super::interface::Filtering;
+use super::interface::Sampling;
 
 /// Words of a binary before its first instruction.
 pub(super) const HEADER_WORDS: usize = 5;
@@ -76,15 +76,8 @@ pub(super) fn writes_point_size(words: &[u32]) -> bool {
     false
 }
 
-/// Textures that are filtered, each with its sampler, by their bindings in set 0. Fetches use no sampler.
-pub(super) fn filterings(words: &[u32]) -> Vec<Filtering> {
-    const FILTERS: [Op; 5] = [
-        Op::ImageSampleImplicitLod,
-        Op::ImageSampleExplicitLod,
-        Op::ImageSampleProjImplicitLod,
-        Op::ImageSampleProjExplicitLod,
-        Op::ImageGather,
-    ];
+/// Textures that are joined with samplers, by their bindings in set 0.
+pub(super) fn samplings(words: &[u32]) -> Vec<Sampling> {
     const COMPARES: [Op; 5] = [
         Op::ImageSampleDrefImplicitLod,
         Op::ImageSampleDrefExplicitLod,
@@ -92,11 +85,9 @@ pub(super) fn filterings(words: &[u32]) -> Vec<Filtering> {
         Op::ImageSampleProjDrefExplicitLod,
         Op::ImageDrefGather,
     ];
-    let is_of = |op: u32, ops: &[Op]| ops.iter().any(|&one| op == one as u32);
     let mut bindings = HashMap::new();
     let mut loads = HashMap::new();
-    let mut joined = HashMap::new();
-    let mut found = Vec::new();
+    let mut joined: Vec<(u32, Sampling)> = Vec::new();
     for (op, operands) in instructions(words) {
         match *operands {
             [variable, decoration, binding]
@@ -107,19 +98,22 @@ pub(super) fn filterings(words: &[u32]) -> Vec<Filtering> {
             [_, value, variable, ..] if op == Op::Load as u32 => _ = loads.insert(value, variable),
             [_, value, texture, sampler] if op == Op::SampledImage as u32 => {
                 let binding = |value| loads.get(&value).and_then(|variable| bindings.get(variable)).copied();
-                joined.insert(value, (binding(texture), binding(sampler)));
+                let (texture, sampler) = (binding(texture), binding(sampler));
+                joined.push((value, Sampling { texture, sampler, compares: false }));
             }
-            [_, _, value, ..] if is_of(op, &FILTERS) || is_of(op, &COMPARES) => {
-                let Some(&(texture, sampler)) = joined.get(&value) else { continue };
-                let one = Filtering { texture, sampler, compares: is_of(op, &COMPARES) };
-                if !found.contains(&one) {
-                    found.push(one);
-                }
+            [_, _, value, ..] if COMPARES.iter().any(|&compares| op == compares as u32) => {
+                joined.iter_mut().filter(|(id, _)| *id == value).for_each(|(_, one)| one.compares = true);
             }
             _ => {}
         }
     }
-    found
+    let mut different = Vec::new();
+    for (_, one) in joined {
+        if !different.contains(&one) {
+            different.push(one);
+        }
+    }
+    different
 }
 
 /// Bytes of the variables that a workgroup shares, laid out by std430 as Vulkan counts them: the largest alignment first.

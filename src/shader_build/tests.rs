@@ -346,12 +346,12 @@ fn what_a_workgroup_shares_is_counted_as_std430_lays_it_out() {
 }
 
 #[test]
-fn filters_and_sizes_of_points_are_told_from_fetches_and_declarations() {
-    let between = |texture, sampler| Filtering { texture: Some(texture), sampler: Some(sampler), compares: false };
-    // Both fetches and filters; fetches alone; neither.
-    assert_eq!(reflect_embedded("test/filter.comp").filterings, [between(0, 1)]);
-    assert_eq!(reflect_embedded("caustics/coverage.frag").filterings, []);
-    assert_eq!(reflect_embedded("test/sum.comp").filterings, []);
+fn textures_with_samplers_and_sizes_of_points_are_told() {
+    let between = |texture, sampler| Sampling { texture: Some(texture), sampler: Some(sampler), compares: false };
+    assert_eq!(reflect_embedded("test/filter.comp").samplings, [between(0, 1)]);
+    assert_eq!(reflect_embedded("caustics/coverage.frag").samplings, [between(0, 1)]);
+    // Its texture is fetched from without a sampler.
+    assert_eq!(reflect_embedded("test/layers.frag").samplings, []);
     for (name, writes) in [("test/splat-point.vert", true), ("test/asymmetric.vert", false), ("test/strip.geom", false)]
     {
         assert_eq!(reflect_embedded(name).writes_point_size, writes, "{name}");

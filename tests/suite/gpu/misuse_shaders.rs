@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 use ash::vk;
 use fumarole::gpu::{
-    Blend, Compiler, Device, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Sampler, ShaderLibrary, Topology,
+    Blend, Compiler, DepthTest, Device, Error, Image, ImageDesc, ImageView, Load, Mode, Pass, Sampler, ShaderLibrary,
+    Topology,
 };
 
 use super::fixtures::{BLACK, Vertex, color_target, paint, paint_pass, run, shaders, storage_buffer, texels};
@@ -27,6 +28,7 @@ pub fn replaced(device: &Arc<Device>, shaders: &[(&str, &str)]) -> Result<Shader
 
 const FULLSCREEN: &str = "common/fullscreen.vert";
 const FRAGMENT: &str = "test/constant.frag";
+const COUNTING: &str = "common/empty.frag";
 const COMPUTE: &str = "test/advance.comp";
 
 /// A 4 x 4 target that holds 256 x row + column.
@@ -37,6 +39,9 @@ fn numbers(device: &Arc<Device>) -> Arc<ImageView> {
     run(device, Mode::Plain, |frame| frame.graphics(&pass, |draw| _ = draw.vertices(3))).unwrap();
     numbers
 }
+
+const UNFILTERED: &str = "pass look: reads numbers through between, and this device does not filter R32_UINT; give a sampler of \
+                          the nearest texel";
 
 const READER: &str = "layout(set = 0, binding = 0) uniform utexture2D numbers;\n\
                       layout(set = 0, binding = 1) uniform sampler between;\n";
@@ -50,10 +55,11 @@ fn textures_are_filtered_where_the_device_does() {
         // The names of a function's arguments are no bindings: each stands for all.
         let handed = "uint look(utexture2D t, sampler s) { return texture(usampler2D(t, s), vec2(0.9)).x; }\n\
                       void main() { number = look(numbers, between); }";
-        let refused = "pass look: reads numbers through between, and this device does not filter R32_UINT";
         for (main, filter, is_refused) in [
             (filtered, vk::Filter::LINEAR, true),
             (filtered, vk::Filter::NEAREST, false),
+            // A fetch is not filtered, and yet joined with the sampler.
+            (fetched, vk::Filter::LINEAR, true),
             (fetched, vk::Filter::NEAREST, false),
             (handed, vk::Filter::LINEAR, true),
             (handed, vk::Filter::NEAREST, false),
@@ -64,7 +70,7 @@ fn textures_are_filtered_where_the_device_does() {
             let look = Pass::graphics("look", "", FULLSCREEN, FRAGMENT).color(&target, Load::Discard, Blend::Replace);
             let look = look.with("numbers", &numbers).with("between", &sampler).build(&library);
             if is_refused {
-                assert_eq!(message(look), refused, "{main}");
+                assert_eq!(message(look), UNFILTERED, "{main}");
                 continue;
             }
             let look = look.unwrap();
@@ -73,7 +79,7 @@ fn textures_are_filtered_where_the_device_does() {
             // Rebinding takes the check along.
             if main == filtered {
                 let smooth = Sampler::new(device, "smooth", vk::Filter::LINEAR).unwrap();
-                assert_eq!(message(look.rebind().with("between", &smooth).build(&library)), refused);
+                assert_eq!(message(look.rebind().with("between", &smooth).build(&library)), UNFILTERED);
             }
         }
     });
@@ -93,6 +99,39 @@ fn no_sampler_is_taken_for_one_that_compares() {
         let look = look.with("seen", &seen).with("nearer", &sampler);
         let expected = "pass look: compares with texels through nearer, which no sampler does";
         assert_eq!(message(look.build(&replaced(device, &[(FRAGMENT, text)]).unwrap())), expected);
+    });
+}
+
+#[test]
+fn counting_draws_filter_what_the_device_does_and_read_what_the_pass_binds() {
+    gpu_test(|device| {
+        let (numbers, target) = (numbers(device), color_target(device, "target", vk::Format::R32_UINT, 4, 4));
+        let extension = "#extension GL_EXT_samplerless_texture_functions : require\n";
+        // It declares the sampler that only the counting draws join with the texture.
+        let own = format!(
+            "{extension}{READER}layout(location = 0) out uint number;\n\
+             void main() {{ number = texelFetch(numbers, ivec2(0), 0).x; }}\n"
+        );
+        let build = |counting: &str, filter| {
+            let library = replaced(device, &[(FRAGMENT, &own), (COUNTING, counting)]).unwrap();
+            let sampler = Sampler::new(device, "sampler", filter).unwrap();
+            let pass = Pass::graphics("look", "", FULLSCREEN, FRAGMENT).color(&target, Load::Discard, Blend::Replace);
+            let pass = pass.with("numbers", &numbers).with("between", &sampler);
+            pass.counting(COUNTING, DepthTest::LessReadOnly).build(&library)
+        };
+        let looks = |at: &str| format!("void main() {{ if ({at} == 0u) {{ discard; }} }}\n");
+        let filters = format!("{READER}{}", looks("texture(usampler2D(numbers, between), vec2(0.5)).x"));
+        assert_eq!(message(build(&filters, vk::Filter::LINEAR)), UNFILTERED);
+        let array = "layout(set = 0, binding = 0) uniform utexture2DArray numbers;\n";
+        let layered = format!("{extension}{array}{}", looks("texelFetch(numbers, ivec3(0), 0).x"));
+        let expected = "pass look: shader common/empty.frag reads numbers, which the pass's own does not read so";
+        assert_eq!(message(build(&layered, vk::Filter::LINEAR)), expected);
+        let written = "layout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n";
+        let expected = "pass look: shader common/empty.frag writes no value of its type to target 0, target";
+        assert_eq!(message(build(written, vk::Filter::LINEAR)), expected);
+        let look = build(&filters, vk::Filter::NEAREST).unwrap();
+        run(device, Mode::Plain, |frame| frame.graphics(&look, |draw| _ = draw.vertices(3).counting(true).vertices(3)))
+            .unwrap();
     });
 }
 
@@ -187,12 +226,13 @@ fn stages_keep_to_the_limits_of_the_device() {
         let most = limits.max_compute_shared_memory_size;
         beyond(compute(&shared), "bytes that a workgroup shares", 16 * u64::from(count), most);
 
-        let target = color_target(device, "target", vk::Format::R8G8B8A8_UNORM, 4, 4);
+        let [target, other] =
+            ["target", "other"].map(|name| color_target(device, name, vk::Format::R8G8B8A8_UNORM, 4, 4));
         let corners = storage_buffer(device, "corners", &[0.0; 15]);
         let draw = |vertex: &str, fragment: &str| {
             let library = replaced(device, &[("test/grid.vert", vertex), (FRAGMENT, fragment)]).unwrap();
             let pass = Pass::graphics("draw", "", "test/grid.vert", FRAGMENT).vertices::<Vertex>(&corners);
-            pass.color(&target, BLACK, Blend::Replace).build(&library)
+            pass.color(&target, BLACK, Blend::Replace).color(&other, BLACK, Blend::Replace).build(&library)
         };
         let vertex = |input: u32, output: u32| {
             format!(
@@ -206,6 +246,7 @@ fn stages_keep_to_the_limits_of_the_device() {
                  layout(location = {output}) out vec4 more;\nvoid main() {{ target = colour; more = colour; }}\n"
             )
         };
+        draw(&vertex(0, 0), &fragment(0, 1)).unwrap();
         let most = limits.max_vertex_input_attributes;
         let what = "count of locations of vertex attributes";
         beyond(draw(&vertex(most, 0), &fragment(0, 1)), what, u64::from(most) + 1, most);

@@ -54,7 +54,7 @@ fn integers_are_cleared_to_integers() {
         let library = shaders(device);
         let clear = |format, color| -> Result<Arc<ImageView>, Error> {
             let target = color_target(device, "target", format, 2, 1);
-            let pass = Pass::graphics("clear", "", "common/fullscreen.vert", "test/texels.frag");
+            let pass = Pass::graphics("clear", "", "common/fullscreen.vert", "common/empty.frag");
             let pass = pass.color(&target, Load::Clear(color), Blend::Masked).build(&library)?;
             run(device, Mode::Plain, |frame| frame.graphics(&pass, |_| {}))?;
             Ok(target)
@@ -63,6 +63,8 @@ fn integers_are_cleared_to_integers() {
         assert_eq!(texels::<u32>(device, &counted), [7; 2]);
         let short = clear(vk::Format::R16_UINT, [65535.0, 0.0, 0.0, 0.0]).unwrap();
         assert_eq!(texels::<u16>(device, &short), [u16::MAX; 2]);
+        let signed = clear(vk::Format::R32G32B32A32_SINT, [-7.0, 1.0, 0.0, -1.0]).unwrap();
+        assert_eq!(texels::<[i32; 4]>(device, &signed), [[-7, 1, 0, -1]; 2]);
         for (format, value) in [
             (vk::Format::R32_UINT, -1.0),
             (vk::Format::R32_UINT, 0.5),
