@@ -184,7 +184,7 @@ fn median(loads: &[LoadParts], part: impl Fn(&LoadParts) -> f64) -> f64 {
 /// cache of meshes.
 ///
 /// # Panics
-/// Where a file is read at less than [`LEAST_READ`].
+/// A file is read at less than [`LEAST_READ`].
 fn large(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a folder for the files");
     let ball = shapes::sphere(1_000, 501);

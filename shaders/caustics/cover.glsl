@@ -1,4 +1,4 @@
-// The part of a texel that a triangle covers, by exact area (section 6.3).
+// The part of a texel that a triangle covers, by exact area (section 6.3). It joins ranges as the pyramid does.
 
 // Least width of a triangle in texels: a thinner one has no area that can be told from rounding.
 const float LEAST_WIDTH = 0.1;
@@ -72,10 +72,6 @@ struct Row {
 // The light left of x in the row: of the sign opposite to the area's, where `light` is not divided by it.
 float left_of(Row row, float x) {
     return left_of(row.p, x) + left_of(row.q, x) + left_of(row.r, x);
-}
-
-vec2 joined(vec2 one, vec2 other) {
-    return vec2(min(one.x, other.x), max(one.y, other.y));
 }
 
 // The least and greatest x of the sides that pass a row; the least is above the greatest where none does.

@@ -25,7 +25,7 @@ layout(std430, set = 0, binding = 2) readonly buffer Steps {
 } steps;
 
 layout(std430, set = 0, binding = 3) readonly buffer Pyramid {
-    uint list[];
+    vec2 list[];
 } pyramid;
 
 layout(std430, set = 0, binding = 4) readonly buffer Cells {
@@ -87,7 +87,7 @@ vec2 heights_within(Rectangle texels, float lower, float upper) {
     texels.to >>= level;
     for (uint i = 0u; i < 4u; i++) {
         uvec2 at = uvec2((i & 1u) == 0u ? texels.from.x : texels.to.x, i < 2u ? texels.from.y : texels.to.y);
-        vec2 range = heights_of(pyramid.list[first + at.y * row_of_entries(cull.map_size) + at.x], cull.top);
+        vec2 range = pyramid.list[first + at.y * row_of_entries(cull.map_size) + at.x];
         if (range.x < upper && range.y >= lower) {
             found = vec2(min(found.x, range.x), max(found.y, range.y));
         }

@@ -33,7 +33,7 @@ layout(set = 0, binding = 1) uniform sampler nearest;
 #endif
 
 layout(std430, set = 0, binding = 3) readonly buffer Pyramid {
-    uint list[];
+    vec2 list[];
 } pyramid;
 
 // Whole vectors: where a load costs by its number, as on a CPU, the members one by one would take longer.
@@ -119,9 +119,9 @@ vec2 heights_between(vec2 one, vec2 other) {
     climb(one, other, 1u, from, to, at);
     uint first = at + from.y * row_of_entries(plane.map_size);
     uint last = at + to.y * row_of_entries(plane.map_size);
-    uint upper = joined(pyramid.list[first + from.x], pyramid.list[first + to.x]);
-    uint lower = joined(pyramid.list[last + from.x], pyramid.list[last + to.x]);
-    return heights_of(joined(upper, lower), plane.half_height);
+    vec2 upper = joined(pyramid.list[first + from.x], pyramid.list[first + to.x]);
+    vec2 lower = joined(pyramid.list[last + from.x], pyramid.list[last + to.x]);
+    return joined(upper, lower);
 }
 
 // The same from up to sixteen entries of a finer level: for what must not be taken for more than it is.
@@ -130,13 +130,13 @@ vec2 heights_within(vec2 one, vec2 other) {
     uvec2 to;
     uint at;
     climb(one, other, 3u, from, to, at);
-    uint entry = NOTHING;
+    vec2 range = NOTHING;
     for (uint y = from.y; y <= to.y; y++) {
         for (uint x = from.x; x <= to.x; x++) {
-            entry = joined(entry, pyramid.list[at + y * row_of_entries(plane.map_size) + x]);
+            range = joined(range, pyramid.list[at + y * row_of_entries(plane.map_size) + x]);
         }
     }
-    return heights_of(entry, plane.half_height);
+    return range;
 }
 
 // Where a ray is at a height, in texels.

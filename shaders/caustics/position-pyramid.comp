@@ -11,7 +11,7 @@ layout(set = 0, binding = 0) uniform texture2D position_map;
 layout(set = 0, binding = 1) uniform sampler nearest;
 
 layout(std430, set = 0, binding = 2) buffer Pyramid {
-    uint list[];
+    vec2 list[];
 } pyramid;
 
 layout(std430, set = 0, binding = 3) buffer Heights {
@@ -22,7 +22,6 @@ layout(push_constant) uniform Level {
     uint number; // from 1
     uint count; // of levels
     uint map_size; // texels a side
-    float half_height; // of the box, metres
 } level;
 
 // Entries a side.
@@ -30,28 +29,28 @@ uint size_of(uint number) {
     return (level.map_size + (1u << number) - 1u) >> number;
 }
 
-uint texel(uint x, uint y) {
+vec2 texel(uint x, uint y) {
     uint last = level.map_size - 1u;
     x = min(x, last);
     y = min(y, last);
     float height = texelFetch(sampler2D(position_map, nearest), ivec2(uvec2(x, y)), 0).r;
     heights.list[y * level.map_size + x] = height;
-    return height > -1.0e29 ? entry_of(height, level.half_height) : NOTHING;
+    return height > -1.0e29 ? vec2(height) : NOTHING;
 }
 
 // An entry of the finest level.
-uint finest(uint x, uint y) {
+vec2 finest(uint x, uint y) {
     uint last = size_of(1u) - 1u;
     x = min(x, last);
     y = min(y, last);
-    uint entry = joined(joined(texel(2u * x, 2u * y), texel(2u * x + 1u, 2u * y)),
+    vec2 entry = joined(joined(texel(2u * x, 2u * y), texel(2u * x + 1u, 2u * y)),
         joined(texel(2u * x, 2u * y + 1u), texel(2u * x + 1u, 2u * y + 1u)));
     pyramid.list[y * row_of_entries(level.map_size) + x] = entry;
     return entry;
 }
 
 // An entry of the level under this one.
-uint finer(uint x, uint y) {
+vec2 finer(uint x, uint y) {
     uint last = size_of(level.number - 1u) - 1u;
     uint first = first_entry(level.number - 1u, level.count, level.map_size);
     return pyramid.list[first + min(y, last) * row_of_entries(level.map_size) + min(x, last)];
@@ -66,7 +65,7 @@ void main() {
     }
     uint x = 2u * at.x;
     uint y = 2u * at.y;
-    uint entry = NOTHING;
+    vec2 entry = NOTHING;
     if (is_finest) {
         entry = joined(joined(finest(x, y), finest(x + 1u, y)), joined(finest(x, y + 1u), finest(x + 1u, y + 1u)));
     } else {

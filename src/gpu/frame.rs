@@ -128,7 +128,7 @@ impl Frame<'_> {
         if self.interrupted.is_some_and(|interrupted| interrupted.load(Ordering::Relaxed)) {
             return Err(Error::Interrupted);
         }
-        self.go_on_after(pass.info().name)
+        self.go_on()
     }
 
     /// Makes room for a dispatch of `pass`: where this submission would hold more `work` than `most`, what is recorded is
@@ -308,14 +308,14 @@ impl Frame<'_> {
         if last == next.name {
             return Ok(());
         }
-        self.finish(Some(at))?;
-        self.go_on_after(last)
+        // Until the rest of the frame has begun, nothing may be recorded.
+        self.failed = Some(last);
+        self.submit(Some(at))?;
+        self.go_on()
     }
 
-    /// Begins the rest of the frame, behind a submission that ended with this pass.
-    fn go_on_after(&mut self, last: &'static str) -> Result<(), Error> {
-        // Until it has begun, nothing may be recorded.
-        self.failed = Some(last);
+    /// Begins the rest of the frame, behind a submission that was waited for.
+    fn go_on(&mut self) -> Result<(), Error> {
         self.submission += 1;
         self.begin()?;
         self.failed = None;

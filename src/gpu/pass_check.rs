@@ -202,7 +202,7 @@ pub(super) fn counting(
     Ok(())
 }
 
-/// What is joined with a linear sampler is of a format that the device filters, and no sampler is taken for one that
+/// An image that is joined with a linear sampler is of a format that the device filters, and no sampler is taken for one that
 /// compares.
 pub(super) fn filters(device: &Device, desc: &PassDesc, pipeline: &Pipeline) -> Result<(), Error> {
     let bound = |kind: BindingKind, binding: Option<u32>| {

@@ -4,7 +4,7 @@
 use std::ffi::{CStr, c_void};
 use std::num::NonZeroU32;
 use std::ptr::NonNull;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use ash::{ext, khr, vk};
 use raw_window_handle::{
@@ -95,9 +95,8 @@ pub struct Surface {
     pub(super) raw: vk::SurfaceKHR,
     pub(super) calls: khr::surface::Instance,
     instance: Arc<Instance>,
-    /// The swapchain that has it, null without one. Held for the calls that make and destroy swapchains, which want the
-    /// surface for themselves.
-    pub(super) swapchain: Mutex<vk::SwapchainKHR>,
+    /// The swapchain that has it, null without one.
+    swapchain: Mutex<vk::SwapchainKHR>,
     // The window outlives its surface.
     _window: Arc<dyn Send + Sync>,
 }
@@ -134,12 +133,19 @@ impl Surface {
         &self.instance
     }
 
+    /// Its swapchain, for one thread at a time: calls that make swapchains want the surface for themselves, even from those
+    /// that ask about it.
+    pub(super) fn lock(&self) -> MutexGuard<'_, vk::SwapchainKHR> {
+        self.swapchain.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
     /// The devices that can present to it.
     ///
     /// # Errors
     /// Any error of Vulkan.
     pub fn devices(&self) -> Result<Vec<PhysicalDevice>, Error> {
         let mut able = Vec::new();
+        let _alone = self.lock();
         for physical in PhysicalDevice::enumerate(&self.instance)? {
             let Some((family, _)) = physical.queue else { continue };
             if !physical.offers(&self.instance, khr::swapchain::NAME) {

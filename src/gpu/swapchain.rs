@@ -5,7 +5,7 @@ mod plan;
 mod sync;
 
 use std::mem;
-use std::sync::{Arc, MutexGuard};
+use std::sync::Arc;
 
 use ash::vk;
 
@@ -93,6 +93,9 @@ impl Swapchain {
         if !Arc::ptr_eq(surface.instance(), device.instance()) {
             return Err(Error::Foreign { pass: "present".into(), object: "the surface".into() });
         }
+        // Vulkan takes over what was made of the same parents alone; any other goes before, and lets go of its window.
+        let old = old.filter(|old| Arc::ptr_eq(&old.device, device) && Arc::ptr_eq(&old.surface, surface));
+        let mut current = surface.lock();
         let family = device.queue_family;
         // SAFETY: surface and device belong to the same living instance, as checked, and the family is the device's.
         let presents = unsafe { surface.calls.get_physical_device_surface_support(physical, family, surface.raw) }
@@ -101,8 +104,6 @@ impl Swapchain {
             let problem = format!("presenting to it from {}", device.physical().name);
             return Err(Error::Unsupported { object: "the window".into(), problem });
         }
-        // Vulkan takes over what was made of the same parents alone; any other goes before, and lets go of its window.
-        let old = old.filter(|old| Arc::ptr_eq(&old.device, device) && Arc::ptr_eq(&old.surface, surface));
         let (capabilities, formats, modes);
         // SAFETY: surface and device belong to the same living instance, as checked.
         unsafe {
@@ -124,7 +125,6 @@ impl Swapchain {
         // What may fail comes before there is a swapchain, which would be nobody's then.
         let (acquired, commands) = (Semaphore::new(device, "acquired")?, Commands::new(device, "present")?);
         let old_raw = old.as_ref().map_or_else(vk::SwapchainKHR::null, |old| old.raw);
-        let mut current = owner(surface);
         if *current != old_raw {
             let problem = "a second swapchain at a time: give the first as the old one, or drop it".into();
             return Err(Error::Unsupported { object: "the window".into(), problem });
@@ -322,11 +322,6 @@ unsafe fn barrier(
     unsafe { raw.cmd_pipeline_barrier2(commands, &info) };
 }
 
-/// The swapchain that has the surface.
-fn owner(surface: &Surface) -> MutexGuard<'_, vk::SwapchainKHR> {
-    surface.swapchain.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
-}
-
 /// The calls of swapchains of a device that was opened for them.
 fn presenting(device: &Device) -> Result<&Presenting, Error> {
     device.presenting.as_ref().ok_or_else(|| Error::Unsupported {
@@ -352,7 +347,7 @@ impl Drop for Swapchain {
                 slot.leak();
             }
         }
-        let mut current = owner(&self.surface);
+        let mut current = self.surface.lock();
         if let Some(presenting) = &self.device.presenting {
             // SAFETY: the device is idle or lost, and nothing else has the swapchain.
             unsafe { presenting.swapchains.destroy_swapchain(self.raw, None) };

@@ -62,7 +62,7 @@ pub struct Sampling {
     pub texture: Option<u32>,
     /// Binding of the sampler.
     pub sampler: Option<u32>,
-    /// What is read is the outcome of a comparison with texels.
+    /// A read gives the outcome of a comparison with texels.
     pub compares: bool,
 }
 

@@ -267,7 +267,7 @@ impl Application {
             self.failure = failure;
         }
         if let Some(open) = &mut self.open {
-            let size = open.window.inner_size().to_logical::<f32>(open.window.scale_factor());
+            let size = open.window.inner_size().to_logical::<f32>(open.scale);
             // The size of a display is no window's.
             let is_window = open.window.fullscreen().is_none();
             open.interface.remember(if is_window { (size.width, size.height) } else { (0.0, 0.0) });
@@ -338,7 +338,8 @@ impl Open {
         self.needs_layout = false;
         let started = Instant::now();
         self.laid_out = Some(started);
-        let input = self.input.take_egui_input(&self.window);
+        let mut input = self.input.take_egui_input(&self.window);
+        super::scale::correct(&mut input, self.scale, self.window.scale_factor());
         let interface = &mut self.interface;
         let output = self.context.run(input, |context| interface.show(context));
         self.screen.update(&output.textures_delta)?;

@@ -426,13 +426,13 @@ impl Interface {
         }
         match self.shown {
             Shown::Target => target_view::show(ui, self),
-            Shown::Picture if self.session.side_count() > 1 => compare::show(ui, self),
+            Shown::Picture if self.session.shows_both() => compare::show(ui, self),
             Shown::Picture => picture_view::show(ui, self),
         }
     }
 }
 
-/// Which pictures a frame has, and how large they are.
+/// The pictures of a frame, and their sizes.
 fn sizes(frame: &Frame) -> impl PartialEq + use<> {
     let size = |picture: Option<&Picture>| picture.map(|picture| (picture.width, picture.height));
     let large = frame.sides.iter().map(|side| side.picture.as_ref());

@@ -37,6 +37,7 @@ mod pictures;
 mod program;
 pub mod protocol;
 mod reduction;
+mod scale;
 mod screen;
 mod sent;
 pub mod session;

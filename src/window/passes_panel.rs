@@ -130,7 +130,10 @@ fn show_table(ui: &mut Ui, face: &mut Interface, passes: &[PassInfo]) {
             }
             match own.and_then(|times| times.share) {
                 Some(share) => ui.add(
-                    egui::ProgressBar::new(share as f32).desired_width(64.0).text(format!("{:.1} %", share * 100.0)),
+                    egui::ProgressBar::new(share as f32)
+                        .desired_width(64.0)
+                        .corner_radius(2.0)
+                        .text(format!("{:.1} %", share * 100.0)),
                 ),
                 None => ui.label(""),
             };
@@ -181,7 +184,7 @@ fn whole(times: &PassTimes) -> Option<f64> {
     }
 }
 
-/// What a pass is and touches, under the pointer.
+/// Description of a pass and its resources, under the pointer.
 fn explain(ui: &mut Ui, pass: &PassInfo) {
     let list = |names: &[String]| if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
     ui.set_max_width(ui.spacing().tooltip_width);
@@ -199,7 +202,7 @@ pub fn milliseconds(value: Option<f64>) -> String {
 
 /// Frame times apart from the interface's own.
 fn show_sum(ui: &mut Ui, face: &mut Interface) {
-    for (index, side) in face.session.times.iter().enumerate() {
+    for (index, side) in face.session.times.iter().enumerate().filter(|(_, side)| side.samples > 0) {
         // From 0 on: a sum of nothing is -0.
         let sum = side.passes.iter().filter_map(|pass| pass.gpu_ms).fold(0.0, |sum, ms| sum + ms);
         let host = side.passes.iter().filter_map(|pass| pass.host_ms).fold(0.0, |sum, ms| sum + ms);
@@ -207,7 +210,7 @@ fn show_sum(ui: &mut Ui, face: &mut Interface) {
         let frame = side.frame_ms.map(|ms| format!(", a frame without stamps {ms:.2} ms")).unwrap_or_default();
         ui.label(format!("{name}GPU {sum:.2} ms, host {host:.2} ms{frame}; median of {} frames", side.samples));
     }
-    if face.measure.times > 0 && face.session.times.is_empty() {
+    if face.measure.times > 0 && face.session.times.iter().all(|side| side.samples == 0) {
         ui.weak("The first stamped frames are being drawn.");
     }
 }

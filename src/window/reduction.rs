@@ -3,25 +3,44 @@
 
 use egui::Color32;
 
-/// The pixels that one pixel of the smaller picture covers, along one axis.
-struct Span {
-    first: usize,
-    /// Shares of the covered pixels, which sum up to one.
-    shares: Vec<f32>,
+/// A whole share.
+const WHOLE: u16 = 256;
+
+/// The pixels that each pixel of the smaller picture covers, along one axis.
+struct Spans {
+    /// Pixels that one looks at, some of them for nothing.
+    taps: usize,
+    /// The first of them.
+    firsts: Vec<usize>,
+    /// Shares of them, which sum up to [`WHOLE`], one pixel's after the other's.
+    shares: Vec<u16>,
 }
 
-/// The spans of `to` pixels over `from`, at least as many.
-fn spans(from: usize, to: usize) -> Vec<Span> {
-    let covered = from as f64 / to as f64;
-    let span = |index: usize| {
-        let (start, end) = (index as f64 * covered, (index + 1) as f64 * covered);
-        let first = (start as usize).min(from - 1);
-        // An end that rounding pushed past a pixel covers nothing of it.
-        let last = ((end - 1e-9).ceil() as usize).clamp(first + 1, from);
-        let share = |pixel: usize| ((end.min((pixel + 1) as f64) - start.max(pixel as f64)) / covered).max(0.0) as f32;
-        Span { first, shares: (first..last).map(share).collect() }
-    };
-    (0..to).map(span).collect()
+impl Spans {
+    /// Those of `to` pixels over `from`, which are at least as many.
+    fn new(from: usize, to: usize) -> Self {
+        let covered = from as f64 / to as f64;
+        // One that begins inside a pixel ends inside another.
+        let taps = (covered.ceil() as usize + 1).min(from);
+        let (mut firsts, mut shares) = (Vec::with_capacity(to), Vec::with_capacity(to * taps));
+        for index in 0..to {
+            let start = index as f64 * covered;
+            let first = (start as usize).min(from - taps);
+            // Rounded as sums, so that none gets lost.
+            let up_to = |pixel: usize| {
+                let share = ((pixel as f64 - start) / covered).clamp(0.0, 1.0);
+                (share * f64::from(WHOLE)).round() as u16
+            };
+            firsts.push(first);
+            shares.extend((first..first + taps).map(|pixel| up_to(pixel + 1) - up_to(pixel)));
+        }
+        Spans { taps, firsts, shares }
+    }
+
+    /// The first pixel and the shares of each pixel.
+    fn each(&self) -> impl Iterator<Item = (usize, &[u16])> {
+        self.firsts.iter().copied().zip(self.shares.chunks_exact(self.taps))
+    }
 }
 
 /// Opaque pixels of a picture of `to`, made of the four bytes a pixel of one of `from`, which is at least as large both
@@ -31,21 +50,27 @@ pub fn reduced(bytes: &[u8], from: [usize; 2], to: [usize; 2]) -> Option<Vec<Col
     if !is_smaller || bytes.len() != from[0] * from[1] * 4 {
         return None;
     }
-    let (columns, rows) = (spans(from[0], to[0]), spans(from[1], to[1]));
-    let mut sums = vec![0.0_f32; from[0] * 4];
+    let (columns, rows) = (Spans::new(from[0], to[0]), Spans::new(from[1], to[1]));
+    let width = from[0] * 4;
+    let mut sums = vec![0_u16; width];
     let mut pixels = Vec::with_capacity(to[0] * to[1]);
-    for row in &rows {
-        sums.fill(0.0);
-        for (share, line) in row.shares.iter().zip(bytes.chunks_exact(from[0] * 4).skip(row.first)) {
-            sums.iter_mut().zip(line).for_each(|(sum, byte)| *sum += share * f32::from(*byte));
+    for (first, shares) in rows.each() {
+        sums.fill(0);
+        let covered = shares.iter().zip(bytes[first * width..].chunks_exact(width));
+        for (share, line) in covered.filter(|(share, _)| **share > 0) {
+            // A byte times a whole share is the most that there is.
+            sums.iter_mut().zip(line).for_each(|(sum, byte)| *sum += share * u16::from(*byte));
         }
-        pixels.extend(columns.iter().map(|column| {
-            let covered = sums.chunks_exact(4).skip(column.first).zip(&column.shares);
-            let mean = covered.fold([0.5_f32; 3], |mean, (sum, share)| {
-                [mean[0] + share * sum[0], mean[1] + share * sum[1], mean[2] + share * sum[2]]
-            });
-            // Saturates at both ends.
-            Color32::from_rgb(mean[0] as u8, mean[1] as u8, mean[2] as u8)
+        pixels.extend(columns.each().map(|(first, shares)| {
+            let mut mean = [1_u32 << 15; 3];
+            for (share, sum) in shares.iter().zip(sums[first * 4..].chunks_exact(4)) {
+                let share = u32::from(*share);
+                mean[0] += share * u32::from(sum[0]);
+                mean[1] += share * u32::from(sum[1]);
+                mean[2] += share * u32::from(sum[2]);
+            }
+            let [red, green, blue] = mean.map(|mean| (mean >> 16) as u8);
+            Color32::from_rgb(red, green, blue)
         }));
     }
     Some(pixels)

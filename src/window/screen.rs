@@ -78,7 +78,7 @@ impl Screen {
         self.is_stale = true;
     }
 
-    /// What was on the screen may be lost: it is shown again with the next frame, changed or not.
+    /// The contents of the screen may be lost: it is shown again with the next frame, changed or not.
     pub fn exposed(&mut self) {
         self.shown = None;
     }

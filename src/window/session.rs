@@ -166,6 +166,11 @@ impl Session {
         self.setup.as_ref().map_or(1, |setup| setup.sides.len().max(1))
     }
 
+    /// Two sides are set, and the last frame is of both: before the first one, the picture that was there stays.
+    pub fn shows_both(&self) -> bool {
+        self.side_count() > 1 && self.frame.as_ref().is_some_and(|frame| frame.sides.len() > 1)
+    }
+
     /// Width and height of a side's picture in pixels.
     pub fn picture_size(&self, side: usize) -> Option<egui::Vec2> {
         let picture = self.frame.as_ref()?.sides.get(side)?.picture.as_ref()?;

@@ -41,7 +41,13 @@ pub fn show(ui: &mut Ui, face: &mut Interface) {
         let names: Vec<String> =
             built.map(|side| side.passes.iter().map(|pass| pass.name.clone()).collect()).unwrap_or_default();
         if face.session.passes.is_empty() {
-            columns[1].weak("Turn times on above the passes to see them here.");
+            let is_asked = face.measure.times > 0;
+            let words = if is_asked {
+                "They come with the first timestamps."
+            } else {
+                "Turn times on above the passes to see them here."
+            };
+            columns[1].weak(words);
         } else {
             plot(&mut columns[1], &face.session.passes, &names, times);
         }

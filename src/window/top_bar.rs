@@ -189,11 +189,11 @@ fn show_clock(ui: &mut Ui, face: &mut Interface) {
 
 fn show_theme(ui: &mut Ui, face: &mut Interface) {
     let name = match face.layout.theme {
-        Theme::System => "Theme: display's",
-        Theme::Light => "Theme: light",
-        Theme::Dark => "Theme: dark",
+        Theme::System => "Auto",
+        Theme::Light => "Light",
+        Theme::Dark => "Dark",
     };
-    if ui.button(name).on_hover_text("Light, dark, as the display (L)").clicked() {
+    if ui.button(name).on_hover_text("Colours: light, dark, as the display has them (L)").clicked() {
         keys::next_theme(ui.ctx(), face);
     }
 }
@@ -244,7 +244,7 @@ pub fn show_status(ui: &mut Ui, face: &mut Interface) {
     });
 }
 
-/// What the window's own drawing takes.
+/// Time of the window's own drawing.
 fn show_own_times(ui: &mut Ui, face: &Interface) {
     let Some(last) = face.interface_ms.back() else { return };
     let of_pictures = face.pictures_ms.back().map(|last| format!(" / {last:.1}")).unwrap_or_default();

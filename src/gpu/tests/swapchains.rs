@@ -34,7 +34,7 @@ struct Server {
 
 impl Server {
     /// # Panics
-    /// Where Xvfb is not installed: a test never passes for want of it.
+    /// Xvfb is not installed: a test never passes for want of it.
     fn start() -> Arc<Self> {
         let mut command = Command::new("Xvfb");
         // It ends with its last client, so with this process, however that ends.

@@ -178,7 +178,7 @@ impl CulledMap {
             None => (uniform_cells(context, lit, offset.y)?, lit.planes),
         };
 
-        let position_pyramid = PositionPyramid::new(context, lit, position_map)?;
+        let position_pyramid = PositionPyramid::new(context, position_map)?;
         let triangles = water.grid.triangle_count();
         let words = planes.div_ceil(WORD);
         let all_words = u64::from(words) * u64::from(triangles);

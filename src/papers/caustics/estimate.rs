@@ -53,7 +53,7 @@ impl Parameters {
         // Position, depth and caustics, diffuse and combined light.
         let maps = (3.0 * NUMBER + 2.0 * LIGHT) * texels;
         let entries = position_pyramid::extent(self.map_size).map(|n| n as f64).iter().product::<f64>();
-        let pyramid = NUMBER * (texels + entries);
+        let pyramid = NUMBER * (texels + 2.0 * entries);
         // What lies on every plane follows the planes and its own size: a refusal names both.
         let by_planes = match variant {
             Variant::Volumetric => "map-size` or `planes",

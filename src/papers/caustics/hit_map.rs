@@ -93,7 +93,7 @@ impl HitMap {
             let desc = BufferDesc::new(context.name(name), bytes).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by(by))
         };
-        let position_pyramid = PositionPyramid::new(context, lit, position_map)?;
+        let position_pyramid = PositionPyramid::new(context, position_map)?;
         let sums = buffer("landed-light", 4 * u64::from(words), "map-size")?;
         let bytes = 4 * u64::from(LANDING_FLOATS) * u64::from(vertices);
         let landings = buffer("landings", bytes, "water-triangles")?;

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use ash::vk;
 
-use super::receiver::LitReceiver;
 use super::resources::Context;
 use crate::gpu::{Buffer, BufferDesc, Error, Frame, ImageView, Pass};
 use crate::host_block;
@@ -15,7 +14,6 @@ host_block! {
         number: u32,
         count: u32,
         map_size: u32,
-        half_height: f32,
     }
 }
 
@@ -26,21 +24,21 @@ pub struct PositionPyramid {
     constants: LevelConstants,
     /// The position map as a list, metres of box space, row by row.
     pub heights: Arc<Buffer>,
-    /// Two heights an entry, each of 16 bits, level under level.
+    /// Two heights an entry, level under level.
     pub entries: Arc<Buffer>,
 }
 
 impl PositionPyramid {
     /// # Errors
     /// Errors of the Vulkan layer.
-    pub fn new(context: Context<'_>, lit: &LitReceiver, position_map: &Arc<ImageView>) -> Result<Self, Error> {
+    pub fn new(context: Context<'_>, position_map: &Arc<ImageView>) -> Result<Self, Error> {
         let map_size = context.parameters.map_size;
         let buffer = |name: &str, words: u64| {
             let desc = BufferDesc::new(context.name(name), 4 * words).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by("map-size"))
         };
         let heights = buffer("position-heights", u64::from(map_size).pow(2))?;
-        let entries = buffer("position-pyramid", extent(map_size).iter().product())?;
+        let entries = buffer("position-pyramid", 2 * extent(map_size).iter().product::<u64>())?;
         let pass = Pass::compute("position-pyramid", "6.1", "caustics/position-pyramid.comp")
             .constants::<LevelConstants>()
             .with("position_map", position_map)
@@ -48,12 +46,7 @@ impl PositionPyramid {
             .with("heights", &heights)
             .with("pyramid", &entries)
             .build(context.shaders)?;
-        let constants = LevelConstants {
-            number: 1,
-            count: level_count(map_size),
-            map_size,
-            half_height: (lit.aligned.extent.y / 2.0) as f32,
-        };
+        let constants = LevelConstants { number: 1, count: level_count(map_size), map_size };
         Ok(PositionPyramid { pass, constants, heights, entries })
     }
 

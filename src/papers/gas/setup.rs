@@ -229,6 +229,11 @@ impl Study for Setup {
             let message = "`white-temperature`: no file has temperatures: give `volume-temperature`";
             return Err(Error::Input(message.to_owned()));
         }
+        let has_cache = self.ways.density_caches.iter().any(|cache| cache.0.is_some());
+        if has_cache && self.reading.temperature.is_some() {
+            let message = "`density-cache`: a table of densities knows no temperatures: leave out `volume-temperature`";
+            return Err(Error::Input(message.to_owned()));
+        }
         self.parameters.validate()?;
         let mut objects = self.scene.scene().objects;
         for source in &self.objects {

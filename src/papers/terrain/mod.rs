@@ -34,6 +34,7 @@ mod nearest;
 mod normal;
 mod object_depth;
 mod object_hits;
+mod object_occlusion;
 mod object_shadow;
 mod object_source;
 mod objects;
@@ -75,6 +76,7 @@ use self::mesh_lod::MeshLod;
 use self::normal::{HostNormal, normal};
 use self::object_depth::ObjectDepth;
 use self::object_hits::ObjectHits;
+use self::object_occlusion::object_occlusion;
 use self::object_shadow::object_shadow;
 pub use self::object_source::{ObjectSource, Stand};
 use self::objects::{ObjectMesh, Objects};
@@ -156,8 +158,7 @@ struct ObjectPasses {
     objects: Objects,
 }
 
-/// Points at which objects are seen, and the fraction of the sun's light that reaches them past the maps and past each
-/// other.
+/// Hits of objects, and the sun's light that reaches them past the maps and past each other.
 struct ObjectShadows {
     hits: ObjectHits,
     shadow: PixelPass,
@@ -392,8 +393,7 @@ impl ObjectPasses {
         let shadow = casters.map(|(scene, tree)| -> Result<_, Error> {
             let hits = ObjectHits::new(build, &meshes, &depth)?;
             let shadow = object_shadow(build, scene, &hits)?;
-            let images = [&hits.target, &shadow.target];
-            let occlusion = occlusion(build, "object-occlusion", (&depth.light, tree), images)?;
+            let occlusion = object_occlusion(build, tree, (&depth, &hits), &shadow)?;
             Ok(ObjectShadows { hits, shadow, occlusion })
         });
         let shadow = shadow.transpose()?;

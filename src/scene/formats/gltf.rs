@@ -73,7 +73,7 @@ pub(super) fn promised_triangles(stream: &mut Stream<'_>) -> Result<Option<u64>,
     Ok(scene_triangles(&text, stream.size_bytes()).ok().flatten())
 }
 
-/// Triangles of a document's scene; none where a list of them is not in its buffer.
+/// Triangles of a document's scene; none where a list of them is not in its buffer, or where there are more than the reader takes.
 fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
     check_objects(text)?;
     let (document, _) = read_document(text)?;
@@ -85,7 +85,12 @@ fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
         })
     };
     let mut triangles = 0_u64;
-    for part in placed_meshes(&document)?.iter().flat_map(|(mesh, _)| mesh.primitives()) {
+    let meshes = placed_meshes(&document)?;
+    let parts = meshes.iter().flat_map(|(mesh, _)| mesh.primitives());
+    for (number, part) in parts.enumerate() {
+        if number >= MAX_PARTS {
+            return Ok(None);
+        }
         let Some(list) = part.indices().or_else(|| part.get(&Semantic::Positions)).filter(is_there) else {
             return Ok(None);
         };
@@ -96,7 +101,7 @@ fn scene_triangles(text: &[u8], file_bytes: u64) -> Result<Option<u64>, Fault> {
             _ => 0,
         });
     }
-    Ok(Some(triangles))
+    Ok(Some(triangles).filter(|triangles| *triangles <= MAX_CORNERS as u64 / 3))
 }
 
 fn parse(bytes: &[u8], directory: &Path, keeps_tags: bool) -> Result<Parts, Fault> {

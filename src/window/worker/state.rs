@@ -53,7 +53,7 @@ pub struct State<S: Study> {
     pub(super) shown: u32,
     /// A state is on its way to the frame that is wanted.
     pub(super) is_replaying: bool,
-    /// What is shown of a frame has changed since the last was told.
+    /// The shown part of a frame has changed since the last was told.
     pub(super) wants_more: bool,
     pub(super) jobs: Vec<Numbered>,
     pub(super) warned: Vec<String>,

@@ -128,7 +128,8 @@ impl Times {
         let time_ms = |pass: &PassTimes| pass.gpu_ms.unwrap_or(0.0) + pass.host_ms.unwrap_or(0.0);
         let sum_ms: f64 = passes.iter().map(time_ms).sum();
         for pass in &mut passes {
-            let is_timed = pass.gpu_ms.or(pass.host_ms).is_some() && sum_ms > 0.0;
+            // Before the first timestamps, host work is not all that there is.
+            let is_timed = self.stamped > 0 && pass.gpu_ms.or(pass.host_ms).is_some() && sum_ms > 0.0;
             pass.share = is_timed.then(|| time_ms(pass) / sum_ms);
         }
         SideTimes { samples: self.stamped.min(most), frame_ms: self.frames.median(), passes }

@@ -291,7 +291,7 @@ fn exact_light(surface: &impl Fn(f64, f64) -> WaterVertex, oracle: &Oracle, floo
     landing(at).1 / moved(DVec2::X * step).perp_dot(moved(DVec2::Y * step)).abs()
 }
 
-/// Where the light does not fold a map of triangles of many texels has the exact light in each, not that of facets.
+/// Without folded light a map of triangles of many texels has the exact light in each, not that of facets.
 #[test]
 fn light_is_smooth_over_triangles() {
     gpu_test(|device| {

@@ -69,7 +69,7 @@ fn what_can_be_written_is_written() {
     assert!(ended.stdout.contains("volumetric"), "{}", ended.stdout);
 }
 
-/// What is wrong with a scene is told of its pictures in an experiment as `render` tells it.
+/// Warnings of a scene are told of its pictures in an experiment as `render` tells them.
 #[test]
 fn pictures_of_experiments_have_their_warnings() {
     let out = folder();

@@ -133,7 +133,7 @@ fn temperatures_of_a_file_are_seen() {
         (&hot, "--volume-temperature 2", &["no component 2"][..]),
         (&hot, "--volume-temperature 1 --white-temperature 0", &["--white-temperature 0"]),
         (&hot, "--white-temperature 900", &["--white-temperature", "--volume-temperature"]),
-        (&hot, "--volume-temperature 1 --density-cache 8", &["--density-cache 8", "--volume-temperature"]),
+        (&hot, "--volume-temperature 1 --density-cache 8", &["--density-cache", "--volume-temperature"]),
         (&write("low.nrrd", -3.0), "--volume-temperature 1", &["-3 K", "--volume-unfit clamp"]),
     ] {
         small("render --image never.png", path, "").args(options).run().refused(2, parts);

@@ -54,7 +54,8 @@ fn interrupt(program: impl Fn() -> Program, ready: impl Fn(u32) -> bool) -> Ende
 fn interrupt_by(signal: &str, program: impl Fn() -> Program, ready: impl Fn(u32) -> bool) -> Ended {
     let mut pause = Duration::from_millis(300);
     loop {
-        let mut running = program().start();
+        // The tests may run under `nohup` themselves.
+        let mut running = program().under("env --default-signal=HUP").start();
         wait_until(&mut running, &ready);
         thread::sleep(pause);
         let group = format!("-{}", running.id());

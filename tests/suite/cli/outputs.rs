@@ -43,7 +43,7 @@ fn a_destination_that_cannot_be_written_is_refused_before_the_work() {
     dump.run().refused(2, &["folder.png"]);
 }
 
-/// What is written would else take the place of what was written before it, or of what was read.
+/// A file would else take the place of one that was written before it, or that was read.
 #[test]
 fn outputs_that_are_one_file_or_an_input_are_refused() {
     let out = folder();

@@ -124,10 +124,11 @@ impl Program {
         self
     }
 
-    /// Runs it by another program, which is given its command line.
-    pub fn under(self, program: &str) -> Self {
-        let mut command = Command::new(program);
-        command.arg(self.command.get_program()).args(self.command.get_args()).stdin(Stdio::null());
+    /// Runs it by another program, which is given its command line after words of its own.
+    pub fn under(self, words: &str) -> Self {
+        let mut words = words.split_whitespace();
+        let mut command = Command::new(words.next().expect("a program"));
+        command.args(words).arg(self.command.get_program()).args(self.command.get_args()).stdin(Stdio::null());
         for (name, value) in self.command.get_envs() {
             match value {
                 Some(value) => command.env(name, value),

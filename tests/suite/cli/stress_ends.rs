@@ -1,4 +1,4 @@
-//! What ends a series of `stress` by itself on a real device: loops that the driver cut, a lost device; and several devices in
+//! Ends of a series of `stress` by itself on a real device: loops that the driver cut, a lost device; and several devices in
 //! one call.
 
 use std::time::{Duration, Instant};
@@ -52,7 +52,7 @@ fn a_lost_device_ends_its_series_and_the_record_says_so() {
     assert!(reason.contains("device") && reason.contains("lost"), "{reason}");
 }
 
-/// What no device of the least heap holds is refused before a mesh is divided, which would take gigabytes.
+/// A mesh that no device of the least heap holds is refused before a mesh is divided, which would take gigabytes.
 #[test]
 fn triangles_beyond_the_device_stop_it_before_the_work() {
     let layer = Layer::new();

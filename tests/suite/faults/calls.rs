@@ -17,6 +17,8 @@ use crate::cli::program::{Ended, ONCE, entries, folder};
 pub const FAILURES: [&str; 3] = ["host", "device", "lost"];
 /// Running out of memory for an object's name costs the name.
 const HARMLESS: &str = "vkSetDebugUtilsObjectNameEXT";
+/// The allocator takes other memory where the device has none left that the host can write, and so these may fail once.
+const MEMORY: [&str; 2] = ["vkAllocateMemory", "vkMapMemory"];
 /// Calls before there is a device.
 const BEFORE_A_DEVICE: [&str; 6] = [
     "vkCreateInstance",
@@ -34,6 +36,11 @@ pub fn code(name: &str, failure: &str) -> i32 {
         _ if BEFORE_A_DEVICE.contains(&name) || name.contains("QueueFamilyPerformance") => 3,
         _ => 1,
     }
+}
+
+/// True of a run that had other memory in place of what a failing call would have given.
+pub fn has_gone_on(name: &str, ended: &Ended) -> bool {
+    MEMORY.contains(&name) && ended.status.success()
 }
 
 /// Calls to fail, by name and number, and how.
@@ -85,6 +92,9 @@ fn assert_faults_are_told(paper: &Paper) {
             // A wait is asked again where the machine is slow, and the run that was counted had more of them.
             assert!(report.count(name) < number, "{what}: it did not fail");
             ended.succeeded();
+            continue;
+        }
+        if has_gone_on(name, &ended) {
             continue;
         }
         let code = code(name, failure);

@@ -111,10 +111,7 @@ impl Layer {
         let mut set = vec![("FUMAROLE_LAYER_REPORT", self.report_path().into()), ("NODEVICE_SELECT", "1".into())];
         if validated {
             let folders = std::env::join_paths([self.above.path(), self.folder.path()]).unwrap();
-            set.extend([
-                ("VK_LAYER_PATH", folders),
-                ("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}").into()),
-            ]);
+            set.extend([("VK_LAYER_PATH", folders), ("VK_INSTANCE_LAYERS", format!("{VALIDATION}:{LAYER}").into())]);
         } else {
             set.extend([("VK_ADD_LAYER_PATH", self.folder.path().into()), ("VK_INSTANCE_LAYERS", LAYER.into())]);
         }
@@ -138,17 +135,18 @@ impl Layer {
 
     /// Runs with the layer next to the driver, `validated` with the Khronos layer above it.
     pub fn before(&self, program: Program, validated: bool) -> Program {
-        let program = self.environment(validated).into_iter().fold(program, |program, (name, value)| program.env(name, value));
+        let program =
+            self.environment(validated).into_iter().fold(program, |program, (name, value)| program.env(name, value));
         if validated { program.args("--validate") } else { program }
     }
 
-    /// The calls that were counted in a program that has ended.
+    /// Submissions that were counted in a program that has ended.
     ///
     /// # Panics
     /// When it ended without ending its instance.
-    pub fn calls(&self) -> usize {
+    pub fn submissions(&self) -> usize {
         let text = fs::read_to_string(self.report_path()).unwrap();
-        text.lines().find_map(|line| line.strip_prefix("calls ")?.parse().ok()).unwrap()
+        text.lines().find_map(|line| line.strip_prefix("call vkQueueSubmit2 ")?.parse().ok()).unwrap()
     }
 
     /// Runs on a device with the least limits, whatever the one of the tests has.
@@ -156,7 +154,7 @@ impl Layer {
         self.before(program, false).env("FUMAROLE_LAYER_LIMITS", LEAST)
     }
 
-    /// How often each call was made, the name of the one that failed, and what was alive at the end.
+    /// Number of each call, the name of the one that failed, and what was alive at the end.
     ///
     /// # Panics
     /// When the program ended without ending its instance.
@@ -202,7 +200,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// How often a call was made.
+    /// Number of times that a call was made.
     pub fn count(&self, name: &str) -> usize {
         self.calls.iter().find(|(called, _)| called == name).map_or(0, |(_, count)| *count)
     }

@@ -49,7 +49,7 @@ fn what_only_scatters_shines_as_what_is_around_it() {
     }
 }
 
-/// What is scattered once is what rays with shadows find, in every gas; transparencies are theirs.
+/// Light that is scattered once is what rays with shadows find, in every gas; transparencies are theirs.
 #[test]
 fn the_first_scattering_is_that_of_rays() {
     for gas in gases() {

@@ -19,8 +19,9 @@ fn a_lost_device_of_the_worker_leaves_the_window_which_starts_another() {
         let display = Display::start();
         let layer = Layer::new();
         let program = layer.before(fumarole(&format!("view gas {}", small("gas"))).on_test_device(), false);
-        let program =
-            program.env("FUMAROLE_LAYER_FAIL", format!("vkQueueSubmit2@{LOST_AT}:lost")).env("FUMAROLE_LAYER_ONLY", "worker");
+        let program = program
+            .env("FUMAROLE_LAYER_FAIL", format!("vkQueueSubmit2@{LOST_AT}:lost"))
+            .env("FUMAROLE_LAYER_ONLY", "worker");
         let mut window = Window::start(&display, program);
         window.wait_for_frame(0);
         display.key(SPACE);
@@ -45,11 +46,11 @@ fn a_gpu_is_shared_with_the_window_pass_by_pass() {
             let mut pictures = vec![picture(&worker.frame_after(0), 0)];
             pictures.extend((1..5).map(|number| picture(&worker.frame_of(Request::GoTo(number)), 0)));
             worker.quit();
-            (pictures, layer.calls())
+            (pictures, layer.submissions())
         };
         let (of_cpu, of_gpu) = (drawn(false), drawn(true));
         assert!(of_cpu.0 == of_gpu.0, "other pictures");
-        // Each of five frames has eight passes, and each submission begins, ends, is handed in and waited for.
-        assert!(of_gpu.1 > of_cpu.1 + 5 * 7 * 3, "{} calls for {}", of_gpu.1, of_cpu.1);
+        // Each of five frames has seven passes.
+        assert!(of_gpu.1 >= of_cpu.1 + 5 * 6, "{} submissions for {}", of_gpu.1, of_cpu.1);
     });
 }

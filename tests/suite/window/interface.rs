@@ -358,7 +358,10 @@ fn two_sides_are_compared_in_three_ways() {
     );
     let Event::Built(mut both) = built(2) else { unreachable!() };
     both.sides[1].passes[2].name = "accumulate".into();
-    for event in [setup(&["level-map", "volumetric"]), Event::Built(both), frame(7, 2)] {
+    harness.state_mut().take(setup(&["level-map", "volumetric"]));
+    harness.run();
+    assert!(harness.query_by_label("Side by side").is_none(), "there is one picture so far, which stays");
+    for event in [Event::Built(both), frame(7, 2)] {
         harness.state_mut().take(event);
     }
     asked(&mut harness);

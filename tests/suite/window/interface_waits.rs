@@ -62,7 +62,7 @@ fn a_window_that_begins_with_a_typed_camera_waits_for_the_one_of_the_figure() {
         .build_state(|context, face: &mut Interface| face.show(context), face);
     asked(&mut harness);
     let back = Request::Set(vec![Assignment { name: "camera".into(), values: vec![] }]);
-    assert_eq!(press(&mut harness, egui::Key::R), [back.clone()]);
+    assert_eq!(press(&mut harness, egui::Key::R), std::slice::from_ref(&back));
     harness.state_mut().has_sent(9);
     turn_wheel(&mut harness);
     assert_eq!(asked(&mut harness), [], "it moves the camera that was left");
@@ -73,7 +73,7 @@ fn a_window_that_begins_with_a_typed_camera_waits_for_the_one_of_the_figure() {
     assert!(is_a_notch_nearer(distance(&asked(&mut harness))));
     harness.state_mut().has_sent(10);
     harness.state_mut().take(Event::Setup(Setup { heeds: 10, ..typed() }));
-    assert_eq!(press(&mut harness, egui::Key::R), [back.clone()]);
+    assert_eq!(press(&mut harness, egui::Key::R), std::slice::from_ref(&back));
     turn_wheel(&mut harness);
     assert!(is_a_notch_nearer(distance(&asked(&mut harness))), "the figure's camera is forgotten");
     // Another water may have another.

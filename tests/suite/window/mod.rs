@@ -16,7 +16,6 @@ mod lasting;
 mod painting;
 mod presents;
 mod scene;
-mod shots;
 mod wayland;
 mod worker;
 mod worker_answers;

@@ -16,9 +16,13 @@ use crate::scene::MeshSource;
 
 /// One mesh with one count of planes.
 pub struct Point<'a> {
+    /// The receiver, with its name in tables.
     pub mesh: &'a NamedMesh,
+    /// Reference planes of the receiver.
     pub planes: u32,
+    /// The user's set-up with that mesh and count.
     pub setup: &'a Setup,
+    /// Its input, loaded and placed.
     pub scene: &'a Scene,
 }
 

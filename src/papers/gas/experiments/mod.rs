@@ -46,8 +46,8 @@ pub fn options() -> Vec<Parameter<Options>> {
     vec![
         Parameter::new("counts", field!(Options.counts))
             .placeholder("N,N,..")
-            .help("Table sizes, steps, sheets, entries or divisors of a sweep, comma-separated")
-            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128, or 24,32,48,64, or 4,2,1"),
+            .help("Table sizes, steps, sheets, entries, divisors or scales of a sweep, comma-separated")
+            .default_text("16,32,64,96,128, or 10,20,40,80,160, or 2,8,32,128, or 24,32,48,64, or 4,2,1, or 2,4,8"),
         Parameter::new("paths", field!(Options.paths))
             .range(Range::from(1.0).to(1e6))
             .help("Paths of a pixel in each of the reference's two halves, whose difference is its noise"),
@@ -118,8 +118,8 @@ pub fn all() -> Vec<Experiment<Setup>> {
         Experiment {
             name: "volume-scale",
             help: "Gas that is marched in fewer pixels: cost against the difference from that of all",
-            options: &[],
-            refuses: &[OWN_SCENES, ("volume-scale", "this experiment compares several")],
+            options: &["counts"],
+            refuses: &[("volume-scale", "this experiment sweeps it; give `counts`")],
             run: savings::scale,
         },
         Experiment {

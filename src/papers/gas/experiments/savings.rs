@@ -20,13 +20,10 @@ use crate::papers::gas::setup::Setup;
 const ENTRIES: [u32; 4] = [24, 32, 48, 64];
 /// Optical depths that skipped bricks may have.
 const DEPTHS: [f32; 3] = [0.0, 0.01, 0.05];
-/// Columns and rows from one pixel whose gas is marched to the next.
-const SCALES: [u32; 4] = [1, 2, 4, 8];
+/// Columns and rows from one pixel whose gas is marched to the next, of a sweep that names none.
+const SCALES: [u32; 3] = [2, 4, 8];
 /// Scenes of which skipping is tried: fog behind its front, steam, a ball in its box.
 const SCENES: [Preset; 3] = [Preset::Fig7, Preset::Fig8, Preset::Solid];
-
-/// Scenes of which fewer pixels are tried: steam behind and before glasses, fog between pieces of chess, a ball and its rods.
-const SCALED: [Preset; 3] = [Preset::Fig6, Preset::Fig7, Preset::Fig5];
 
 /// Passes whose time follows from the densities.
 pub(super) const GAS_PASSES: [&str; 8] = [
@@ -71,12 +68,12 @@ pub fn skipping(context: &mut Context<'_>) -> Result<(), Error> {
 /// # Errors
 /// [`Error::Parameter`], [`Error::Scene`], [`Error::Gpu`], [`Error::Image`], [`Error::Output`].
 pub fn scale(context: &mut Context<'_>) -> Result<(), Error> {
-    let mut setups = context.setup.in_scenes(&SCALED)?;
-    for setup in &mut setups {
-        setup.ways.scales = SCALES.to_vec();
-    }
+    let given = context.options.counts.as_slice();
+    let counts = if given.is_empty() { &SCALES } else { given };
+    let mut setup = context.setup.named();
+    setup.ways.scales = [1].into_iter().chain(counts.iter().copied().filter(|&count| count != 1)).collect();
     let title = "Gas of fewer pixels: cost and Luv difference from that of all, by columns and rows between them";
-    run(context, &setups, &[Variant::None, Variant::Table], title)
+    run(context, &[setup], &[Variant::None], title)
 }
 
 fn run(context: &mut Context<'_>, setups: &[Setup], variants: &[Variant], title: &'static str) -> Result<(), Error> {

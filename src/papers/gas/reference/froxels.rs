@@ -14,7 +14,7 @@ use crate::papers::gas::parameters::Parameters;
 struct Froxel {
     /// Per metre.
     extinction: f64,
-    /// What an element sends to the eye, times the extinction.
+    /// Light that an element sends to the eye, times the extinction.
     light: DVec3,
 }
 

@@ -28,7 +28,7 @@ pub const MOST_SCATTERINGS: u32 = 100_000;
 pub struct Scattered {
     /// Light of the gas, premultiplied, linear RGB.
     pub all: [DVec3; 2],
-    /// What of it was scattered once, and what hot gas sends to the eye itself.
+    /// The part of it that was scattered once, and the light that hot gas itself sends to the eye.
     pub once: [DVec3; 2],
     /// Of all gas on the pixel's ray, 0 to 1.
     pub transparency: f64,

@@ -1,4 +1,4 @@
-//! How many photons make the truth certain.
+//! Number of photons that make the truth certain.
 
 /// Correlation of the truth's halves that is asked for.
 const CERTAIN: f64 = 0.999;
@@ -6,7 +6,7 @@ const CERTAIN: f64 = 0.999;
 pub const MOST_PHOTONS: u32 = 100_000;
 /// By which photons grow at once, at the least and at the most.
 const GROWTH: (f64, f64) = (1.5, 8.0);
-/// What more photons must have done to what the halves lack of correlating wholly, for still more to be worth their time.
+/// Factor by which more photons must have lowered what the halves lack of correlating wholly, for still more to be worth their time.
 const WORTHWHILE: f64 = 0.8;
 
 /// The photons for a texel with which halves that correlate so are to be traced again; `before` is the correlation with fewer. None
@@ -19,7 +19,7 @@ pub fn more_photons(photons: u32, halves: f64, before: Option<f64>) -> Option<u3
     }
     // What is lacking falls in proportion to the photons at least; a tenth more makes sure.
     let growth = (1.1 * lacking / (1.0 - CERTAIN)).clamp(GROWTH.0, GROWTH.1);
-    Some((f64::from(photons) * growth).ceil().min(f64::from(MOST_PHOTONS)) as u32)
+    Some((f64::from(photons) * growth).round().min(f64::from(MOST_PHOTONS)) as u32)
 }
 
 #[cfg(test)]
