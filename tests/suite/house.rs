@@ -28,9 +28,6 @@ const FRAMES: [(&str, &str); 14] = [
     ("terrain", "--size 48x32 --resolution 64 --shadows --variant mesh"),
 ];
 
-/// Passes of `hit` whose kernels share one file: `hit_map.rs`.
-const TOGETHER: [&str; 4] = ["empty-sums", "intersect", "land", "straddle"];
-
 /// Every source file below a folder of the repository.
 fn sources(folder: &str) -> Vec<PathBuf> {
     let mut open = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)];
@@ -91,7 +88,7 @@ fn passes_stand_in_files_of_their_names() {
             passes.extend(of_variants.map(|pass| pass["name"].as_str().unwrap().to_owned()));
         }
         assert!(passes.len() > 10, "{paper}: {passes:?}");
-        for pass in passes.iter().filter(|pass| !TOGETHER.contains(&pass.as_str())) {
+        for pass in &passes {
             assert!(stems.contains(pass.replace('-', "_").as_str()), "{paper}: no file of the pass {pass}");
         }
     }

@@ -1,15 +1,26 @@
 //! The variant `hit` (section 6.3): each triangle of the water once, where its light lands.
 
+mod empty_sums;
+mod intersect;
+mod land;
+mod straddle;
+
 use std::sync::Arc;
 
 use ash::vk;
 use glam::DVec3;
 
+use self::empty_sums::empty_sums;
+use self::intersect::intersect;
+use self::land::land;
+use self::straddle::straddle;
 use super::intersections::Scope;
 use super::position_pyramid::PositionPyramid;
 use super::receiver::LitReceiver;
 use super::resources::Context;
 use super::shadow_map::ShadowMap;
+use super::water_surface::WaterSurface;
+use crate::gpu::pass::PassBuilder;
 use crate::gpu::transfer::{read_buffer, update, upload};
 use crate::gpu::{Blend, Buffer, BufferDesc, Device, Error, Frame, ImageView, Load, Pass};
 use crate::host_block;
@@ -37,27 +48,74 @@ host_block! {
 }
 
 host_block! {
-    struct EmptyConstants {
-        pairs: u32,
-        threads: u32,
-    }
-}
-
-host_block! {
     struct MapConstants {
         map_size: u32,
     }
 }
 
-/// Invocations that empty the sums, at the most: fewer workgroups than any device allows.
-const EMPTYING: u32 = 1 << 18;
-/// Invocations that share the texels of a straddling triangle.
-const SHARING: u32 = 8;
-/// Triangles that they take one after the other, at the most.
-const IN_TURN: u32 = 16;
-
 /// Floats of a landing: place in texels, height, weight.
 pub const LANDING_FLOATS: u32 = 4;
+
+/// Makes passes of one receiver under one light.
+#[derive(Clone, Copy)]
+pub struct HitPass<'a> {
+    /// Rays and shadows of the light.
+    pub scope: Scope<'a>,
+    /// Heights of the receiver.
+    pub pyramid: &'a PositionPyramid,
+}
+
+impl HitPass<'_> {
+    /// True where receivers shadow one another.
+    pub fn is_shadowed(&self) -> bool {
+        self.scope.shadows.is_some()
+    }
+
+    /// Begins a pass over the rays or triangles of the refined water.
+    pub fn over_rays(&self, name: &'static str, shader: &str) -> PassBuilder {
+        Pass::compute(name, "6.3", shader)
+            .constants::<HitConstants>()
+            .with("heights", &self.pyramid.heights)
+            .with("pyramid", &self.pyramid.entries)
+            .with("rays", &self.scope.volumes.rays)
+    }
+
+    /// The pass, reading what shadows the receiver, if anything does.
+    pub fn shadowed(&self, pass: PassBuilder) -> PassBuilder {
+        match self.scope.shadows {
+            None => pass,
+            Some(shadows) => pass.with("shadow_map", &shadows.map).with("nearest", self.scope.context.nearest),
+        }
+    }
+}
+
+/// The rays' landings, one for each vertex of the refined water.
+pub struct Landings {
+    /// [`LANDING_FLOATS`] each.
+    pub places: Arc<Buffer>,
+    /// I_c where each lands.
+    pub intensities: Arc<Buffer>,
+}
+
+/// Light added up on the map's texels.
+pub struct Sums {
+    /// Two words a texel.
+    pub light: Arc<Buffer>,
+    /// Number of the triangles that do not land whole, and a list of them.
+    pub straddling: Arc<Buffer>,
+    /// uint\[2\]: invocations of `land` and of `straddle` whose loops the driver left early.
+    pub unfinished: Arc<Buffer>,
+}
+
+impl Sums {
+    /// The pass over triangles of the water, adding to the sums.
+    pub fn of_triangles(&self, pass: PassBuilder, water: &WaterSurface) -> PassBuilder {
+        pass.with("sums", &self.light)
+            .with("indices", &water.indices)
+            .with("straddling", &self.straddling)
+            .with("unfinished", &self.unfinished)
+    }
+}
 
 /// Passes of one receiver under one light.
 pub struct HitMap {
@@ -68,7 +126,6 @@ pub struct HitMap {
     straddle: Pass,
     caustics_map: Pass,
     constants: HitConstants,
-    /// uint\[2\]: invocations of `land` and of `straddle` whose loops the driver left early.
     unfinished: Arc<Buffer>,
     /// Landing points of the rays of the water's vertices.
     pub landings: Arc<Buffer>,
@@ -85,77 +142,47 @@ impl HitMap {
         position_map: &Arc<ImageView>,
         map: &Arc<ImageView>,
     ) -> Result<Self, Error> {
-        let Scope { context, volumes, water, shadows, .. } = scope;
+        let Scope { context, water, .. } = scope;
         let shaders = context.shaders;
-        let (triangles, vertices) = (water.grid.triangle_count(), water.grid.vertex_count());
-        let words = sum_words(context)?;
-        let buffer = |name: &str, bytes: u64, by: &'static str| {
-            let desc = BufferDesc::new(context.name(name), bytes).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+        let (triangles, vertices) = (u64::from(water.grid.triangle_count()), u64::from(water.grid.vertex_count()));
+        let words = u64::from(sum_words(context)?);
+        let buffer = |name: &str, words: u64, by: &'static str| {
+            let desc = BufferDesc::new(context.name(name), 4 * words).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
             Buffer::new(context.device(), desc).map_err(|error| error.set_by(by))
         };
         let position_pyramid = PositionPyramid::new(context, position_map)?;
-        let sums = buffer("landed-light", 4 * u64::from(words), "map-size")?;
-        let bytes = 4 * u64::from(LANDING_FLOATS) * u64::from(vertices);
-        let landings = buffer("landings", bytes, "water-triangles")?;
-        let intensities = buffer("landed-intensities", 4 * u64::from(vertices), "water-triangles")?;
-        let straddling = buffer("straddling", 4 * (1 + 3 * u64::from(triangles)), "water-triangles")?;
-
-        let unfinished = upload(
-            context.device(),
-            &context.name("unfinished"),
-            vk::BufferUsageFlags::STORAGE_BUFFER,
-            bytemuck::bytes_of(&[0_u32; 2]),
-        )?;
-
-        let kernel = |name, shader: &str| {
-            Pass::compute(name, "6.3", shader)
-                .constants::<HitConstants>()
-                .with("heights", &position_pyramid.heights)
-                .with("pyramid", &position_pyramid.entries)
-                .with("rays", &volumes.rays)
+        let light = buffer("landed-light", words, "map-size")?;
+        let landings = Landings {
+            places: buffer("landings", u64::from(LANDING_FLOATS) * vertices, "water-triangles")?,
+            intensities: buffer("landed-intensities", vertices, "water-triangles")?,
         };
-        let (intersect, straddle) = match shadows {
-            None => ("caustics/intersect-off.comp", "caustics/straddle-off.comp"),
-            Some(_) => ("caustics/intersect-on.comp", "caustics/straddle-on.comp"),
+        let sums = Sums {
+            light,
+            straddling: buffer("straddling", 1 + 3 * triangles, "water-triangles")?,
+            unfinished: upload(
+                context.device(),
+                &context.name("unfinished"),
+                vk::BufferUsageFlags::STORAGE_BUFFER,
+                bytemuck::bytes_of(&[0_u32; 2]),
+            )?,
         };
-        let mut intersect =
-            kernel("intersect", intersect).with("landings", &landings).with("intensities", &intensities);
-        let mut straddle = kernel("straddle", straddle)
-            .with("sums", &sums)
-            .with("indices", &water.indices)
-            .with("straddling", &straddling)
-            .with("unfinished", &unfinished);
-        if let Some(shadows) = shadows {
-            intersect = intersect.with("shadow_map", &shadows.map).with("nearest", context.nearest);
-            straddle = straddle.with("shadow_map", &shadows.map).with("nearest", context.nearest);
-        }
+        let hit = HitPass { scope, pyramid: &position_pyramid };
         Ok(HitMap {
-            empty_sums: Pass::compute("empty-sums", "6.3", "caustics/empty-sums.comp")
-                .constants::<EmptyConstants>()
-                .with("sums", &sums)
-                .with("straddling", &straddling)
-                .build(shaders)?,
-            intersect: intersect.build(shaders)?,
-            land: kernel("land", "caustics/land.comp")
-                .with("sums", &sums)
-                .with("indices", &water.indices)
-                .with("straddling", &straddling)
-                .with("landings", &landings)
-                .with("intensities", &intensities)
-                .with("unfinished", &unfinished)
-                .build(shaders)?,
-            straddle: straddle.build(shaders)?,
+            empty_sums: empty_sums(shaders, &sums.light, &sums.straddling)?,
+            intersect: intersect(hit, &landings)?,
+            land: land(hit, &landings, &sums)?,
+            straddle: straddle(hit, &sums)?,
             caustics_map: Pass::graphics("caustics-map", "6.3", "common/fullscreen.vert", "caustics/hit-map.frag")
                 .constants::<MapConstants>()
-                .with("sums", &sums)
+                .with("sums", &sums.light)
                 .with("position_map", position_map)
                 .with("nearest", context.nearest)
                 .color(map, Load::Discard, Blend::Replace)
                 .build(shaders)?,
             constants: constants(scope, lit, position_pyramid.level_count()),
             position_pyramid,
-            unfinished,
-            landings,
+            unfinished: sums.unfinished,
+            landings: landings.places,
         })
     }
 
@@ -185,14 +212,9 @@ impl HitMap {
     pub fn record(&self, frame: &mut Frame<'_>, absorption_per_m: f32) -> Result<(), Error> {
         let constants = HitConstants { absorption_per_m, ..self.constants };
         let HitConstants { map_size, triangles, vertices, .. } = constants;
-        // Four words together.
-        let pairs = (map_size * map_size).div_ceil(2);
         self.position_pyramid.record(frame)?;
-        frame.compute(&self.empty_sums, |dispatch| {
-            let threads = pairs.min(EMPTYING);
-            dispatch.constants(&EmptyConstants { pairs, threads }).threads(threads, 1, 1);
-        })?;
-        let sharing = triangles.div_ceil(IN_TURN) * SHARING;
+        empty_sums::record(&self.empty_sums, frame, map_size)?;
+        let sharing = straddle::threads(triangles);
         // Two triangles a cell, which are landed together.
         for (pass, threads) in [(&self.intersect, vertices), (&self.land, triangles / 2), (&self.straddle, sharing)] {
             frame.compute(pass, |dispatch| {

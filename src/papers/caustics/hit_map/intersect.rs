@@ -1,0 +1,15 @@
+//! Pass `intersect` (section 6.3): the place where the ray of each vertex of the refined water meets the receiver first.
+
+use super::{HitPass, Landings};
+use crate::gpu::{Error, Pass};
+
+/// Makes the pass; the landings are its own.
+///
+/// # Errors
+/// Errors of the Vulkan layer.
+pub fn intersect(hit: HitPass<'_>, landings: &Landings) -> Result<Pass, Error> {
+    let shader = if hit.is_shadowed() { "caustics/intersect-on.comp" } else { "caustics/intersect-off.comp" };
+    let pass = hit.over_rays("intersect", shader);
+    let pass = pass.with("landings", &landings.places).with("intensities", &landings.intensities);
+    hit.shadowed(pass).build(hit.scope.context.shaders)
+}
